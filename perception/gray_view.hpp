@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace understory {
+
+/// An 8-bit gray image somebody else owns: pointer and stride only, so that the detector's arithmetic needs
+/// no image library and builds alone.
+struct GrayView {
+  const std::uint8_t* data = nullptr;
+  std::ptrdiff_t stride = 0;  ///< bytes from one row to the next
+  int width_px = 0;
+  int height_px = 0;
+
+  const std::uint8_t* row(int row_px) const { return data + row_px * stride; }
+};
+
+}  // namespace understory

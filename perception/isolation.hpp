@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "perception/stereo_hit.hpp"
+
+namespace understory {
+
+/// Keeps the hits that have company: at least `least_points` of the same frame, itself included, within
+/// `radius_m` (camera frame). Order is kept. The original's avoidance counted a point with 3 within 1.0 m.
+std::vector<StereoHit> without_isolated(const std::vector<StereoHit>& hits, int least_points,
+                                        double radius_m);
+
+}  // namespace understory

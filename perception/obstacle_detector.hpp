@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "perception/stereo_frame.hpp"
+#include "perception/stereo_hit.hpp"
+
+namespace understory {
+
+/// Turns a stereo pair into hits. Implementations keep no clock and may keep buffers and memory of earlier
+/// frames.
+class ObstacleDetector {
+ public:
+  virtual ~ObstacleDetector() = default;
+  /// `frame` must have the rig's size and be CV_8UC1; a breach is a programming error and asserts.
+  /// Hits come in a fixed order (by row, then column), so that equal frames give equal outputs.
+  virtual std::vector<StereoHit> detect(const StereoFrame& frame) = 0;
+};
+
+}  // namespace understory

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "perception/obstacle_detector.hpp"
+#include "perception/self_similarity.hpp"
+#include "perception/stereo_rig.hpp"
+#include "perception/uniqueness.hpp"
+
+namespace understory {
+
+/// Every number and every rule of the detector. Defaults are the paper's rule as the original's public code
+/// had it (Barry & Tedrake 2015); each rule is a switch of its own.
+struct PushbroomConfig {
+  int stride_px = 5;         ///< from block to block, both ways; 1 .. 100; 5 sets the 5x5 blocks side by side
+  int last_row_px = 205;     ///< top edge of the lowest row of blocks; rows below see the ground
+  int least_edge_sum = 860;  ///< Laplacian sum asked of each image's block by itself; 0 .. 6375
+  double score_limit = 54.0 / 333.0;  ///< hit if S = SAD / (both edge sums) is below; exact to 1/333000
+
+  bool horizontal_invariance = true;  ///< reject texture that also matches near infinity
+  int invariance_columns_px = 3;      ///< searched to each side of infinity
+  int invariance_rows_px = 8;         ///< searched up and down
+  int invariance_row_step_px = 2;
+  double invariance_score_limit = 108.0 / 333.0;  ///< twice the score limit: 0.324
+
+  bool uniqueness = false;        ///< the disparity must stand out along the row
+  double uniqueness_ratio = 2.0;  ///< no other disparity within this many times its SAD
+  double uniqueness_least_depth_m =
+      1.5;  ///< range searched: infinity to here (the paper ignores nearer points)
+
+  bool isolation = false;          ///< a hit needs company in its own frame
+  int isolation_least_points = 3;  ///< itself included (the original's avoidance)
+  double isolation_radius_m = 1.0;
+};
+
+/// The paper's rule, exactly.
+PushbroomConfig paper_rule();
+/// Uniqueness instead of the invariance filter, gentler thresholds, 3 points within 1 m: on rendered forests
+/// its precision is 0.94 where the paper's thresholds give 0.37 (computed with one prototype;
+/// docs/benchmarks.md).
+PushbroomConfig robust_rule();
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, PushbroomConfig& config) {
+  visit("stride_px", config.stride_px, 1, 100);
+  visit("last_row_px", config.last_row_px, 0, 4000);
+  visit("least_edge_sum", config.least_edge_sum, 0, 6375);
+  visit("score_limit", config.score_limit, 0.0, 10.0);
+  visit("horizontal_invariance", config.horizontal_invariance);
+  visit("invariance_columns_px", config.invariance_columns_px, 0, 50);
+  visit("invariance_rows_px", config.invariance_rows_px, 0, 50);
+  visit("invariance_row_step_px", config.invariance_row_step_px, 1, 50);
+  visit("invariance_score_limit", config.invariance_score_limit, 0.0, 10.0);
+  visit("uniqueness", config.uniqueness);
+  visit("uniqueness_ratio", config.uniqueness_ratio, 1.0, 100.0);
+  visit("uniqueness_least_depth_m", config.uniqueness_least_depth_m, 0.1, 100.0);
+  visit("isolation", config.isolation);
+  visit("isolation_least_points", config.isolation_least_points, 1, 1000);
+  visit("isolation_radius_m", config.isolation_radius_m, 0.0, 100.0);
+}
+
+/// Depths between which a block's true disparity lies one pixel or less from the detection disparity, m.
+struct DepthInterval {
+  double near_m = 0;
+  double far_m = 0;
+};
+
+/// Pushbroom stereo (Barry & Tedrake 2015): looks at one disparity only, and lets the aircraft's motion sweep
+/// that surface through the world. Plain and exact; one thread. Detection disparity and infinity come from
+/// the rig.
+class PushbroomStereo : public ObstacleDetector {
+ public:
+  /// Asserts that the rig's detection depth gives a disparity beyond infinity and inside the image.
+  PushbroomStereo(const StereoRig& rig, const PushbroomConfig& config);
+
+  std::vector<StereoHit> detect(const StereoFrame& frame) override;
+
+  /// Depth of the whole disparity used: where hits are put. Near, not equal to, the rig's detection_depth_m.
+  double detection_depth_m() const { return depth_m_; }
+  DepthInterval one_pixel_interval() const;
+  int detection_disparity_px() const { return disparity_px_; }
+  int infinity_disparity_px() const { return infinity_px_; }  ///< rounded, as the whole-pixel searches use it
+
+ private:
+  void detect_row(const GrayView& left, const GrayView& right, int row_px, std::vector<StereoHit>& hits);
+  bool passes_filters(const GrayView& left, const GrayView& right, int column_px, int row_px,
+                      int left_edge_sum);
+  StereoHit hit_at(int column_px, int row_px, int sad, int edge_sum) const;
+
+  StereoRig rig_;
+  PushbroomConfig config_;
+  int disparity_px_, infinity_px_;
+  double depth_m_;
+  std::int64_t score_limit_units_;
+  SelfSimilarityWindow window_;
+  UniquenessTest uniqueness_;
+  std::vector<std::uint8_t> left_edges_, right_edges_;
+  std::vector<std::uint16_t> left_sums_, right_sums_;
+};
+
+}  // namespace understory

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+
+namespace understory {
+
+/// A rectified stereo rig: two pinhole cameras with parallel axes, rows aligned.
+///
+/// Pixel coordinates: centre of the top left pixel is (0, 0), u to the right, v down. Camera frame: OpenCV
+/// axes (x right, y down, z forward) at the LEFT camera's optical centre; the right camera sits at x =
+/// +baseline_m. A point at depth z (distance along the optical axis) appears at
+///   u_left  = focal_px * x / z + center_left_x_px,   u_right = focal_px * (x - baseline_m) / z +
+///   center_right_x_px,
+/// so u_left - u_right = focal_px * baseline_m / z + infinity_disparity_px(). Calibrations in the field leave
+/// the two principal points apart (the paper's rig: 197.5 and 105.7), so "infinity" is far from zero; it is
+/// derived here and never typed in.
+struct StereoRig {
+  std::string name;
+  int width_px = 376;
+  int height_px = 240;
+  double focal_px = 0;
+  double baseline_m = 0;
+  double center_left_x_px = 0;
+  double center_right_x_px = 0;
+  double center_y_px = 0;
+  double detection_depth_m =
+      0;  ///< the depth the detector is asked to look at; it uses the nearest whole disparity
+  Eigen::Isometry3d T_body_camera =
+      Eigen::Isometry3d::Identity();  ///< camera coordinates into body coordinates
+
+  double infinity_disparity_px() const { return center_left_x_px - center_right_x_px; }
+  double disparity_px(double depth_m) const {
+    return focal_px * baseline_m / depth_m + infinity_disparity_px();
+  }
+  double depth_m(double disparity_px) const {
+    return focal_px * baseline_m / (disparity_px - infinity_disparity_px());
+  }
+};
+
+}  // namespace understory
