@@ -1,0 +1,117 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "estimation/airspeed.hpp"
+#include "estimation/altitude.hpp"
+#include "estimation/angle_of_attack.hpp"
+#include "estimation/error_state.hpp"
+#include "estimation/heading.hpp"
+#include "estimation/rest.hpp"
+#include "estimation/sideslip.hpp"
+
+namespace understory {
+
+/// Where the flight begins, and how well that is known. Standard deviations are one sigma.
+struct StartConfig {
+  /// m, -1e4..1e4: where the aircraft stands on the catapult: 1.5 m of rail, rising 0.20 rad, below the
+  /// release point (0, 0, 1.5). The scenario sets it from its own catapult.
+  Eigen::Vector3d position_world_m{-1.470, 0.0, 1.202};
+  double yaw_rad = 0.0;  ///< rad, -3.15..3.15: left of world x
+  double pitch_rad =
+      0.20;  ///< rad, -1.5..1.5: nose up; replaced by the accelerometer's where the first sample is rest
+  double roll_rad = 0.0;                       ///< rad, -3.15..3.15: left wing up; replaced as the pitch is
+  bool in_flight = false;                      ///< no catapult: already flying, at the velocity below
+  Eigen::Vector3d velocity_body_mps{0, 0, 0};  ///< m/s, -50..50
+  double tilt_sigma_rad = 0.02;                ///< rad, 0..1
+  double yaw_sigma_rad = 0.02;                 ///< rad, 0..3: the catapult is aimed within a degree
+  double velocity_sigma_mps = 0.15;            ///< m/s, 0..10 (FACTS section 4)
+  double horizontal_sigma_m = 0.01;  ///< m, 0..100: the catapult's place is the frame's origin by definition
+  double vertical_sigma_m = 0.01;    ///< m, 0..100
+  double gyro_bias_sigma_radps = 0.0087;  ///< rad/s, 0..1: consumer MEMS after factory calibration, 0.5 deg/s
+};
+
+/// The error-state Kalman filter. Defaults fit a consumer IMU at 200 Hz, a 1 psi pitot and a barometer, tuned
+/// for little drift of the relative position over 10 m of flight (docs: FACTS section 4's table).
+struct FilterConfig {
+  FilterModel model = FilterModel::gyro_bias;
+  StartConfig start;
+  double gravity_mps2 = 9.81;  ///< m/s^2, 1..20
+  /// rad/s/sqrt(Hz), 0..1. Consumer MEMS: 0.01 deg/s/sqrt(Hz) = 1.7e-4; doubled for what sampling at 200 Hz
+  /// loses.
+  double gyro_noise_radps_rthz = 3.5e-4;
+  /// m/s^2/sqrt(Hz), 0..10. Noise alone is 0.0035 (0.05 m/s^2 at 200 Hz); a bias of 0.05 m/s^2 over a second
+  /// of flight weighs like a density of ten times that.
+  double accelerometer_noise_mps2_rthz = 0.05;
+  double gyro_bias_walk_rthz = 1e-5;  ///< rad/s^2/sqrt(Hz), 0..1: a flight is too short for the bias to move
+  /// rad/s^2/sqrt(Hz), 0..1000, angular_rate only: how freely the rate moves between gyro samples. The wing's
+  /// roll accelerates at up to 50 rad/s^2 for 0.1 s.
+  double rate_walk_rthz = 15.0;
+  double gate_probability = 0.999;  ///< 0.5..0.999999: of a good measurement to pass its chi-square gate
+  double gate_patience_s = 0.25;  ///< s, 0..1e6: a sensor refused for longer is let in until it agrees again
+  bool smooth_position = true;    ///< only the barometer moves the position (z), see PositionGain
+  double max_gap_s = 0.25;        ///< s, 0.01..10: a longer silence of the IMU is integrated as this long
+  double max_rate_radps = 34.9;   ///< rad/s, 1..200: gyro's full scale (2000 deg/s); beyond is clamped
+  double max_force_mps2 = 157.0;  ///< m/s^2, 20..2000: accelerometer's full scale (16 g); beyond is clamped
+  double force_low_pass_hz = 30.0;  ///< Hz, 0.1..1000: of State::specific_force_body_mps2
+  AirspeedConfig airspeed;
+  SideslipConfig sideslip;
+  AngleOfAttackConfig angle_of_attack;
+  AltitudeConfig altitude;
+  HeadingConfig heading;
+  RestConfig rest;
+};
+
+/// The original's filter (FACTS section 4, flight software 2014 to 2015): the paper's 12 states, gyro 0.5
+/// deg/s and accelerometer 0.2 m/s^2 of process noise, variances 15 (airspeed), 5 (v_y = 0) and 5
+/// (altimeter), initial sigma 0.15 m/s, 3 deg, 0.5 m and 1 m. Every correction moves the position, as in a
+/// textbook. Without catapult knowledge it had none of the rest either; the rest is kept, as the simulated
+/// launch gives no other initial velocity.
+FilterConfig original_filter();
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, StartConfig& config) {
+  visit("position_world_m", config.position_world_m, -1e4, 1e4);
+  visit("yaw_rad", config.yaw_rad, -3.15, 3.15);
+  visit("pitch_rad", config.pitch_rad, -1.5, 1.5);
+  visit("roll_rad", config.roll_rad, -3.15, 3.15);
+  visit("in_flight", config.in_flight);
+  visit("velocity_body_mps", config.velocity_body_mps, -50.0, 50.0);
+  visit("tilt_sigma_rad", config.tilt_sigma_rad, 0.0, 1.0);
+  visit("yaw_sigma_rad", config.yaw_sigma_rad, 0.0, 3.0);
+  visit("velocity_sigma_mps", config.velocity_sigma_mps, 0.0, 10.0);
+  visit("horizontal_sigma_m", config.horizontal_sigma_m, 0.0, 100.0);
+  visit("vertical_sigma_m", config.vertical_sigma_m, 0.0, 100.0);
+  visit("gyro_bias_sigma_radps", config.gyro_bias_sigma_radps, 0.0, 1.0);
+}
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, FilterConfig& config) {
+  visit("model", config.model,
+        std::array<std::pair<std::string_view, FilterModel>, 2>{
+            {{"gyro_bias", FilterModel::gyro_bias}, {"angular_rate", FilterModel::angular_rate}}});
+  visit("start", config.start);
+  visit("gravity_mps2", config.gravity_mps2, 1.0, 20.0);
+  visit("gyro_noise_radps_rthz", config.gyro_noise_radps_rthz, 0.0, 1.0);
+  visit("accelerometer_noise_mps2_rthz", config.accelerometer_noise_mps2_rthz, 0.0, 10.0);
+  visit("gyro_bias_walk_rthz", config.gyro_bias_walk_rthz, 0.0, 1.0);
+  visit("rate_walk_rthz", config.rate_walk_rthz, 0.0, 1000.0);
+  visit("gate_probability", config.gate_probability, 0.5, 0.999999);
+  visit("gate_patience_s", config.gate_patience_s, 0.0, 1e6);
+  visit("smooth_position", config.smooth_position);
+  visit("max_gap_s", config.max_gap_s, 0.01, 10.0);
+  visit("max_rate_radps", config.max_rate_radps, 1.0, 200.0);
+  visit("max_force_mps2", config.max_force_mps2, 20.0, 2000.0);
+  visit("force_low_pass_hz", config.force_low_pass_hz, 0.1, 1000.0);
+  visit("airspeed", config.airspeed);
+  visit("sideslip", config.sideslip);
+  visit("angle_of_attack", config.angle_of_attack);
+  visit("altitude", config.altitude);
+  visit("heading", config.heading);
+  visit("rest", config.rest);
+}
+
+}  // namespace understory

@@ -1,0 +1,39 @@
+#include "estimation/gate.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace understory {
+namespace {
+
+double chi_square_cumulative(double x, int degrees) {
+  if (degrees == 2) return 1 - std::exp(-0.5 * x);
+  const double one = std::erf(std::sqrt(0.5 * x));
+  return degrees == 1 ? one : one - std::sqrt(2 * x / std::numbers::pi) * std::exp(-0.5 * x);
+}
+
+}  // namespace
+
+double chi_square_quantile(double probability, int degrees) {
+  double below = 0, above = 100;  // beyond 100 a double cannot tell the probability from 1
+  for (int halving = 0; halving < 100; ++halving) {
+    const double middle = 0.5 * (below + above);
+    (chi_square_cumulative(middle, degrees) < probability ? below : above) = middle;
+  }
+  return 0.5 * (below + above);
+}
+
+Gate::Gate(double threshold, double patience_s)
+    : threshold_(threshold), patience_ns_(static_cast<std::int64_t>(patience_s * 1e9)) {}
+
+bool Gate::admits(double squared, std::int64_t t_ns) {
+  if (!std::isfinite(squared)) return false;
+  if (squared <= threshold_) {
+    first_refusal_ns_.reset();
+    return true;
+  }
+  if (!first_refusal_ns_) first_refusal_ns_ = t_ns;
+  return t_ns - *first_refusal_ns_ > patience_ns_;
+}
+
+}  // namespace understory

@@ -1,0 +1,55 @@
+#include "estimation/rest.hpp"
+
+#include <cmath>
+
+#include "estimation/so3.hpp"
+
+namespace understory {
+
+bool looks_at_rest(const ImuSample& sample, double gravity_mps2, const RestConfig& config) {
+  return std::abs(sample.specific_force_body_mps2.norm() - gravity_mps2) < config.force_tolerance_mps2 &&
+         sample.angular_rate_body_radps.norm() < config.rate_tolerance_radps;
+}
+
+Measurement<3> zero_velocity(const State& state, const RestConfig& config) {
+  Measurement<3> measurement;
+  measurement.innovation = -state.velocity_body_mps;
+  measurement.jacobian.middleCols<3>(velocity_block).setIdentity();
+  measurement.noise *= config.velocity_sigma_mps * config.velocity_sigma_mps;
+  return measurement;
+}
+
+Measurement<3> known_position(const State& state, const Eigen::Vector3d& position_world_m,
+                              const RestConfig& config) {
+  Measurement<3> measurement;
+  measurement.innovation = position_world_m - state.T_world_body.translation();
+  measurement.jacobian.middleCols<3>(position_block).setIdentity();
+  measurement.noise *= config.position_sigma_m * config.position_sigma_m;
+  return measurement;
+}
+
+Measurement<3> gravity_direction(const State& state, const Eigen::Vector3d& specific_force_body_mps2,
+                                 double gravity_mps2, const RestConfig& config) {
+  const Eigen::Vector3d up_body =
+      state.T_world_body.linear().transpose() * Eigen::Vector3d(0, 0, gravity_mps2);
+  Measurement<3> measurement;
+  measurement.innovation = specific_force_body_mps2 - up_body;
+  measurement.jacobian.middleCols<3>(attitude_block) = so3::skew(up_body);
+  measurement.noise *= config.force_sigma_mps2 * config.force_sigma_mps2;
+  return measurement;
+}
+
+Measurement<3> zero_rate(const State& state, const Eigen::Vector3d& gyro_radps, double sigma_radps) {
+  Measurement<3> measurement;
+  measurement.innovation = gyro_radps - state.gyro_bias_radps;
+  measurement.jacobian.middleCols<3>(rate_block).setIdentity();
+  measurement.noise *= sigma_radps * sigma_radps;
+  return measurement;
+}
+
+bool LaunchDetector::fires(const ImuSample& sample) {
+  running_ = sample.specific_force_body_mps2.x() > threshold_mps2_ ? running_ + 1 : 0;
+  return running_ == 2;
+}
+
+}  // namespace understory

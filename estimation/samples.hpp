@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+/// What the sensors deliver. Body frame: x forward, y left, z up. World: x east, y north, z up. Times are the
+/// moment of measurement. SI units.
+namespace understory {
+
+struct ImuSample {
+  std::int64_t t_ns = 0;
+  Eigen::Vector3d angular_rate_body_radps = Eigen::Vector3d::Zero();
+  /// Acceleration less gravity, what an accelerometer feels: (0, 0, +9.81) at rest and level.
+  Eigen::Vector3d specific_force_body_mps2 = Eigen::Vector3d::Zero();
+};
+
+struct PitotSample {
+  std::int64_t t_ns = 0;
+  double airspeed_mps = 0;  ///< along body x, from dynamic pressure; poor well below flight speed
+};
+
+struct BarometerSample {
+  std::int64_t t_ns = 0;
+  double altitude_m = 0;  ///< above the launch point's ground, z of the world frame
+};
+
+struct MagnetometerSample {
+  std::int64_t t_ns = 0;
+  Eigen::Vector3d field_body_ut =
+      Eigen::Vector3d::Zero();  ///< microtesla; declination taken as zero (north = world y)
+};
+
+}  // namespace understory

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+
+#include "estimation/samples.hpp"
+#include "estimation/state.hpp"
+
+namespace understory {
+
+/// Whatever tells the autopilot where the aircraft is: the filter, or an oracle in its place.
+/// Samples arrive in order of time. Time never runs backwards.
+class StateSource {
+ public:
+  virtual ~StateSource() = default;
+  virtual void on(const ImuSample& sample) = 0;
+  virtual void on(const PitotSample& sample) = 0;
+  virtual void on(const BarometerSample& sample) = 0;
+  virtual void on(const MagnetometerSample& sample) = 0;
+  /// Newest state (its t_ns is that of the newest IMU sample).
+  virtual const State& state() const = 0;
+  /// State at an earlier moment, interpolated from the recorded history (0.5 s are kept); the nearest end of
+  /// the history where t_ns lies outside it.
+  virtual State state_at(std::int64_t t_ns) const = 0;
+};
+
+}  // namespace understory
