@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace understory {
+
+/// The delta wing's numbers (TBS Caipirinha, 34 in), shared by the simulator's aerodynamics and the planner's
+/// reduced model. Positions in the body frame x forward, y left, z up, at the centre of mass. Source of every
+/// default: the original aircraft's identified flat-plate model (public flight records 2014 to 2017,
+/// BSD-3-Clause), inertia the mean of measured and CAD values.
+struct Airframe {
+  double mass_kg = 0.648412;
+  Eigen::Vector3d inertia_kgm2{0.01526, 0.00525, 0.01835};  ///< principal moments about body x, y, z
+  double gravity_mps2 = 9.81;
+  double air_density_kgpm3 = 1.204;
+
+  double span_m = 0.8636;
+  double chord_m = 0.2097;
+  double wing_area_m2 = 0.1811;
+
+  double elevon_area_m2 = 0.012508;  ///< each
+  double elevon_hinge_x_m = -0.12495;
+  double elevon_y_m = 0.276225;    ///< left +, right -
+  double elevon_chord_m = 0.0402;  ///< the force acts at the mid-chord of the deflected elevon
+  double elevon_lift_factor = 1.3;
+  double elevon_drag_factor = 0.101;
+  double elevon_min_rad = -0.90;  ///< positive trailing edge up
+  double elevon_max_rad = 0.855;
+
+  double winglet_area_m2 = 0.019441;  ///< each
+  double winglet_x_m = -0.08;
+  double winglet_y_m = 0.4318;    ///< left +, right -
+  double winglet_z_m = 0.081954;  ///< up (the records' z is down: -0.081954)
+
+  double body_drag_area_m2 = 0.0443;                      ///< drag = area * rho/2 * u^2
+  Eigen::Vector3d rate_damping_nmspr{0.074, 0.115, 0.0};  ///< moment = -damping * rate
+  double max_thrust_n = 5.34;
+  double input_delay_s = 0.020;  ///< command to surface
+};
+
+/// Every field by name, for loading, saving, --set and tuning: visit(name, field, least, greatest).
+template <typename Visitor>
+void visit_fields(Visitor& visit, Airframe& airframe) {
+  visit("mass_kg", airframe.mass_kg, 0.05, 20.0);
+  visit("inertia_kgm2", airframe.inertia_kgm2, 1e-5, 10.0);
+  visit("gravity_mps2", airframe.gravity_mps2, 1.0, 20.0);
+  visit("air_density_kgpm3", airframe.air_density_kgpm3, 0.1, 2.0);
+  visit("span_m", airframe.span_m, 0.1, 5.0);
+  visit("chord_m", airframe.chord_m, 0.02, 2.0);
+  visit("wing_area_m2", airframe.wing_area_m2, 0.01, 5.0);
+  visit("elevon_area_m2", airframe.elevon_area_m2, 1e-4, 1.0);
+  visit("elevon_hinge_x_m", airframe.elevon_hinge_x_m, -2.0, 2.0);
+  visit("elevon_y_m", airframe.elevon_y_m, 0.0, 5.0);
+  visit("elevon_chord_m", airframe.elevon_chord_m, 0.001, 1.0);
+  visit("elevon_lift_factor", airframe.elevon_lift_factor, 0.0, 10.0);
+  visit("elevon_drag_factor", airframe.elevon_drag_factor, 0.0, 10.0);
+  visit("elevon_min_rad", airframe.elevon_min_rad, -1.57, 0.0);
+  visit("elevon_max_rad", airframe.elevon_max_rad, 0.0, 1.57);
+  visit("winglet_area_m2", airframe.winglet_area_m2, 0.0, 1.0);
+  visit("winglet_x_m", airframe.winglet_x_m, -2.0, 2.0);
+  visit("winglet_y_m", airframe.winglet_y_m, 0.0, 5.0);
+  visit("winglet_z_m", airframe.winglet_z_m, -1.0, 1.0);
+  visit("body_drag_area_m2", airframe.body_drag_area_m2, 0.0, 1.0);
+  visit("rate_damping_nmspr", airframe.rate_damping_nmspr, 0.0, 10.0);
+  visit("max_thrust_n", airframe.max_thrust_n, 0.0, 200.0);
+  visit("input_delay_s", airframe.input_delay_s, 0.0, 0.5);
+}
+
+}  // namespace understory

@@ -1,0 +1,69 @@
+#include "planning/autopilot.hpp"
+
+#include <cmath>
+
+namespace understory {
+namespace {
+
+constexpr double predict_step_s = 0.005;
+
+std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
+
+}  // namespace
+
+Autopilot::Autopilot(const AutopilotConfig& config, const Airframe& airframe, const StereoRig& rig,
+                     const Mission& mission, ObstacleDetector& detector, StateSource& state_source,
+                     std::uint64_t seed)
+    : config_(config),
+      rig_(rig),
+      detector_(detector),
+      state_source_(state_source),
+      model_(airframe, config.flight_model),
+      planner_(config.planner, model_, mission, seed),
+      map_(config.map) {}
+
+void Autopilot::on(const ImuSample& sample) {
+  state_source_.on(sample);
+  const bool strong = sample.specific_force_body_mps2.x() > config_.launch_acceleration_mps2;
+  strong_samples_ = strong ? strong_samples_ + 1 : 0;
+  if (launch_ns_ < 0 && strong_samples_ >= 2) launch_ns_ = sample.t_ns;
+}
+
+bool Autopilot::in_flight(std::int64_t t_ns) const {
+  return launch_ns_ >= 0 && t_ns >= launch_ns_ + nanoseconds(config_.throttle_delay_s);
+}
+
+void Autopilot::on(const StereoFrame& frame) {
+  const State seen = state_source_.state_at(frame.t_ns);  // the image's moment, not now
+  hits_ = detector_.detect(frame);
+  detections_ += static_cast<std::int64_t>(hits_.size());
+  map_.insert(hits_, seen.T_world_body * rig_.T_body_camera, frame.t_ns, seen.distance_flown_m);
+  map_.forget_passed(state_source_.state().T_world_body, frame.t_ns);
+}
+
+void Autopilot::replan(std::int64_t t_ns) {
+  if (!in_flight(t_ns) || next_plan_due_ns_ >= 0) return;
+  // A command given now moves the elevons one input delay later, and the plan itself is ready only after its
+  // latency: plan from where the aircraft will be then, under what has been commanded until then.
+  const std::int64_t effective_ns =
+      t_ns + nanoseconds(config_.plan_latency_s) + nanoseconds(model_.airframe().input_delay_s);
+  const State& state = state_source_.state();
+  FlightState start =
+      flight_state(state.T_world_body, state.velocity_body_mps, state.angular_rate_body_radps);
+  for (std::int64_t at_ns = state.t_ns; at_ns < effective_ns; at_ns += nanoseconds(predict_step_s))
+    start = model_.advance(start, command_at(plan_, at_ns), predict_step_s);
+  next_plan_ = planner_.plan(start, effective_ns, map_.trusted_points(), state.distance_flown_m);
+  next_plan_due_ns_ = t_ns + nanoseconds(config_.plan_latency_s);
+}
+
+Controls Autopilot::controls(std::int64_t t_ns) {
+  if (!in_flight(t_ns)) return {};  // on the rail: surfaces neutral, no thrust
+  if (next_plan_due_ns_ >= 0 && t_ns >= next_plan_due_ns_) {
+    plan_ = std::move(next_plan_);
+    next_plan_due_ns_ = -1;
+  }
+  const std::int64_t effective_ns = t_ns + nanoseconds(model_.airframe().input_delay_s);
+  return follow(model_, config_.follower, command_at(plan_, effective_ns), state_source_.state());
+}
+
+}  // namespace understory

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "estimation/samples.hpp"
+#include "estimation/state_source.hpp"
+#include "perception/local_map.hpp"
+#include "perception/obstacle_detector.hpp"
+#include "perception/stereo_rig.hpp"
+#include "planning/avoidance_planner.hpp"
+#include "planning/controls.hpp"
+#include "planning/path_follower.hpp"
+
+namespace understory {
+
+struct AutopilotConfig {
+  double launch_acceleration_mps2 =
+      30;  ///< two IMU samples in a row above this along body x: the catapult has fired
+  double throttle_delay_s = 0.28;  ///< from then to throttle and control; the rail takes 0.25 s of it
+  double plan_latency_s = 0.006;   ///< what computing a plan costs in simulated time, before it takes effect
+  LocalMapConfig map;
+  FlightModelConfig flight_model;
+  PlannerConfig planner;
+  PathFollowerConfig follower;
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, AutopilotConfig& config) {
+  visit("launch_acceleration_mps2", config.launch_acceleration_mps2, 5.0, 500.0);
+  visit("throttle_delay_s", config.throttle_delay_s, 0.0, 2.0);
+  visit("plan_latency_s", config.plan_latency_s, 0.0, 0.2);
+  visit("map", config.map);
+  visit("flight_model", config.flight_model);
+  visit("planner", config.planner);
+  visit("follower", config.follower);
+}
+
+/// The flight stack composed: what would run on the aircraft. It knows the airframe, its rig and the mission;
+/// what is around it, it learns through `detector`; where it is, through `state_source`. Both must outlive
+/// it.
+class Autopilot {
+ public:
+  Autopilot(const AutopilotConfig& config, const Airframe& airframe, const StereoRig& rig,
+            const Mission& mission, ObstacleDetector& detector, StateSource& state_source,
+            std::uint64_t seed);
+
+  void on(const ImuSample& sample);
+  void on(const PitotSample& sample) { state_source_.on(sample); }
+  void on(const BarometerSample& sample) { state_source_.on(sample); }
+  void on(const MagnetometerSample& sample) { state_source_.on(sample); }
+  void on(const StereoFrame& frame);
+  /// Plans for the moment at which the plan will take effect; does nothing while one is being computed
+  /// (plan_latency_s long), so that a rate of calls above that changes nothing.
+  void replan(std::int64_t t_ns);
+  Controls controls(std::int64_t t_ns);
+
+  bool in_flight(std::int64_t t_ns) const;
+  const State& state() const { return state_source_.state(); }
+  const std::vector<StereoHit>& hits() const { return hits_; }  ///< of the newest frame
+  std::int64_t detections() const { return detections_; }       ///< hits of all frames so far
+  const LocalMap& map() const { return map_; }
+  const Plan& plan() const { return plan_; }
+  const PlannerCounts& counts() const { return planner_.counts(); }
+
+ private:
+  AutopilotConfig config_;
+  StereoRig rig_;
+  ObstacleDetector& detector_;
+  StateSource& state_source_;
+  FlightModel model_;
+  AvoidancePlanner planner_;
+  LocalMap map_;
+  std::vector<StereoHit> hits_;
+  std::int64_t detections_ = 0;
+  Plan plan_;       ///< in force
+  Plan next_plan_;  ///< computed, takes effect at next_plan_due_ns_
+  std::int64_t next_plan_due_ns_ = -1;
+  std::int64_t launch_ns_ = -1;  ///< when the catapult was felt; -1 before
+  int strong_samples_ = 0;
+};
+
+}  // namespace understory

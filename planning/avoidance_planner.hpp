@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "planning/manoeuvre.hpp"
+#include "planning/manoeuvre_improvement.hpp"
+#include "planning/manoeuvre_search.hpp"
+#include "planning/obstacle_field.hpp"
+#include "planning/plan.hpp"
+
+namespace understory {
+
+struct PlannerConfig {
+  bool use_ompl = true;  ///< false: the fallback primitives alone answer when the straight way is blocked
+  /// A plan in force whose cost has not grown past this share of its cost when new is kept without a search.
+  double kept_cost_ratio = 1.3;
+  double change_cost_ratio =
+      1.5;                   ///< another way must be this much cheaper than the plan in force: no dithering
+  int refresh_replans = 12;  ///< a kept plan is searched against anew after this many replans
+  ObstacleFieldConfig field;
+  TrajectoryConfig trajectory;
+  ManoeuvreSearchConfig search;
+  ManoeuvreImprovementConfig improvement;
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, PlannerConfig& config) {
+  visit("use_ompl", config.use_ompl);
+  visit("kept_cost_ratio", config.kept_cost_ratio, 1.0, 100.0);
+  visit("change_cost_ratio", config.change_cost_ratio, 1.0, 100.0);
+  visit("refresh_replans", config.refresh_replans, 1, 1000);
+  visit("field", config.field);
+  visit("trajectory", config.trajectory);
+  visit("search", config.search);
+  visit("improvement", config.improvement);
+}
+
+/// How the replans of a flight were answered.
+struct PlannerCounts {
+  int straight = 0;  ///< nothing ahead
+  int solved = 0;    ///< obstacle ahead, OMPL's answer taken
+  int kept = 0;      ///< obstacle ahead, the plan in force still good
+  int fallback = 0;  ///< obstacle ahead, no free manoeuvre found: the primitive of greatest clearance
+  int searched = 0;  ///< how often OMPL was asked (a kept plan is searched against anew now and then)
+  int found = 0;     ///< how often it answered with a free manoeuvre
+};
+
+/// Receding-horizon avoidance: straight on where that is free, else the plan in force while it is free and
+/// good, else what OMPL finds, else the primitive of greatest clearance.
+class AvoidancePlanner {
+ public:
+  AvoidancePlanner(const PlannerConfig& config, const FlightModel& model, const Mission& mission,
+                   std::uint64_t seed);
+
+  /// A plan from `start`, where the aircraft will be at `t_ns` (not now: when the plan takes effect).
+  Plan plan(const FlightState& start, std::int64_t t_ns, const std::vector<ObstaclePoint>& points,
+            double distance_flown_m);
+
+  const PlannerCounts& counts() const { return counts_; }
+
+ private:
+  /// What is left of the manoeuvre in force at `t_ns`.
+  Manoeuvre remaining(std::int64_t t_ns) const;
+  Plan adopt(const FlightTask& task, const FlightState& start, std::int64_t t_ns, const Manoeuvre& manoeuvre,
+             PlanOrigin origin);
+
+  PlannerConfig config_;
+  FlightModel model_;
+  Mission mission_;
+  std::uint64_t seed_;
+  PlannerCounts counts_;
+  std::uint64_t replan_index_ = 0;
+  Manoeuvre manoeuvre_;  ///< in force, counted from manoeuvre_t_ns_
+  std::int64_t manoeuvre_t_ns_ = 0;
+  PlanOrigin manoeuvre_origin_ = PlanOrigin::straight;
+  double manoeuvre_cost_ = 0;
+  int replans_kept_ = 0;
+};
+
+/// The fallback's choices: level, turns of several banks to either side, held or reversed after a while.
+std::vector<Manoeuvre> avoidance_primitives(double greatest_bank_rad);
+
+}  // namespace understory

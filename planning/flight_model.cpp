@@ -1,0 +1,192 @@
+#include "planning/flight_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace understory {
+namespace {
+
+constexpr double reference_speed_mps = 12.27;  // level trim of the identified model
+
+double dynamic_pressure_pa(const Airframe& airframe, double speed_mps) {
+  return 0.5 * airframe.air_density_kgpm3 * speed_mps * speed_mps;
+}
+
+}  // namespace
+
+FlightModel::FlightModel(const Airframe& airframe, const FlightModelConfig& config)
+    : airframe_(airframe),
+      config_(config),
+      elevon_arm_m_(-airframe.elevon_hinge_x_m + 0.5 * airframe.elevon_chord_m) {
+  // Level flight at cruise speed: lift carries the weight, thrust carries what drag the plate and the body
+  // make.
+  const double q = dynamic_pressure_pa(airframe_, config_.cruise_speed_mps);
+  const double weight_n = airframe_.mass_kg * airframe_.gravity_mps2;
+  const double sine = std::min(0.7, weight_n / (2 * q * airframe_.wing_area_m2));
+  level_thrust_n_ = std::min(airframe_.max_thrust_n, weight_n * sine + q * airframe_.body_drag_area_m2);
+}
+
+double FlightModel::path_pitch_rate_radps(const FlightState& state) const {
+  const double q = dynamic_pressure_pa(airframe_, state.speed_mps);
+  const double normal_n = 2 * std::sin(state.angle_of_attack_rad) * q * airframe_.wing_area_m2;
+  const double weight_n = airframe_.mass_kg * airframe_.gravity_mps2;
+  const double carried_n = weight_n * std::cos(state.climb_angle_rad) * std::cos(state.bank_rad);
+  return (normal_n * std::cos(state.angle_of_attack_rad) - carried_n) / (airframe_.mass_kg * state.speed_mps);
+}
+
+double FlightModel::commanded_angle_of_attack_rad(const FlightState& state, double climb_mps) const {
+  const double speed = std::max(state.speed_mps, 4.0);
+  const double q = dynamic_pressure_pa(airframe_, speed);
+  const double wanted_climb_angle = std::asin(std::clamp(climb_mps / speed, -0.5, 0.5));
+  const double turn_up_radps = (wanted_climb_angle - state.climb_angle_rad) / config_.climb_angle_time_s;
+  const double upward_n =
+      airframe_.mass_kg * (speed * turn_up_radps + airframe_.gravity_mps2 * std::cos(state.climb_angle_rad));
+  // Beyond 80 deg of bank the wing cannot carry the weight at all: it pulls as if at 80 deg, which is the
+  // cap.
+  const double share = std::max(std::cos(state.bank_rad), 0.17);
+  // Lift is N cos(a) + X sin(a) with N = 2 sin(a) q S and X = thrust less body drag; cos(a) taken as now.
+  const double forward_n = commanded_thrust_n(state) - q * airframe_.body_drag_area_m2;
+  const double sine =
+      upward_n / (share * (2 * q * airframe_.wing_area_m2 * std::cos(state.angle_of_attack_rad) + forward_n));
+  // Near the least speed pulling harder only stalls what is left: the cap closes towards level flight's own
+  // angle.
+  const double reserve = std::clamp((speed - config_.least_speed_mps + 0.5) / 1.0, 0.6, 1.0);
+  return std::clamp(std::asin(std::clamp(sine, -0.9, 0.9)), config_.least_angle_of_attack_rad,
+                    reserve * config_.greatest_angle_of_attack_rad);
+}
+
+double FlightModel::commanded_roll_rate_radps(const FlightState& state, double bank_rad) const {
+  const double greatest = config_.greatest_roll_rate_radps * state.speed_mps / reference_speed_mps;
+  return std::clamp(config_.bank_gain_per_s * (bank_rad - state.bank_rad), -greatest, greatest);
+}
+
+double FlightModel::side_force_n(const FlightState& state) const {
+  const double speed = std::max(state.speed_mps, 4.0);
+  const double winglet_sideslip = state.sideslip_rad + airframe_.winglet_x_m * state.yaw_rate_radps / speed;
+  return -2 * std::sin(winglet_sideslip) * dynamic_pressure_pa(airframe_, speed) * 2 *
+         airframe_.winglet_area_m2;
+}
+
+double FlightModel::elevon_roll_moment_nm_per_rad(double speed_mps) const {
+  // Two elevons, flat-plate slope 2 per radian, times the identified lift factor.
+  return 2 * airframe_.elevon_y_m * 2 * airframe_.elevon_lift_factor * airframe_.elevon_area_m2 *
+         dynamic_pressure_pa(airframe_, speed_mps);
+}
+
+double FlightModel::reachable_roll_acceleration_radps2(const FlightState& state, double wanted_radps2) const {
+  const double slope_nm = elevon_roll_moment_nm_per_rad(state.speed_mps);
+  const double damping_nms =
+      airframe_.rate_damping_nmspr.x() + slope_nm * airframe_.elevon_y_m / std::max(state.speed_mps, 4.0);
+  const double greatest_nm = slope_nm * 0.5 * std::sin(2 * config_.greatest_differential_rad);
+  const double damped_nm = damping_nms * state.roll_rate_radps;
+  return std::clamp(wanted_radps2, (-greatest_nm - damped_nm) / airframe_.inertia_kgm2.x(),
+                    (greatest_nm - damped_nm) / airframe_.inertia_kgm2.x());
+}
+
+double FlightModel::commanded_thrust_n(const FlightState& state) const {
+  const double error_mps = config_.cruise_speed_mps - state.speed_mps;
+  return std::clamp(level_thrust_n_ + config_.speed_gain_n_per_mps * error_mps, 0.0, airframe_.max_thrust_n);
+}
+
+FlightState FlightModel::advance(const FlightState& state, const FlightCommand& command, double dt_s) const {
+  const double mass = airframe_.mass_kg;
+  const double speed = std::max(state.speed_mps, 4.0);
+  const double q = dynamic_pressure_pa(airframe_, speed);
+  const double alpha = state.angle_of_attack_rad;
+  const double sin_alpha = std::sin(alpha), cos_alpha = std::cos(alpha);
+  const double sin_bank = std::sin(state.bank_rad), cos_bank = std::cos(state.bank_rad);
+  const double sin_climb = std::sin(state.climb_angle_rad), cos_climb = std::cos(state.climb_angle_rad);
+  const double gravity = airframe_.gravity_mps2;
+
+  // Inner loops of the path follower, as lags.
+  const double wanted_velocity_roll = commanded_roll_rate_radps(state, command.bank_rad);
+  const double wanted_roll = (wanted_velocity_roll + state.yaw_rate_radps * sin_alpha) / cos_alpha;
+  const double roll_acceleration = reachable_roll_acceleration_radps2(
+      state, (wanted_roll - state.roll_rate_radps) * (1 - std::exp(-dt_s / config_.roll_time_s)) / dt_s);
+  const double alpha_decay = 1 - std::exp(-dt_s / config_.angle_of_attack_time_s);
+  const double wanted_alpha = commanded_angle_of_attack_rad(state, command.climb_mps);
+
+  // Forces along body z (wing, less the elevons' share that balances the pitch damping), body y (winglets),
+  // thrust.
+  const double pitch_rate = path_pitch_rate_radps(state);
+  const double body_pitch_rate = pitch_rate + (wanted_alpha - alpha) * alpha_decay / dt_s;
+  const double balance_n = airframe_.rate_damping_nmspr.y() * body_pitch_rate / elevon_arm_m_;
+  const double normal_n = 2 * sin_alpha * q * airframe_.wing_area_m2 - balance_n;
+  const double side_n = side_force_n(state);
+  // Body drag was identified along body x, as the thrust is: both lean with the nose.
+  const double forward_n =
+      commanded_thrust_n(state) - q * airframe_.body_drag_area_m2 * cos_alpha * cos_alpha;
+  const double lift_n = normal_n * cos_alpha + forward_n * sin_alpha;
+  const double drag_n = normal_n * sin_alpha - forward_n * cos_alpha - side_n * std::sin(state.sideslip_rad);
+
+  // Yaw: winglets turn the nose into the wind; the elevons' lift, perpendicular to the flow, leans forward by
+  // the angle of attack and so yaws as it rolls; gyroscopic coupling of roll and pitch.
+  const Eigen::Vector3d& inertia = airframe_.inertia_kgm2;
+  const double roll_moment = inertia.x() * roll_acceleration +
+                             airframe_.rate_damping_nmspr.x() * state.roll_rate_radps +
+                             airframe_.winglet_z_m * side_n;
+  const double yaw_moment = airframe_.winglet_x_m * side_n - roll_moment * sin_alpha / cos_alpha -
+                            (inertia.x() - inertia.y()) * state.roll_rate_radps * pitch_rate;
+
+  FlightState next = state;
+  next.roll_rate_radps += dt_s * roll_acceleration;
+  next.angle_of_attack_rad += alpha_decay * (wanted_alpha - alpha);
+  next.yaw_rate_radps += dt_s * yaw_moment / inertia.z();
+  const double roll_rate = 0.5 * (state.roll_rate_radps + next.roll_rate_radps);
+  const double yaw_rate = 0.5 * (state.yaw_rate_radps + next.yaw_rate_radps);
+  next.sideslip_rad += dt_s * ((side_n - mass * gravity * cos_climb * sin_bank) / (mass * speed) -
+                               yaw_rate * cos_alpha - roll_rate * sin_alpha);
+  next.bank_rad += dt_s * (roll_rate * cos_alpha - yaw_rate * sin_alpha);
+  next.speed_mps = std::max(4.0, state.speed_mps + dt_s * (-drag_n / mass - gravity * sin_climb));
+  const double turn_up =
+      (lift_n * cos_bank + side_n * sin_bank - mass * gravity * cos_climb) / (mass * speed);
+  const double turn_left =
+      (side_n * cos_bank - lift_n * sin_bank) / (mass * speed * std::max(cos_climb, 0.3));
+  next.climb_angle_rad = std::clamp(state.climb_angle_rad + dt_s * turn_up, -1.2, 1.2);
+  next.heading_rad += dt_s * turn_left;
+
+  const double mean_heading = 0.5 * (state.heading_rad + next.heading_rad);
+  const double mean_climb = 0.5 * (state.climb_angle_rad + next.climb_angle_rad);
+  const double distance = dt_s * 0.5 * (state.speed_mps + next.speed_mps);
+  next.position_world +=
+      distance * Eigen::Vector3d(std::cos(mean_climb) * std::cos(mean_heading),
+                                 std::cos(mean_climb) * std::sin(mean_heading), std::sin(mean_climb));
+  return next;
+}
+
+Eigen::Vector3d flight_direction_world(const FlightState& state) {
+  const double cos_climb = std::cos(state.climb_angle_rad);
+  return {cos_climb * std::cos(state.heading_rad), cos_climb * std::sin(state.heading_rad),
+          std::sin(state.climb_angle_rad)};
+}
+
+Eigen::Vector3d left_wing_direction_world(const FlightState& state) {
+  const Eigen::Vector3d left(-std::sin(state.heading_rad), std::cos(state.heading_rad), 0);
+  const Eigen::Vector3d up = flight_direction_world(state).cross(left);
+  return std::cos(state.bank_rad) * left + std::sin(state.bank_rad) * up;
+}
+
+FlightState flight_state(const Eigen::Isometry3d& T_world_body, const Eigen::Vector3d& velocity_body_mps,
+                         const Eigen::Vector3d& angular_rate_body_radps) {
+  FlightState state;
+  const Eigen::Matrix3d rotation = T_world_body.linear();
+  const Eigen::Vector3d velocity = rotation * velocity_body_mps;
+  state.position_world = T_world_body.translation();
+  state.speed_mps = velocity.norm();
+  state.roll_rate_radps = angular_rate_body_radps.x();
+  state.yaw_rate_radps = angular_rate_body_radps.z();
+  // At rest the velocity has no direction: take the nose's.
+  const Eigen::Vector3d direction =
+      state.speed_mps > 1.0 ? Eigen::Vector3d(velocity / state.speed_mps) : Eigen::Vector3d(rotation.col(0));
+  const Eigen::Vector3d in_body = rotation.transpose() * direction;
+  state.heading_rad = std::atan2(direction.y(), direction.x());
+  state.climb_angle_rad = std::asin(std::clamp(direction.z(), -1.0, 1.0));
+  state.angle_of_attack_rad = std::atan2(-in_body.z(), in_body.x());
+  state.sideslip_rad = std::asin(std::clamp(in_body.y(), -1.0, 1.0));
+  const Eigen::Vector3d left(-std::sin(state.heading_rad), std::cos(state.heading_rad), 0);
+  const Eigen::Vector3d up = direction.cross(left);
+  state.bank_rad = std::atan2(rotation.col(1).dot(up), rotation.col(1).dot(left));
+  return state;
+}
+
+}  // namespace understory

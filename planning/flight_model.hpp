@@ -1,0 +1,106 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "planning/airframe.hpp"
+
+namespace understory {
+
+/// Where the aircraft is and how it moves, in wind axes: the state of the reduced model that plans are made
+/// with. Angles follow the house's body frame (x forward, y left, z up): a positive bank has the right wing
+/// down and turns to the right, so that the heading (counted from world x towards world y) falls.
+struct FlightState {
+  Eigen::Vector3d position_world = Eigen::Vector3d::Zero();
+  double speed_mps = 12;
+  double heading_rad = 0;      ///< of the velocity
+  double climb_angle_rad = 0;  ///< of the velocity
+  double bank_rad = 0;         ///< of the wings about the velocity
+  double roll_rate_radps = 0;  ///< about body x
+  double angle_of_attack_rad = 0.19;
+  double sideslip_rad = 0;    ///< positive: moving to the left of where the nose points
+  double yaw_rate_radps = 0;  ///< about body z
+};
+
+/// What is asked of the aircraft: the two controls of the planner's space.
+struct FlightCommand {
+  double bank_rad = 0;
+  double climb_mps = 0;
+  bool operator==(const FlightCommand&) const = default;
+};
+
+/// How the path follower answers commands, and the envelope it keeps. The reduced model and the path follower
+/// both read these numbers, so that what is planned is what is flown.
+struct FlightModelConfig {
+  double cruise_speed_mps = 12.0;  ///< held by the throttle
+  double greatest_angle_of_attack_rad =
+      0.4363;  ///< 25 deg: flat plates never stall, real wings do (FACTS section 3)
+  double least_angle_of_attack_rad = -0.05;
+  double least_speed_mps = 8.0;  ///< level flight ends here: below it the nose is not pulled up further
+  double bank_gain_per_s = 9.0;  ///< roll rate asked for per radian of bank error
+  double greatest_roll_rate_radps = 7.5;    ///< at the reference speed 12.27 m/s; falls with speed
+  double greatest_differential_rad = 0.50;  ///< elevon deflection to either side of the mean, for rolling
+  double roll_time_s = 0.06;                ///< lag of the roll rate behind what is asked
+  double angle_of_attack_time_s = 0.17;     ///< lag of the angle of attack
+  double climb_angle_time_s = 0.45;         ///< how fast a climb angle error is taken out
+  double speed_gain_n_per_mps = 2.0;        ///< throttle per speed error
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, FlightModelConfig& config) {
+  visit("cruise_speed_mps", config.cruise_speed_mps, 8.0, 16.0);
+  visit("greatest_angle_of_attack_rad", config.greatest_angle_of_attack_rad, 0.1, 0.8);
+  visit("least_angle_of_attack_rad", config.least_angle_of_attack_rad, -0.5, 0.1);
+  visit("least_speed_mps", config.least_speed_mps, 5.0, 12.0);
+  visit("bank_gain_per_s", config.bank_gain_per_s, 1.0, 30.0);
+  visit("greatest_roll_rate_radps", config.greatest_roll_rate_radps, 1.0, 20.0);
+  visit("greatest_differential_rad", config.greatest_differential_rad, 0.05, 0.9);
+  visit("roll_time_s", config.roll_time_s, 0.005, 0.5);
+  visit("angle_of_attack_time_s", config.angle_of_attack_time_s, 0.02, 1.0);
+  visit("climb_angle_time_s", config.climb_angle_time_s, 0.1, 5.0);
+  visit("speed_gain_n_per_mps", config.speed_gain_n_per_mps, 0.0, 20.0);
+}
+
+/// A point mass with roll-in, speed loss and sideslip, under the identified flat-plate forces (flight
+/// records): the inner loops of the path follower appear as lags, so that steps of 20 ms stay accurate.
+class FlightModel {
+ public:
+  FlightModel(const Airframe& airframe, const FlightModelConfig& config);
+
+  /// The state `dt_s` later (0 < dt_s <= 0.03) with `command` held.
+  FlightState advance(const FlightState& state, const FlightCommand& command, double dt_s) const;
+
+  /// The angle of attack that bends the path towards the commanded climb, within the envelope.
+  double commanded_angle_of_attack_rad(const FlightState& state, double climb_mps) const;
+  /// The roll rate about the velocity that takes out the bank error, within what the elevons can give.
+  double commanded_roll_rate_radps(const FlightState& state, double bank_rad) const;
+  double commanded_thrust_n(const FlightState& state) const;
+  /// Roll moment per radian of differential deflection (left down, right up) at this speed.
+  double elevon_roll_moment_nm_per_rad(double speed_mps) const;
+  double reachable_roll_acceleration_radps2(const FlightState& state, double wanted_radps2) const;
+  /// Side force of the winglets along body y (to the left positive).
+  double side_force_n(const FlightState& state) const;
+  /// Distance of the elevons' mid-chord behind the centre of mass.
+  double elevon_arm_m() const { return elevon_arm_m_; }
+  /// Rate of turn of the path in the body's pitch plane (nose up positive) that this angle of attack makes.
+  double path_pitch_rate_radps(const FlightState& state) const;
+
+  const Airframe& airframe() const { return airframe_; }
+  const FlightModelConfig& config() const { return config_; }
+
+ private:
+  Airframe airframe_;
+  FlightModelConfig config_;
+  double elevon_arm_m_;
+  double level_thrust_n_;
+};
+
+/// Unit vector from the centre to the left wing tip, world frame.
+Eigen::Vector3d left_wing_direction_world(const FlightState& state);
+/// Unit vector of the velocity, world frame.
+Eigen::Vector3d flight_direction_world(const FlightState& state);
+
+/// The same aircraft in the estimator's words and in the model's.
+FlightState flight_state(const Eigen::Isometry3d& T_world_body, const Eigen::Vector3d& velocity_body_mps,
+                         const Eigen::Vector3d& angular_rate_body_radps);
+
+}  // namespace understory

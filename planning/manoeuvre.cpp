@@ -1,0 +1,116 @@
+#include "planning/manoeuvre.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace understory {
+namespace {
+
+constexpr double greatest_rollout_s = 4.0;
+constexpr double side_margin_m = 6.0;  // the course guidance turns inwards this far from the sides
+
+double square(double value) { return value * value; }
+
+PlanPoint plan_point(const FlightState& state, const FlightCommand& command, double t_s) {
+  return {t_s,
+          state.position_world,
+          state.speed_mps,
+          state.heading_rad,
+          state.climb_angle_rad,
+          state.bank_rad,
+          state.angle_of_attack_rad,
+          command.bank_rad,
+          command.climb_mps};
+}
+
+double cross_track_m(const FlightTask& task, const Eigen::Vector3d& position_world) {
+  const double heading = task.mission.heading_rad;
+  return -std::sin(heading) * position_world.x() + std::cos(heading) * position_world.y();
+}
+
+}  // namespace
+
+double progress_m(const FlightTask& task, const Eigen::Vector3d& position_world) {
+  const double heading = task.mission.heading_rad;
+  const Eigen::Vector3d flown = position_world - task.origin_world;
+  return std::cos(heading) * flown.x() + std::sin(heading) * flown.y();
+}
+
+double band_clearance_m(const FlightTask& task, const FlightState& state) {
+  const double altitude = state.position_world.z();
+  return std::min(altitude - task.mission.least_altitude_m, task.mission.greatest_altitude_m - altitude);
+}
+
+FlightCommand course_command(const FlightTask& task, const FlightState& state) {
+  const TrajectoryConfig& config = task.config;
+  const double cross_m = cross_track_m(task, state.position_world);
+  const double beyond_m = std::max(0.0, std::abs(cross_m) - (task.mission.half_width_m - side_margin_m));
+  const double heading = task.mission.heading_rad - std::copysign(std::min(0.6, 0.12 * beyond_m), cross_m);
+  FlightCommand command;
+  command.bank_rad = std::clamp(config.heading_gain * (state.heading_rad - heading),
+                                -config.greatest_course_bank_rad, config.greatest_course_bank_rad);
+  command.climb_mps =
+      std::clamp(config.altitude_gain_per_s * (task.mission.cruise_altitude_m - state.position_world.z()),
+                 -config.greatest_climb_mps, config.greatest_climb_mps);
+  return command;
+}
+
+double cost_rate(const FlightTask& task, const FlightState& state, double clearance_m) {
+  const TrajectoryConfig& config = task.config;
+  const Mission& mission = task.mission;
+  const double altitude = state.position_world.z();
+  const double below = std::max(0.0, mission.least_altitude_m + config.band_margin_m - altitude);
+  const double above = std::max(0.0, altitude - (mission.greatest_altitude_m - config.band_margin_m));
+  const double beside = std::max(
+      0.0, std::abs(cross_track_m(task, state.position_world)) - (mission.half_width_m - side_margin_m));
+  const double near = std::max(0.0, 1 - clearance_m / config.comfortable_clearance_m);
+  const double slow = std::max(0.0, task.model.config().cruise_speed_mps - 1 - state.speed_mps);
+  return 1 + config.clearance_weight * square(near) + config.bank_weight * square(state.bank_rad) +
+         config.heading_weight * square(state.heading_rad - mission.heading_rad) +
+         config.altitude_weight * square(altitude - mission.cruise_altitude_m) +
+         config.band_weight * (square(below) + square(above)) + square(beside) +
+         config.slow_weight * square(slow);
+}
+
+double final_cost(const FlightTask& task, const FlightState& state) {
+  return task.config.final_heading_weight * square(state.heading_rad - task.mission.heading_rad) +
+         task.config.bank_weight * square(state.bank_rad);
+}
+
+Rollout fly_out(const FlightTask& task, const FlightState& start, const Manoeuvre& manoeuvre,
+                double least_clearance_m, bool keep_points, bool stop_when_too_near) {
+  Rollout rollout;
+  FlightState state = start;
+  const double step_s = task.config.step_s;
+  std::size_t part = 0;
+  double part_left_s = manoeuvre.empty() ? 0 : manoeuvre.front().duration_s;
+  bool too_near = false;
+  for (double t_s = 0; t_s < greatest_rollout_s; t_s += step_s) {
+    while (part < manoeuvre.size() && part_left_s < 0.5 * step_s)
+      if (++part < manoeuvre.size()) part_left_s += manoeuvre[part].duration_s;
+    const bool in_manoeuvre = part < manoeuvre.size();
+    const FlightCommand command = in_manoeuvre ? manoeuvre[part].command : course_command(task, state);
+    if (in_manoeuvre) part_left_s -= step_s;
+    if (keep_points) rollout.points.push_back(plan_point(state, command, t_s));
+    state = task.model.advance(state, command, step_s);
+    const double clearance = task.field.clearance_m(state, 3.0);
+    rollout.least_clearance_m = std::min(rollout.least_clearance_m, clearance);
+    rollout.cost += step_s * cost_rate(task, state, clearance);
+    const double margin = std::min(clearance, band_clearance_m(task, state));
+    rollout.least_margin_m = std::min(rollout.least_margin_m, margin);
+    too_near = too_near || margin < least_clearance_m;
+    if (!too_near) rollout.free_until_s = t_s + step_s;
+    if (too_near && stop_when_too_near) break;
+    if (progress_m(task, state.position_world) >= task.config.horizon_m) {
+      rollout.reached_horizon = !too_near;
+      break;
+    }
+  }
+  rollout.cost += final_cost(task, state);
+  if (keep_points)
+    rollout.points.push_back(plan_point(state, course_command(task, state),
+                                        task.config.step_s * static_cast<double>(rollout.points.size())));
+  return rollout;
+}
+
+}  // namespace understory

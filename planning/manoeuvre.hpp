@@ -1,0 +1,100 @@
+#pragma once
+
+#include <vector>
+
+#include "planning/flight_model.hpp"
+#include "planning/mission.hpp"
+#include "planning/obstacle_field.hpp"
+#include "planning/plan.hpp"
+
+namespace understory {
+
+/// Commands held one after the other; when they are used up the course guidance takes over (level out, turn
+/// back towards the course's heading, return to the cruise altitude).
+struct ManoeuvrePart {
+  FlightCommand command;
+  double duration_s = 0;
+};
+using Manoeuvre = std::vector<ManoeuvrePart>;
+
+/// What a trajectory should be like. Costs are per second of flight, dimensionless; a clearance of zero costs
+/// `clearance_weight`.
+struct TrajectoryConfig {
+  double step_s = 0.02;
+  double horizon_m = 14.0;           ///< distance ahead that plans cover: detection depth and some
+  double least_clearance_m = -0.05;  ///< hard, for plans to be found
+  double least_kept_clearance_m =
+      -0.08;  ///< hard, for the plan in force: smaller, so that noise does not upset it
+  double comfortable_clearance_m = 0.7;
+  double clearance_weight = 15.0;
+  double bank_weight = 1.0;           ///< per rad^2
+  double heading_weight = 6.0;        ///< per rad^2 off the course: what lies to the side was not looked at
+  double altitude_weight = 1.0;       ///< per m^2 off the cruise altitude
+  double band_weight = 40.0;          ///< per m^2 beyond the band's margin
+  double band_margin_m = 0.8;         ///< kept from the band's limits
+  double slow_weight = 2.0;           ///< per (m/s)^2 below 1 m/s less than cruise
+  double final_heading_weight = 4.0;  ///< per rad^2 at the horizon
+  double heading_gain = 1.6;          ///< bank per heading error, course guidance
+  double greatest_course_bank_rad = 0.6;
+  double altitude_gain_per_s = 1.2;  ///< climb per altitude error
+  double greatest_climb_mps = 2.0;
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, TrajectoryConfig& config) {
+  visit("step_s", config.step_s, 0.005, 0.03);
+  visit("horizon_m", config.horizon_m, 2.0, 60.0);
+  visit("least_clearance_m", config.least_clearance_m, -1.0, 2.0);
+  visit("least_kept_clearance_m", config.least_kept_clearance_m, -1.0, 2.0);
+  visit("comfortable_clearance_m", config.comfortable_clearance_m, 0.0, 3.0);
+  visit("clearance_weight", config.clearance_weight, 0.0, 1e4);
+  visit("bank_weight", config.bank_weight, 0.0, 1e4);
+  visit("heading_weight", config.heading_weight, 0.0, 1e4);
+  visit("altitude_weight", config.altitude_weight, 0.0, 1e4);
+  visit("band_weight", config.band_weight, 0.0, 1e4);
+  visit("band_margin_m", config.band_margin_m, 0.0, 3.0);
+  visit("slow_weight", config.slow_weight, 0.0, 1e4);
+  visit("final_heading_weight", config.final_heading_weight, 0.0, 1e4);
+  visit("heading_gain", config.heading_gain, 0.0, 10.0);
+  visit("greatest_course_bank_rad", config.greatest_course_bank_rad, 0.05, 1.5);
+  visit("altitude_gain_per_s", config.altitude_gain_per_s, 0.0, 10.0);
+  visit("greatest_climb_mps", config.greatest_climb_mps, 0.0, 6.0);
+}
+
+/// Everything a trajectory is judged against, for the length of one replan.
+struct FlightTask {
+  const FlightModel& model;
+  const TrajectoryConfig& config;
+  const Mission& mission;
+  const ObstacleField& field;
+  Eigen::Vector3d origin_world;  ///< where the plan starts: the horizon counts from here
+};
+
+/// The command that brings the aircraft back on course from `state`.
+FlightCommand course_command(const FlightTask& task, const FlightState& state);
+/// Cost per second of being in `state`, `clearance_m` from the nearest obstacle.
+double cost_rate(const FlightTask& task, const FlightState& state, double clearance_m);
+double final_cost(const FlightTask& task, const FlightState& state);
+/// Distance inside the altitude band, negative outside.
+double band_clearance_m(const FlightTask& task, const FlightState& state);
+/// Distance made good along the course since the plan's start.
+double progress_m(const FlightTask& task, const Eigen::Vector3d& position_world);
+
+/// A manoeuvre flown in the model to the horizon.
+struct Rollout {
+  double cost = 0;
+  double least_clearance_m = 3.0;  ///< from obstacles, over the whole rollout (up to where it stopped)
+  double least_margin_m =
+      3.0;  ///< the same, or the distance to the altitude band's limits where that is less
+  bool reached_horizon = false;   ///< false: came nearer than `least_clearance_m` or left the band before
+  double free_until_s = 0;        ///< time at which it came too near, or its whole length
+  std::vector<PlanPoint> points;  ///< filled where asked for
+};
+
+/// Flies `manoeuvre` from `start`; stops where the clearance falls below `least_clearance_m`. With
+/// `keep_points` the trajectory comes along, every step. With `stop_when_too_near` false it flies on to the
+/// horizon all the same.
+Rollout fly_out(const FlightTask& task, const FlightState& start, const Manoeuvre& manoeuvre,
+                double least_clearance_m, bool keep_points, bool stop_when_too_near = true);
+
+}  // namespace understory

@@ -1,0 +1,253 @@
+#include "planning/manoeuvre_search.hpp"
+
+#include <ompl/base/OptimizationObjective.h>
+#include <ompl/base/goals/GoalRegion.h>
+#include <ompl/base/spaces/RealVectorStateSpace.h>
+#include <ompl/control/SpaceInformation.h>
+#include <ompl/control/planners/sst/SST.h>
+#include <ompl/control/spaces/RealVectorControlSpace.h>
+#include <ompl/datastructures/NearestNeighborsLinear.h>
+#include <ompl/util/Console.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace understory {
+namespace {
+
+namespace ob = ompl::base;
+namespace oc = ompl::control;
+
+constexpr int most_parts = 6;
+
+// A node of the tree: the predicted aircraft and the commands that lead there.
+struct Node {
+  FlightState flight;
+  double cost = 0;
+  bool free = true;
+  int part_count = 0;
+  std::array<ManoeuvrePart, most_parts> parts{};
+};
+
+class NodeState : public ob::State {
+ public:
+  Node node;
+};
+
+const Node& node_of(const ob::State* state) { return static_cast<const NodeState*>(state)->node; }
+Node& node_of(ob::State* state) { return static_cast<NodeState*>(state)->node; }
+
+// Draws states for SST to grow towards: anywhere in the corridor ahead, in any attitude.
+class CorridorSampler : public ob::StateSampler {
+ public:
+  CorridorSampler(const ob::StateSpace* space, const FlightTask& task, const FlightState& start,
+                  std::uint32_t seed)
+      : StateSampler(space), task_(task), start_(start) {
+    rng_.setLocalSeed(seed);
+  }
+
+  void sampleUniform(ob::State* state) override {
+    Node& node = node_of(state);
+    const double ahead_m = rng_.uniformReal(0.5, task_.config.horizon_m);
+    const double aside_m = rng_.uniformReal(-0.4, 0.4) * ahead_m;
+    const double heading = task_.mission.heading_rad;
+    node.flight = start_;
+    node.flight.position_world += Eigen::Vector3d(std::cos(heading) * ahead_m - std::sin(heading) * aside_m,
+                                                  std::sin(heading) * ahead_m + std::cos(heading) * aside_m,
+                                                  rng_.uniformReal(-0.7, 0.7));
+    node.flight.heading_rad = heading + rng_.uniformReal(-0.7, 0.7);
+    node.flight.bank_rad = rng_.uniformReal(-1.3, 1.3);
+  }
+  void sampleUniformNear(ob::State* state, const ob::State*, double) override { sampleUniform(state); }
+  void sampleGaussian(ob::State* state, const ob::State*, double) override { sampleUniform(state); }
+
+ private:
+  const FlightTask& task_;
+  const FlightState& start_;
+};
+
+// The space of flight states. OMPL needs a distance for nearest neighbours; units are chosen so that one unit
+// of each matters about equally over the horizon: 1 m, 0.3 rad of heading, 0.8 rad of bank.
+class FlightStateSpace : public ob::StateSpace {
+ public:
+  FlightStateSpace(const FlightTask& task, const FlightState& start, std::uint32_t seed)
+      : task_(task), start_(start), seed_(seed) {
+    setName("flight");
+  }
+
+  double distance(const ob::State* a, const ob::State* b) const override {
+    const FlightState& one = node_of(a).flight;
+    const FlightState& other = node_of(b).flight;
+    const double heading = (one.heading_rad - other.heading_rad) / 0.3;
+    const double bank = (one.bank_rad - other.bank_rad) / 0.8;
+    return std::sqrt((one.position_world - other.position_world).squaredNorm() + heading * heading +
+                     bank * bank);
+  }
+  ob::StateSamplerPtr allocDefaultStateSampler() const override {
+    return std::make_shared<CorridorSampler>(this, task_, start_, seed_);
+  }
+  ob::State* allocState() const override { return new NodeState; }
+  void freeState(ob::State* state) const override { delete static_cast<NodeState*>(state); }
+  void copyState(ob::State* destination, const ob::State* source) const override {
+    node_of(destination) = node_of(source);
+  }
+  unsigned int getDimension() const override { return 11; }
+  double getMaximumExtent() const override { return 100; }
+  double getMeasure() const override { return 1; }
+  void enforceBounds(ob::State*) const override {}
+  bool satisfiesBounds(const ob::State*) const override { return true; }
+  bool equalStates(const ob::State* a, const ob::State* b) const override { return distance(a, b) == 0; }
+  void interpolate(const ob::State* from, const ob::State*, double, ob::State* state) const override {
+    copyState(state, from);  // never asked for by a control planner
+  }
+
+ private:
+  const FlightTask& task_;
+  const FlightState& start_;
+  std::uint32_t seed_;
+};
+
+class CommandSampler : public oc::ControlSampler {
+ public:
+  CommandSampler(const oc::ControlSpace* space, const ManoeuvreSearchConfig& config, const Manoeuvre& hint,
+                 std::uint32_t seed)
+      : ControlSampler(space), config_(config), hint_(hint) {
+    rng_.setLocalSeed(seed);
+  }
+  void sample(oc::Control* control) override {
+    double* values = control->as<oc::RealVectorControlSpace::ControlType>()->values;
+    values[0] = rng_.uniformReal(-config_.greatest_bank_rad, config_.greatest_bank_rad);
+    values[1] = rng_.uniformReal(config_.least_climb_mps, config_.greatest_climb_mps);
+    const double lot = rng_.uniform01();
+    if (lot < config_.hint_share && !hint_.empty()) {
+      const FlightCommand& near = hint_[rng_.uniformInt(0, static_cast<int>(hint_.size()) - 1)].command;
+      values[0] = std::clamp(near.bank_rad + rng_.gaussian(0, 0.15), -config_.greatest_bank_rad,
+                             config_.greatest_bank_rad);
+      values[1] = near.climb_mps;
+    } else if (lot > 1 - config_.extreme_share) {
+      values[0] = std::copysign(config_.greatest_bank_rad, values[0]);
+    }
+  }
+
+ private:
+  const ManoeuvreSearchConfig& config_;
+  const Manoeuvre& hint_;
+};
+
+// What a step adds to the node is its whole cost, clearance included; OMPL adds up the differences.
+class AccumulatedCost : public ob::OptimizationObjective {
+ public:
+  using OptimizationObjective::OptimizationObjective;
+  ob::Cost stateCost(const ob::State*) const override { return ob::Cost(0); }
+  ob::Cost motionCost(const ob::State* from, const ob::State* to) const override {
+    return ob::Cost(node_of(to).cost - node_of(from).cost);
+  }
+};
+
+// The goal: states from which the course guidance alone reaches the horizon. It remembers the cheapest whole
+// flight (commands so far and the way to the horizon), which SST's own account of the tree alone would not.
+class FreeCourse : public ob::Goal {
+ public:
+  FreeCourse(const ob::SpaceInformationPtr& space, const FlightTask& task) : Goal(space), task_(task) {}
+  bool isSatisfied(const ob::State* state) const override { return isSatisfied(state, nullptr); }
+  bool isSatisfied(const ob::State* state, double* distance) const override {
+    const Node& node = node_of(state);
+    const double to_go_m = task_.config.horizon_m - progress_m(task_, node.flight.position_world);
+    if (distance != nullptr) *distance = std::max(0.0, to_go_m);
+    if (node.cost >= best_cost) return false;
+    const Rollout rest = fly_out(task_, node.flight, {}, task_.config.least_clearance_m, false);
+    if (!rest.reached_horizon) return false;
+    if (node.cost + rest.cost < best_cost) {
+      best_cost = node.cost + rest.cost;
+      best.assign(node.parts.begin(), node.parts.begin() + node.part_count);
+    }
+    return true;
+  }
+
+  mutable double best_cost = std::numeric_limits<double>::infinity();
+  mutable Manoeuvre best;
+
+ private:
+  const FlightTask& task_;
+};
+
+// SST with a seed of its own for each search; OMPL seeds one generator per process, which would tie a replan
+// to all that came before it.
+class SeededSst : public oc::SST {
+ public:
+  SeededSst(const oc::SpaceInformationPtr& space, std::uint32_t seed) : SST(space) {
+    rng_.setLocalSeed(seed);
+  }
+};
+
+void propagate(const FlightTask& task, const ManoeuvreSearchConfig& config, const Node& from,
+               const FlightCommand& command, double step_s, Node& to) {
+  to = from;
+  const bool continues = to.part_count > 0 && to.parts[to.part_count - 1].command == command;
+  if (!continues && to.part_count == config.greatest_parts) {
+    to.free = false;
+    return;
+  }
+  if (!continues) to.parts[to.part_count++] = {command, 0};
+  to.parts[to.part_count - 1].duration_s += step_s;
+  to.flight = task.model.advance(from.flight, command, step_s);
+  const double clearance = task.field.clearance_m(to.flight, 3.0);
+  to.cost += step_s * cost_rate(task, to.flight, clearance);
+  to.free = std::min(clearance, band_clearance_m(task, to.flight)) >= task.config.least_clearance_m &&
+            progress_m(task, to.flight.position_world) < task.config.horizon_m;
+}
+
+}  // namespace
+
+std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightState& start,
+                                          const Manoeuvre& hint, const ManoeuvreSearchConfig& config,
+                                          std::uint64_t seed) {
+  ompl::msg::noOutputHandler();
+  const auto seed_of = [seed](std::uint32_t part) {  // OMPL's seeds are 32 bits wide and not zero
+    return static_cast<std::uint32_t>((seed ^ (seed >> 32)) * 4 + part) | 1u << 31;
+  };
+  const auto states = std::make_shared<FlightStateSpace>(task, start, seed_of(0));
+  const auto controls = std::make_shared<oc::RealVectorControlSpace>(states, 2);
+  ob::RealVectorBounds bounds(2);
+  bounds.setLow(0, -config.greatest_bank_rad), bounds.setHigh(0, config.greatest_bank_rad);
+  bounds.setLow(1, config.least_climb_mps), bounds.setHigh(1, config.greatest_climb_mps);
+  controls->setBounds(bounds);
+  controls->setControlSamplerAllocator([&](const oc::ControlSpace* space) {
+    return std::make_shared<CommandSampler>(space, config, hint, seed_of(1));
+  });
+
+  const auto space = std::make_shared<oc::SpaceInformation>(states, controls);
+  space->setStateValidityChecker([](const ob::State* state) { return node_of(state).free; });
+  space->setStatePropagator(
+      [&](const ob::State* from, const oc::Control* control, double step_s, ob::State* to) {
+        const double* values = control->as<oc::RealVectorControlSpace::ControlType>()->values;
+        propagate(task, config, node_of(from), {values[0], values[1]}, step_s, node_of(to));
+      });
+  const double step_s = task.config.step_s;
+  space->setPropagationStepSize(step_s);
+  space->setMinMaxControlDuration(static_cast<unsigned>(std::lround(config.least_part_s / step_s)),
+                                  static_cast<unsigned>(std::lround(config.greatest_part_s / step_s)));
+  space->setup();
+
+  const auto problem = std::make_shared<ob::ProblemDefinition>(space);
+  ob::ScopedState<> start_state(states);
+  node_of(start_state.get()).flight = start;
+  problem->addStartState(start_state);
+  const auto goal = std::make_shared<FreeCourse>(space, task);
+  problem->setGoal(goal);
+  problem->setOptimizationObjective(std::make_shared<AccumulatedCost>(space));
+
+  const auto planner = std::make_shared<SeededSst>(space, seed_of(2));
+  planner->setProblemDefinition(problem);
+  planner->setSelectionRadius(config.selection_radius);
+  planner->setPruningRadius(config.pruning_radius);
+  planner->setNearestNeighbors<ompl::NearestNeighborsLinear>();
+  int asked = 0;
+  planner->solve(ob::PlannerTerminationCondition([&] { return ++asked > config.iterations; }));
+  if (std::isinf(goal->best_cost)) return std::nullopt;
+  return goal->best;
+}
+
+}  // namespace understory

@@ -1,0 +1,125 @@
+#include "planning/obstacle_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace understory {
+namespace {
+
+constexpr double grid_cell_m = 1.0;
+constexpr double grid_reach_m =
+    3.6;  // a wing's half span, a column's radius and the greatest clearance asked for
+
+// Least distance between the segments a0-a1 and b0-b1: Ericson 2005, Real-Time Collision Detection,
+// section 5.1.9.
+double segment_distance_m(const Eigen::Vector3d& a0, const Eigen::Vector3d& a1, const Eigen::Vector3d& b0,
+                          const Eigen::Vector3d& b1) {
+  const Eigen::Vector3d along_a = a1 - a0, along_b = b1 - b0, between = a0 - b0;
+  const double aa = std::max(along_a.squaredNorm(), 1e-12), bb = std::max(along_b.squaredNorm(), 1e-12);
+  const double ab = along_a.dot(along_b), ac = along_a.dot(between), bc = along_b.dot(between);
+  const double determinant = aa * bb - ab * ab;
+  double s = determinant > 1e-9 ? std::clamp((ab * bc - ac * bb) / determinant, 0.0, 1.0) : 0.5;
+  double t = std::clamp((ab * s + bc) / bb, 0.0, 1.0);
+  s = std::clamp((ab * t - ac) / aa, 0.0, 1.0);
+  t = std::clamp((ab * s + bc) / bb, 0.0, 1.0);
+  return (between + s * along_a - t * along_b).norm();
+}
+
+struct CellPoint {
+  std::int32_t i, j;
+  double z, radius, x, y;
+};
+
+}  // namespace
+
+ObstacleField::ObstacleField(const ObstacleFieldConfig& config, const std::vector<ObstaclePoint>& points,
+                             double distance_flown_m)
+    : config_(config) {
+  std::vector<CellPoint> cells;
+  cells.reserve(points.size());
+  for (const ObstaclePoint& point : points) {
+    const double flown_m = std::max(0.0, distance_flown_m - point.distance_flown_m);
+    const double sigma_m =
+        std::min(config.sigma_zero_m + config.sigma_per_m * flown_m, config.sigma_greatest_m);
+    const Eigen::Vector3d& at = point.position_world;
+    cells.push_back({static_cast<std::int32_t>(std::floor(at.x() / config.cell_m)),
+                     static_cast<std::int32_t>(std::floor(at.y() / config.cell_m)), at.z(), sigma_m, at.x(),
+                     at.y()});
+  }
+  std::sort(cells.begin(), cells.end(), [](const CellPoint& a, const CellPoint& b) {
+    return std::tie(a.i, a.j, a.z, a.radius, a.x, a.y) < std::tie(b.i, b.j, b.z, b.radius, b.x, b.y);
+  });
+  for (std::size_t first = 0; first < cells.size();) {
+    std::size_t end = first;
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    double radius_m = 0;
+    while (end < cells.size() && cells[end].i == cells[first].i && cells[end].j == cells[first].j &&
+           (end == first || cells[end].z - cells[end - 1].z <= config.column_gap_m)) {
+      sum += Eigen::Vector2d(cells[end].x, cells[end].y);
+      radius_m = std::max(radius_m, cells[end].radius);
+      ++end;
+    }
+    columns_.push_back({sum / static_cast<double>(end - first), cells[first].z - config.vertical_reach_m,
+                        cells[end - 1].z + config.vertical_reach_m, radius_m + 0.5 * config.cell_m});
+    first = end;
+  }
+  build_grid();
+}
+
+void ObstacleField::build_grid() {
+  if (columns_.empty()) return;
+  Eigen::Vector2d low = columns_.front().centre_world, high = low;
+  for (const Column& column : columns_) {
+    low = low.cwiseMin(column.centre_world);
+    high = high.cwiseMax(column.centre_world);
+  }
+  grid_origin_ = low.array() - grid_reach_m;
+  const Eigen::Vector2d size = high.array() + grid_reach_m - grid_origin_.array();
+  grid_width_ = static_cast<int>(size.x() / grid_cell_m) + 1;
+  grid_height_ = static_cast<int>(size.y() / grid_cell_m) + 1;
+
+  const auto for_each_cell_near = [&](const Column& column, auto&& visit) {
+    const Eigen::Vector2d at = (column.centre_world - grid_origin_) / grid_cell_m;
+    const double reach = grid_reach_m / grid_cell_m;
+    for (int y = std::max(0, static_cast<int>(at.y() - reach)); y <= at.y() + reach && y < grid_height_; ++y)
+      for (int x = std::max(0, static_cast<int>(at.x() - reach)); x <= at.x() + reach && x < grid_width_; ++x)
+        visit(y * grid_width_ + x);
+  };
+  // Counting sort of (cell, column) pairs: count, sum up, fill.
+  cell_start_.assign(static_cast<std::size_t>(grid_width_) * grid_height_ + 1, 0);
+  for (const Column& column : columns_)
+    for_each_cell_near(column, [&](int cell) { ++cell_start_[cell + 1]; });
+  for (std::size_t cell = 1; cell < cell_start_.size(); ++cell) cell_start_[cell] += cell_start_[cell - 1];
+  cell_columns_.resize(cell_start_.back());
+  std::vector<std::int32_t> next(cell_start_.begin(), cell_start_.end() - 1);
+  for (std::size_t index = 0; index < columns_.size(); ++index)
+    for_each_cell_near(columns_[index],
+                       [&](int cell) { cell_columns_[next[cell]++] = static_cast<std::int32_t>(index); });
+}
+
+double ObstacleField::clearance_m(const FlightState& state, double greatest_m) const {
+  if (columns_.empty()) return greatest_m;
+  const Eigen::Vector2d at = (state.position_world.head<2>() - grid_origin_) / grid_cell_m;
+  const int x = static_cast<int>(std::floor(at.x())), y = static_cast<int>(std::floor(at.y()));
+  if (x < 0 || y < 0 || x >= grid_width_ || y >= grid_height_) return greatest_m;
+  const int cell = y * grid_width_ + x;
+  if (cell_start_[cell] == cell_start_[cell + 1]) return greatest_m;
+
+  const Eigen::Vector3d half_wing = config_.half_span_m * left_wing_direction_world(state);
+  const Eigen::Vector3d left_tip = state.position_world + half_wing,
+                        right_tip = state.position_world - half_wing;
+  double least = greatest_m;
+  for (int k = cell_start_[cell]; k < cell_start_[cell + 1]; ++k) {
+    const Column& column = columns_[cell_columns_[k]];
+    const double around_m = column.radius_m + config_.wing_radius_m;
+    const double centre_m = (column.centre_world - state.position_world.head<2>()).norm();
+    if (centre_m - config_.half_span_m - around_m >= least) continue;
+    const Eigen::Vector3d bottom(column.centre_world.x(), column.centre_world.y(), column.bottom_m);
+    const Eigen::Vector3d top(column.centre_world.x(), column.centre_world.y(), column.top_m);
+    least = std::min(least, segment_distance_m(left_tip, right_tip, bottom, top) - around_m);
+  }
+  return least;
+}
+
+}  // namespace understory
