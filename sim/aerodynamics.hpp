@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "planning/airframe.hpp"
+
+namespace understory {
+
+/// Between the flight records' axes (x forward, y right, z down) and the house's body axes (x forward, y
+/// left, z up). Half a turn about x: its own inverse, and right for velocities, rates, forces and moments
+/// alike.
+inline Eigen::Vector3d flip_yz(const Eigen::Vector3d& vector) {
+  return {vector.x(), -vector.y(), -vector.z()};
+}
+
+/// What acts on the body, at its centre of mass, body axes.
+struct Wrench {
+  Eigen::Vector3d force_body_n = Eigen::Vector3d::Zero();
+  Eigen::Vector3d moment_body_nm = Eigen::Vector3d::Zero();
+};
+
+/// What the air feels of the aircraft.
+struct AirState {
+  Eigen::Vector3d air_velocity_body_mps = Eigen::Vector3d::Zero();  ///< of the body relative to the air
+  Eigen::Vector3d angular_rate_body_radps = Eigen::Vector3d::Zero();
+  double left_elevon_rad = 0;  ///< positive trailing edge up
+  double right_elevon_rad = 0;
+  double thrust_n = 0;
+};
+
+/// The identified flat-plate model (flight records of the original aircraft, 2014 to 2017): wing, two
+/// elevons, two winglets, body drag, rate damping, thrust. CL = 2 sin a cos a, CD = 2 sin^2 a: it never
+/// stalls, so whoever flies it caps the angle of attack at 25 to 30 deg. Gravity is not in it. Pure; limits
+/// of elevons and thrust are the caller's.
+Wrench aerodynamic_wrench(const Airframe& airframe, const AirState& air);
+
+/// Angle between the chord and the oncoming air, rad, positive nose above the path.
+double angle_of_attack_rad(const Eigen::Vector3d& air_velocity_body_mps);
+
+/// Angle of the oncoming air to the plane of symmetry, rad, positive drifting left.
+double sideslip_rad(const Eigen::Vector3d& air_velocity_body_mps);
+
+}  // namespace understory

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Geometry>
+#include <array>
+
+#include "perception/stereo_rig.hpp"
+
+namespace understory {
+
+/// One eye: where it stands in the world and how it maps rays to pixels. OpenCV axes; the centre of the top
+/// left pixel is (0, 0), so the picture reaches from -0.5 to width - 0.5.
+struct Eye {
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  double focal_px = 0;
+  double center_x_px = 0;
+  double center_y_px = 0;
+  int width_px = 0;
+  int height_px = 0;
+};
+
+constexpr double near_m = 0.1;   ///< the airframe's nose is behind the cameras; nothing nearer matters
+constexpr double far_m = 500.0;  ///< beyond the ground's rim
+
+/// The two eyes of a rig on a body: left first. The right eye is baseline_m along the left one's x.
+std::array<Eye, 2> eyes_of(const StereoRig& rig, const Eigen::Isometry3d& T_world_body);
+
+/// The same eye for OpenGL: y up and looking along -z. The only place where the axes flip.
+mjvGLCamera to_gl(const Eye& eye);
+
+/// A box in the world: the extent of a geom along its own axes.
+struct GeomBox {
+  Eigen::Isometry3d T_world_box = Eigen::Isometry3d::Identity();  ///< at its centre
+  Eigen::Vector3d half_size = Eigen::Vector3d::Zero();            ///< m
+};
+
+/// False only where the eye cannot see any of the box: a conservative test.
+bool may_see(const Eye& eye, const GeomBox& box);
+/// From a point to the nearest point of the box, m; 0 inside.
+double distance_m(const Eigen::Vector3d& point_world, const GeomBox& box);
+
+/// Metres along the optical axis from OpenGL's depth value in 0 .. 1.
+inline double depth_of_gl(double value) { return near_m * far_m / (far_m - value * (far_m - near_m)); }
+
+}  // namespace understory

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/obstacle.hpp"
+#include "sim/world.hpp"
+
+namespace understory {
+
+/// MJCF to put into <asset> and <worldbody>: what is seen. All of it collides with nothing and is in
+/// group_scenery.
+struct SceneryXml {
+  std::string assets;
+  std::string bodies;
+};
+
+/// The ground as a textured slab whose upper face is z = 0, and, where they are visible, the obstacles as
+/// bark-covered prisms, one mesh each. The geoms are named "scenery_ground" and "scenery_<number>".
+SceneryXml scenery_xml(const std::vector<Obstacle>& obstacles, const WorldConfig& config);
+
+/// Fills the compiled model's textures (see models/textures/README.md) and turns off what the cameras have no
+/// use for and would pay for: shadow maps and multisampling. Must come before the first StereoCameras of the
+/// model.
+void paint_textures(mjModel& model, const WorldConfig& config);
+
+}  // namespace understory
