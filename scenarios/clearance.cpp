@@ -1,0 +1,49 @@
+#include "scenarios/clearance.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace understory {
+
+double segment_distance_m(const Segment& a, const Segment& b) {
+  const Eigen::Vector3d along_a = a.to - a.from;
+  const Eigen::Vector3d along_b = b.to - b.from;
+  const Eigen::Vector3d between = a.from - b.from;
+  const double aa = along_a.squaredNorm();
+  const double bb = along_b.squaredNorm();
+  const double ab = along_a.dot(along_b);
+  const double a_between = along_a.dot(between);
+  const double b_between = along_b.dot(between);
+  constexpr double tiny = 1e-12;
+  const double denominator = aa * bb - ab * ab;
+  double s = 0;  // along a; where the segments are parallel any s will do
+  if (denominator > tiny * aa * bb) s = std::clamp((ab * b_between - a_between * bb) / denominator, 0.0, 1.0);
+  double t = bb > tiny ? (ab * s + b_between) / bb : 0;
+  if (t < 0 || t > 1 ||
+      bb <= tiny) {  // the nearest point of b is an end: take that, then the best point of a
+    t = std::clamp(t, 0.0, 1.0);
+    s = aa > tiny ? std::clamp((ab * t - a_between) / aa, 0.0, 1.0) : 0;
+  }
+  return (between + s * along_a - t * along_b).norm();
+}
+
+double clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airframe,
+                   const std::vector<Obstacle>& obstacles) {
+  const double tail_x = airframe.elevon_hinge_x_m - airframe.elevon_chord_m;
+  const double nose_x = tail_x + 2 * airframe.chord_m;
+  const double tip_y = airframe.span_m / 2;
+  const std::array<Segment, 2> parts{
+      Segment{T_world_body * Eigen::Vector3d(airframe.winglet_x_m, tip_y, 0),
+              T_world_body * Eigen::Vector3d(airframe.winglet_x_m, -tip_y, 0)},
+      Segment{T_world_body * Eigen::Vector3d(nose_x, 0, 0), T_world_body * Eigen::Vector3d(tail_x, 0, 0)}};
+  double least = std::numeric_limits<double>::infinity();
+  for (const Obstacle& bar : obstacles) {
+    for (const Segment& part : parts) {
+      least = std::min(least, segment_distance_m(part, {bar.from_world, bar.to_world}) - bar.radius_m);
+    }
+  }
+  return least;
+}
+
+}  // namespace understory

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+namespace understory {
+
+/// The visitor that writes a config struct as YAML, every field in its order. Numbers are written in the
+/// fewest digits that read back exactly, so writing and reading again gives the same struct.
+class ConfigWriter {
+ public:
+  template <typename T>
+  void operator()(std::string_view name, T& field) {
+    if constexpr (std::is_same_v<T, bool>) {
+      line(name, field ? "true" : "false");
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      line(name, quoted(field));
+    } else {
+      line(name, "");
+      indent_ += 2;
+      visit_fields(*this, field);
+      indent_ -= 2;
+    }
+  }
+
+  template <typename T, typename Least, typename Greatest>
+  void operator()(std::string_view name, T& field, Least, Greatest) {
+    if constexpr (std::is_arithmetic_v<T>) {
+      line(name, fmt::format("{}", field));
+    } else {
+      std::string list;
+      for (const double value : field) list += fmt::format("{}{}", list.empty() ? "" : ", ", value);
+      line(name, "[" + list + "]");
+    }
+  }
+
+  template <typename T, std::size_t N>
+  void operator()(std::string_view name, T& field,
+                  const std::array<std::pair<std::string_view, T>, N>& names) {
+    for (const auto& [word, value] : names) {
+      if (field == value) line(name, word);
+    }
+  }
+
+  const std::string& text() const { return text_; }
+
+ private:
+  void line(std::string_view name, std::string_view value) {
+    text_ += fmt::format("{:{}}{}:{}{}\n", "", indent_, name, value.empty() ? "" : " ", value);
+  }
+
+  static std::string quoted(const std::string& word) {
+    std::string out = "\"";
+    for (const char c : word) {
+      if (c == '"' || c == '\\') out += '\\';
+      if (c == '\n')
+        out += "\\n";
+      else
+        out += c;
+    }
+    return out + "\"";
+  }
+
+  std::string text_;
+  int indent_ = 0;
+};
+
+/// `config` as YAML text.
+template <typename Config>
+std::string write_config(Config config) {  // by value: the visitors take fields they could change
+  ConfigWriter writer;
+  visit_fields(writer, config);
+  return writer.text();
+}
+
+}  // namespace understory

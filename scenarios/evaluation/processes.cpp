@@ -1,0 +1,47 @@
+#include "scenarios/evaluation/processes.hpp"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+
+#include "scenarios/file_output.hpp"
+
+namespace understory {
+
+void Processes::start(std::uint64_t tag, const std::vector<std::string>& arguments) {
+  while (running_.size() >= static_cast<std::size_t>(greatest_count_)) wait_for_one();
+  std::vector<char*> argv{const_cast<char*>("understory")};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  const pid_t child = fork();
+  if (child < 0) throw MachineError(fmt::format("cannot start a flight: {}", std::strerror(errno)));
+  if (child == 0) {
+    // Several flights at a time: the renderer's own threads would only get in each other's way.
+    if (greatest_count_ > 1) setenv("LP_NUM_THREADS", "1", 0);
+    execv("/proc/self/exe", argv.data());
+    _exit(127);
+  }
+  running_[child] = tag;
+}
+
+void Processes::wait_for_one() {
+  int status = 0;
+  const pid_t child = waitpid(-1, &status, 0);
+  if (child < 0 && errno == EINTR) return;
+  if (child < 0) throw MachineError(fmt::format("cannot wait for a flight: {}", std::strerror(errno)));
+  const auto ended = running_.find(child);
+  if (ended == running_.end()) return;
+  const std::uint64_t tag = ended->second;
+  running_.erase(ended);
+  on_end_(tag, WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status));
+}
+
+void Processes::wait_for_all() {
+  while (!running_.empty()) wait_for_one();
+}
+
+}  // namespace understory

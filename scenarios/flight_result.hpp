@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace understory {
+
+/// How a flight ended.
+enum class Ending {
+  goal,           ///< passed the goal plane
+  collision,      ///< touched an obstacle (MuJoCo's own contact)
+  ground,         ///< touched the ground
+  out_of_bounds,  ///< left the altitude band after climbing into it, or the course's sides
+  time            ///< ran out of simulated time
+};
+
+std::string_view word_for(Ending ending);
+
+/// Wall time one stage of the loop took. Measured for people; decides nothing.
+struct StageTiming {
+  std::string stage;
+  std::int64_t count = 0;
+  double total_s = 0;
+  double greatest_s = 0;
+};
+
+/// One flight in numbers: what result.json holds.
+struct FlightResult {
+  std::string scenario;
+  std::uint64_t seed = 0;
+  std::uint64_t sensor_seed = 0;
+  std::string detector;
+  std::string state_source;
+  Ending ending = Ending::time;
+  std::string touched;     ///< name of the obstacle nearest at a collision
+  double simulated_s = 0;  ///< since the start at rest
+  double wall_s = 0;
+  double distance_m = 0;             ///< true path length since release
+  double progress_m = 0;             ///< greatest true x reached
+  double mean_speed_mps = 0;         ///< true, over ground, since release
+  double min_clearance_m = 0;        ///< true; +infinity without obstacles (null in JSON)
+  double position_error_mean_m = 0;  ///< estimate against truth, since release
+  double position_error_max_m = 0;
+  double position_error_end_m = 0;
+  double attitude_error_max_rad = 0;
+  double velocity_error_mean_mps = 0;
+  std::int64_t frames = 0;
+  std::int64_t detections = 0;         ///< hits, all frames
+  std::int64_t remembered_points = 0;  ///< points ever taken into the map
+  std::int64_t replans = 0;
+  std::int64_t replans_straight = 0;
+  std::int64_t replans_solved = 0;  ///< by OMPL
+  std::int64_t replans_kept = 0;
+  std::int64_t searches =
+      0;  ///< times OMPL was asked: no good plan in force, or a kept one's turn to be checked
+  std::int64_t searches_found = 0;  ///< times it found a free manoeuvre
+  std::int64_t replans_fallback = 0;
+  std::int64_t replans_blocked = 0;  ///< those with an obstacle ahead: straight flight would have hit the map
+  /// For each obstacle of a short course (goalposts): remembered points within 0.5 m of it before it was
+  /// passed.
+  std::vector<std::pair<std::string, std::int64_t>> points_on_obstacles;
+  std::vector<StageTiming> timings;
+  std::string renderer;
+  std::string digest;
+};
+
+/// As indented JSON text, versions of program and libraries included.
+std::string to_json(const FlightResult& result);
+
+/// One screen for a person.
+std::string to_report(const FlightResult& result);
+
+}  // namespace understory

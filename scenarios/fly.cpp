@@ -1,0 +1,202 @@
+#include "scenarios/fly.hpp"
+
+#include <fmt/format.h>
+
+#include <deque>
+#include <memory>
+#include <optional>
+
+#include "estimation/filter.hpp"
+#include "perception/block_matching.hpp"
+#include "perception/io/rig_file.hpp"
+#include "perception/pushbroom_stereo.hpp"
+#include "planning/autopilot.hpp"
+#include "scenarios/due.hpp"
+#include "scenarios/file_output.hpp"
+#include "scenarios/flight_film.hpp"
+#include "scenarios/named_seed.hpp"
+#include "scenarios/oracles/no_detector.hpp"
+#include "scenarios/oracles/true_depth.hpp"
+#include "scenarios/oracles/true_state.hpp"
+#include "scenarios/referee.hpp"
+#include "scenarios/run_record.hpp"
+#include "scenarios/scenario_io.hpp"
+#include "scenarios/stopwatch.hpp"
+#include "sim/stereo_cameras.hpp"
+
+namespace understory {
+namespace {
+
+StereoRig rig_of(const Scenario& scenario, const std::filesystem::path& models_folder) {
+  const std::filesystem::path named = models_folder / "rigs" / (scenario.rig + ".yaml");
+  const bool is_named = std::filesystem::exists(named);
+  if (!is_named && !std::filesystem::exists(scenario.rig)) {
+    throw ScenarioError(fmt::format("rig: expected a name in {} or a rig file, got {}",
+                                    named.parent_path().string(), scenario.rig));
+  }
+  try {
+    return read_rig(is_named ? named : std::filesystem::path(scenario.rig));
+  } catch (const std::runtime_error& error) {
+    throw ScenarioError(error.what());
+  }
+}
+
+std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const StereoRig& rig,
+                                              const std::vector<Obstacle>& obstacles,
+                                              const TruthHistory& history) {
+  switch (scenario.perception.detector) {
+    case DetectorKind::pushbroom:
+      return std::make_unique<PushbroomStereo>(rig, scenario.perception.pushbroom);
+    case DetectorKind::block_matching:
+      return std::make_unique<BlockMatching>(rig, scenario.perception.block_matching);
+    case DetectorKind::true_depth:
+      return std::make_unique<TrueDepth>(rig, obstacles, history);
+    case DetectorKind::none:
+      break;
+  }
+  return std::make_unique<NoDetector>();
+}
+
+std::unique_ptr<StateSource> state_source_of(const Scenario& scenario, const TruthHistory& history) {
+  if (scenario.estimation.source == StateKind::truth) return std::make_unique<TrueState>(history);
+  return std::make_unique<Filter>(scenario.estimation.filter);
+}
+
+World world_of(const Scenario& scenario, const std::filesystem::path& models_folder,
+               const std::vector<Obstacle>& obstacles) {
+  try {
+    return build_world(models_folder, scenario.airframe, obstacles, scenario.world_config());
+  } catch (const std::runtime_error& error) {
+    throw MachineError(error.what());  // the models are the project's, not the caller's
+  }
+}
+
+std::unique_ptr<StereoCameras> cameras_of(const Scenario& scenario, const World& world,
+                                          const StereoRig& rig) {
+  try {
+    return std::make_unique<StereoCameras>(world, rig, scenario.cameras.cameras,
+                                           seed_for(scenario.sensor_seed(), "cameras"));
+  } catch (const std::runtime_error& error) {
+    throw MachineError(error.what());
+  }
+}
+
+Aircraft aircraft_of(const Scenario& scenario, const World& world) {
+  try {
+    return Aircraft(*world.model, scenario.airframe, scenario.launch, scenario.wind_world_mps);
+  } catch (const std::runtime_error& error) {
+    throw ScenarioError(error.what());
+  }
+}
+
+/// The aircraft's sensors, each with a generator of its own.
+struct Sensors {
+  Sensors(const Scenario& scenario, std::uint64_t seed)
+      : imu(scenario.sensors.sensors.imu, seed_for(seed, "imu")),
+        pitot(scenario.sensors.sensors.pitot, scenario.airframe.air_density_kgpm3, seed_for(seed, "pitot")),
+        barometer(scenario.sensors.sensors.barometer, seed_for(seed, "barometer")),
+        magnetometer(scenario.sensors.sensors.magnetometer, seed_for(seed, "magnetometer")) {}
+  Imu imu;
+  Pitot pitot;
+  Barometer barometer;
+  Magnetometer magnetometer;
+};
+
+void take_counts(const Autopilot& autopilot, const Stopwatch& stopwatch, FlightResult& result) {
+  const PlannerCounts& counts = autopilot.counts();
+  result.replans_straight = counts.straight;
+  result.replans_solved = counts.solved;
+  result.searches = counts.searched;
+  result.searches_found = counts.found;
+  result.replans_kept = counts.kept;
+  result.replans_fallback = counts.fallback;
+  result.replans_blocked = counts.solved + counts.kept + counts.fallback;
+  result.replans = result.replans_blocked + counts.straight;
+  result.timings = stopwatch.timings();
+  result.wall_s = stopwatch.elapsed_s();
+}
+
+}  // namespace
+
+FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
+  Stopwatch stopwatch;
+  const StereoRig rig = rig_of(scenario, options.models_folder);
+  prepare_output_folder(options.output_folder);
+  for (const char* file : {"result.json", "trajectory.csv", "map.ply", "flight.mp4", "still.png"}) {
+    std::filesystem::remove(options.output_folder / file);  // of an earlier run: must not pass for this one's
+  }
+  write_whole_file(options.output_folder / "scenario.yaml", scenario_to_text(scenario));
+
+  const std::vector<Obstacle> obstacles = course_obstacles(scenario);
+  const World world = world_of(scenario, options.models_folder, obstacles);
+  Aircraft aircraft = aircraft_of(scenario, world);
+  const std::unique_ptr<StereoCameras> cameras = cameras_of(scenario, world, rig);
+  Sensors sensors(scenario, scenario.sensor_seed());
+
+  TruthHistory history;
+  const auto detector = detector_of(scenario, rig, obstacles, history);
+  const auto state_source = state_source_of(scenario, history);
+  Autopilot autopilot(scenario.autopilot.autopilot, scenario.airframe, rig, scenario.mission(), *detector,
+                      *state_source, seed_for(scenario.seed, "planner"));
+
+  const Due due(scenario);
+  const auto latency_ns = static_cast<std::int64_t>(scenario.cameras.latency_s * 1e9);
+  std::deque<StereoFrame> pending;
+  Controls controls;
+  Referee referee(scenario);
+  RunRecord record(scenario, obstacles);
+  record.result().renderer = cameras->renderer();
+  std::optional<FlightFilm> film;
+  if (options.video) film.emplace(options.output_folder, rig, *cameras, scenario.cameras.rate_hz);
+
+  // Oracles and the blind aircraft look at no image: rendering one would be most of their flight's cost.
+  const bool looks = scenario.perception.detector == DetectorKind::pushbroom ||
+                     scenario.perception.detector == DetectorKind::block_matching;
+
+  std::optional<Ending> ending;
+  for (std::int64_t step = 0; !ending; ++step) {
+    const Truth& truth = aircraft.truth();
+    history.observe(truth);
+    stopwatch.time("estimate", [&] {
+      if (due.imu(step)) autopilot.on(sensors.imu.measure(truth));
+      if (due.pitot(step)) autopilot.on(sensors.pitot.measure(truth));
+      if (due.barometer(step)) autopilot.on(sensors.barometer.measure(truth));
+      if (due.magnetometer(step)) autopilot.on(sensors.magnetometer.measure(truth));
+    });
+    if (due.camera(step)) {
+      pending.push_back(
+          looks || film
+              ? stopwatch.time("render", [&] { return cameras->capture(aircraft.data(), truth.t_ns); })
+              : StereoFrame{truth.t_ns, {}, {}});
+    }
+    while (!pending.empty() && truth.t_ns >= pending.front().t_ns + latency_ns) {
+      const StereoFrame frame = std::move(pending.front());
+      pending.pop_front();
+      stopwatch.time("detect", [&] { autopilot.on(frame); });
+      record.observe(looks ? frame : StereoFrame{frame.t_ns, {}, {}}, autopilot.hits().size());
+      record.remember_of_frame(autopilot.map().points(), frame.t_ns);
+      if (film)
+        stopwatch.time("film", [&] { film->observe(frame, autopilot, *state_source, aircraft.data()); });
+    }
+    if (due.replan(step)) stopwatch.time("replan", [&] { autopilot.replan(truth.t_ns); });
+    if (due.imu(step)) controls = stopwatch.time("control", [&] { return autopilot.controls(truth.t_ns); });
+
+    record.observe(truth, aircraft.launched());
+    if (due.record(step)) record.observe(truth, autopilot.state(), controls, aircraft.launched());
+    if (options.on_progress && step % 120 == 0) {
+      const FlightResult& so_far = record.result();
+      options.on_progress({static_cast<double>(truth.t_ns) * 1e-9, stopwatch.elapsed_s(), so_far.progress_m,
+                           scenario.goal_x_m(), truth.velocity_world_mps.norm(), so_far.min_clearance_m});
+    }
+    ending = referee.judge(truth, aircraft.contact(), aircraft.launched());
+    if (!ending) stopwatch.time("physics", [&] { aircraft.step(controls); });
+  }
+
+  record.finish(*ending);
+  take_counts(autopilot, stopwatch, record.result());
+  if (film) film->finish();
+  record.write(options.output_folder);
+  return record.result();
+}
+
+}  // namespace understory

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "scenarios/flight_result.hpp"
+#include "scenarios/scenario.hpp"
+
+namespace understory {
+
+/// Where a flight is, for a progress line.
+struct FlightProgress {
+  double simulated_s = 0;
+  double wall_s = 0;
+  double progress_m = 0;
+  double goal_m = 0;
+  double speed_mps = 0;
+  double min_clearance_m = 0;
+};
+
+struct FlyOptions {
+  std::filesystem::path models_folder;
+  std::filesystem::path output_folder;                     ///< made where missing; gets the run's files
+  bool video = false;                                      ///< also flight.mp4 and still.png
+  std::function<void(const FlightProgress&)> on_progress;  ///< ten times per simulated second; may be empty
+};
+
+/// Flies a scenario once and leaves its run folder: scenario.yaml first, result.json last. Throws
+/// ScenarioError for what a person gave wrongly (rig, folder) and MachineError where the machine fails (GL
+/// library, disk). One flight per process: OMPL's generator is global (docs/decisions/001-determinism.md).
+FlightResult fly(const Scenario& scenario, const FlyOptions& options);
+
+}  // namespace understory

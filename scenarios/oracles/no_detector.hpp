@@ -1,0 +1,13 @@
+#pragma once
+
+#include "perception/obstacle_detector.hpp"
+
+namespace understory {
+
+/// The blind aircraft: what the course itself lets pass.
+class NoDetector : public ObstacleDetector {
+ public:
+  std::vector<StereoHit> detect(const StereoFrame&) override { return {}; }
+};
+
+}  // namespace understory

@@ -1,0 +1,218 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "estimation/filter_config.hpp"
+#include "perception/block_matching.hpp"
+#include "perception/pushbroom_stereo.hpp"
+#include "planning/airframe.hpp"
+#include "planning/autopilot.hpp"
+#include "planning/mission.hpp"
+#include "scenarios/forest.hpp"
+#include "scenarios/goalposts.hpp"
+#include "sim/aircraft.hpp"
+#include "sim/sensors.hpp"
+#include "sim/stereo_cameras.hpp"
+#include "sim/world.hpp"
+
+/// Everything a flight depends on. Each part is its module's own config struct, so that a field is named,
+/// bounded and explained once; the sections here only add what the composition itself decides.
+namespace understory {
+
+enum class Course { forest, goalposts, clear };
+enum class DetectorKind { pushbroom, block_matching, true_depth, none };
+enum class StateKind { filter, truth };
+enum class RulePreset { robust, paper };      ///< which numbers perception.pushbroom starts from
+enum class FilterPreset { tuned, original };  ///< which numbers estimation.filter starts from
+
+inline constexpr std::array<std::pair<std::string_view, Course>, 3> course_names{
+    {{"forest", Course::forest}, {"goalposts", Course::goalposts}, {"clear", Course::clear}}};
+inline constexpr std::array<std::pair<std::string_view, DetectorKind>, 4> detector_names{
+    {{"pushbroom", DetectorKind::pushbroom},
+     {"block_matching", DetectorKind::block_matching},
+     {"true_depth", DetectorKind::true_depth},
+     {"none", DetectorKind::none}}};
+inline constexpr std::array<std::pair<std::string_view, StateKind>, 2> state_names{
+    {{"filter", StateKind::filter}, {"truth", StateKind::truth}}};
+inline constexpr std::array<std::pair<std::string_view, RulePreset>, 2> rule_names{
+    {{"robust", RulePreset::robust}, {"paper", RulePreset::paper}}};
+inline constexpr std::array<std::pair<std::string_view, FilterPreset>, 2> filter_preset_names{
+    {{"tuned", FilterPreset::tuned}, {"original", FilterPreset::original}}};
+
+/// The word a scenario uses for a value.
+inline std::string_view word_for(DetectorKind kind) {
+  return detector_names[static_cast<std::size_t>(kind)].first;
+}
+inline std::string_view word_for(StateKind kind) { return state_names[static_cast<std::size_t>(kind)].first; }
+
+/// Forwards a visitor past names that another key of the scenario stands for.
+template <typename Visitor, std::size_t N>
+struct VisitorWithout {
+  Visitor& visit;
+  std::array<std::string_view, N> left_out;
+
+  template <typename... Arguments>
+  void operator()(std::string_view name, Arguments&&... arguments) {
+    for (const std::string_view other : left_out) {
+      if (name == other) return;
+    }
+    visit(name, std::forward<Arguments>(arguments)...);
+  }
+};
+
+/// Altitudes the flight must keep to once it has climbed into them; leaving ends it. Flying over the trees or
+/// along the ground would prove nothing.
+struct BandConfig {
+  double least_altitude_m = 1;
+  double greatest_altitude_m = 6;
+  double cruise_altitude_m = 4.5;  ///< what the stack is told to hold
+};
+
+/// How the scene looks. Whether obstacles are seen or felt is the course's business: forest.invisible,
+/// .intangible.
+struct WorldSection {
+  WorldConfig world;
+};
+
+struct CameraSection {
+  CameraConfig cameras;
+  int rate_hz = 120;         ///< divides 1200 (Barry & Tedrake 2015: 120 Hz)
+  double latency_s = 0.008;  ///< from exposure to the stack; a parameter, never a measurement
+};
+
+struct SensorSection {
+  std::uint64_t seed = 0;  ///< of every sensor's noise, the cameras' too; 0: the scenario's seed
+  SensorsConfig sensors;
+};
+
+struct PerceptionSection {
+  DetectorKind detector = DetectorKind::pushbroom;
+  RulePreset rule = RulePreset::robust;  ///< keys given under pushbroom win over it
+  PushbroomConfig pushbroom = robust_rule();
+  BlockMatchingConfig block_matching;
+};
+
+struct EstimationSection {
+  StateKind source = StateKind::filter;
+  FilterPreset preset = FilterPreset::tuned;  ///< keys given under filter win over it
+  FilterConfig filter;
+};
+
+struct AutopilotSection {
+  int replan_rate_hz = 120;  ///< divides 1200
+  AutopilotConfig autopilot;
+};
+
+struct Scenario {
+  std::string name = "unnamed";
+  std::uint64_t seed = 1000;  ///< of the course, and of everything else unless said otherwise
+  std::string rig = "long";   ///< a name in models/rigs, or a path to a rig file
+  Course course = Course::forest;
+  double time_limit_s = 30;  ///< of simulated time
+  Eigen::Vector3d wind_world_mps = Eigen::Vector3d::Zero();
+  BandConfig band;
+  ForestConfig forest;
+  GoalpostsConfig goalposts;
+  LaunchConfig launch;
+  Airframe airframe;
+  WorldSection world;
+  CameraSection cameras;
+  SensorSection sensors;
+  PerceptionSection perception;
+  EstimationSection estimation;
+  AutopilotSection autopilot;
+
+  /// What the stack is told of its task.
+  Mission mission() const {
+    return {0,
+            goal_x_m(),
+            forest.half_width_m,
+            band.least_altitude_m,
+            band.greatest_altitude_m,
+            band.cruise_altitude_m};
+  }
+  /// The scene's settings with the course's switches in them.
+  WorldConfig world_config() const {
+    WorldConfig config = world.world;
+    config.obstacles_visible = !forest.invisible;
+    config.obstacles_tangible = !forest.intangible;
+    return config;
+  }
+  double goal_x_m() const { return forest.clear_m + forest.length_m; }
+  std::uint64_t sensor_seed() const { return sensors.seed == 0 ? seed : sensors.seed; }
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, BandConfig& band) {
+  visit("least_altitude_m", band.least_altitude_m, -10.0, 100.0);
+  visit("greatest_altitude_m", band.greatest_altitude_m, 0.0, 500.0);
+  visit("cruise_altitude_m", band.cruise_altitude_m, 0.0, 500.0);
+}
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, WorldSection& section) {
+  VisitorWithout<Visitor, 2> without{visit, {"obstacles_visible", "obstacles_tangible"}};
+  visit_fields(without, section.world);
+}
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, CameraSection& section) {
+  visit_fields(visit, section.cameras);
+  visit("rate_hz", section.rate_hz, 1, 1200);
+  visit("latency_s", section.latency_s, 0.0, 0.4);
+}
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, SensorSection& section) {
+  visit("seed", section.seed, std::uint64_t{0}, std::uint64_t{1} << 32);
+  visit_fields(visit, section.sensors);
+}
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, PerceptionSection& section) {
+  visit("detector", section.detector, detector_names);
+  visit("rule", section.rule, rule_names);
+  visit("pushbroom", section.pushbroom);
+  visit("block_matching", section.block_matching);
+}
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, EstimationSection& section) {
+  visit("source", section.source, state_names);
+  visit("preset", section.preset, filter_preset_names);
+  visit("filter", section.filter);
+}
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, AutopilotSection& section) {
+  visit("replan_rate_hz", section.replan_rate_hz, 1, 1200);
+  visit_fields(visit, section.autopilot);
+}
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, Scenario& scenario) {
+  visit("name", scenario.name);
+  visit("seed", scenario.seed, std::uint64_t{0}, std::uint64_t{1} << 32);
+  visit("rig", scenario.rig);
+  visit("course", scenario.course, course_names);
+  visit("time_limit_s", scenario.time_limit_s, 0.1, 600.0);
+  visit("wind_world_mps", scenario.wind_world_mps, -20.0, 20.0);
+  visit("band", scenario.band);
+  visit("forest", scenario.forest);
+  visit("goalposts", scenario.goalposts);
+  visit("launch", scenario.launch);
+  visit("airframe", scenario.airframe);
+  visit("world", scenario.world);
+  visit("cameras", scenario.cameras);
+  visit("sensors", scenario.sensors);
+  visit("perception", scenario.perception);
+  visit("estimation", scenario.estimation);
+  visit("autopilot", scenario.autopilot);
+}
+
+}  // namespace understory

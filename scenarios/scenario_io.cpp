@@ -1,0 +1,116 @@
+#include "scenarios/scenario_io.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "scenarios/config_reader.hpp"
+#include "scenarios/config_writer.hpp"
+
+namespace understory {
+namespace {
+
+using Sources = std::vector<ConfigNode>;  ///< the file, then every --set
+
+/// The run folder's name by default, so no more than a plain word.
+bool is_plain_word(const std::string& name) {
+  const auto is_plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
+  };
+  return !name.empty() && name.size() <= 100 && name.front() != '.' &&
+         std::all_of(name.begin(), name.end(), is_plain);
+}
+
+/// What single ranges cannot say.
+void check(const Scenario& scenario, const Sources& sources, const std::string& name) {
+  const auto expect = [&](bool holds, const std::string& what) {
+    if (holds) return;
+    const std::string origin = origin_of(sources, what.substr(0, what.find(':')));
+    throw ScenarioError(fmt::format("{}: {}", origin.empty() ? name : origin, what));
+  };
+  expect(is_plain_word(scenario.name),
+         "name: expected letters, digits, '-', '_' and '.', at most 100, no '.' first");
+  const auto divides = [](int rate_hz) { return physics_rate_hz % rate_hz == 0; };
+  expect(scenario.forest.radius_min_m <= scenario.forest.radius_max_m,
+         "forest.radius_min_m: expected at most forest.radius_max_m");
+  expect(scenario.band.least_altitude_m < scenario.band.greatest_altitude_m,
+         "band.least_altitude_m: expected less than band.greatest_altitude_m");
+  expect(scenario.goalposts.pass_least_m <= scenario.goalposts.pass_greatest_m,
+         "goalposts.pass_least_m: expected at most goalposts.pass_greatest_m");
+  expect(divides(scenario.autopilot.replan_rate_hz),
+         "autopilot.replan_rate_hz: expected a rate that divides 1200");
+  expect(divides(scenario.cameras.rate_hz), "cameras.rate_hz: expected a rate that divides 1200");
+  expect(divides(scenario.sensors.sensors.imu_rate_hz),
+         "sensors.imu_rate_hz: expected a rate that divides 1200");
+  expect(divides(scenario.sensors.sensors.pitot_rate_hz),
+         "sensors.pitot_rate_hz: expected a rate that divides 1200");
+  expect(divides(scenario.sensors.sensors.barometer_rate_hz),
+         "sensors.barometer_rate_hz: expected a rate that divides 1200");
+  expect(divides(scenario.sensors.sensors.magnetometer_rate_hz),
+         "sensors.magnetometer_rate_hz: expected a rate that divides 1200");
+}
+
+/// Where the catapult holds the aircraft: known to whoever sets it up, so the filter may start from it.
+Eigen::Vector3d rail_start_world(const LaunchConfig& launch) {
+  return {-launch.rail_length_m * std::cos(launch.climb_angle_rad), 0,
+          launch.altitude_m - launch.rail_length_m * std::sin(launch.climb_angle_rad)};
+}
+
+Sources sources_of(ConfigNode file, const std::vector<std::string>& settings) {
+  Sources sources{std::move(file)};
+  for (const std::string& setting : settings) sources.push_back(parse_assignment(setting));
+  return sources;
+}
+
+void read_all(const Sources& sources, Scenario& scenario) {
+  for (const ConfigNode& source : sources) read_config(source, scenario);
+}
+
+/// Twice: the first reading learns the presets and the launch, the second puts the written keys over them.
+Scenario compose(const Sources& sources, const std::string& name) {
+  Scenario first;
+  read_all(sources, first);
+  Scenario scenario;
+  if (first.perception.rule == RulePreset::paper) scenario.perception.pushbroom = paper_rule();
+  if (first.estimation.preset == FilterPreset::original) scenario.estimation.filter = original_filter();
+  scenario.estimation.filter.start.position_world_m = rail_start_world(first.launch);
+  scenario.estimation.filter.start.pitch_rad = first.launch.climb_angle_rad;
+  read_all(sources, scenario);
+  check(scenario, sources, name);
+  return scenario;
+}
+
+}  // namespace
+
+Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& settings) {
+  return compose(sources_of(parse_config_file(file), settings), file.string());
+}
+
+Scenario scenario_from_text(const std::string& text, const std::string& name,
+                            const std::vector<std::string>& settings) {
+  return compose(sources_of(parse_config_text(text, name), settings), name);
+}
+
+std::string where_given(const std::filesystem::path& file, const std::vector<std::string>& settings,
+                        std::string_view key) {
+  const std::string origin = origin_of(sources_of(parse_config_file(file), settings), key);
+  return origin.empty() ? file.string() : origin;
+}
+
+std::string scenario_to_text(const Scenario& scenario) { return write_config(scenario); }
+
+std::vector<Obstacle> course_obstacles(const Scenario& scenario) {
+  switch (scenario.course) {
+    case Course::forest:
+      return poisson_forest(scenario.forest, scenario.seed);
+    case Course::goalposts:
+      return goalposts(scenario.goalposts, scenario.seed);
+    case Course::clear:
+      break;
+  }
+  return {};
+}
+
+}  // namespace understory
