@@ -1,0 +1,131 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <cmath>
+
+#include "estimation/filter.hpp"
+#include "simulated_flight.hpp"
+
+namespace understory::test {
+namespace {
+
+/// White noise of exactly the modelled size, constant gyro biases from the modelled prior, nothing else.
+struct Modelled {
+  SensorErrors errors;
+  FilterConfig config;
+};
+
+Modelled modelled() {
+  Modelled set;
+  set.errors = SensorErrors::none();
+  set.errors.gyro_noise = 0.00244;
+  set.errors.gyro_bias = 0.0087;
+  set.errors.force_noise = 0.05;
+  set.errors.pitot_noise = 0.1;
+  set.errors.barometer_noise = 0.3;
+  set.errors.field_noise = 0.5;
+  FilterConfig& config = set.config;
+  config.start.in_flight = true;
+  config.gyro_noise_radps_rthz = set.errors.gyro_noise * std::sqrt(0.005);
+  config.accelerometer_noise_mps2_rthz = set.errors.force_noise * std::sqrt(0.005);
+  config.gyro_bias_walk_rthz = 0;
+  config.airspeed.sigma_mps = set.errors.pitot_noise;
+  config.altitude.sigma_m = set.errors.barometer_noise;
+  config.heading.sigma_rad = set.errors.field_noise / (48 * std::cos(67 * M_PI / 180));
+  config.sideslip.sigma_mps2 = config.angle_of_attack.sigma_mps2 = set.errors.force_noise;
+  config.sideslip.model_error = config.angle_of_attack.model_error = 0;
+  config.gate_probability = 0.999999;
+  config.start.horizontal_sigma_m = 0.5;
+  config.start.vertical_sigma_m = 0.5;
+  return set;
+}
+
+/// Starts the filter at the truth less an error drawn from its own prior.
+FilterConfig displaced(const FilterConfig& config, const Moment& truth, std::mt19937_64& generator) {
+  std::normal_distribution<double> normal;
+  const auto draw = [&](double sigma) { return sigma * normal(generator); };
+  FilterConfig start = config;
+  const Eigen::Matrix3d attitude = truth.T_world_body.linear();
+  start.start.yaw_rad = std::atan2(attitude(1, 0), attitude(0, 0)) + draw(config.start.yaw_sigma_rad);
+  start.start.pitch_rad = std::asin(attitude(2, 0)) + draw(config.start.tilt_sigma_rad);
+  start.start.roll_rad = std::atan2(attitude(2, 1), attitude(2, 2)) + draw(config.start.tilt_sigma_rad);
+  start.start.velocity_body_mps = truth.velocity_body;
+  for (double& v : start.start.velocity_body_mps) v += draw(config.start.velocity_sigma_mps);
+  start.start.position_world_m = truth.T_world_body.translation();
+  for (double& p : start.start.position_world_m) p += draw(config.start.horizontal_sigma_m);
+  return start;
+}
+
+struct Nees {
+  double all = 0, attitude = 0, velocity = 0, position = 0, bias = 0;
+};
+
+Nees average_nees(const Modelled& set) {
+  constexpr int seeds = 50;
+  std::vector<Moment> flight = fly(dodge(), 3.2);
+  flight.erase(flight.begin(), flight.begin() + 160);  // begin in steady flight, wings level
+  Nees mean;
+  for (int seed = 0; seed < seeds; ++seed) {
+    std::mt19937_64 generator(500 + seed);
+    Filter filter(displaced(set.config, flight.front(), generator));
+    Sensors sensors(set.errors, 9000 + seed);
+    for (const Moment& moment : flight) sensors.feed(filter, moment);
+    const Vector12d error = error_of(filter.state(), flight.back(), sensors.gyro_bias);
+    const Matrix12d& covariance = filter.state().covariance;
+    const auto block = [&](int first) {
+      const Eigen::Vector3d part = error.segment<3>(first);
+      const Eigen::Matrix3d spread = covariance.block<3, 3>(first, first);
+      return part.dot(spread.inverse() * part) / seeds;
+    };
+    mean.all += error.dot(covariance.ldlt().solve(error)) / seeds;
+    mean.attitude += block(attitude_block);
+    mean.velocity += block(velocity_block);
+    mean.position += block(position_block);
+    mean.bias += block(rate_block);
+  }
+  return mean;
+}
+
+/// 99.8 % bounds of the mean of 50 chi-square variables: chi2(600)/50 (all states), chi2(150)/50 (one block).
+constexpr double all_least = 9.97, all_most = 14.25, block_least = 2.02, block_most = 4.17;
+
+void expect_block(double block, const char* name) {
+  EXPECT_GT(block, block_least) << name;
+  EXPECT_LT(block, block_most) << name;
+}
+
+TEST(Nees, OfAllTwelveStatesOverFiftySeedsIsChiSquare) {
+  for (const bool smooth : {false, true}) {
+    Modelled set = modelled();
+    set.config.smooth_position = smooth;
+    set.config.sideslip.model = SideslipModel::off;
+    set.config.angle_of_attack.enabled = false;
+    const Nees nees = average_nees(set);
+    EXPECT_GT(nees.all, all_least);
+    EXPECT_LT(nees.all, all_most);
+    expect_block(nees.attitude, "attitude");
+    expect_block(nees.velocity, "velocity");
+    expect_block(nees.position, "position");
+    expect_block(nees.bias, "gyro bias");
+  }
+}
+
+/// With sideslip and angle of attack the accelerometer's noise enters twice, as input and as measurement, and
+/// the two partly cancel; the filter takes them as independent, so its velocity may be better than it says,
+/// never worse.
+TEST(Nees, WithTheForcesAsMeasurementsOnlyTheVelocityIsCautious) {
+  for (const bool smooth : {false, true}) {
+    Modelled set = modelled();
+    set.config.smooth_position = smooth;
+    const Nees nees = average_nees(set);
+    EXPECT_LT(nees.all, all_most);
+    EXPECT_LT(nees.velocity, block_most);
+    expect_block(nees.attitude, "attitude");
+    expect_block(nees.position, "position");
+    expect_block(nees.bias, "gyro bias");
+  }
+}
+
+}  // namespace
+}  // namespace understory::test

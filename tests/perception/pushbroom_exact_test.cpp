@@ -1,0 +1,163 @@
+// The detector against a second writing of its rules from OpenCV's functions, block by block, on images of
+// all kinds.
+#include <gtest/gtest.h>
+
+#include <opencv2/imgproc.hpp>
+#include <random>
+
+#include "perception/pushbroom_stereo.hpp"
+#include "tests/perception/rigs.hpp"
+#include "tests/support/synthetic_stereo.hpp"
+
+namespace understory {
+namespace {
+
+struct Reference {
+  cv::Mat left, right, left_edges, right_edges;
+  int disparity, infinity;
+
+  Reference(const StereoFrame& frame, const StereoRig& rig)
+      : left(frame.left),
+        right(frame.right),
+        disparity(static_cast<int>(std::lround(rig.focal_px * rig.baseline_m / rig.detection_depth_m +
+                                               rig.center_left_x_px - rig.center_right_x_px))),
+        infinity(static_cast<int>(std::lround(rig.center_left_x_px - rig.center_right_x_px))) {
+    cv::Laplacian(left, left_edges, CV_8U, 3);
+    cv::Laplacian(right, right_edges, CV_8U, 3);
+  }
+
+  static cv::Rect block(int u, int v) { return {u, v, 5, 5}; }
+  static int sum(const cv::Mat& image, int u, int v) {
+    return static_cast<int>(cv::sum(image(block(u, v)))[0]);
+  }
+  int sad(int u, int v, int right_u, int right_v) const {
+    cv::Mat difference;
+    cv::absdiff(left(block(u, v)), right(block(right_u, right_v)), difference);
+    return static_cast<int>(cv::sum(difference)[0]);
+  }
+
+  bool scores(int u, int v, int least_edges, int per_mille_of_333) const {
+    const int a = sum(left_edges, u, v), b = sum(right_edges, u - disparity, v);
+    return a >= least_edges && b >= least_edges &&
+           333000 * static_cast<long>(sad(u, v, u - disparity, v)) <
+               static_cast<long>(per_mille_of_333) * (a + b);
+  }
+
+  bool repeats(int u, int v) const {
+    for (int dv = -8; dv <= 8; dv += 2)
+      for (int du = -3; du <= 3; ++du) {
+        const int right_u = u - infinity + du, right_v = v + dv;
+        if (u - infinity - 3 < 0 || u - infinity + 3 + 5 > right.cols) return true;
+        if (v - 8 < 0 || v + 8 + 5 > right.rows) return true;
+        const int a = sum(left_edges, u, v), b = sum(right_edges, right_u, right_v);
+        if (b >= 860 && 333 * sad(u, v, right_u, right_v) < 108 * (a + b)) return true;
+      }
+    return false;
+  }
+
+  bool unique(int u, int v, int greatest) const {
+    const int best = sad(u, v, u - disparity, v);
+    for (int d = infinity; d <= greatest; ++d) {
+      if (d == disparity || u - d < 0 || u - d + 5 > right.cols) continue;
+      const int other = sad(u, v, u - d, v);
+      if (std::abs(d - disparity) == 1 ? other < best : other <= 2 * best) return false;
+    }
+    return true;
+  }
+};
+
+using Places = std::vector<std::pair<int, int>>;
+
+Places places(const std::vector<StereoHit>& hits) {
+  Places list;
+  for (const StereoHit& hit : hits) list.emplace_back(hit.row_px, hit.column_px);
+  return list;
+}
+
+cv::Mat noise_image(const StereoRig& rig, std::mt19937_64& generator, bool saturated) {
+  cv::Mat image(rig.height_px, rig.width_px, CV_8UC1);
+  for (auto it = image.begin<std::uint8_t>(); it != image.end<std::uint8_t>(); ++it) {
+    const auto bits = static_cast<std::uint8_t>(generator() >> 56);
+    *it = saturated ? (bits & 1 ? 255 : 0) : bits;
+  }
+  return image;
+}
+
+/// Random, saturated, flat, textured; the right image partly the left one moved, so that every branch is
+/// taken.
+std::vector<StereoFrame> frames(const StereoRig& rig) {
+  std::vector<StereoFrame> list;
+  std::mt19937_64 generator(4);
+  const int disparity = static_cast<int>(std::lround(rig.disparity_px(rig.detection_depth_m)));
+  const int infinity = static_cast<int>(std::lround(rig.infinity_disparity_px()));
+  for (const bool saturated : {false, true}) {
+    for (const int shift : {disparity, infinity + 2}) {
+      StereoFrame frame{0, noise_image(rig, generator, saturated), noise_image(rig, generator, saturated)};
+      const int half = rig.height_px / 2, wide = rig.width_px - shift;
+      frame.left(cv::Rect(shift, 0, wide, half)).copyTo(frame.right(cv::Rect(0, 0, wide, half)));
+      list.push_back(frame);
+    }
+  }
+  list.push_back({0, cv::Mat(rig.height_px, rig.width_px, CV_8UC1, cv::Scalar(90)),
+                  cv::Mat(rig.height_px, rig.width_px, CV_8UC1, cv::Scalar(90))});
+  for (const double repeats_every_px : {0.0, 12.0, 13.0}) {
+    support::SyntheticPlane plane{.depth_m = rig.depth_m(disparity + 0.3),
+                                  .repeats_every_px = repeats_every_px};
+    list.push_back(support::render_plane(rig, plane));
+  }
+  return list;
+}
+
+class ExactRule : public testing::TestWithParam<const char*> {};
+
+TEST_P(ExactRule, PaperRuleEqualsTheReference) {
+  const StereoRig rig = support::house_rig(GetParam());
+  PushbroomStereo detector(rig, paper_rule());
+  std::size_t found = 0, rejected = 0;
+  for (const StereoFrame& frame : frames(rig)) {
+    const Reference reference(frame, rig);
+    Places expected;
+    for (int v = 0; v <= 205; v += 5)
+      for (int u = reference.disparity; u + 5 <= rig.width_px; u += 5) {
+        if (!reference.scores(u, v, 860, 54000)) continue;
+        if (reference.repeats(u, v))
+          ++rejected;
+        else
+          expected.emplace_back(v, u);
+      }
+    EXPECT_EQ(places(detector.detect(frame)), expected);
+    found += expected.size();
+  }
+  EXPECT_GT(found, 300u);  // the comparison was about something
+  EXPECT_GT(rejected, 100u);
+}
+
+TEST_P(ExactRule, UniquenessEqualsTheReference) {
+  const StereoRig rig = support::house_rig(GetParam());
+  PushbroomConfig config = robust_rule();
+  config.isolation = false;
+  PushbroomStereo detector(rig, config);
+  const int greatest = static_cast<int>(std::floor(rig.disparity_px(config.uniqueness_least_depth_m)));
+  std::size_t found = 0, rejected = 0;
+  for (const StereoFrame& frame : frames(rig)) {
+    const Reference reference(frame, rig);
+    Places expected;
+    for (int v = 0; v <= 205; v += 5)
+      for (int u = reference.disparity; u + 5 <= rig.width_px; u += 5) {
+        if (!reference.scores(u, v, 215, 83250)) continue;
+        if (reference.unique(u, v, greatest))
+          expected.emplace_back(v, u);
+        else
+          ++rejected;
+      }
+    EXPECT_EQ(places(detector.detect(frame)), expected);
+    found += expected.size();
+  }
+  EXPECT_GT(found, 300u);
+  EXPECT_GT(rejected, 100u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rigs, ExactRule, testing::Values("paper.yaml", "long.yaml"));
+
+}  // namespace
+}  // namespace understory

@@ -1,0 +1,168 @@
+#include "perception/pushbroom_stereo.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+#include "perception/isolation.hpp"
+#include "tests/perception/rigs.hpp"
+#include "tests/support/synthetic_stereo.hpp"
+
+namespace understory {
+namespace {
+
+using support::house_rig;
+using support::render_plane;
+using support::SyntheticPlane;
+
+/// Blocks of the detector's grid whose left and right edges suffice: those that could hit at all.
+int textured_blocks(const StereoFrame& frame, const PushbroomStereo& detector, int least_edge_sum) {
+  cv::Mat left, right;
+  cv::Laplacian(frame.left, left, CV_8U, 3);
+  cv::Laplacian(frame.right, right, CV_8U, 3);
+  const int d = detector.detection_disparity_px();
+  int count = 0;
+  for (int v = 0; v <= 205; v += 5)
+    for (int u = d; u + 5 <= left.cols; u += 5)
+      count += cv::sum(left(cv::Rect(u, v, 5, 5)))[0] >= least_edge_sum &&
+               cv::sum(right(cv::Rect(u - d, v, 5, 5)))[0] >= least_edge_sum;
+  return count;
+}
+
+struct Share {
+  int textured = 0;
+  int hits = 0;
+  double hit() const { return static_cast<double>(hits) / std::max(textured, 1); }
+};
+
+/// Over four textures, so that one percent is several blocks.
+Share share(const StereoRig& rig, const PushbroomConfig& config, SyntheticPlane plane) {
+  PushbroomStereo detector(rig, config);
+  Share share;
+  for (plane.seed = 1; plane.seed <= 4; ++plane.seed) {
+    const StereoFrame frame = render_plane(rig, plane);
+    share.textured += textured_blocks(frame, detector, config.least_edge_sum);
+    share.hits += static_cast<int>(detector.detect(frame).size());
+  }
+  return share;
+}
+
+struct Case {
+  const char* rig;
+  bool robust;
+};
+
+void PrintTo(const Case& test, std::ostream* out) {
+  *out << test.rig << (test.robust ? " robust" : " paper's rule");
+}
+
+class OnPlanes : public testing::TestWithParam<Case> {
+ protected:
+  StereoRig rig = house_rig(GetParam().rig);
+  PushbroomConfig config = GetParam().robust ? robust_rule() : paper_rule();
+};
+
+TEST_P(OnPlanes, HitsAtTheDetectionDistanceAndNowhereElse) {
+  const double disparity_px = PushbroomStereo(rig, config).detection_disparity_px();
+  // The rig's own distance, and that of the whole disparity: both count as the detection distance.
+  for (const double depth_m : {rig.detection_depth_m, rig.depth_m(disparity_px)}) {
+    const Share at = share(rig, config, {.depth_m = depth_m});
+    EXPECT_GT(at.textured, 1000);
+    EXPECT_GE(at.hit(), 0.5) << depth_m;
+  }
+  for (const double away_px : {-3.0, 3.0}) {
+    const Share away = share(rig, config, {.depth_m = rig.depth_m(disparity_px + away_px)});
+    EXPECT_GT(away.textured, 500);
+    EXPECT_LE(away.hit(), 0.01) << away_px;
+  }
+}
+
+TEST_P(OnPlanes, RejectsWhatRepeatsAlongTheRow) {
+  PushbroomStereo detector(rig, config);
+  const int to_infinity_px = detector.detection_disparity_px() - detector.infinity_disparity_px();
+  const double depth_m = detector.detection_depth_m();
+  for (const int period_px : {to_infinity_px - 1, to_infinity_px, to_infinity_px + 1}) {
+    const Share repeating =
+        share(rig, config,
+              {.depth_m = depth_m, .contrast = 110, .repeats_every_px = static_cast<double>(period_px)});
+    EXPECT_GT(repeating.textured, 300);
+    // Uniqueness searches no farther than infinity; the invariance filter looks 3 px past it.
+    if (period_px <= to_infinity_px || !config.uniqueness) {
+      EXPECT_LE(repeating.hit(), 0.01) << period_px;
+    }
+  }
+  const Share aperiodic = share(rig, config, {.depth_m = depth_m});
+  EXPECT_GE(aperiodic.hit(), 0.5);
+}
+
+TEST_P(OnPlanes, FindsNothingWithoutTexture) {
+  PushbroomStereo detector(rig, config);
+  EXPECT_TRUE(
+      detector.detect(render_plane(rig, {.contrast = 0, .coarse_contrast = 0, .noise_gray_levels = 0}))
+          .empty());
+  EXPECT_TRUE(detector
+                  .detect(render_plane(rig, {.depth_m = detector.detection_depth_m(),
+                                             .grain_px = 120,
+                                             .coarse_grain_px = 150,
+                                             .coarse_contrast = 60}))
+                  .empty());
+}
+
+TEST_P(OnPlanes, PutsHitsWhereTheRigSees) {
+  PushbroomStereo detector(rig, config);
+  const auto hits = detector.detect(render_plane(rig, {.depth_m = detector.detection_depth_m()}));
+  ASSERT_FALSE(hits.empty());
+  for (const StereoHit& hit : hits) {
+    const Eigen::Vector3d& p = hit.position_camera;
+    const double u_left = rig.focal_px * p.x() / p.z() + rig.center_left_x_px;
+    const double u_right = rig.focal_px * (p.x() - rig.baseline_m) / p.z() + rig.center_right_x_px;
+    EXPECT_NEAR(u_left, hit.column_px + 2, 1e-9);
+    EXPECT_NEAR(u_left - u_right, hit.disparity_px, 1e-9);
+    EXPECT_NEAR(rig.focal_px * p.y() / p.z() + rig.center_y_px, hit.row_px + 2, 1e-9);
+    EXPECT_LT(hit.score, config.score_limit);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(RigsAndRules, OnPlanes,
+                         testing::Values(Case{"paper.yaml", false}, Case{"paper.yaml", true},
+                                         Case{"long.yaml", false}, Case{"long.yaml", true}));
+
+TEST(PushbroomStereo, DerivesTheRecordedDepthsFromTheRigs) {
+  // Flight records: the paper's rig looks at 4.81 m (4.47 to 5.20), the later one at 10.14 m (9.40 to 11.0).
+  // The paper's principal points are printed to a tenth of a pixel, which leaves 0.02 m open.
+  const PushbroomStereo paper(house_rig("paper.yaml"), paper_rule());
+  EXPECT_NEAR(paper.detection_depth_m(), 4.81, 0.02);
+  EXPECT_NEAR(paper.one_pixel_interval().near_m, 4.47, 0.02);
+  EXPECT_NEAR(paper.one_pixel_interval().far_m, 5.20, 0.03);
+  const PushbroomStereo later(house_rig("long.yaml"), paper_rule());
+  EXPECT_NEAR(later.detection_depth_m(), 10.14, 0.005);
+  EXPECT_NEAR(later.one_pixel_interval().near_m, 9.40, 0.005);
+  EXPECT_NEAR(later.one_pixel_interval().far_m, 11.0, 0.01);
+}
+
+TEST(PushbroomStereo, RefusesImagesOfAnotherSizeOrKind) {
+  const StereoRig rig = house_rig("paper.yaml");
+  PushbroomStereo detector(rig, paper_rule());
+  const cv::Mat right_size(240, 376, CV_8UC1, cv::Scalar(0)), small(120, 188, CV_8UC1, cv::Scalar(0));
+  EXPECT_THROW(detector.detect({0, right_size, small}), std::logic_error);
+  EXPECT_THROW(detector.detect({0, cv::Mat(240, 376, CV_8UC3, cv::Scalar()), right_size}), std::logic_error);
+  EXPECT_TRUE(detector.detect({0, right_size, right_size}).empty());
+}
+
+TEST(Isolation, KeepsExactlyTheHitsWithCompany) {
+  std::vector<StereoHit> hits(6);
+  const double x[] = {0.0, 0.9, 5.0,
+                      1.7, 5.5, 9.0};  // 0.0 has one other within 1 m, 0.9 two, 1.7 one, 5.0 one
+  for (std::size_t i = 0; i < 6; ++i) hits[i].position_camera = {x[i], 0, 10};
+  const auto three = without_isolated(hits, 3, 1.0);
+  ASSERT_EQ(three.size(), 1u);
+  EXPECT_DOUBLE_EQ(three[0].position_camera.x(), 0.9);
+  EXPECT_EQ(without_isolated(hits, 2, 1.0).size(), 5u);
+  EXPECT_EQ(without_isolated(hits, 1, 1.0).size(), 6u);
+  EXPECT_TRUE(without_isolated({}, 3, 1.0).empty());
+}
+
+}  // namespace
+}  // namespace understory

@@ -1,0 +1,160 @@
+#include "planning/avoidance_planner.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "tests/planning/forests.hpp"
+
+namespace understory {
+namespace {
+
+constexpr std::int64_t replan_ns = 40'000'000;
+
+FlightState level_start(const Mission& mission) {
+  FlightState start;
+  start.position_world.z() = mission.cruise_altitude_m;
+  return start;
+}
+
+/// Where the model says the aircraft is after following `plan` for a while.
+FlightState follow_plan(const FlightModel& model, FlightState state, const Plan& plan,
+                        std::int64_t duration_ns) {
+  const double step_s = plan.points[1].t_s - plan.points[0].t_s;
+  const auto steps = static_cast<std::size_t>(std::llround(1e-9 * static_cast<double>(duration_ns) / step_s));
+  for (std::size_t i = 0; i < std::min(steps, plan.points.size()); ++i)
+    state = model.advance(state, {plan.points[i].bank_command_rad, plan.points[i].climb_command_mps}, step_s);
+  return state;
+}
+
+int total(const PlannerCounts& counts) {
+  return counts.straight + counts.solved + counts.kept + counts.fallback;
+}
+
+TEST(AvoidancePlanner, FliesStraightWhereNothingIsInTheWay) {
+  const Mission mission;
+  AvoidancePlanner planner({}, FlightModel({}, {}), mission, 1);
+  const Plan plan = planner.plan(level_start(mission), 5'000'000, {}, 0);
+  EXPECT_EQ(plan.origin, PlanOrigin::straight);
+  EXPECT_EQ(plan.t_ns, 5'000'000);
+  EXPECT_EQ(planner.counts().straight, 1);
+  EXPECT_EQ(total(planner.counts()), 1);
+  for (const PlanPoint& point : plan.points) EXPECT_NEAR(point.position_world.y(), 0, 1e-9);
+}
+
+// The aircraft of this test is the reduced model itself, so that a touch would be the planner's own fault.
+TEST(AvoidancePlanner, PlansNeverTouchAKnownTrunk) {
+  const Mission mission;
+  const FlightModel model({}, {});
+  const PlannerConfig config;
+  const double around_m = config.field.wing_radius_m + config.field.sigma_zero_m + 0.5 * config.field.cell_m;
+  const double limit_m =
+      around_m + std::min(config.trajectory.least_clearance_m, config.trajectory.least_kept_clearance_m);
+  PlannerCounts sum;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    std::mt19937_64 generator(seed);
+    const std::vector<Trunk> trunks = random_forest(generator, 16, 7, 30);
+    const std::vector<ObstaclePoint> points = points_of(trunks);
+    AvoidancePlanner planner(config, model, mission, seed);
+    FlightState state = level_start(mission);
+    for (int replan = 0; replan < 40; ++replan) {
+      const Plan plan = planner.plan(state, replan * replan_ns, points, 0);
+      ASSERT_GE(plan.points.size(), 2u);
+      if (plan.origin == PlanOrigin::fallback) break;  // promises nothing; what follows may be a touch
+      EXPECT_GE(plan_distance_m(plan, trunks, config.field), limit_m - 1e-9)
+          << "seed " << seed << " at " << replan;
+      state = follow_plan(model, state, plan, replan_ns);
+    }
+    sum.straight += planner.counts().straight, sum.solved += planner.counts().solved;
+    sum.kept += planner.counts().kept, sum.fallback += planner.counts().fallback;
+  }
+  EXPECT_GT(sum.solved, 10);  // the forests have asked for something
+  EXPECT_GT(sum.kept, 10);
+  EXPECT_LE(sum.fallback, 3);
+}
+
+TEST(AvoidancePlanner, BoxedInItFallsBackAndSaysSo) {
+  const Mission mission;
+  AvoidancePlanner planner({}, FlightModel({}, {}), mission, 1);
+  const Plan plan = planner.plan(level_start(mission), 0, points_of(wall(6)), 0);
+  EXPECT_EQ(plan.origin, PlanOrigin::fallback);
+  EXPECT_FALSE(plan.points.empty());
+  EXPECT_EQ(planner.counts().fallback, 1);
+  EXPECT_EQ(total(planner.counts()), 1);
+}
+
+TEST(AvoidancePlanner, KeepsItsPlanWhileThatIsGood) {
+  const Mission mission;
+  const FlightModel model({}, {});
+  PlannerConfig config;
+  config.kept_cost_ratio = 100;
+  config.refresh_replans = 1000;
+  AvoidancePlanner planner(config, model, mission, 1);
+  const std::vector<ObstaclePoint> points = points_of({{{9, 0.1}}});
+  const Plan first = planner.plan(level_start(mission), 0, points, 0);
+  ASSERT_EQ(first.origin, PlanOrigin::solved);
+  const FlightState state = follow_plan(model, level_start(mission), first, replan_ns);
+  const Plan second = planner.plan(state, replan_ns, points, 0);
+  EXPECT_EQ(second.origin, PlanOrigin::kept);
+  EXPECT_EQ(planner.counts().kept, 1);
+  // Kept means the same path: its points are the first plan's, one replan later.
+  const std::size_t later = static_cast<std::size_t>(
+      std::llround(1e-9 * static_cast<double>(replan_ns) / (first.points[1].t_s - first.points[0].t_s)));
+  for (std::size_t i = 0; i + later + 1 < first.points.size(); ++i)
+    EXPECT_LT((second.points[i].position_world - first.points[i + later].position_world).norm(), 0.05);
+}
+
+TEST(AvoidancePlanner, GivesUpAPlanThatIsBlockedByWhatIsNewlySeen) {
+  const Mission mission;
+  const FlightModel model({}, {});
+  const PlannerConfig config;
+  AvoidancePlanner planner(config, model, mission, 1);
+  std::vector<Trunk> trunks{{{9, 0.1}}};
+  const Plan first = planner.plan(level_start(mission), 0, points_of(trunks), 0);
+  ASSERT_EQ(first.origin, PlanOrigin::solved);
+  const PlanPoint& there = first.points[first.points.size() * 3 / 4];
+  trunks.push_back({there.position_world.head<2>()});
+  const FlightState state = follow_plan(model, level_start(mission), first, replan_ns);
+  const Plan second = planner.plan(state, replan_ns, points_of(trunks), 0);
+  EXPECT_NE(second.origin, PlanOrigin::kept);
+  EXPECT_NE(second.origin, PlanOrigin::straight);
+  if (second.origin == PlanOrigin::solved) {
+    EXPECT_GT(plan_distance_m(second, trunks, config.field), config.field.wing_radius_m);
+  }
+}
+
+TEST(AvoidancePlanner, WithoutOmplThePrimitivesAnswer) {
+  const Mission mission;
+  PlannerConfig config;
+  config.use_ompl = false;
+  AvoidancePlanner planner(config, FlightModel({}, {}), mission, 1);
+  const std::vector<Trunk> trunks{{{9, 0.1}}};
+  const Plan plan = planner.plan(level_start(mission), 0, points_of(trunks), 0);
+  EXPECT_EQ(plan.origin, PlanOrigin::fallback);
+  EXPECT_EQ(planner.counts().solved, 0);
+  // With one trunk alone the primitive of greatest clearance passes it.
+  EXPECT_GT(plan_distance_m(plan, trunks, config.field),
+            config.field.wing_radius_m + config.field.sigma_zero_m);
+}
+
+TEST(AvoidancePlanner, AReplanCanBeRepeated) {
+  const Mission mission;
+  std::mt19937_64 generator(5);
+  const std::vector<ObstaclePoint> points = points_of(random_forest(generator, 14, 5, 14));
+  const auto flown = [&] {
+    AvoidancePlanner planner({}, FlightModel({}, {}), mission, 9);
+    std::vector<Eigen::Vector3d> path;
+    FlightState state = level_start(mission);
+    for (int replan = 0; replan < 6; ++replan) {
+      const Plan plan = planner.plan(state, replan * replan_ns, points, 0);
+      for (const PlanPoint& point : plan.points) path.push_back(point.position_world);
+      state = follow_plan(FlightModel({}, {}), state, plan, replan_ns);
+    }
+    return path;
+  };
+  EXPECT_EQ(flown(), flown());
+}
+
+}  // namespace
+}  // namespace understory

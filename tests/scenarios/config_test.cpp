@@ -1,0 +1,173 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <limits>
+#include <vector>
+
+#include "scenarios/config_reader.hpp"
+#include "scenarios/config_writer.hpp"
+
+namespace understory {
+namespace {
+
+enum class Colour { red, green };
+
+struct Inner {
+  double length_m = 2.5;
+  std::vector<double> gains{1, 2};
+};
+
+struct Outer {
+  bool on = true;
+  int count = 3;
+  std::uint64_t seed = 7;
+  std::string name = "a \"word\": it";
+  Colour colour = Colour::red;
+  Eigen::Vector3d wind{0.1, 0, -1e-300};
+  Inner inner;
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, Inner& inner) {
+  visit("length_m", inner.length_m, 0.0, 10.0);
+  visit("gains", inner.gains, -1.0, 5.0);
+}
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, Outer& outer) {
+  visit("on", outer.on);
+  visit("count", outer.count, 0, 9);
+  visit("seed", outer.seed, std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max());
+  visit("name", outer.name);
+  visit("colour", outer.colour,
+        std::array<std::pair<std::string_view, Colour>, 2>{{{"red", Colour::red}, {"green", Colour::green}}});
+  visit("wind", outer.wind, -5.0, 5.0);
+  visit("inner", outer.inner);
+}
+
+Outer read(const std::string& text) {
+  Outer outer;
+  read_config(parse_config_text(text, "a.yaml"), outer);
+  return outer;
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    read(text);
+  } catch (const ScenarioError& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    return error.what();
+  }
+  return "accepted";
+}
+
+std::string set_refusal(const std::string& assignment) {
+  Outer outer;
+  try {
+    read_config(parse_assignment(assignment), outer);
+  } catch (const ScenarioError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Config, ReadsEveryKindOfField) {
+  const Outer outer = read(
+      "on: false\ncount: 9\nseed: 18446744073709551615\nname: x\ncolour: green\n"
+      "wind: [1, -2.5, 3e0]\ninner: {length_m: 0, gains: [5]}\n");
+  EXPECT_FALSE(outer.on);
+  EXPECT_EQ(outer.count, 9);
+  EXPECT_EQ(outer.seed, 18446744073709551615u);
+  EXPECT_EQ(outer.colour, Colour::green);
+  EXPECT_EQ(outer.wind, Eigen::Vector3d(1, -2.5, 3));
+  EXPECT_EQ(outer.inner.length_m, 0);
+  EXPECT_EQ(outer.inner.gains, std::vector<double>{5});
+}
+
+TEST(Config, AbsentKeysKeepTheirDefaults) {
+  const Outer outer = read("count: 4\n");
+  EXPECT_EQ(outer.count, 4);
+  EXPECT_EQ(outer.inner.length_m, 2.5);
+}
+
+TEST(Config, RefusesInOneLineWithFileLineKeyAndExpectation) {
+  EXPECT_EQ(refusal("count: 1\ncuont: 2\n"), "a.yaml:2: cuont: expected a known key (did you mean count?)");
+  EXPECT_EQ(refusal("inner:\n  lenght_m: 2\n"),
+            "a.yaml:2: inner.lenght_m: expected a known key (did you mean length_m?)");
+  EXPECT_EQ(refusal("zzzzzz: 2\n"), "a.yaml:1: zzzzzz: expected a known key");
+  EXPECT_EQ(refusal("count: 1\n\ncount: 1\n"),
+            "a.yaml:3: count: expected each key once, this one is given twice");
+  EXPECT_EQ(refusal("inner:\n  gains: [1]\n  gains: [1]\n"),
+            "a.yaml:3: inner.gains: expected each key once, this one is given twice");
+  EXPECT_EQ(refusal("count: 10\n"), "a.yaml:1: count: expected a whole number from 0 to 9, got 10");
+  EXPECT_EQ(refusal("inner: {length_m: far}\n"),
+            "a.yaml:1: inner.length_m: expected a number from 0 to 10, got far");
+  EXPECT_EQ(refusal("on: maybe\n"), "a.yaml:1: on: expected true or false, got maybe");
+  EXPECT_EQ(refusal("colour: blue\n"), "a.yaml:1: colour: expected red | green, got blue");
+  EXPECT_EQ(refusal("wind: [1, 2]\n"),
+            "a.yaml:1: wind: expected a list of three numbers [x, y, z], got a list of 2");
+  EXPECT_EQ(refusal("inner: 3\n"), "a.yaml:1: inner: expected a group of keys, got 3");
+  EXPECT_EQ(refusal("inner:\n"), "a.yaml:1: inner: expected a group of keys, got nothing");
+}
+
+TEST(Config, RefusesNumbersThatAreNot) {
+  for (const char* value : {"1.5", "\"3\"", "-1", "0x3", "3 ", "1e1", "[3]", "", "nan"}) {
+    const bool is_plain_three = std::string(value) == "3 ";  // YAML trims
+    EXPECT_EQ(refusal("count: " + std::string(value) + "\n") == "accepted", is_plain_three) << value;
+  }
+  for (const char* value : {"nan", "inf", ".inf", "\"1\"", "1,5", "1m"}) {
+    EXPECT_NE(refusal("inner: {length_m: " + std::string(value) + "}\n"), "accepted") << value;
+  }
+}
+
+TEST(Config, RefusesBrokenOrEmptyYaml) {
+  EXPECT_EQ(refusal("a: [1\nb: 2\n").substr(0, 9), "a.yaml:2:");
+  EXPECT_EQ(refusal(""), "a.yaml:1: expected one YAML document with keys and values");
+  EXPECT_EQ(refusal("just words\n"), "a.yaml:1: expected one YAML document with keys and values");
+  EXPECT_EQ(refusal("on: true\n---\non: true\n"),
+            "a.yaml:1: expected one YAML document with keys and values");
+  EXPECT_THROW(parse_config_file("/nowhere/to/be.yaml"), ScenarioError);
+  EXPECT_THROW(parse_config_file("/"), ScenarioError);
+}
+
+TEST(Config, AssignmentsPassTheSameChecks) {
+  Outer outer;
+  read_config(parse_assignment("inner.length_m=4"), outer);
+  read_config(parse_assignment("wind=[1,2,3]"), outer);
+  EXPECT_EQ(outer.inner.length_m, 4);
+  EXPECT_EQ(outer.wind, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(set_refusal("inner.length_m=40"),
+            "--set inner.length_m=40: inner.length_m: expected a number from 0 to 10, got 40");
+  EXPECT_EQ(set_refusal("iner.length_m=4"),
+            "--set iner.length_m=4: iner: expected a known key (did you mean inner?)");
+  EXPECT_EQ(set_refusal("wind=[1,2,30]"),
+            "--set wind=[1,2,30]: wind: expected a number from -5 to 5, got 30");
+  EXPECT_NE(set_refusal("count"), "accepted");
+  EXPECT_NE(set_refusal("=3"), "accepted");
+  EXPECT_NE(set_refusal("name="), "accepted");
+  EXPECT_NE(set_refusal("inner..length_m=3"), "accepted");
+  EXPECT_NE(set_refusal("count=[1"), "accepted");
+}
+
+TEST(Config, WritingAndReadingAgainIsExact) {
+  Outer outer;
+  outer.inner.length_m = 0.1 + 0.2;
+  outer.inner.gains = {1.0 / 3, -0.0, 4.9406564584124654e-324};
+  outer.seed = (std::uint64_t{1} << 63) + 1;
+  outer.colour = Colour::green;
+  outer.on = false;
+  const std::string text = write_config(outer);
+  const Outer again = read(text);
+  EXPECT_EQ(again.inner.length_m, outer.inner.length_m);
+  EXPECT_EQ(again.inner.gains, outer.inner.gains);
+  EXPECT_EQ(again.seed, outer.seed);
+  EXPECT_EQ(again.name, outer.name);
+  EXPECT_EQ(again.wind, outer.wind);
+  EXPECT_EQ(again.colour, outer.colour);
+  EXPECT_EQ(again.on, outer.on);
+  EXPECT_EQ(write_config(again), text);
+  EXPECT_EQ(text.substr(0, 10), "on: false\n");
+}
+
+}  // namespace
+}  // namespace understory

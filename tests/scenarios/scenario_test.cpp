@@ -1,0 +1,70 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "scenarios/scenario_io.hpp"
+
+namespace understory {
+namespace {
+
+const std::filesystem::path library = std::filesystem::path(UNDERSTORY_SOURCE_DIR) / "scenarios/library";
+
+TEST(Scenario, EveryLibraryFileLoadsAndSurvivesARoundTrip) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(library)) {
+    const Scenario scenario = load_scenario(entry.path());
+    const std::string text = scenario_to_text(scenario);
+    EXPECT_EQ(scenario_to_text(scenario_from_text(text, "again.yaml")), text) << entry.path();
+    EXPECT_EQ(scenario.name, entry.path().stem().string());
+    ++count;
+  }
+  EXPECT_GE(count, 5);
+}
+
+TEST(Scenario, TheLibraryIsWhatTheMissionSays) {
+  const Scenario forest = load_scenario(library / "forest.yaml");
+  EXPECT_EQ(forest.forest.square_metres_per_tree, 49);
+  EXPECT_EQ(forest.rig, "long");
+  EXPECT_EQ(forest.goal_x_m(), 75);
+  EXPECT_EQ(forest.forest.half_width_m, 25);
+  EXPECT_EQ(forest.band.least_altitude_m, 1);
+  EXPECT_EQ(forest.band.greatest_altitude_m, 6);
+  EXPECT_EQ(load_scenario(library / "dense.yaml").forest.square_metres_per_tree, 25);
+  EXPECT_EQ(load_scenario(library / "paper.yaml").rig, "paper");
+  EXPECT_EQ(load_scenario(library / "clear.yaml").course, Course::clear);
+  EXPECT_EQ(load_scenario(library / "goalposts.yaml").course, Course::goalposts);
+}
+
+TEST(Scenario, EveryDefaultIsWritten) {
+  const std::string text = scenario_to_text(Scenario{});
+  for (const char* key : {"square_metres_per_tree", "latency_s", "lens_cap", "mass_kg", "greatest_altitude_m",
+                          "invisible", "detector", "source"}) {
+    EXPECT_NE(text.find(std::string(key) + ": "), std::string::npos) << key;
+  }
+  EXPECT_EQ(text.find("obstacles_visible"), std::string::npos);  // forest.invisible stands for it
+}
+
+TEST(Scenario, SettingsComeAfterTheFile) {
+  const Scenario scenario = scenario_from_text("seed: 5\nforest: {length_m: 30}\n", "a.yaml",
+                                               {"forest.length_m=40", "sensors.seed=9"});
+  EXPECT_EQ(scenario.forest.length_m, 40);
+  EXPECT_EQ(scenario.seed, 5u);
+  EXPECT_EQ(scenario.sensor_seed(), 9u);
+  EXPECT_EQ(scenario_from_text("seed: 5\n", "a.yaml").sensor_seed(), 5u);
+}
+
+TEST(Scenario, RefusesContradictions) {
+  EXPECT_THROW(scenario_from_text("forest: {radius_min_m: 0.3}\n", "a.yaml"), ScenarioError);
+  EXPECT_THROW(scenario_from_text("cameras: {rate_hz: 110}\n", "a.yaml"), ScenarioError);
+  EXPECT_THROW(scenario_from_text("world: {obstacles_visible: false}\n", "a.yaml"), ScenarioError);
+}
+
+TEST(Scenario, ProofSwitchesReachTheWorld) {
+  const Scenario scenario =
+      scenario_from_text("forest: {invisible: true}\n", "a.yaml", {"forest.intangible=true"});
+  EXPECT_FALSE(scenario.world_config().obstacles_visible);
+  EXPECT_FALSE(scenario.world_config().obstacles_tangible);
+}
+
+}  // namespace
+}  // namespace understory

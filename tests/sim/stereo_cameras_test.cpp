@@ -1,0 +1,230 @@
+#include "sim/stereo_cameras.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <numbers>
+#include <opencv2/core.hpp>
+#include <stdexcept>
+
+namespace understory {
+namespace {
+
+/// The paper's rig (Barry & Tedrake 2015): its principal points lie far apart. Looks along body x.
+StereoRig paper_rig() {
+  StereoRig rig;
+  rig.focal_px = 180.4;
+  rig.baseline_m = 0.353;
+  rig.center_left_x_px = 197.5;
+  rig.center_right_x_px = 105.7;
+  rig.center_y_px = 101.0;
+  rig.T_body_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return rig;
+}
+
+/// A world of the test's own: an aircraft that can be put anywhere, and `geoms` in the drawn group.
+World bare_world(const std::string& geoms) {
+  const std::string xml =
+      "<mujoco><worldbody>" + geoms +
+      "<body name='aircraft'><freejoint name='aircraft_free'/><geom size='.1' mass='1' group='3'/></body>"
+      "</worldbody></mujoco>";
+  mjVFS files;
+  mj_defaultVFS(&files);
+  mj_makeEmptyFileVFS(&files, "bare.xml", static_cast<int>(xml.size()));
+  std::copy(xml.begin(), xml.end(), static_cast<char*>(files.filedata[0]));
+  char message[500] = "";
+  World world{ModelPointer(mj_loadXML("bare.xml", &files, message, sizeof message)), {}};
+  mj_deleteVFS(&files);
+  if (!world.model) throw std::runtime_error(message);
+  return world;
+}
+
+DataPointer data_at(const World& world, const Eigen::Vector3d& position, const Eigen::Quaterniond& attitude) {
+  DataPointer data(mj_makeData(world.model.get()));
+  const double pose[] = {position.x(), position.y(), position.z(), attitude.w(),
+                         attitude.x(), attitude.y(), attitude.z()};
+  std::copy(std::begin(pose), std::end(pose), data->qpos);
+  mj_kinematics(world.model.get(), data.get());
+  return data;
+}
+
+const Eigen::Quaterniond level = Eigen::Quaterniond::Identity();
+const Eigen::Quaterniond straight_down(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitY()));
+CameraConfig noiseless() { return {.noise_gray = 0}; }
+
+World forest_world(bool visible = true) {
+  std::vector<Obstacle> obstacles;
+  for (int i = 0; i < 12; ++i) {
+    Obstacle trunk;
+    trunk.from_world = Eigen::Vector3d(4 + 2 * i, (i % 5 - 2) * 1.7, 0);
+    trunk.to_world = trunk.from_world + Eigen::Vector3d(0, 0, 9);
+    trunk.texture_shift = 0.08 * i;
+    obstacles.push_back(trunk);
+  }
+  WorldConfig config;
+  config.obstacles_visible = visible;
+  return build_world(std::filesystem::path(UNDERSTORY_SOURCE_DIR) / "models", Airframe{}, obstacles, config);
+}
+
+bool equal(const cv::Mat& a, const cv::Mat& b) { return cv::norm(a, b, cv::NORM_INF) == 0; }
+
+TEST(StereoCameras, DepthOfAWallIsItsDistanceAlongTheAxisEverywhere) {
+  const World world = bare_world("<geom type='box' size='.5 50 50' pos='5.5 0 0'/>");
+  StereoCameras cameras(world, paper_rig(), noiseless(), 1);
+  const cv::Mat depth = cameras.depth(*data_at(world, {0, 0, 0}, level));
+  double least = 0, most = 0;
+  cv::minMaxLoc(depth, &least, &most);
+  EXPECT_NEAR(least, 5.0, 0.001);
+  EXPECT_NEAR(most, 5.0, 0.001);
+}
+
+TEST(StereoCameras, DepthOfTheGroundIsTheRaysOwn) {
+  const World world = forest_world(false);
+  const StereoRig rig = paper_rig();
+  StereoCameras cameras(world, rig, noiseless(), 1);
+  const double height_m = 2.0, pitch_rad = 0.3;  // nose down
+  const Eigen::Quaterniond attitude(Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()));
+  const cv::Mat depth = cameras.depth(*data_at(world, {10, 0, height_m}, attitude));
+  for (int row = 130; row < 240; row += 10)
+    for (int column = 3; column < 376; column += 31) {
+      const Eigen::Vector3d ray_camera((column - rig.center_left_x_px) / rig.focal_px,
+                                       (row - rig.center_y_px) / rig.focal_px, 1);
+      const double falls = -(attitude * rig.T_body_camera.linear() * ray_camera).z();
+      EXPECT_NEAR(depth.at<float>(row, column), height_m / falls, 0.001) << row << ", " << column;
+    }
+}
+
+/// Where a dark ball stands in a bright sky: the centroid of what it takes away.
+Eigen::Vector2d dark_centroid(const cv::Mat& image) {
+  double weight = 0, u = 0, v = 0;
+  for (int row = 0; row < image.rows; ++row)
+    for (int column = 0; column < image.cols; ++column)
+      if (const int dark = image.at<std::uint8_t>(row, column) < 120; dark != 0) {
+        weight += dark;
+        u += column;
+        v += row;
+      }
+  return weight > 0 ? Eigen::Vector2d(u / weight, v / weight) : Eigen::Vector2d(-1, -1);
+}
+
+TEST(StereoCameras, ABallAppearsWhereTheRigSays) {
+  const StereoRig rig = paper_rig();
+  // Forward, left and up of the left eye, in both eyes' fields of view.
+  for (const Eigen::Vector3d& at : {Eigen::Vector3d(5, 0.3, 0.1), Eigen::Vector3d(5, -2.0, 1.5),
+                                    Eigen::Vector3d(4, 1.4, -1.1), Eigen::Vector3d(10, -3.1, -2)}) {
+    const World world =
+        bare_world("<geom type='sphere' size='.12' rgba='0 0 0 1' pos='" + std::to_string(at.x()) + " " +
+                   std::to_string(at.y()) + " " + std::to_string(at.z()) + "'/>");
+    StereoCameras cameras(world, rig, noiseless(), 1);
+    const StereoFrame frame = cameras.capture(*data_at(world, {0, 0, 0}, level), 0);
+    const double x = -at.y(), y = -at.z(), z = at.x();
+    const Eigen::Vector2d left = dark_centroid(frame.left), right = dark_centroid(frame.right);
+    EXPECT_NEAR(left.x(), rig.focal_px * x / z + rig.center_left_x_px, 0.6);
+    EXPECT_NEAR(left.y(), rig.focal_px * y / z + rig.center_y_px, 0.6);
+    EXPECT_NEAR(right.x(), rig.focal_px * (x - rig.baseline_m) / z + rig.center_right_x_px, 0.6);
+    EXPECT_NEAR(right.y(), rig.focal_px * y / z + rig.center_y_px, 0.6);
+  }
+}
+
+TEST(StereoCameras, APlaneAtTheDetectionDistanceMatchesAtTheRigsDisparity) {
+  const World world = forest_world(false);
+  const StereoRig rig = paper_rig();
+  StereoCameras cameras(world, rig, {.noise_gray = 2}, 1);
+  const StereoFrame frame = cameras.capture(*data_at(world, {10, 0, 4.81}, straight_down), 0);
+  int best = 0;
+  double least = std::numeric_limits<double>::max();
+  for (int disparity = 95; disparity < 120; ++disparity) {
+    const double difference = cv::norm(frame.left(cv::Rect(150, 0, 200, 240)),
+                                       frame.right(cv::Rect(150 - disparity, 0, 200, 240)), cv::NORM_L1);
+    if (difference < least) best = disparity, least = difference;
+  }
+  EXPECT_EQ(best, std::lround(rig.disparity_px(4.81)));
+  EXPECT_EQ(best, 105);  // FACTS: infinity at 91.8, and 13.2 px at 4.81 m
+}
+
+TEST(StereoCameras, SameSeedSameImagesOtherSeedOtherNoiseOnTheSamePicture) {
+  const World world = forest_world();
+  const DataPointer data = data_at(world, {0, 0, 3}, level);
+  const auto pair = [&](std::uint64_t seed, double noise, int frames) {
+    StereoCameras cameras(world, paper_rig(), {.noise_gray = noise}, seed);
+    StereoFrame frame;
+    for (int i = 0; i < frames; ++i) frame = cameras.capture(*data, i);
+    return frame;
+  };
+  const StereoFrame clean = pair(1, 0, 1), first = pair(1, 2, 1), again = pair(1, 2, 1),
+                    other = pair(2, 2, 1);
+  EXPECT_TRUE(equal(first.left, again.left) && equal(first.right, again.right));
+  EXPECT_TRUE(equal(clean.left, pair(9, 0, 3).left));
+  EXPECT_FALSE(equal(first.left, other.left));
+  EXPECT_FALSE(equal(first.left, pair(1, 2, 2).left)) << "noise must differ from frame to frame";
+
+  cv::Mat wide_noisy, wide_clean, noise;
+  first.right.convertTo(wide_noisy, CV_32F);
+  clean.right.convertTo(wide_clean, CV_32F);
+  noise = wide_noisy - wide_clean;
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(noise, mean, deviation);
+  EXPECT_NEAR(mean[0], 0, 0.05);
+  EXPECT_NEAR(deviation[0], std::sqrt(4 + 1.0 / 12), 0.05);
+}
+
+TEST(StereoCameras, LensCapAndInvisibleObstaclesHideThem) {
+  const World forest = forest_world(), invisible = forest_world(false);
+  StereoCameras capped(forest, paper_rig(), {.lens_cap = true, .noise_gray = 2}, 1);
+  const StereoFrame dark = capped.capture(*data_at(forest, {0, 0, 3}, level), 0);
+  double most = 0;
+  cv::minMaxLoc(dark.left, nullptr, &most);
+  EXPECT_LT(most, 15);
+  EXPECT_GT(cv::norm(dark.left, cv::NORM_L1), 0) << "noise still applies";
+
+  StereoCameras seeing(forest, paper_rig(), noiseless(), 1), blind(invisible, paper_rig(), noiseless(), 1);
+  const cv::Mat near_trees = seeing.depth(*data_at(forest, {0, 0, 3}, level))(cv::Rect(0, 0, 376, 100));
+  const cv::Mat sky_only = blind.depth(*data_at(invisible, {0, 0, 3}, level))(cv::Rect(0, 0, 376, 100));
+  double nearest = 0, nearest_blind = 0;
+  cv::minMaxLoc(near_trees, &nearest);
+  cv::minMaxLoc(sky_only, &nearest_blind);
+  EXPECT_LT(nearest, 6.0);
+  EXPECT_GT(nearest_blind, 100.0);
+}
+
+TEST(StereoCameras, ChaseViewLeavesTheStereoPairAsItWas) {
+  const World world = forest_world();
+  const DataPointer data = data_at(world, {0, 0, 3}, level);
+  StereoCameras cameras(world, paper_rig(), noiseless(), 1);
+  const StereoFrame before = cameras.capture(*data, 0);
+  const cv::Mat view = cameras.chase_view(*data, 500, 300);
+  EXPECT_EQ(view.size(), cv::Size(500, 300));
+  EXPECT_EQ(view.type(), CV_8UC3);
+  const StereoFrame after = cameras.capture(*data, 1);
+  EXPECT_TRUE(equal(before.left, after.left) && equal(before.right, after.right));
+}
+
+TEST(StereoCameras, TwoPairsTakeTurnsOnOneThread) {
+  const World forest = forest_world(), invisible = forest_world(false);
+  const DataPointer data = data_at(forest, {0, 0, 3}, level), empty = data_at(invisible, {0, 0, 3}, level);
+  StereoCameras first(forest, paper_rig(), noiseless(), 1);
+  const StereoFrame alone = first.capture(*data, 0);
+  StereoCameras second(invisible, paper_rig(), noiseless(), 1);
+  EXPECT_FALSE(equal(alone.left, second.capture(*empty, 0).left));
+  EXPECT_TRUE(equal(alone.left, first.capture(*data, 1).left));
+}
+
+TEST(StereoCameras, MissingLibraryIsOneLineThatNamesThePackage) {
+  const World world = bare_world("");
+  setenv("UNDERSTORY_OSMESA", "/nonexistent/libOSMesa.so", 1);
+  std::string message;
+  try {
+    StereoCameras cameras(world, paper_rig(), noiseless(), 1);
+  } catch (const std::runtime_error& error) {
+    message = error.what();
+  }
+  unsetenv("UNDERSTORY_OSMESA");
+  EXPECT_NE(message.find("libosmesa6"), std::string::npos) << message;
+  EXPECT_EQ(message.find('\n'), std::string::npos);
+}
+
+}  // namespace
+}  // namespace understory
