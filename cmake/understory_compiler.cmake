@@ -1,0 +1,19 @@
+# One set of compiler settings for every target of the house.
+# No -march=native and no -ffast-math: a flight must repeat bit for bit (docs/decisions/001-determinism.md).
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+
+add_library(understory_settings INTERFACE)
+target_include_directories(understory_settings INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(understory_settings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Werror -ffp-contract=off)
+if(UNDERSTORY_SANITIZE)
+  target_compile_options(understory_settings INTERFACE
+    -fsanitize=${UNDERSTORY_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(understory_settings INTERFACE -fsanitize=${UNDERSTORY_SANITIZE})
+endif()

@@ -1,0 +1,33 @@
+# Every outside library, from Debian 12's packages, under one target name each.
+find_package(Eigen3 REQUIRED NO_MODULE)
+find_package(yaml-cpp REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(fmt REQUIRED)
+find_package(CLI11 REQUIRED)
+
+find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs calib3d videoio)
+add_library(opencv_core_parts INTERFACE)      # what the flight stack may use
+target_include_directories(opencv_core_parts SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
+target_link_libraries(opencv_core_parts INTERFACE opencv_core opencv_imgproc opencv_calib3d)
+add_library(opencv_file_parts INTERFACE)      # images and videos, for readers and recorders
+target_link_libraries(opencv_file_parts INTERFACE opencv_core_parts opencv_imgcodecs opencv_videoio)
+
+# OMPL_LIBRARIES also names Boost parts that nothing here calls: keep libompl alone.
+find_package(ompl REQUIRED)
+list(FILTER OMPL_LIBRARIES INCLUDE REGEX "libompl\\.so")
+add_library(ompl_only INTERFACE)
+target_include_directories(ompl_only SYSTEM INTERFACE ${OMPL_INCLUDE_DIRS})
+target_link_libraries(ompl_only INTERFACE ${OMPL_LIBRARIES})
+
+# Debian's mujocoConfig.cmake asks for OpenGL's development files and an include folder of libqhull that nothing
+# here needs (GL is opened at run time): find the library itself.
+if(UNDERSTORY_SIM)
+  find_path(MUJOCO_INCLUDE_DIR mujoco/mujoco.h REQUIRED)
+  find_library(MUJOCO_LIBRARY mujoco REQUIRED)
+  add_library(mujoco::mujoco SHARED IMPORTED)
+  set_target_properties(mujoco::mujoco PROPERTIES
+    IMPORTED_LOCATION "${MUJOCO_LIBRARY}" INTERFACE_INCLUDE_DIRECTORIES "${MUJOCO_INCLUDE_DIR}")
+endif()
+if(UNDERSTORY_TESTS)
+  find_package(GTest REQUIRED)
+endif()
