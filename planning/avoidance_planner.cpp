@@ -1,13 +1,16 @@
 #include "planning/avoidance_planner.hpp"
 
 #include <cmath>
-#include <optional>
 
 namespace understory {
 
 AvoidancePlanner::AvoidancePlanner(const PlannerConfig& config, const FlightModel& model,
                                    const Mission& mission, std::uint64_t seed)
-    : config_(config), model_(model), mission_(mission), seed_(seed) {}
+    : config_(config),
+      model_(model),
+      mission_(mission),
+      seed_(seed),
+      primitives_(avoidance_primitives(config.search.greatest_bank_rad)) {}
 
 Plan AvoidancePlanner::plan(const FlightState& start, std::int64_t t_ns,
                             const std::vector<ObstaclePoint>& points, double distance_flown_m) {
@@ -22,48 +25,67 @@ Plan AvoidancePlanner::plan(const FlightState& start, std::int64_t t_ns,
     return adopt(task, start, t_ns, {}, PlanOrigin::straight);
   }
 
-  // Candidates that need no search: straight on with less than comfort, and what is left of the plan in
-  // force.
+  const int flown_on_ompl = counts_.solved + counts_.kept_ompl;
+  const Plan plan = avoid(task, start, t_ns);
+  if (!straight.reached_horizon) {
+    ++counts_.blocked;
+    counts_.blocked_ompl += counts_.solved + counts_.kept_ompl - flown_on_ompl;
+  }
+  return plan;
+}
+
+Plan AvoidancePlanner::avoid(const FlightTask& task, const FlightState& start, std::int64_t t_ns) {
   const Manoeuvre left = remaining(t_ns);
+  const TrajectoryConfig& limits = config_.trajectory;
   const Rollout kept = fly_out(task, start, left, limits.least_kept_clearance_m, false);
-  const bool kept_good = kept.reached_horizon && manoeuvre_origin_ != PlanOrigin::fallback &&
-                         kept.cost <= config_.kept_cost_ratio * manoeuvre_cost_ + 1.0;
+  const bool may_keep = kept.reached_horizon && manoeuvre_origin_ != PlanOrigin::fallback;
+  const bool kept_good = may_keep && kept.cost <= config_.kept_cost_ratio * manoeuvre_cost_ + 1.0;
   if (kept_good && !left.empty() && replans_kept_ < config_.refresh_replans) {
-    ++counts_.kept;
     ++replans_kept_;
-    return adopt(task, start, t_ns, left, PlanOrigin::kept);
+    return keep(task, start, t_ns, left);
   }
+  std::optional<Plan> searched;
+  if (config_.use_ompl) searched = search(task, start, t_ns, left, may_keep);
+  return searched ? std::move(*searched) : fall_back(task, start, t_ns);
+}
 
-  if (config_.use_ompl) {
-    const std::uint64_t search_seed = seed_ * 1'000'003 + replan_index_;
-    const auto improved = [&](const Manoeuvre& manoeuvre, double least_clearance_m) {
-      return improve_manoeuvre(task, start, manoeuvre, least_clearance_m, config_.improvement, search_seed);
-    };
-    const bool may_keep = kept.reached_horizon && manoeuvre_origin_ != PlanOrigin::fallback;
-    std::optional<Manoeuvre> found = search_manoeuvre(task, start, left, config_.search, search_seed);
-    ++counts_.searched;
-    if (found) ++counts_.found;
-    if (found) found = improved(*found, limits.least_clearance_m);
-    const Manoeuvre kept_improved = may_keep ? improved(left, limits.least_kept_clearance_m) : left;
-    const double found_cost =
-        found ? fly_out(task, start, *found, limits.least_clearance_m, false).cost : INFINITY;
-    const double kept_cost =
-        may_keep ? fly_out(task, start, kept_improved, limits.least_kept_clearance_m, false).cost : INFINITY;
-    if (may_keep && kept_cost <= config_.change_cost_ratio * found_cost) {
-      ++counts_.kept;
-      replans_kept_ = 0;
-      return adopt(task, start, t_ns, kept_improved, PlanOrigin::kept);
-    }
-    if (found) {
-      ++counts_.solved;
-      return adopt(task, start, t_ns, *found, PlanOrigin::solved);
-    }
+Plan AvoidancePlanner::keep(const FlightTask& task, const FlightState& start, std::int64_t t_ns,
+                            const Manoeuvre& manoeuvre) {
+  ++counts_.kept;
+  if (manoeuvre_origin_ == PlanOrigin::solved && !manoeuvre.empty()) ++counts_.kept_ompl;
+  return adopt(task, start, t_ns, manoeuvre, PlanOrigin::kept);
+}
+
+std::optional<Plan> AvoidancePlanner::search(const FlightTask& task, const FlightState& start,
+                                             std::int64_t t_ns, const Manoeuvre& left, bool may_keep) {
+  const TrajectoryConfig& limits = config_.trajectory;
+  const std::uint64_t search_seed = seed_ * 1'000'003 + replan_index_;
+  const auto improved = [&](const Manoeuvre& manoeuvre, double least_clearance_m) {
+    return improve_manoeuvre(task, start, manoeuvre, least_clearance_m, config_.improvement, search_seed);
+  };
+  ++counts_.searched;
+  const std::optional<Manoeuvre> answer = search_manoeuvre(task, start, left, config_.search, search_seed);
+  ImprovedManoeuvre found{{}, INFINITY}, kept{{}, INFINITY};
+  if (answer) {
+    ++counts_.found;
+    found = improved(*answer, limits.least_clearance_m);
   }
+  if (may_keep) kept = improved(left, limits.least_kept_clearance_m);
+  if (may_keep && kept.cost <= config_.change_cost_ratio * found.cost) {
+    replans_kept_ = 0;
+    return keep(task, start, t_ns, kept.manoeuvre);
+  }
+  if (!answer) return std::nullopt;
+  ++counts_.solved;
+  return adopt(task, start, t_ns, found.manoeuvre, PlanOrigin::solved);
+}
 
+Plan AvoidancePlanner::fall_back(const FlightTask& task, const FlightState& start, std::int64_t t_ns) {
   ++counts_.fallback;
+  const TrajectoryConfig& limits = config_.trajectory;
   Manoeuvre widest;
   double greatest_m = -INFINITY, least_cost = INFINITY;
-  for (const Manoeuvre& primitive : avoidance_primitives(config_.search.greatest_bank_rad)) {
+  for (const Manoeuvre& primitive : primitives_) {
     const Rollout rollout = fly_out(task, start, primitive, limits.least_clearance_m, false, false);
     // Beyond comfort more clearance buys nothing: the cheaper one wins.
     const double clearance_m = std::min(rollout.least_margin_m, limits.comfortable_clearance_m);

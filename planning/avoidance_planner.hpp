@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "planning/manoeuvre.hpp"
@@ -36,14 +37,17 @@ void visit_fields(Visitor& visit, PlannerConfig& config) {
   visit("improvement", config.improvement);
 }
 
-/// How the replans of a flight were answered.
+/// How the replans of a flight were answered. straight + solved + kept + fallback are all of them.
 struct PlannerCounts {
-  int straight = 0;  ///< nothing ahead
-  int solved = 0;    ///< obstacle ahead, OMPL's answer taken
-  int kept = 0;      ///< obstacle ahead, the plan in force still good
-  int fallback = 0;  ///< obstacle ahead, no free manoeuvre found: the primitive of greatest clearance
-  int searched = 0;  ///< how often OMPL was asked (a kept plan is searched against anew now and then)
-  int found = 0;     ///< how often it answered with a free manoeuvre
+  int straight = 0;   ///< nothing within comfort of the straight way
+  int solved = 0;     ///< OMPL's answer of this replan taken
+  int kept = 0;       ///< the plan in force still good
+  int kept_ompl = 0;  ///< of `kept`: what is left of an OMPL answer; the others go straight with less comfort
+  int fallback = 0;   ///< no free manoeuvre found: the primitive of greatest clearance
+  int blocked = 0;    ///< an obstacle ahead: straight on would come nearer than the least clearance
+  int blocked_ompl = 0;  ///< of `blocked`: flown on an OMPL answer, of this replan or kept
+  int searched = 0;      ///< how often OMPL was asked (a kept plan is searched against anew now and then)
+  int found = 0;         ///< how often it answered with a free manoeuvre
 };
 
 /// Receding-horizon avoidance: straight on where that is free, else the plan in force while it is free and
@@ -62,6 +66,14 @@ class AvoidancePlanner {
  private:
   /// What is left of the manoeuvre in force at `t_ns`.
   Manoeuvre remaining(std::int64_t t_ns) const;
+  Plan keep(const FlightTask& task, const FlightState& start, std::int64_t t_ns, const Manoeuvre& manoeuvre);
+  /// OMPL's answer, or `left` where that `may_keep` and OMPL's is not clearly cheaper; nothing where neither
+  /// is.
+  std::optional<Plan> search(const FlightTask& task, const FlightState& start, std::int64_t t_ns,
+                             const Manoeuvre& left, bool may_keep);
+  Plan fall_back(const FlightTask& task, const FlightState& start, std::int64_t t_ns);
+  /// The plan where the straight way is not comfortable.
+  Plan avoid(const FlightTask& task, const FlightState& start, std::int64_t t_ns);
   Plan adopt(const FlightTask& task, const FlightState& start, std::int64_t t_ns, const Manoeuvre& manoeuvre,
              PlanOrigin origin);
 
@@ -69,6 +81,7 @@ class AvoidancePlanner {
   FlightModel model_;
   Mission mission_;
   std::uint64_t seed_;
+  std::vector<Manoeuvre> primitives_;
   PlannerCounts counts_;
   std::uint64_t replan_index_ = 0;
   Manoeuvre manoeuvre_;  ///< in force, counted from manoeuvre_t_ns_

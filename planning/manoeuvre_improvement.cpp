@@ -13,20 +13,19 @@ constexpr double climb_limit_mps = 3.0;
 
 }  // namespace
 
-Manoeuvre improve_manoeuvre(const FlightTask& task, const FlightState& start, const Manoeuvre& manoeuvre,
-                            double least_clearance_m, const ManoeuvreImprovementConfig& config,
-                            std::uint64_t seed) {
-  if (manoeuvre.empty()) return manoeuvre;
+ImprovedManoeuvre improve_manoeuvre(const FlightTask& task, const FlightState& start,
+                                    const Manoeuvre& manoeuvre, double least_clearance_m,
+                                    const ManoeuvreImprovementConfig& config, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> gaussian;
   const auto cost_of = [&](const Manoeuvre& candidate) {
     const Rollout rollout = fly_out(task, start, candidate, least_clearance_m, false);
     return rollout.reached_horizon ? rollout.cost : std::numeric_limits<double>::infinity();
   };
-  Manoeuvre best = manoeuvre;
-  double best_cost = cost_of(best);
+  ImprovedManoeuvre best{manoeuvre, cost_of(manoeuvre)};
+  if (manoeuvre.empty()) return best;
   for (int iteration = 0; iteration < config.iterations; ++iteration) {
-    Manoeuvre candidate = best;
+    Manoeuvre candidate = best.manoeuvre;
     ManoeuvrePart& part = candidate[generator() % candidate.size()];
     part.command.bank_rad = std::clamp(part.command.bank_rad + config.bank_sigma_rad * gaussian(generator),
                                        -config.greatest_bank_rad, config.greatest_bank_rad);
@@ -35,9 +34,7 @@ Manoeuvre improve_manoeuvre(const FlightTask& task, const FlightState& start, co
     part.duration_s = std::clamp(part.duration_s + config.duration_sigma_s * gaussian(generator),
                                  least_part_s, greatest_part_s);
     const double cost = cost_of(candidate);
-    if (cost >= best_cost) continue;
-    best = std::move(candidate);
-    best_cost = cost;
+    if (cost < best.cost) best = {std::move(candidate), cost};
   }
   return best;
 }

@@ -25,11 +25,16 @@ void visit_fields(Visitor& visit, ManoeuvreImprovementConfig& config) {
   visit("greatest_bank_rad", config.greatest_bank_rad, 0.1, 1.6);
 }
 
+struct ImprovedManoeuvre {
+  Manoeuvre manoeuvre;
+  double cost = 0;  ///< of its rollout; infinite where that does not reach the horizon
+};
+
 /// The cheapest variant met that reaches the horizon with `least_clearance_m`; `manoeuvre` itself where none
 /// is cheaper (or where it does not reach the horizon and no variant does). Repeats exactly for equal
 /// arguments.
-Manoeuvre improve_manoeuvre(const FlightTask& task, const FlightState& start, const Manoeuvre& manoeuvre,
-                            double least_clearance_m, const ManoeuvreImprovementConfig& config,
-                            std::uint64_t seed);
+ImprovedManoeuvre improve_manoeuvre(const FlightTask& task, const FlightState& start,
+                                    const Manoeuvre& manoeuvre, double least_clearance_m,
+                                    const ManoeuvreImprovementConfig& config, std::uint64_t seed);
 
 }  // namespace understory

@@ -65,10 +65,12 @@ std::string to_json(const FlightResult& result) {
                      {"straight", result.replans_straight},
                      {"solved", result.replans_solved},
                      {"kept", result.replans_kept},
+                     {"kept_ompl", result.replans_kept_ompl},
                      {"fallback", result.replans_fallback},
                      {"searches", result.searches},
                      {"searches_found", result.searches_found},
-                     {"obstacle_ahead", result.replans_blocked}};
+                     {"obstacle_ahead", result.replans_blocked},
+                     {"obstacle_ahead_ompl", result.replans_blocked_ompl}};
   if (!result.points_on_obstacles.empty()) {
     for (const auto& [name, count] : result.points_on_obstacles) json["points_on_obstacles"][name] = count;
   }
@@ -101,9 +103,11 @@ std::string to_report(const FlightResult& result) {
                    result.position_error_max_m, result.attitude_error_max_rad * 57.29577951308232));
   line("detections", fmt::format("{} in {} frames, {} points remembered", result.detections, result.frames,
                                  result.remembered_points));
-  line("replans", fmt::format("{}: {} straight, {} solved, {} kept, {} fallback", result.replans,
-                              result.replans_straight, result.replans_solved, result.replans_kept,
-                              result.replans_fallback));
+  line("replans", fmt::format("{}: {} straight, {} solved by OMPL, {} kept ({} of OMPL's), {} fallback",
+                              result.replans, result.replans_straight, result.replans_solved,
+                              result.replans_kept, result.replans_kept_ompl, result.replans_fallback));
+  line("obstacle ahead", fmt::format("in {} replans, {} of them flown on OMPL's answer",
+                                     result.replans_blocked, result.replans_blocked_ompl));
   line("real-time factor",
        fmt::format("{:.2f} ({:.1f} s of wall time)",
                    result.wall_s > 0 ? result.simulated_s / result.wall_s : 0.0, result.wall_s));

@@ -109,9 +109,11 @@ void take_counts(const Autopilot& autopilot, const Stopwatch& stopwatch, FlightR
   result.searches = counts.searched;
   result.searches_found = counts.found;
   result.replans_kept = counts.kept;
+  result.replans_kept_ompl = counts.kept_ompl;
   result.replans_fallback = counts.fallback;
-  result.replans_blocked = counts.solved + counts.kept + counts.fallback;
-  result.replans = result.replans_blocked + counts.straight;
+  result.replans_blocked = counts.blocked;
+  result.replans_blocked_ompl = counts.blocked_ompl;
+  result.replans = counts.straight + counts.solved + counts.kept + counts.fallback;
   result.timings = stopwatch.timings();
   result.wall_s = stopwatch.elapsed_s();
 }
@@ -130,7 +132,10 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   const std::vector<Obstacle> obstacles = course_obstacles(scenario);
   const World world = world_of(scenario, options.models_folder, obstacles);
   Aircraft aircraft = aircraft_of(scenario, world);
-  const std::unique_ptr<StereoCameras> cameras = cameras_of(scenario, world, rig);
+  // Oracles and the blind aircraft look at no image: rendering one would be most of their flight's cost.
+  const bool looks = scenario.perception.detector == DetectorKind::pushbroom ||
+                     scenario.perception.detector == DetectorKind::block_matching;
+  const auto cameras = looks || options.video ? cameras_of(scenario, world, rig) : nullptr;
   Sensors sensors(scenario, scenario.sensor_seed());
 
   TruthHistory history;
@@ -145,13 +150,9 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   Controls controls;
   Referee referee(scenario);
   RunRecord record(scenario, obstacles);
-  record.result().renderer = cameras->renderer();
+  if (cameras) record.result().renderer = cameras->renderer();
   std::optional<FlightFilm> film;
   if (options.video) film.emplace(options.output_folder, rig, *cameras, scenario.cameras.rate_hz);
-
-  // Oracles and the blind aircraft look at no image: rendering one would be most of their flight's cost.
-  const bool looks = scenario.perception.detector == DetectorKind::pushbroom ||
-                     scenario.perception.detector == DetectorKind::block_matching;
 
   std::optional<Ending> ending;
   for (std::int64_t step = 0; !ending; ++step) {
@@ -165,9 +166,8 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
     });
     if (due.camera(step)) {
       pending.push_back(
-          looks || film
-              ? stopwatch.time("render", [&] { return cameras->capture(aircraft.data(), truth.t_ns); })
-              : StereoFrame{truth.t_ns, {}, {}});
+          cameras ? stopwatch.time("render", [&] { return cameras->capture(aircraft.data(), truth.t_ns); })
+                  : StereoFrame{truth.t_ns, {}, {}});
     }
     while (!pending.empty() && truth.t_ns >= pending.front().t_ns + latency_ns) {
       const StereoFrame frame = std::move(pending.front());

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 #include "scenarios/evaluation/wilson.hpp"
@@ -13,23 +16,42 @@
 namespace understory {
 namespace {
 
-constexpr const char* header =
-    "seed,outcome,distance_m,progress_m,mean_speed_mps,min_clearance_m,position_error_mean_m,position_error_"
-    "max_m,"
-    "detections,remembered_points,replans,straight,solved,kept,fallback,searches,found,least_points_on_a_bar,"
-    "simulated_s,wall_s,"
-    "digest,configuration\n";
-enum Column {
-  seed_column = 0,
-  outcome_column = 1,
-  speed_column = 4,
-  solved_column = 12,
-  kept_column = 13,
-  fallback_column = 14,
-  searches_column = 15,
-  found_column = 16,
-  column_count = 22
+/// The columns and where result.json has them; `configuration` follows as the last.
+struct Column {
+  std::string_view name;
+  const char* pointer;  ///< JSON pointer into result.json
 };
+constexpr std::array columns{
+    Column{"seed", "/seed"},
+    Column{"outcome", "/outcome"},
+    Column{"distance_m", "/distance_m"},
+    Column{"progress_m", "/progress_m"},
+    Column{"mean_speed_mps", "/mean_speed_mps"},
+    Column{"min_clearance_m", "/min_clearance_m"},
+    Column{"position_error_mean_m", "/estimation/position_error_mean_m"},
+    Column{"position_error_max_m", "/estimation/position_error_max_m"},
+    Column{"detections", "/detections"},
+    Column{"remembered_points", "/remembered_points"},
+    Column{"replans", "/replans/count"},
+    Column{"straight", "/replans/straight"},
+    Column{"solved", "/replans/solved"},
+    Column{"kept", "/replans/kept"},
+    Column{"kept_ompl", "/replans/kept_ompl"},
+    Column{"fallback", "/replans/fallback"},
+    Column{"obstacle_ahead", "/replans/obstacle_ahead"},
+    Column{"obstacle_ahead_ompl", "/replans/obstacle_ahead_ompl"},
+    Column{"searches", "/replans/searches"},
+    Column{"found", "/replans/searches_found"},
+    Column{"least_points_on_a_bar", "/points_on_obstacles"},
+    Column{"simulated_s", "/simulated_s"},
+    Column{"wall_s", "/wall_s"},
+    Column{"digest", "/digest"},
+};
+constexpr std::size_t column_count = columns.size() + 1;
+
+constexpr std::size_t column(std::string_view name) {
+  return static_cast<std::size_t>(std::ranges::find(columns, name, &Column::name) - columns.begin());
+}
 
 std::vector<std::string> cells_of(const std::string& row) {
   std::vector<std::string> cells;
@@ -38,18 +60,14 @@ std::vector<std::string> cells_of(const std::string& row) {
   return cells;
 }
 
-std::string number(const nlohmann::json& value) {
-  return value.is_null() ? "" : fmt::format("{:.4g}", value.get<double>());
-}
-
-/// Empty where the course is no short list of bars.
-std::string least_points(const nlohmann::json& result) {
-  if (!result.contains("points_on_obstacles")) return "";
-  std::int64_t least = -1;
-  for (const auto& count : result["points_on_obstacles"]) {
-    least = least < 0 ? count.get<std::int64_t>() : std::min(least, count.get<std::int64_t>());
+/// Empty where there is nothing to say; of a list of counts (points on each bar of a short course) the least.
+std::string text_of(const nlohmann::json& value) {
+  if (value.is_null()) return "";
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_object()) {
+    return text_of(*std::min_element(value.begin(), value.end()));
   }
-  return fmt::format("{}", least);
+  return value.is_number_integer() ? value.dump() : fmt::format("{:.4g}", value.get<double>());
 }
 
 }  // namespace
@@ -57,14 +75,9 @@ std::string least_points(const nlohmann::json& result) {
 void FlightTable::add_row(const std::string& text) {
   const std::vector<std::string> cells = cells_of(text);
   if (cells.size() != column_count || cells.back() != configuration_) return;
-  rows_[std::stoull(cells[seed_column])] = {text,
-                                            cells[outcome_column],
-                                            std::stod(cells[speed_column]),
-                                            std::stoll(cells[solved_column]),
-                                            std::stoll(cells[kept_column]),
-                                            std::stoll(cells[fallback_column]),
-                                            std::stoll(cells[searches_column]),
-                                            std::stoll(cells[found_column])};
+  rows_[std::stoull(cells[column("seed")])] = {
+      text, cells[column("outcome")], std::stod(cells[column("mean_speed_mps")]),
+      std::stoll(cells[column("obstacle_ahead")]), std::stoll(cells[column("obstacle_ahead_ompl")])};
 }
 
 void FlightTable::read(const std::filesystem::path& file) {
@@ -79,22 +92,18 @@ void FlightTable::add_result(const std::filesystem::path& result_json) {
   const nlohmann::json r = nlohmann::json::parse(stream, nullptr, false);
   if (r.is_discarded())
     throw MachineError(fmt::format("{}: a flight left no whole result", result_json.string()));
-  const nlohmann::json& replans = r["replans"];
-  add_row(fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}",
-                      r["seed"].get<std::uint64_t>(), r["outcome"].get<std::string>(),
-                      number(r["distance_m"]), number(r["progress_m"]), number(r["mean_speed_mps"]),
-                      number(r["min_clearance_m"]), number(r["estimation"]["position_error_mean_m"]),
-                      number(r["estimation"]["position_error_max_m"]), r["detections"].get<std::int64_t>(),
-                      r["remembered_points"].get<std::int64_t>(), replans["count"].get<std::int64_t>(),
-                      replans["straight"].get<std::int64_t>(), replans["solved"].get<std::int64_t>(),
-                      replans["kept"].get<std::int64_t>(), replans["fallback"].get<std::int64_t>(),
-                      replans["searches"].get<std::int64_t>(), replans["searches_found"].get<std::int64_t>(),
-                      least_points(r), number(r["simulated_s"]), number(r["wall_s"]),
-                      r["digest"].get<std::string>(), configuration_));
+  std::string row;
+  for (const Column& column : columns) {
+    const nlohmann::json::json_pointer pointer(column.pointer);
+    row += (r.contains(pointer) ? text_of(r[pointer]) : "") + ",";
+  }
+  add_row(row + configuration_);
 }
 
 std::string FlightTable::to_csv() const {
-  std::string text = header;
+  std::string text;
+  for (const Column& column : columns) text += fmt::format("{},", column.name);
+  text += "configuration\n";
   for (const auto& [seed, row] : rows_) text += row.text + "\n";
   return text;
 }
@@ -102,18 +111,15 @@ std::string FlightTable::to_csv() const {
 std::string FlightTable::summary(std::uint64_t first, std::uint64_t last) const {
   int flights = 0;
   double speed_sum = 0;
-  std::int64_t solved = 0, kept = 0, fallback = 0, searches = 0, found = 0;
+  std::int64_t blocked = 0, blocked_ompl = 0;
   std::map<std::string, int> endings;
   for (const auto& [seed, row] : rows_) {
     if (seed < first || seed > last) continue;
     flights += 1;
     endings[row.outcome] += 1;
     speed_sum += row.mean_speed_mps;
-    solved += row.solved;
-    kept += row.kept;
-    fallback += row.fallback;
-    searches += row.searches;
-    found += row.found;
+    blocked += row.obstacle_ahead;
+    blocked_ompl += row.obstacle_ahead_ompl;
   }
   const int goals = endings["goal"];
   const Interval interval = wilson_interval(goals, flights);
@@ -122,13 +128,9 @@ std::string FlightTable::summary(std::uint64_t first, std::uint64_t last) const 
       flights > 0 ? 100.0 * goals / flights : 0.0, 100 * interval.least, 100 * interval.greatest);
   for (const auto& [ending, count] : endings) text += fmt::format("  {:<18}{}\n", ending, count);
   if (flights > 0) text += fmt::format("  {:<18}{:.1f} m/s\n", "mean speed", speed_sum / flights);
-  if (const std::int64_t blocked = solved + kept + fallback; blocked > 0) {
-    text += fmt::format(
-        "  {:<18}{} with an obstacle ahead: {:.0f} % solved, {:.0f} % kept, {:.0f} % fallback\n", "replans",
-        blocked, 100.0 * solved / blocked, 100.0 * kept / blocked, 100.0 * fallback / blocked);
-    if (searches > 0)
-      text +=
-          fmt::format("  {:<18}{}, {:.0f} % answered\n", "OMPL searches", searches, 100.0 * found / searches);
+  if (blocked > 0) {
+    text += fmt::format("  {:<18}{} replans, {:.1f} % flown on OMPL's answer\n", "obstacle ahead", blocked,
+                        100.0 * static_cast<double>(blocked_ompl) / static_cast<double>(blocked));
   }
   return text;
 }

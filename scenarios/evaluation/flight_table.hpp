@@ -29,7 +29,7 @@ class FlightTable {
     std::string text;  ///< as in the file
     std::string outcome;
     double mean_speed_mps = 0;
-    std::int64_t solved = 0, kept = 0, fallback = 0, searches = 0, found = 0;
+    std::int64_t obstacle_ahead = 0, obstacle_ahead_ompl = 0;  ///< replans
   };
   void add_row(const std::string& text);
 
