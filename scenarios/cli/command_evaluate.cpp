@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <charconv>
 #include <cstdio>
 #include <fstream>
+#include <memory>
 #include <sstream>
 
 #include "scenarios/cli/commands.hpp"
@@ -17,6 +19,13 @@ namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct EvaluateArguments : ScenarioArguments {
+  std::string seeds = "1000:1099";  // first:last, or one
+  std::string csv;                  // empty: no file; with one, seeds it already answers are not flown again
+  std::string out;                  // keeps the run folders here; empty: they are removed
+  int jobs = 1;
+};
 
 struct SeedRange {
   std::uint64_t first = 0;
@@ -61,8 +70,6 @@ std::vector<std::string> flight_arguments(const EvaluateArguments& arguments, co
   return all;
 }
 
-}  // namespace
-
 int run_evaluate(const EvaluateArguments& arguments) {
   const fs::path file = scenario_file(arguments.scenario);
   const SeedRange seeds = seed_range(arguments.seeds);
@@ -102,6 +109,21 @@ int run_evaluate(const EvaluateArguments& arguments) {
     throw MachineError(fmt::format("evaluate: a flight ended with status {}", failed_status));
   fmt::print("{}", table.summary(seeds.first, seeds.last));
   return 0;
+}
+
+}  // namespace
+
+void add_evaluate_command(CLI::App& app, Command& chosen) {
+  const auto arguments = std::make_shared<EvaluateArguments>();
+  CLI::App* command = app.add_subcommand("evaluate", "fly a scenario over many seeds, a process each");
+  add_scenario_options(*command, *arguments);
+  command->add_option("--seeds", arguments->seeds, "first:last")->capture_default_str();
+  command->add_option("--jobs", arguments->jobs, "flights at a time")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024));
+  command->add_option("--csv", arguments->csv, "a row per seed; rows already there are not flown again");
+  command->add_option("--out", arguments->out, "keep the run folders here");
+  command->callback([arguments, &chosen] { chosen = [arguments] { return run_evaluate(*arguments); }; });
 }
 
 }  // namespace understory

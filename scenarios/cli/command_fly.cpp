@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/fly.hpp"
@@ -10,6 +12,13 @@
 
 namespace understory {
 namespace {
+
+struct FlyArguments : ScenarioArguments {
+  std::string seed;
+  std::string out;  // empty: runs/<name>-<seed>
+  bool video = false;
+  bool quiet = false;
+};
 
 void print_progress(const FlightProgress& progress) {
   const std::string clearance =
@@ -32,8 +41,6 @@ void require_rig(const Scenario& scenario, const FlyArguments& arguments,
                                   rigs.string(), scenario.rig));
 }
 
-}  // namespace
-
 int run_fly(const FlyArguments& arguments) {
   const Scenario scenario = load_scenario(scenario_file(arguments.scenario), arguments.settings);
   FlyOptions options;
@@ -52,6 +59,23 @@ int run_fly(const FlyArguments& arguments) {
     if (options.video) fmt::print("  {:<18}{}\n", "video", (options.output_folder / "flight.mp4").string());
   }
   return result.ending == Ending::goal ? exit_goal : exit_not_goal;
+}
+
+}  // namespace
+
+void add_fly_command(CLI::App& app, Command& chosen) {
+  const auto arguments = std::make_shared<FlyArguments>();
+  CLI::App* command = app.add_subcommand("fly", "fly a scenario once");
+  add_scenario_options(*command, *arguments);
+  command->add_option("--seed", arguments->seed, "of course and sensors; goes before the scenario's own");
+  command->add_option("--out", arguments->out, "run folder (default: runs/<name>-<seed>)");
+  command->add_flag("--video", arguments->video, "also make flight.mp4 and still.png");
+  command->add_flag("--quiet", arguments->quiet, "print nothing");
+  command->callback([arguments, &chosen] {
+    // A seed is a setting like any other, only more often given.
+    if (!arguments->seed.empty()) arguments->settings.push_back("seed=" + arguments->seed);
+    chosen = [arguments] { return run_fly(*arguments); };
+  });
 }
 
 }  // namespace understory

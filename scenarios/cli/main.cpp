@@ -15,14 +15,6 @@ namespace {
 
 using namespace understory;
 
-/// A seed is a setting like any other, only more often given.
-void add_scenario_options(CLI::App& command, std::string& scenario, std::vector<std::string>& settings) {
-  command.add_option("scenario", scenario, "a scenario file, or a name from scenarios/library")->required();
-  command.add_option("--set", settings, "key=value, as in the scenario file: forest.length_m=30")
-      ->allow_extra_args(false)
-      ->trigger_on_parse(false);
-}
-
 /// One line, whatever a library has put into its message.
 void complain(std::string message) {
   std::replace(message.begin(), message.end(), '\n', ' ');
@@ -35,35 +27,16 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", std::string(understory_version));
   app.require_subcommand(1);
 
-  FlyArguments fly;
-  CLI::App* fly_command = app.add_subcommand("fly", "fly a scenario once");
-  add_scenario_options(*fly_command, fly.scenario, fly.settings);
-  std::string seed;
-  fly_command->add_option("--seed", seed, "of course and sensors; goes before the scenario's own");
-  fly_command->add_option("--out", fly.out, "run folder (default: runs/<name>-<seed>)");
-  fly_command->add_flag("--video", fly.video, "also make flight.mp4 and still.png");
-  fly_command->add_flag("--quiet", fly.quiet, "print nothing");
-
-  EvaluateArguments evaluate;
-  CLI::App* evaluate_command =
-      app.add_subcommand("evaluate", "fly a scenario over many seeds, a process each");
-  add_scenario_options(*evaluate_command, evaluate.scenario, evaluate.settings);
-  evaluate_command->add_option("--seeds", evaluate.seeds, "first:last")->capture_default_str();
-  evaluate_command->add_option("--jobs", evaluate.jobs, "flights at a time")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1024));
-  evaluate_command->add_option("--csv", evaluate.csv,
-                               "a row per seed; rows already there are not flown again");
-  evaluate_command->add_option("--out", evaluate.out, "keep the run folders here");
-
+  Command chosen;
+  add_fly_command(app, chosen);
+  add_evaluate_command(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     throw ScenarioError(fmt::format("{} (understory --help says what there is)", error.what()));
   }
-  if (!seed.empty()) fly.settings.push_back("seed=" + seed);
-  return fly_command->parsed() ? run_fly(fly) : run_evaluate(evaluate);
+  return chosen();
 }
 
 }  // namespace

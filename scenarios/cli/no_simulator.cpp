@@ -1,16 +1,26 @@
+#include <CLI/CLI.hpp>
+
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config_tree.hpp"
 
 /// The commands of a build without the simulator (UNDERSTORY_SIM=OFF).
 namespace understory {
+namespace {
 
-int run_fly(const FlyArguments&) {
-  throw ScenarioError("fly: expected a build with the simulator, this one has none (UNDERSTORY_SIM=OFF)");
+void add_refusal(CLI::App& app, Command& chosen, const std::string& name) {
+  CLI::App* command = app.add_subcommand(name, "not in this build: it has no simulator");
+  command->allow_extras();
+  command->callback([name, &chosen] {
+    chosen = [name]() -> int {
+      throw ScenarioError(name +
+                          ": expected a build with the simulator, this one has none (UNDERSTORY_SIM=OFF)");
+    };
+  });
 }
 
-int run_evaluate(const EvaluateArguments&) {
-  throw ScenarioError(
-      "evaluate: expected a build with the simulator, this one has none (UNDERSTORY_SIM=OFF)");
-}
+}  // namespace
+
+void add_fly_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "fly"); }
+void add_evaluate_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "evaluate"); }
 
 }  // namespace understory

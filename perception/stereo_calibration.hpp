@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <opencv2/core/matx.hpp>
+#include <string>
+#include <vector>
+
+#include "perception/stereo_rig.hpp"
+
+namespace understory {
+
+/// One raw camera and its place in the rectified pair, in OpenCV's terms (calib3d's documentation):
+/// a rectified direction is turned back by `rectification`, distorted, and projected by `camera_matrix`.
+struct CameraCalibration {
+  cv::Matx33d camera_matrix = cv::Matx33d::eye();  ///< of the raw image: fx, fy, cx, cy in pixels, no skew
+  std::vector<double> distortion;  ///< k1 k2 p1 p2 [k3 [k4 k5 k6]]: 4, 5 or 8 numbers, or none
+  cv::Matx33d rectification = cv::Matx33d::eye();  ///< R1 or R2: raw camera axes into rectified ones
+  cv::Matx34d projection =
+      cv::Matx34d::zeros();  ///< P1 or P2: rectified pixels; P2(0,3) = -focal * baseline, m
+};
+
+/// A stereo pair of raw cameras. Raw and rectified images have the same size.
+struct StereoCalibration {
+  std::string name;
+  int width_px = 0;
+  int height_px = 0;
+  CameraCalibration left;
+  CameraCalibration right;
+  /// Where the raw left camera sits: its coordinates (OpenCV axes) into body coordinates.
+  Eigen::Isometry3d T_body_left = Eigen::Isometry3d::Identity();
+};
+
+/// The rectified pair that `calibration` describes, asked to look at `detection_depth_m`: focal length,
+/// baseline and principal points from the projections, the camera's pose turned by the left rectification.
+/// Throws std::runtime_error where the projections are no rectified pair (unequal focal lengths or rows, no
+/// positive baseline).
+StereoRig rectified_rig(const StereoCalibration& calibration, double detection_depth_m);
+
+}  // namespace understory
