@@ -54,7 +54,7 @@ HWY_INLINE ByteVector difference(ByteVector a, ByteVector b) {
 // most cheaply to 16 bits in this order.
 template <bool keep_edges>
 void StripColumnSums(const StripRows& rows, int first_px, int last_px, std::uint16_t* even,
-                     std::uint16_t* odd, const EdgeRows& edges) {
+                     std::uint16_t* odd, std::uint8_t* edges, std::ptrdiff_t edge_stride) {
   const Bytes d;
   const Words d16;
   const int lanes = static_cast<int>(hn::Lanes(d));
@@ -65,7 +65,7 @@ void StripColumnSums(const StripRows& rows, int first_px, int last_px, std::uint
     for (int v = 0; v < block_px; ++v) {
       const Corners after = corners_at(rows.row[v + 2] + u);
       const ByteVector edge = edges_of(before, hn::LoadU(d, rows.row[v + 1] + u), after);
-      if (keep_edges) hn::StoreU(edge, d, edges.first + v * edges.stride + u);
+      if (keep_edges) hn::StoreU(edge, d, edges + v * edge_stride + u);
       const auto pairs = hn::BitCast(d16, edge);
       even_sum = hn::Add(even_sum, hn::And(pairs, low));
       odd_sum = hn::Add(odd_sum, hn::ShiftRight<8>(pairs));
@@ -78,11 +78,11 @@ void StripColumnSums(const StripRows& rows, int first_px, int last_px, std::uint
 }
 
 void ColumnSums(const StripRows& rows, int first_px, int last_px, std::uint16_t* even, std::uint16_t* odd,
-                const EdgeRows& edges) {
-  if (edges.first != nullptr) {
-    StripColumnSums<true>(rows, first_px, last_px, even, odd, edges);
+                std::uint8_t* edges, std::ptrdiff_t edge_stride) {
+  if (edges != nullptr) {
+    StripColumnSums<true>(rows, first_px, last_px, even, odd, edges, edge_stride);
   } else {
-    StripColumnSums<false>(rows, first_px, last_px, even, odd, edges);
+    StripColumnSums<false>(rows, first_px, last_px, even, odd, edges, edge_stride);
   }
 }
 
@@ -121,28 +121,34 @@ void ColumnSads(const StripRows& left, int left_px, const StripRows& right, int 
   }
 }
 
-void TestBlocks(const std::uint8_t* column_sads, const std::uint16_t* left_sums,
-                const std::uint16_t* right_sums, int count, const CandidateTest& test,
-                std::uint8_t* candidates) {
+// sads[x] = the five columns from x on.
+void SumColumns(const std::uint8_t* column_sads, int count, std::uint16_t* sads) {
   const Words d16;
-  const hn::RebindToSigned<Words>
-      signed16;  // all sums are below 2^15; AVX-512 lacks unsigned comparisons here
   const hn::Rebind<std::uint8_t, Words> half;
-  const auto less_than_edges = hn::Set(signed16, static_cast<std::int16_t>(test.least_edge_sum - 1));
-  const auto share = hn::Set(d16, test.limit_share);
-  const auto slack = hn::Set(d16, test.any_score ? std::uint16_t{largest_edge_sum} : std::uint16_t{0});
-  const int lanes = static_cast<int>(hn::Lanes(d16));
-  for (int x = 0; x < count; x += lanes) {
+  for (int x = 0; x < count; x += static_cast<int>(hn::Lanes(d16))) {
     auto sad = hn::PromoteTo(d16, hn::LoadU(half, column_sads + x));
     for (int i = 1; i < block_px; ++i)
       sad = hn::Add(sad, hn::PromoteTo(d16, hn::LoadU(half, column_sads + x + i)));
+    hn::StoreU(sad, d16, sads + x);
+  }
+}
+
+void TestBlocks(const std::uint16_t* sads, const std::uint16_t* left_sums, const std::uint16_t* right_sums,
+                int count, const CandidateTest& test, std::uint8_t* candidates) {
+  const Words d16;
+  // All sums are below 2^15, and AVX-512 lacks comparisons of unsigned words here.
+  const hn::RebindToSigned<Words> signed16;
+  const auto less_than_edges = hn::Set(signed16, static_cast<std::int16_t>(test.least_edge_sum - 1));
+  const auto share = hn::Set(d16, test.limit_share);
+  const auto slack = hn::Set(d16, test.any_score ? std::uint16_t{largest_edge_sum} : std::uint16_t{0});
+  for (int x = 0; x < count; x += static_cast<int>(hn::Lanes(d16))) {
     const auto left = hn::LoadU(d16, left_sums + x), right = hn::LoadU(d16, right_sums + x);
     const auto limit = hn::Add(hn::MulHigh(hn::ShiftLeft<2>(hn::Add(left, right)), share), slack);
     const auto edges_pass = hn::And(hn::Gt(hn::BitCast(signed16, left), less_than_edges),
                                     hn::Gt(hn::BitCast(signed16, right), less_than_edges));
-    const auto pass =
-        hn::AndNot(hn::Gt(hn::BitCast(signed16, sad), hn::BitCast(signed16, limit)), edges_pass);
-    hn::StoreMaskBits(signed16, pass, candidates + x / 8);
+    const auto too_different =
+        hn::Gt(hn::BitCast(signed16, hn::LoadU(d16, sads + x)), hn::BitCast(signed16, limit));
+    hn::StoreMaskBits(signed16, hn::AndNot(too_different, edges_pass), candidates + x / 8);
   }
 }
 
@@ -158,6 +164,7 @@ HWY_EXPORT(ColumnSums);
 HWY_EXPORT(BlockSums);
 HWY_EXPORT(EdgeRow);
 HWY_EXPORT(ColumnSads);
+HWY_EXPORT(SumColumns);
 HWY_EXPORT(TestBlocks);
 
 // The outermost column has both corners of a side on the column next to it.
@@ -192,12 +199,15 @@ StripRows StripReader::rows(const GrayView& image, int row_px) {
 }
 
 void strip_edge_sums(const StripRows& rows, int first_px, int last_px, int width_px,
-                     std::vector<std::uint16_t>& column_scratch, std::uint16_t* sums, const EdgeRows& edges) {
+                     std::vector<std::uint16_t>& column_scratch, std::uint16_t* sums, EdgeMap* edges,
+                     int row_px) {
   const std::size_t half = static_cast<std::size_t>(width_px) / 2 + over_read_px;
   if (column_scratch.size() < 2 * half) column_scratch.resize(2 * half);
   std::uint16_t* even = column_scratch.data();
   std::uint16_t* odd = even + half;
-  HWY_DYNAMIC_DISPATCH(ColumnSums)(rows, first_px, last_px, even, odd, edges);
+  std::uint8_t* edge_rows = edges != nullptr ? edges->row(row_px) : nullptr;
+  const std::ptrdiff_t edge_stride = edges != nullptr ? edges->stride() : 0;
+  HWY_DYNAMIC_DISPATCH(ColumnSums)(rows, first_px, last_px, even, odd, edge_rows, edge_stride);
   for (const int column_px : {0, width_px - 1}) {
     if (column_px < first_px || column_px >= last_px) continue;
     const int inner_px = column_px == 0 ? 1 : width_px - 2;
@@ -205,13 +215,17 @@ void strip_edge_sums(const StripRows& rows, int first_px, int last_px, int width
     for (int v = 0; v < block_px; ++v) {
       const std::uint8_t edge =
           outermost_edge(rows.row[v], rows.row[v + 1], rows.row[v + 2], column_px, inner_px);
-      if (edges.first != nullptr) edges.first[v * edges.stride + column_px] = edge;
+      if (edge_rows != nullptr) edge_rows[v * edge_stride + column_px] = edge;
       sum += edge;
     }
     const int x = column_px - first_px;
     (x % 2 == 0 ? even : odd)[x / 2] = static_cast<std::uint16_t>(sum);
   }
-  HWY_DYNAMIC_DISPATCH(BlockSums)(even, odd, last_px - first_px, sums + first_px);
+  block_sums(even, odd, last_px - first_px, sums + first_px);
+}
+
+void block_sums(const std::uint16_t* even, const std::uint16_t* odd, int count, std::uint16_t* sums) {
+  HWY_DYNAMIC_DISPATCH(BlockSums)(even, odd, count, sums);
 }
 
 void edge_row(const std::uint8_t* above, const std::uint8_t* here, const std::uint8_t* below, int first_px,
@@ -233,12 +247,17 @@ CandidateTest candidate_test(int least_edge_sum, std::int64_t limit_units) {
   return test;
 }
 
-void strip_candidates(const StripRows& left, int left_px, const StripRows& right, int right_px, int count,
-                      const std::uint16_t* left_sums, const std::uint16_t* right_sums,
-                      const CandidateTest& test, std::uint8_t* column_sads, std::uint8_t* candidates) {
+void strip_sads(const StripRows& left, int left_px, const StripRows& right, int right_px, int count,
+                std::uint8_t* column_sads, std::uint16_t* sads) {
   HWY_DYNAMIC_DISPATCH(ColumnSads)(left, left_px, right, right_px, count, column_sads);
+  HWY_DYNAMIC_DISPATCH(SumColumns)(column_sads, count, sads);
+}
+
+void find_candidates(const std::uint16_t* sads, const std::uint16_t* left_sums,
+                     const std::uint16_t* right_sums, int count, const CandidateTest& test,
+                     std::uint64_t* candidates) {
   HWY_DYNAMIC_DISPATCH(TestBlocks)
-  (column_sads, left_sums + left_px, right_sums + right_px, count, test, candidates);
+  (sads, left_sums, right_sums, count, test, reinterpret_cast<std::uint8_t*>(candidates));
 }
 
 }  // namespace understory

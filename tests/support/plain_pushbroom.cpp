@@ -1,8 +1,10 @@
 #include "tests/support/plain_pushbroom.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 
 #include "perception/block_score.hpp"
 
@@ -79,19 +81,42 @@ GrayView view_of(const std::vector<std::uint8_t>& packed, int width_px, int heig
   return {packed.data(), width_px, width_px, height_px};
 }
 
+namespace {
+
+// The best window of each cell, cells counted from the first column of their disparity's search.
+std::vector<BlockMatch> best_of_cells(const BlockRule& rule, const std::vector<BlockMatch>& windows) {
+  std::map<std::array<int, 3>, BlockMatch> best;  // by row of cells, cell, disparity
+  for (const BlockMatch& match : windows) {
+    const int first = std::max(0, rule.disparities[static_cast<std::size_t>(match.disparity)].disparity_px);
+    const auto [at, is_new] = best.try_emplace(
+        {match.row_px / block_px, (match.column_px - first) / block_px, match.disparity}, match);
+    const double score = static_cast<double>(match.sad) / (match.left_edge_sum + match.right_edge_sum);
+    const BlockMatch& other = at->second;
+    // Doubles tell any two such fractions apart: they differ by more than 1 part in 2e8.
+    if (!is_new && score < static_cast<double>(other.sad) / (other.left_edge_sum + other.right_edge_sum))
+      at->second = match;
+  }
+  std::vector<BlockMatch> matches;
+  for (const auto& [cell, match] : best) matches.push_back(match);
+  return matches;
+}
+
+}  // namespace
+
 std::vector<BlockMatch> plain_matches(const BlockRule& rule, const GrayView& left, const GrayView& right) {
   std::vector<std::uint8_t> left_edges, right_edges;
   edge_map(left, left_edges);
   edge_map(right, right_edges);
   const Images images{left, right, view_of(left_edges, left.width_px, left.height_px),
                       view_of(right_edges, right.width_px, right.height_px)};
+  const int stride = rule.every_pixel ? 1 : rule.stride_px;
   std::vector<BlockMatch> matches;
-  for (int row = 0; row <= rule.last_row_px; row += rule.stride_px)
+  for (int row = 0; row <= rule.last_row_px; row += stride)
     for (int column = 0; column < left.width_px; ++column)
       for (std::size_t i = 0; i < rule.disparities.size(); ++i) {
         const DisparityRule& one = rule.disparities[i];
         const int first = std::max(0, one.disparity_px), partner = column - one.disparity_px;
-        if (column < first || (column - first) % rule.stride_px != 0) continue;
+        if (column < first || (column - first) % stride != 0) continue;
         if (!inside(left, column, row) || !inside(right, partner, row)) continue;
         const BlockMatch match{column,
                                row,
@@ -101,10 +126,13 @@ std::vector<BlockMatch> plain_matches(const BlockRule& rule, const GrayView& lef
                                edges_at(images.right_edges, partner, row)};
         if (match.left_edge_sum < one.least_edge_sum || match.right_edge_sum < one.least_edge_sum) continue;
         if (!scores_below(match.sad, match.left_edge_sum + match.right_edge_sum, one.limit_units)) continue;
-        if (rule.uniqueness && !unique(rule, images, match)) continue;
-        if (rule.horizontal_invariance && repeats(rule, images, match)) continue;
         matches.push_back(match);
       }
+  if (rule.every_pixel) matches = best_of_cells(rule, matches);
+  std::erase_if(matches, [&](const BlockMatch& match) {
+    return (rule.uniqueness && !unique(rule, images, match)) ||
+           (rule.horizontal_invariance && repeats(rule, images, match));
+  });
   return matches;
 }
 
