@@ -89,7 +89,7 @@ ByteRemap::ByteRemap(const std::vector<std::int16_t>& places, int width_px, int 
     }
 }
 
-void ByteRemap::set_stride(std::ptrdiff_t stride) {
+void ByteRemap::prepare(std::ptrdiff_t stride) {
   if (stride == stride_) return;
   stride_ = stride;
   offsets_.clear();
@@ -97,13 +97,16 @@ void ByteRemap::set_stride(std::ptrdiff_t stride) {
     offsets_.push_back(static_cast<std::int32_t>(load.row_px * stride + load.column_px));
 }
 
-void ByteRemap::apply(const GrayView& source, std::uint8_t* output, std::ptrdiff_t output_stride) {
+void ByteRemap::apply(const GrayView& source, int first_row_px, int last_row_px, std::uint8_t* output,
+                      std::ptrdiff_t output_stride) const {
   assert_always(source.width_px == width_px_ && source.height_px == height_px_,
                 "another size than the map's");
-  set_stride(source.stride);
-  const std::int32_t* offsets = offsets_.data();
+  assert_always(source.stride == stride_, "prepare() was not called for this stride");
+  assert_always(first_row_px >= 0 && last_row_px <= height_px_, "rows outside the image");
   const int chunks = (width_px_ + chunk_px - 1) / chunk_px;
-  for (int v = 0; v < height_px_; ++v)
+  const std::size_t first_chunk = static_cast<std::size_t>(first_row_px) * static_cast<std::size_t>(chunks);
+  const std::int32_t* offsets = offsets_.data() + (first_chunk == 0 ? 0 : ends_[first_chunk - 1]);
+  for (int v = first_row_px; v < last_row_px; ++v)
     offsets = HWY_DYNAMIC_DISPATCH(RemapRow)(
         source.data, offsets, offsets_.data(), indices_.data() + chunk_px * (offsets - offsets_.data()),
         ends_.data() + v * chunks, width_px_, output + v * output_stride);

@@ -19,15 +19,19 @@ class ByteRemap {
   /// (both images are width_px x height_px) the output is 0. Width at least chunk_px.
   ByteRemap(const std::vector<std::int16_t>& places, int width_px, int height_px);
 
-  /// `output`: width * height bytes and more, rows output_stride apart; not the source itself.
-  void apply(const GrayView& source, std::uint8_t* output, std::ptrdiff_t output_stride);
+  /// To be called before apply() for a source whose rows are `stride` bytes apart.
+  void prepare(std::ptrdiff_t stride);
+
+  /// Fills the output's rows first_row_px .. last_row_px - 1; `output` is its row 0, not the source itself.
+  /// Threads may fill rows of one image each.
+  void apply(const GrayView& source, int first_row_px, int last_row_px, std::uint8_t* output,
+             std::ptrdiff_t output_stride) const;
 
  private:
   /// Pixels of one chunk that one load of the source holds.
   struct Load {
     int column_px = 0, row_px = 0;
   };
-  void set_stride(std::ptrdiff_t stride);
 
   int width_px_, height_px_;
   std::vector<Load> loads_;

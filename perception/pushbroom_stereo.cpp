@@ -39,7 +39,18 @@ PushbroomStereo::PushbroomStereo(const StereoRig& rig, const PushbroomConfig& co
     depths_.push_back({px, rig.depth_m(px), {rig.depth_m(px + 1), rig.depth_m(px - 1)}});
   }
   assert_always(config.stride_px > 0 && config.invariance_row_step_px > 0, "strides must be positive");
-  for (int i = 0; i < config.threads; ++i) kernels_.emplace_back(block_rule());
+  for (int i = 0; i < config.threads; ++i) bands_.push_back({PushbroomKernel(block_rule()), {}, {}});
+}
+
+PushbroomStereo::PushbroomStereo(const StereoCalibration& calibration, double detection_depth_m,
+                                 const PushbroomConfig& config)
+    : PushbroomStereo(rectified_rig(calibration, detection_depth_m), config) {
+  const int width = calibration.width_px, height = calibration.height_px;
+  maps_.emplace(Maps{{nearest_places(calibration.left, width, height), width, height},
+                     {nearest_places(calibration.right, width, height), width, height}});
+  for (Band& band : bands_)
+    for (auto* image : {&band.left, &band.right})
+      image->resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
 }
 
 BlockRule PushbroomStereo::block_rule() const {
@@ -48,6 +59,7 @@ BlockRule PushbroomStereo::block_rule() const {
   rule.height_px = rig_.height_px;
   rule.stride_px = config_.stride_px;
   rule.last_row_px = config_.last_row_px;
+  rule.every_pixel = config_.every_pixel;
   for (const Depth& depth : depths_)
     rule.disparities.push_back(
         {depth.disparity_px, config_.least_edge_sum, score_limit_units(config_.score_limit)});
@@ -65,23 +77,43 @@ BlockRule PushbroomStereo::block_rule() const {
 
 const std::vector<StereoHit>& PushbroomStereo::detect(const StereoFrame& frame) {
   const GrayView left = view_of(frame.left, rig_), right = view_of(frame.right, rig_);
-  const int strips = kernels_.front().strip_count(), threads = static_cast<int>(kernels_.size());
-  bands_.resize(kernels_.size());
-  const auto search = [&](int i) {
-    const auto index = static_cast<std::size_t>(i);
-    bands_[index] = &kernels_[index].search(left, right, strips * i / threads, strips * (i + 1) / threads);
-  };
+  if (maps_) {
+    maps_->left.prepare(left.stride);
+    maps_->right.prepare(right.stride);
+  }
+  const int threads = static_cast<int>(bands_.size());
   if (threads == 1) {
-    search(0);
+    search(left, right, 0);
   } else {
-    tbb::parallel_for(0, threads, search, tbb::static_partitioner());
+    tbb::parallel_for(
+        0, threads, [&](int index) { search(left, right, index); }, tbb::static_partitioner());
   }
   all_hits_.clear();
-  for (const auto* band : bands_)
-    for (const BlockMatch& match : *band) all_hits_.push_back(hit_of(match));
+  for (const Band& band : bands_)
+    for (const BlockMatch& match : *band.matches) all_hits_.push_back(hit_of(match));
   if (!config_.isolation) return all_hits_;
   without_isolated(all_hits_, config_.isolation_least_points, config_.isolation_radius_m, hits_);
   return hits_;
+}
+
+void PushbroomStereo::search(const GrayView& left, const GrayView& right, int index) {
+  Band& band = bands_[static_cast<std::size_t>(index)];
+  const int strips = band.kernel.strip_count(), bands = static_cast<int>(bands_.size());
+  const int first = strips * index / bands, last = strips * (index + 1) / bands;
+  if (!maps_) {
+    band.matches = &band.kernel.search(left, right, first, last);
+    return;
+  }
+  // The edge map looks one row beyond the blocks, and the invariance window's beyond its own.
+  const int stride_px = config_.every_pixel ? block_px : config_.stride_px;
+  const int beyond = 1 + (config_.horizontal_invariance ? config_.invariance_rows_px : 0);
+  const int first_row = std::max(0, first * stride_px - beyond);
+  const int last_row = std::min(rig_.height_px, (last - 1) * stride_px + 2 * block_px + beyond);
+  maps_->left.apply(left, first_row, last_row, band.left.data(), rig_.width_px);
+  maps_->right.apply(right, first_row, last_row, band.right.data(), rig_.width_px);
+  band.matches =
+      &band.kernel.search({band.left.data(), rig_.width_px, rig_.width_px, rig_.height_px},
+                          {band.right.data(), rig_.width_px, rig_.width_px, rig_.height_px}, first, last);
 }
 
 StereoHit PushbroomStereo::hit_of(const BlockMatch& match) const {

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "perception/obstacle_detector.hpp"
 #include "perception/pushbroom_kernel.hpp"
+#include "perception/rectify.hpp"
 #include "perception/stereo_rig.hpp"
 
 namespace understory {
@@ -15,6 +17,7 @@ struct PushbroomConfig {
   std::vector<double> depths_m;  ///< to look at; empty: the rig's own detection depth. 0.1 .. 1000
   int threads = 1;               ///< 1 .. 64; hits do not depend on it
   int stride_px = 5;         ///< from block to block, both ways; 1 .. 100; 5 sets the 5x5 blocks side by side
+  bool every_pixel = false;  ///< dense: a window at every pixel, of each 5x5 cell of windows the best counts
   int last_row_px = 205;     ///< top edge of the lowest row of blocks; rows below see the ground
   int least_edge_sum = 860;  ///< Laplacian sum asked of each image's block by itself; 0 .. 6375
   double score_limit = 54.0 / 333.0;  ///< hit if S = SAD / (both edge sums) is below; exact to 1/333000
@@ -46,6 +49,7 @@ template <typename Visitor>
 void visit_fields(Visitor& visit, PushbroomConfig& config) {
   visit("threads", config.threads, 1, 64);
   visit("stride_px", config.stride_px, 1, 100);
+  visit("every_pixel", config.every_pixel);
   visit("last_row_px", config.last_row_px, 0, 4000);
   visit("least_edge_sum", config.least_edge_sum, 0, 6375);
   visit("score_limit", config.score_limit, 0.0, 10.0);
@@ -69,6 +73,11 @@ class PushbroomStereo : public ObstacleDetector {
  public:
   /// Asserts that each detection depth gives a disparity beyond infinity and inside the image.
   PushbroomStereo(const StereoRig& rig, const PushbroomConfig& config);
+  /// For raw pairs: each is rectified to the nearest pixel on the way, as far as the rule looks, which equals
+  /// Rectifier and then detection. detection_depth_m serves where the config names no depths. Images must be
+  /// at least ByteRemap::chunk_px wide.
+  PushbroomStereo(const StereoCalibration& calibration, double detection_depth_m,
+                  const PushbroomConfig& config);
 
   const std::vector<StereoHit>& detect(const StereoFrame& frame) override;
 
@@ -89,15 +98,25 @@ class PushbroomStereo : public ObstacleDetector {
     double depth_m = 0;
     DepthInterval interval;
   };
+  /// Part of the strips, one thread's work.
+  struct Band {
+    PushbroomKernel kernel;
+    std::vector<std::uint8_t> left, right;  ///< rectified images, the band's rows
+    const std::vector<BlockMatch>* matches = nullptr;
+  };
+  struct Maps {
+    ByteRemap left, right;
+  };
   BlockRule block_rule() const;
+  void search(const GrayView& left, const GrayView& right, int index);
   StereoHit hit_of(const BlockMatch& match) const;
 
   StereoRig rig_;
   PushbroomConfig config_;
   int infinity_px_;
   std::vector<Depth> depths_;
-  std::vector<PushbroomKernel> kernels_;  ///< one for each thread
-  std::vector<const std::vector<BlockMatch>*> bands_;
+  std::optional<Maps> maps_;  ///< where pairs come raw
+  std::vector<Band> bands_;   ///< one for each thread
   std::vector<StereoHit> all_hits_, hits_;
 };
 

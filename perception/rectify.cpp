@@ -7,6 +7,15 @@
 
 namespace understory {
 
+std::vector<std::int16_t> nearest_places(const CameraCalibration& camera, int width_px, int height_px) {
+  cv::Mat u, v, places, fractions;
+  cv::initUndistortRectifyMap(camera.camera_matrix, camera.distortion, camera.rectification,
+                              camera.projection, {width_px, height_px}, CV_32FC1, u, v);
+  cv::convertMaps(u, v, places, fractions, CV_16SC2, true);
+  const auto* first = places.ptr<std::int16_t>();
+  return {first, first + 2 * places.total()};
+}
+
 Rectifier::Rectifier(const StereoCalibration& calibration, Interpolation interpolation)
     : width_px_(calibration.width_px), height_px_(calibration.height_px), interpolation_(interpolation) {
   const bool nearest = interpolation == Interpolation::nearest;
@@ -17,9 +26,7 @@ Rectifier::Rectifier(const StereoCalibration& calibration, Interpolation interpo
     cv::convertMaps(u, v, eye.places, eye.fractions, CV_16SC2, nearest);
     eye.image.create(height_px_, width_px_, CV_8UC1);
     if (nearest && width_px_ >= ByteRemap::chunk_px) {
-      const auto* first = eye.places.ptr<std::int16_t>();
-      eye.remap.emplace(std::vector<std::int16_t>(first, first + 2 * eye.places.total()), width_px_,
-                        height_px_);
+      eye.remap.emplace(nearest_places(camera, width_px_, height_px_), width_px_, height_px_);
     }
   };
   prepare(calibration.left, left_);
@@ -34,8 +41,9 @@ const cv::Mat& Rectifier::rectify(const cv::Mat& raw, Eye& eye) {
   assert_always(raw.type() == CV_8UC1 && raw.cols == width_px_ && raw.rows == height_px_,
                 "a raw image must be 8-bit gray and of the calibration's size");
   if (eye.remap) {
-    eye.remap->apply({raw.data, static_cast<std::ptrdiff_t>(raw.step[0]), raw.cols, raw.rows}, eye.image.data,
-                     static_cast<std::ptrdiff_t>(eye.image.step[0]));
+    const GrayView source{raw.data, static_cast<std::ptrdiff_t>(raw.step[0]), raw.cols, raw.rows};
+    eye.remap->prepare(source.stride);
+    eye.remap->apply(source, 0, height_px_, eye.image.data, static_cast<std::ptrdiff_t>(eye.image.step[0]));
   } else {
     cv::remap(raw, eye.image, eye.places, eye.fractions,
               interpolation_ == Interpolation::nearest ? cv::INTER_NEAREST : cv::INTER_LINEAR,

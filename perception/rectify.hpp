@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "perception/byte_remap.hpp"
 #include "perception/stereo_calibration.hpp"
@@ -9,6 +11,10 @@
 namespace understory {
 
 enum class Interpolation { nearest, bilinear };
+
+/// For each rectified pixel, row by row, the column and row of the raw pixel nearest to what it shows (may
+/// lie outside the image): cv::convertMaps' places for nearest neighbours.
+std::vector<std::int16_t> nearest_places(const CameraCalibration& camera, int width_px, int height_px);
 
 /// Turns raw pairs into rectified ones, as cv::remap does with the maps of cv::initUndistortRectifyMap; the
 /// maps are made once.
