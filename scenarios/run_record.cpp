@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 
+#include "perception/io/hit_files.hpp"
 #include "scenarios/clearance.hpp"
 #include "scenarios/file_output.hpp"
 
@@ -143,20 +144,6 @@ void RunRecord::write(const std::filesystem::path& folder) const {
   write_whole_file(folder / "trajectory.csv", trajectory_);
   write_whole_file(folder / "map.ply", points_to_ply(points_));
   write_whole_file(folder / "result.json", to_json(result_));
-}
-
-std::string points_to_ply(const std::vector<ObstaclePoint>& points) {
-  std::string text = fmt::format(
-      "ply\nformat ascii 1.0\ncomment remembered points, estimator's world frame, metres\nelement vertex {}\n"
-      "property float x\nproperty float y\nproperty float z\nproperty double t_s\nproperty float score\n"
-      "property float distance_flown_m\nend_header\n",
-      points.size());
-  for (const ObstaclePoint& point : points) {
-    fmt::format_to(std::back_inserter(text), "{:.4f} {:.4f} {:.4f} {:.6f} {:.4f} {:.3f}\n",
-                   point.position_world.x(), point.position_world.y(), point.position_world.z(),
-                   static_cast<double>(point.t_ns) * 1e-9, point.score, point.distance_flown_m);
-  }
-  return text;
 }
 
 }  // namespace understory

@@ -53,7 +53,4 @@ class RunRecord {
   std::int64_t steps_ = 0;
 };
 
-/// Points as an ASCII PLY cloud with time (s), score and the odometer at their sighting.
-std::string points_to_ply(const std::vector<ObstaclePoint>& points);
-
 }  // namespace understory
