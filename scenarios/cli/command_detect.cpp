@@ -20,6 +20,16 @@ struct DetectArguments : CalibrationArguments {
   std::string out = "detections";
 };
 
+/// One line of a terminal, gone with it: nothing stays before a complaint or the summary.
+struct ProgressLine {
+  bool shown = isatty(STDOUT_FILENO) == 1;
+  ~ProgressLine() {
+    if (!shown) return;
+    fmt::print("\r\033[K");
+    std::fflush(stdout);
+  }
+};
+
 void print_progress(const DetectionProgress& progress) {
   fmt::print("\r\033[K{} of {} frames  {} hits  {:.1f} frames/s", progress.frames, progress.frames_expected,
              progress.hits,
@@ -38,13 +48,14 @@ DetectionOptions options_of(const DetectArguments& arguments) {
   return options;
 }
 
+DetectionResult detect(DetectionOptions options) {
+  const ProgressLine progress;
+  if (progress.shown) options.on_progress = print_progress;
+  return run_detection(options);
+}
+
 int run_detect(const DetectArguments& arguments) {
-  DetectionOptions options = options_of(arguments);
-  const bool shows_progress = isatty(STDOUT_FILENO) == 1;
-  if (shows_progress) options.on_progress = print_progress;
-  const DetectionResult result = run_detection(options);
-  if (shows_progress) fmt::print("\r\033[K");
-  fmt::print("{}", to_report(result));
+  fmt::print("{}", to_report(detect(options_of(arguments))));
   return exit_goal;
 }
 
@@ -54,7 +65,7 @@ void add_detect_command(CLI::App& app, Command& chosen) {
   const auto arguments = std::make_shared<DetectArguments>();
   CLI::App* command = app.add_subcommand("detect", "find obstacles in recorded stereo images");
   command
-      ->add_option("input", arguments->inputs,
+      ->add_option("INPUT", arguments->inputs,
                    "a EuRoC folder; a left and a right folder of images; a left and a right image; or a "
                    "side-by-side video")
       ->required()

@@ -154,7 +154,7 @@ TEST_F(Detect, BadInputIsOneLineAndLeavesNoResult) {
   const auto refuse = [](const std::string& arguments, const std::string& part) {
     support::expect_refusal(arguments, part);
   };
-  refuse("detect", "input is required");
+  refuse("detect", "INPUT");
   refuse("detect " + folders() + " --out " + out, "expected a rig (--rig)");
   refuse("detect " + folders() + " --rig none --out " + out, "none: expected a rig file");
   refuse(detect + " --size 752", "--size 752: expected WIDTHxHEIGHT");
