@@ -1,5 +1,6 @@
 #include "perception/io/text_file.hpp"
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -32,11 +33,14 @@ std::string read_text_file(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(file, ignored))
     throw_file_fault(file.string(), 0, "rig", "expected a file, this is a folder");
   std::ifstream stream(file, std::ios::binary);
-  std::string text(greatest_bytes + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  std::string text;
+  std::array<char, 8192> piece;
+  while (stream && text.size() <= greatest_bytes) {
+    stream.read(piece.data(), piece.size());
+    text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
+  }
   if (!stream.is_open() || stream.bad())
     throw_file_fault(file.string(), 0, "rig", "expected a readable file");
-  text.resize(static_cast<std::size_t>(stream.gcount()));
   if (text.size() > greatest_bytes)
     throw_file_fault(file.string(), 0, "rig", "expected a text file of at most 1 MiB");
   return text;
