@@ -15,6 +15,7 @@ target_compile_options(understory_settings INTERFACE
 if(UNDERSTORY_SANITIZE)
   # GCC's manual: with sanitizers on, -Wmaybe-uninitialized reports what is not so (std::regex in GCC 12).
   target_compile_options(understory_settings INTERFACE
-    -fsanitize=${UNDERSTORY_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -Wno-maybe-uninitialized)
+    -fsanitize=${UNDERSTORY_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(understory_settings INTERFACE -fsanitize=${UNDERSTORY_SANITIZE})
 endif()

@@ -26,7 +26,8 @@ void FlightFilm::observe(const StereoFrame& frame, const Autopilot& autopilot,
                              autopilot.map().points(),
                              seen.T_world_body * rig_.T_body_camera,
                              seen.velocity_body_mps.x(),
-                             seen.T_world_body.translation().z()};
+                             seen.T_world_body.translation().z(),
+                             ""};
   const cv::Mat eye = draw_overlay(moment, rig_, scale);
   const cv::Mat picture = beside(eye, cameras_.chase_view(data, eye.cols, eye.rows));
   video_.add(picture);

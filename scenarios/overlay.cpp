@@ -14,14 +14,17 @@ constexpr double mph_per_mps = 2.2369362920544;
 constexpr double feet_per_m = 3.2808398950131;
 constexpr double nearest_drawn_m = 0.5;
 
-void write_text(cv::Mat& picture, const std::string& text, bool at_right) {
+void write_text(cv::Mat& picture, const std::string& text, cv::Point place, double size) {
   constexpr int font = cv::FONT_HERSHEY_SIMPLEX;
-  constexpr double size = 0.7;
-  int baseline = 0;
-  const cv::Size extent = cv::getTextSize(text, font, size, 2, &baseline);
-  const cv::Point place(at_right ? picture.cols - extent.width - 12 : 12, picture.rows / 2);
   cv::putText(picture, text, place, font, size, cv::Scalar(0, 0, 0), 4, cv::LINE_AA);
   cv::putText(picture, text, place, font, size, cv::Scalar(255, 255, 255), 1, cv::LINE_AA);
+}
+
+void write_at_side(cv::Mat& picture, const std::string& text, bool at_right) {
+  constexpr double size = 0.7;
+  int baseline = 0;
+  const cv::Size extent = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, size, 2, &baseline);
+  write_text(picture, text, {at_right ? picture.cols - extent.width - 12 : 12, picture.rows / 2}, size);
 }
 
 }  // namespace
@@ -42,10 +45,13 @@ cv::Mat draw_overlay(const OverlayMoment& moment, const StereoRig& rig, int scal
   }
   for (const StereoHit& hit : moment.hits) {
     const cv::Rect box(hit.column_px * scale, hit.row_px * scale, 5 * scale, 5 * scale);
-    cv::rectangle(picture, box, blue, 2);
+    cv::rectangle(picture, box, blue, scale > 1 ? 2 : 1);
   }
-  write_text(picture, fmt::format("{:.0f} mph", moment.airspeed_mps * mph_per_mps), false);
-  write_text(picture, fmt::format("{:.0f} ft", moment.altitude_m * feet_per_m), true);
+  if (moment.airspeed_mps)
+    write_at_side(picture, fmt::format("{:.0f} mph", *moment.airspeed_mps * mph_per_mps), false);
+  if (moment.altitude_m)
+    write_at_side(picture, fmt::format("{:.0f} ft", *moment.altitude_m * feet_per_m), true);
+  if (!moment.caption.empty()) write_text(picture, moment.caption, {12, picture.rows - 12}, 0.5);
   return picture;
 }
 

@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <opencv2/core/mat.hpp>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "perception/obstacle_point.hpp"
@@ -15,9 +17,11 @@ struct OverlayMoment {
   cv::Mat left;                 ///< CV_8UC1, the rig's size
   std::vector<StereoHit> hits;  ///< of this very frame
   std::vector<ObstaclePoint> remembered;
-  Eigen::Isometry3d T_world_camera;  ///< by the estimate, at the image's moment
-  double airspeed_mps = 0;
-  double altitude_m = 0;
+  /// By the estimate, at the image's moment.
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  std::optional<double> airspeed_mps;  ///< written where known
+  std::optional<double> altitude_m;    ///< written where known
+  std::string caption;                 ///< along the lower edge
 };
 
 /// The paper's overlay (Barry & Tedrake 2015), `scale` times as large: blue boxes for this frame's

@@ -10,7 +10,7 @@ namespace understory {
 /// What some calibration formats do not say themselves.
 struct CalibrationOptions {
   double meters_per_unit = 1;              ///< of the file's translations: 0.01 where they are in centimetres
-  std::optional<int> width_px, height_px;  ///< of the images, where the files do not tell
+  std::optional<int> width_px, height_px;  ///< of the images, both, where the files do not tell
   std::optional<double> detection_depth_m;  ///< goes before the rig file's own; 10 m where nobody says
 };
 
@@ -24,11 +24,18 @@ struct CalibratedRig {
 /// Reads a rig from any of
 /// - our own rig file (YAML, read_rig),
 /// - one OpenCV XML or YAML file with M1 D1 M2 D2 and either R1 R2 P1 P2 or R T (then rectified here with
-///   cv::stereoRectify), names as OpenCV's stereo_calib sample writes them,
-/// - a folder of OpenCV files, one matrix each (M1.xml, D1.xml, R1.xml, P1.xml, M2.xml ...),
-/// - a EuRoC/ASL folder (mav0, or the folder above it): cam0/sensor.yaml and cam1/sensor.yaml.
-/// Throws std::runtime_error "file[:line]: key: what was expected" at anything missing, mistyped or out of
-/// range, and where images' size is needed and nobody says it.
+///   cv::stereoRectify, alpha 0), names as OpenCV's stereo_calib sample writes them; image_width and
+///   image_height where they are,
+/// - a folder of such files: one matrix each (M1.xml, D1.xml, R1.xml, P1.xml, M2.xml ...), or intrinsics.yml
+///   and extrinsics.yml,
+/// - a EuRoC/ASL folder (mav0, or the folder above it): cam0/sensor.yaml (left) and cam1/sensor.yaml (right).
+/// The rig is named after its file or folder. The pose in the body: a rig file's own mounting; EuRoC's T_BS,
+/// whose body is the file's own (the IMU, x up); OpenCV's files know no body, so the raw left camera sits at
+/// its origin and looks along its x axis. What is returned fits a detector (the detection depth's disparity
+/// lies in the images) and a Rectifier. Throws std::runtime_error, one line "file[:line]: key: what was
+/// expected", at anything missing, mistyped, not finite or out of range, where images' size is needed and
+/// nobody says it or two say different ones, and where no rectified pair comes out: no bytes end in anything
+/// else.
 CalibratedRig read_calibrated_rig(const std::filesystem::path& path, const CalibrationOptions& options);
 
 }  // namespace understory

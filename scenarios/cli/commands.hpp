@@ -2,8 +2,11 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "perception/io/calibration_file.hpp"
 
 namespace CLI {
 class App;
@@ -21,6 +24,8 @@ using Command = std::function<int()>;
 /// run.
 void add_fly_command(CLI::App& app, Command& chosen);
 void add_evaluate_command(CLI::App& app, Command& chosen);
+void add_rig_command(CLI::App& app, Command& chosen);
+void add_detect_command(CLI::App& app, Command& chosen);
 
 /// The scenario's name and --set, as every command that flies has them.
 struct ScenarioArguments {
@@ -28,6 +33,19 @@ struct ScenarioArguments {
   std::vector<std::string> settings;  ///< key=value
 };
 void add_scenario_options(CLI::App& command, ScenarioArguments& arguments);
+
+/// --unit, --size and --depth, as every command that reads a calibration has them.
+struct CalibrationArguments {
+  std::string unit = "m";
+  std::string size;               ///< empty: the files say it
+  std::optional<double> depth_m;  ///< nothing: the rig's own
+};
+void add_calibration_options(CLI::App& command, CalibrationArguments& arguments);
+/// What they mean. Throws ScenarioError where they mean nothing.
+CalibrationOptions calibration_options(const CalibrationArguments& arguments);
+/// The path a rig argument means: one that exists, or a name in models/rigs. Throws ScenarioError, naming
+/// what there is, where it means none.
+std::filesystem::path rig_path(const std::string& argument);
 
 /// The source tree's root, where models/ and scenarios/library/ lie: $UNDERSTORY_ROOT, else the tree this
 /// program was built from, else the tree its binary lies in. Throws MachineError where none of them has

@@ -76,7 +76,7 @@ TEST_F(RigFile, NamesFileLineAndKeyOfEveryFault) {
   expect_complaint("focal_px: 180", "focal_px: .nan", "4: focal_px", "expected a number");
   expect_complaint("baseline_m: 0.35", "baseline_m: -0.35", "5: baseline_m", "from 0.01 to 10");
   expect_complaint("width_px: 376", "width_px: 376.5", "2: width_px", "whole number");
-  expect_complaint("[0.1, 0.2, 0.3]", "[0.1, 0.2]", "10: left_camera_body_m", "three numbers");
+  expect_complaint("[0.1, 0.2, 0.3]", "[0.1, 0.2]", "10: left_camera_body_m", "3 numbers");
   expect_complaint("name: test", "name: [a]", "1: name", "text");
   expect_complaint("detection_depth_m: 4.8", "detection_depth_m: 900", "9: detection_depth_m", "infinity");
   expect_complaint("height_px: 240", "height_px: [240", "4: rig", "YAML");

@@ -1,56 +1,19 @@
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
+
+#include "tests/support/program.hpp"
 
 /// The program as people and CI meet it: exit statuses and one-line messages.
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Outcome {
-  int status = -1;
-  std::string text;
-};
-
-/// `before`: environment variables or a change of folder.
-Outcome understory(const std::string& arguments, const std::string& before = "") {
-  FILE* pipe =
-      popen((before + " " + std::string(UNDERSTORY_BINARY) + " " + arguments + " 2>&1").c_str(), "r");
-  Outcome outcome;
-  std::array<char, 4096> buffer;
-  while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) outcome.text += buffer.data();
-  const int status = pclose(pipe);
-  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return outcome;
-}
-
-void expect_refusal(const std::string& arguments, const std::string& part, int status = 2,
-                    const std::string& before = "") {
-  const Outcome outcome = understory(arguments, before);
-  EXPECT_EQ(outcome.status, status) << arguments;
-  EXPECT_NE(outcome.text.find(part), std::string::npos) << outcome.text;
-  EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1) << outcome.text;
-}
-
-TEST(Cli, HelpAndVersionSucceed) {
-  EXPECT_EQ(understory("--help").status, 0);
-  EXPECT_EQ(understory("fly --help").status, 0);
-  EXPECT_EQ(understory("--version").status, 0);
-}
-
-TEST(Cli, WrongArgumentsAreBadInput) {
-  expect_refusal("", "subcommand");
-  expect_refusal("soar", "subcommand");
-  expect_refusal("fly", "scenario");
-}
-
-#ifdef UNDERSTORY_HAS_SIM
+using understory::support::expect_refusal;
+using understory::support::Outcome;
+using understory::support::understory;
 
 struct Folder {
   fs::path path =
@@ -67,8 +30,74 @@ struct Folder {
   }
 };
 
+TEST(Cli, HelpAndVersionSucceed) {
+  EXPECT_EQ(understory("--help").status, 0);
+  EXPECT_EQ(understory("fly --help").status, 0);
+  EXPECT_EQ(understory("--version").status, 0);
+}
+
+TEST(Cli, WrongArgumentsAreBadInput) {
+  expect_refusal("", "subcommand");
+  expect_refusal("soar", "subcommand");
+}
+
+const std::string raw_rigs = UNDERSTORY_SOURCE_DIR "/models/rigs/raw/";
+
+TEST(Cli, RigSaysWhatACalibrationMeans) {
+  const Outcome paper = understory("rig " + raw_rigs + "paper.xml --unit cm --size 376x240 --depth 4.8");
+  EXPECT_EQ(paper.status, 0);
+  for (const char* part :
+       {"376 x 240 px", "8 distortion coefficients left, 8 right", "180.40 px", "0.3530 m",
+        "left 197.46, right 105.70", "91.76 px", "4.81 m: 105 px", "4.47 to 5.20 m", "u - 95 to u - 89"})
+    EXPECT_NE(paper.text.find(part), std::string::npos) << part << " not in\n" << paper.text;
+  EXPECT_LT(std::count(paper.text.begin(), paper.text.end(), '\n'), 24);  // one screen
+  EXPECT_NE(understory("rig " + raw_rigs + "long.xml --depth 10").text.find("10.14 m: 33 px"),
+            std::string::npos);
+  EXPECT_NE(understory("rig paper").text.find("come rectified"), std::string::npos);
+}
+
+TEST(Cli, RigDrawsWhatItSays) {
+  const Folder folder;
+  const std::string picture = (folder.path / "rig.png").string();
+  const Outcome drawn = understory("rig long --out " + picture);
+  EXPECT_EQ(drawn.status, 0);
+  EXPECT_NE(drawn.text.find(picture), std::string::npos);
+  EXPECT_GT(fs::file_size(picture), 10'000u);
+}
+
+TEST(Cli, BadRigsAreNamedInOneLine) {
+  const Folder folder;
+  expect_refusal("rig", "FILE");
+  expect_refusal("rig nowhere", "or one of: long, paper");
+  expect_refusal("rig " + raw_rigs + "paper.xml", "paper.xml: baseline in m: expected 0.01 to 10");
+  expect_refusal("rig " + raw_rigs + "long.xml --unit ft", "--unit ft: expected m, cm or mm");
+  for (const char* size : {"376", "376x", "x240", "376x240x8", "wide"})
+    expect_refusal("rig " + raw_rigs + "long.xml --size " + size, "expected WIDTHxHEIGHT");
+  expect_refusal("rig " + raw_rigs + "long.xml --size 640x480",
+                 "image size: expected the file's own, 376x240");
+  expect_refusal("rig " + raw_rigs + "long.xml --depth deep", "--depth");
+  expect_refusal("rig " + raw_rigs + "long.xml --depth nan", "detection depth: expected 0.1 to 1000 m");
+  expect_refusal("rig " + raw_rigs + "long.xml --depth 800", "nearer than infinity");
+  expect_refusal("rig " + folder.path.string(), "M1: expected this matrix");
+  expect_refusal("rig " + folder.file("rig.yaml", "name: [\n"), "rig.yaml:");
+  expect_refusal("rig " + folder.file("rig.xml", "<opencv_storage><M1>"),
+                 "rig.xml:1: rig: expected OpenCV's XML");
+}
+
+TEST(Cli, APictureThatCannotBeWrittenIsBadInputAndAFullDiskTheMachines) {
+  const Folder folder;
+  expect_refusal("rig long --out " + (folder.path / "none" / "rig.png").string(),
+                 "expected a writable output");
+  expect_refusal("rig long --out " + (folder.path / "rig.xyz").string(), "expected a .png or .jpg");
+  fs::create_symlink("/dev/full", folder.path / "rig.png.part");
+  expect_refusal("rig long --out " + (folder.path / "rig.png").string(), "No space left on device", 3);
+}
+
+#ifdef UNDERSTORY_HAS_SIM
+
 TEST(Cli, BadScenariosAreNamedByFileLineAndKey) {
   const Folder folder;
+  expect_refusal("fly", "scenario");
   expect_refusal("fly nowhere", "clear, dense, forest, goalposts, paper");
   expect_refusal("fly " + folder.file("a.yaml", "name: a\nforest:\n  lenght_m: 3\n"),
                  "a.yaml:3: forest.lenght_m");

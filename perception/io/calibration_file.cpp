@@ -1,0 +1,97 @@
+#include "perception/io/calibration_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "perception/io/euroc_calibration.hpp"
+#include "perception/io/image_size.hpp"
+#include "perception/io/opencv_calibration.hpp"
+#include "perception/io/rig_file.hpp"
+#include "perception/io/rig_limits.hpp"
+#include "perception/io/text_file.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace rig_limits;
+
+/// The file's or folder's own name; a EuRoC folder goes by the name above its mav0.
+std::string name_of(const fs::path& path) {
+  fs::path named = fs::absolute(path).lexically_normal();
+  if (!named.has_filename()) named = named.parent_path();
+  if (named.filename() == "mav0") named = named.parent_path();
+  std::error_code ignored;
+  return fs::is_directory(path, ignored) ? named.filename().string() : named.stem().string();
+}
+
+void look_at(StereoRig& rig, double detection_depth_m, const fs::path& path) {
+  rig.detection_depth_m = detection_depth_m;
+  if (!(detection_depth_m >= least_depth_m && detection_depth_m <= greatest_depth_m))
+    throw_file_fault(
+        path.string(), 0, "detection depth",
+        fmt::format("expected {} to {} m, was given {}", least_depth_m, greatest_depth_m, detection_depth_m));
+  if (!detection_depth_in_view(rig))
+    throw_file_fault(
+        path.string(), 0, "detection depth",
+        fmt::format("expected a depth more than a pixel of disparity nearer than infinity and inside "
+                    "the image, {:.4g} m lies at {:.1f} px with infinity at {:.1f} px",
+                    detection_depth_m, rig.disparity_px(detection_depth_m), rig.infinity_disparity_px()));
+}
+
+/// What read_rig asks of a rig file's keys, asked of a rig computed from matrices.
+void require_in_range(const StereoRig& rig, const fs::path& path) {
+  const auto require = [&](const std::string& key, double value, double least, double greatest,
+                           const std::string& hint) {
+    if (!(value >= least && value <= greatest))
+      throw_file_fault(path.string(), 0, key,
+                       fmt::format("expected {} to {}, found {:.6g}{}", least, greatest, value, hint));
+  };
+  require("focal length in px", rig.focal_px, least_focal_px, greatest_focal_px, "");
+  require("baseline in m", rig.baseline_m, least_baseline_m, greatest_baseline_m,
+          "; are the translations in another unit (--unit)?");
+  for (const double center_px : {rig.center_left_x_px, rig.center_right_x_px, rig.center_y_px})
+    require("principal point in px", center_px, least_center_px, greatest_center_px, "");
+}
+
+CalibratedRig from_rig_file(const fs::path& path, const CalibrationOptions& options) {
+  if (options.meters_per_unit != 1)
+    throw_file_fault(path.string(), 0, "unit", "expected metres: a rig file has no other");
+  CalibratedRig read{read_rig(path), std::nullopt};
+  agreed_image_size(path.string(), ImageSize{read.rig.width_px, read.rig.height_px}, options);
+  look_at(read.rig, options.detection_depth_m.value_or(read.rig.detection_depth_m), path);
+  return read;
+}
+
+CalibratedRig from_cameras(StereoCalibration calibration, const fs::path& path,
+                           const CalibrationOptions& options) {
+  constexpr double default_depth_m = 10;
+  calibration.name = path.string();  // rectified_rig begins its complaints with it
+  CalibratedRig read;
+  read.rig = rectified_rig(calibration, default_depth_m);
+  read.rig.name = calibration.name = name_of(path);
+  require_in_range(read.rig, path);
+  look_at(read.rig, options.detection_depth_m.value_or(default_depth_m), path);
+  read.calibration = std::move(calibration);
+  return read;
+}
+
+}  // namespace
+
+CalibratedRig read_calibrated_rig(const fs::path& path, const CalibrationOptions& options) {
+  if (!(options.meters_per_unit > 0 && options.meters_per_unit <= 1000))
+    throw_file_fault(path.string(), 0, "unit", "expected a length above 0 and up to 1000 m");
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) {
+    if (const auto folder = euroc_folder(path))
+      return from_cameras(read_euroc_calibration(*folder, options), path, options);
+    return from_cameras(read_opencv_calibration(path, options), path, options);
+  }
+  if (looks_like_opencv(read_text_file(path)))
+    return from_cameras(read_opencv_calibration(path, options), path, options);
+  return from_rig_file(path, options);
+}
+
+}  // namespace understory

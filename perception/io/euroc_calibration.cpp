@@ -1,0 +1,107 @@
+#include "perception/io/euroc_calibration.hpp"
+
+#include <cmath>
+#include <opencv2/core/eigen.hpp>
+
+#include "perception/io/image_size.hpp"
+#include "perception/io/rig_limits.hpp"
+#include "perception/io/stereo_rectification.hpp"
+#include "perception/io/strict_map.hpp"
+#include "perception/io/text_file.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace rig_limits;
+
+struct Sensor {
+  CameraCalibration camera;
+  ImageSize size;
+  Eigen::Isometry3d T_body_sensor;
+};
+
+Eigen::Isometry3d pose(StrictMap& map, double meters_per_unit) {
+  constexpr double rotation_tolerance = 1e-3;  // files rounded by hand
+  constexpr double greatest_value = 1e6;       // an offset in some unit; checked in metres below
+  StrictMap fields = map.map("T_BS");
+  fields.whole("rows", 4, 4);
+  fields.whole("cols", 4, 4);
+  const std::vector<double> data = fields.numbers("data", 16, -greatest_value, greatest_value);
+  const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(data.data());
+  const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
+  const double departure =
+      (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(departure < rotation_tolerance) || rotation.determinant() < 0)
+    map.fail("T_BS", "expected a rotation in the first three rows and columns");
+  if (!(matrix.row(3) == Eigen::RowVector4d(0, 0, 0, 1)))
+    map.fail("T_BS", "expected a last row of 0, 0, 0, 1");
+  Eigen::Isometry3d T_body_sensor = Eigen::Isometry3d::Identity();
+  T_body_sensor.linear() = Eigen::Quaterniond(rotation).normalized().toRotationMatrix();
+  T_body_sensor.translation() = meters_per_unit * matrix.topRightCorner<3, 1>();
+  if (T_body_sensor.translation().cwiseAbs().maxCoeff() > greatest_offset_m)
+    map.fail("T_BS", "expected a translation within 10 m");
+  return T_body_sensor;
+}
+
+void require_text(StrictMap& map, const std::string& key, const std::string& expected) {
+  if (const std::string found = map.text(key); found != expected)
+    map.fail(key, "expected " + expected + ", found '" + found + "'");
+}
+
+Sensor read_sensor(const fs::path& file, double meters_per_unit) {
+  constexpr double greatest_coefficient = 1e4;
+  StrictMap map(file.string(), parse_yaml(read_text_file(file), file.string()));
+  Sensor sensor;
+  sensor.T_body_sensor = pose(map, meters_per_unit);
+  const std::vector<double> size = map.numbers("resolution", 2, least_size_px, greatest_size_px);
+  if (size[0] != std::floor(size[0]) || size[1] != std::floor(size[1]))
+    map.fail("resolution", "expected whole numbers");
+  sensor.size = {static_cast<int>(size[0]), static_cast<int>(size[1])};
+  require_text(map, "camera_model", "pinhole");
+  const std::vector<double> pinhole = map.numbers("intrinsics", 4, least_center_px, greatest_focal_px);
+  if (std::min(pinhole[0], pinhole[1]) < least_focal_px ||
+      std::max(pinhole[2], pinhole[3]) > greatest_center_px)
+    map.fail("intrinsics", "expected fu, fv, cu, cv in px: a focal length is too short or a center too far");
+  sensor.camera.camera_matrix = cv::Matx33d(pinhole[0], 0, pinhole[2], 0, pinhole[1], pinhole[3], 0, 0, 1);
+  require_text(map, "distortion_model", "radial-tangential");
+  sensor.camera.distortion =
+      map.numbers("distortion_coefficients", 4, -greatest_coefficient, greatest_coefficient);
+  return sensor;
+}
+
+}  // namespace
+
+std::optional<fs::path> euroc_folder(const fs::path& path) {
+  std::error_code ignored;
+  for (const fs::path& folder : {path, path / "mav0"})
+    if (fs::is_directory(folder / "cam0", ignored)) return folder;
+  return std::nullopt;
+}
+
+StereoCalibration read_euroc_calibration(const fs::path& folder, const CalibrationOptions& options) {
+  const fs::path right_file = folder / "cam1" / "sensor.yaml";
+  const Sensor left = read_sensor(folder / "cam0" / "sensor.yaml", options.meters_per_unit);
+  const Sensor right = read_sensor(right_file, options.meters_per_unit);
+  if (left.size.width_px != right.size.width_px || left.size.height_px != right.size.height_px)
+    throw_file_fault(right_file.string(), 0, "resolution", "expected the same as cam0's");
+  const ImageSize size = agreed_image_size(folder.string(), left.size, options);
+
+  StereoCalibration calibration;
+  calibration.width_px = size.width_px;
+  calibration.height_px = size.height_px;
+  calibration.left = left.camera;
+  calibration.right = right.camera;
+  calibration.T_body_left = left.T_body_sensor;
+  const Eigen::Isometry3d T_right_left = right.T_body_sensor.inverse() * left.T_body_sensor;
+  cv::Matx33d R_right_left;
+  cv::Vec3d t_right_m;
+  cv::eigen2cv(Eigen::Matrix3d(T_right_left.linear()), R_right_left);
+  cv::eigen2cv(Eigen::Vector3d(T_right_left.translation()), t_right_m);
+  if (!rectify_pair(calibration, R_right_left, t_right_m))
+    throw_file_fault(right_file.string(), 0, "T_BS",
+                     "expected two cameras that cv::stereoRectify brings side by side");
+  return calibration;
+}
+
+}  // namespace understory

@@ -1,0 +1,93 @@
+#include "perception/io/stereo_recording.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "perception/io/image_file.hpp"
+#include "perception/io/side_by_side_video.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* what_serves =
+    "expected a EuRoC folder, two folders of images, two images, or a side-by-side video";
+
+ImageSequence sequence_of(const std::vector<fs::path>& inputs) {
+  std::error_code ignored;
+  for (const fs::path& input : inputs)
+    if (!fs::exists(input, ignored))
+      throw std::runtime_error(input.string() + ": found no such file or folder");
+  if (inputs.size() == 1 && fs::is_directory(inputs[0], ignored)) return euroc_sequence(inputs[0]);
+  if (inputs.size() != 2) throw std::runtime_error(what_serves);
+  const bool left_is_folder = fs::is_directory(inputs[0], ignored);
+  if (left_is_folder != fs::is_directory(inputs[1], ignored))
+    throw std::runtime_error(inputs[1].string() + ": " + what_serves);
+  return left_is_folder ? folder_sequence(inputs[0], inputs[1]) : single_pair(inputs[0], inputs[1]);
+}
+
+std::string text_of_size(cv::Size size) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+}  // namespace
+
+StereoRecording::StereoRecording(const std::vector<fs::path>& inputs) {
+  std::error_code ignored;
+  if (inputs.size() == 1 && fs::is_regular_file(inputs[0], ignored)) {
+    if (!is_video_name(inputs[0])) throw std::runtime_error(inputs[0].string() + ": " + what_serves);
+    video_ = std::make_unique<SideBySideVideo>(inputs[0]);
+    first_file_ = inputs[0];
+    if (!video_->read(first_))
+      throw std::runtime_error(inputs[0].string() + ": expected pictures, found none");
+    return;
+  }
+  sequence_ = sequence_of(inputs);
+  first_file_ = sequence_.pairs.front().left;
+  first_.left = read_gray_image(first_file_);  // the size that all others must have
+  read_files(first_);
+}
+
+StereoRecording::~StereoRecording() = default;
+
+std::int64_t StereoRecording::frame_count() const {
+  return video_ ? video_->claimed_count() : static_cast<std::int64_t>(sequence_.pairs.size());
+}
+
+std::optional<TimeSpan> StereoRecording::times() const {
+  if (video_) {
+    const auto last = static_cast<double>(std::max<std::int64_t>(1, video_->claimed_count()) - 1);
+    return TimeSpan{0, std::llround(last * 1e9 / video_->rate_hz())};
+  }
+  if (!sequence_.timed) return std::nullopt;
+  return TimeSpan{sequence_.pairs.front().t_ns, sequence_.pairs.back().t_ns};
+}
+
+bool StereoRecording::read(StereoFrame& frame) {
+  if (first_is_due_) {
+    first_is_due_ = false;
+    frame = first_;
+    return true;
+  }
+  return video_ ? video_->read(frame) : read_files(frame);
+}
+
+bool StereoRecording::read_files(StereoFrame& frame) {
+  if (next_ == sequence_.pairs.size()) return false;
+  const StereoFiles& files = sequence_.pairs[next_++];
+  const auto read_one = [&](const fs::path& file) {
+    const cv::Mat image = read_gray_image(file);
+    if (image.size() != image_size())
+      throw std::runtime_error(file.string() + ": expected " + text_of_size(image_size()) + " as " +
+                               first_file_.string() + " has, found " + text_of_size(image.size()));
+    return image;
+  };
+  const cv::Mat left = read_one(files.left), right = read_one(files.right);
+  frame = {files.t_ns, left, right};
+  return true;
+}
+
+}  // namespace understory

@@ -1,0 +1,85 @@
+#include "perception/io/strict_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "perception/io/text_file.hpp"
+
+namespace understory {
+
+StrictMap::StrictMap(std::string file, TextNode map, std::string prefix)
+    : file_(std::move(file)), map_(std::move(map)), prefix_(std::move(prefix)) {
+  if (map_.kind != TextNode::Kind::map)
+    throw_file_fault(file_, map_.line, map_.key.empty() ? "rig" : map_.key, "expected a map of keys");
+  std::set<std::string> seen;
+  for (const TextNode& child : map_.children)
+    if (!seen.insert(child.key).second)
+      throw_file_fault(file_, child.line, prefix_ + child.key, "expected once, found again");
+}
+
+std::string StrictMap::text(const std::string& key) {
+  const TextNode& node = take(key);
+  if (node.kind != TextNode::Kind::scalar || node.text.empty()) fail(key, "expected text");
+  return node.text;
+}
+
+double StrictMap::number(const std::string& key, double least, double greatest) {
+  return number(take(key), key, least, greatest);
+}
+
+int StrictMap::whole(const std::string& key, int least, int greatest) {
+  const double value = number(key, least, greatest);
+  if (value != std::floor(value)) fail(key, "expected a whole number");
+  return static_cast<int>(value);
+}
+
+std::vector<double> StrictMap::numbers(const std::string& key, std::size_t count, double least,
+                                       double greatest) {
+  const TextNode& list = take(key);
+  const bool is_list =
+      list.kind == TextNode::Kind::list || (count == 0 && list.kind == TextNode::Kind::nothing);
+  if (!is_list || list.children.size() != count)
+    fail(key, fmt::format("expected a list of {} numbers{}", count,
+                          is_list ? fmt::format(", found {}", list.children.size()) : ""));
+  std::vector<double> values;
+  for (const TextNode& child : list.children) values.push_back(number(child, key, least, greatest));
+  return values;
+}
+
+StrictMap StrictMap::map(const std::string& key) { return {file_, take(key), prefix_ + key + "."}; }
+
+void StrictMap::refuse_others() const {
+  for (const TextNode& child : map_.children)
+    if (std::find(known_.begin(), known_.end(), child.key) == known_.end())
+      fail(child.key, fmt::format("unknown key; expected {}", fmt::join(known_, ", ")));
+}
+
+void StrictMap::fail(const std::string& key, const std::string& expected) const {
+  const TextNode* node = find(key);
+  throw_file_fault(file_, node != nullptr ? node->line : map_.line, prefix_ + key, expected);
+}
+
+const TextNode* StrictMap::find(const std::string& key) const {
+  for (const TextNode& child : map_.children)
+    if (child.key == key) return &child;
+  return nullptr;
+}
+
+const TextNode& StrictMap::take(const std::string& key) {
+  known_.push_back(key);
+  const TextNode* node = find(key);
+  if (node == nullptr) fail(key, "expected this key, found none");
+  return *node;
+}
+
+double StrictMap::number(const TextNode& node, const std::string& key, double least, double greatest) const {
+  const auto value = node.kind == TextNode::Kind::scalar ? finite_number(node.text) : std::nullopt;
+  if (value && *value >= least && *value <= greatest) return *value;
+  throw_file_fault(file_, node.line, prefix_ + key,
+                   fmt::format("expected a number from {} to {}{}", least, greatest,
+                               node.kind == TextNode::Kind::scalar ? ", found '" + node.text + "'" : ""));
+}
+
+}  // namespace understory

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "perception/io/text_tree.hpp"
+
+namespace understory {
+
+/// One map of a file, read key by key; says where it went wrong. Every function throws as throw_file_fault
+/// does where the key is missing, mistyped or out of range.
+class StrictMap {
+ public:
+  /// `prefix`: how the map itself is called in messages, "T_BS." for instance. Throws where `map` is no map
+  /// or holds a key twice (yaml-cpp itself takes that silently).
+  StrictMap(std::string file, TextNode map, std::string prefix = "");
+
+  const std::string& file() const { return file_; }
+  bool has(const std::string& key) const { return find(key) != nullptr; }
+
+  std::string text(const std::string& key);
+  double number(const std::string& key, double least, double greatest);
+  int whole(const std::string& key, int least, int greatest);
+  /// A list of numbers, `count` of them.
+  std::vector<double> numbers(const std::string& key, std::size_t count, double least, double greatest);
+  StrictMap map(const std::string& key);
+  /// What the value calls itself: "opencv-matrix".
+  std::string type(const std::string& key) { return take(key).type; }
+
+  /// To be called once every known key was asked for.
+  void refuse_others() const;
+
+  [[noreturn]] void fail(const std::string& key, const std::string& expected) const;
+
+ private:
+  const TextNode* find(const std::string& key) const;
+  const TextNode& take(const std::string& key);
+  double number(const TextNode& node, const std::string& key, double least, double greatest) const;
+
+  std::string file_;
+  TextNode map_;
+  std::string prefix_;
+  std::vector<std::string> known_;  // in the order asked for
+};
+
+}  // namespace understory

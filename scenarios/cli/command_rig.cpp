@@ -1,0 +1,66 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <opencv2/imgcodecs.hpp>
+
+#include "perception/io/calibration_file.hpp"
+#include "scenarios/cli/commands.hpp"
+#include "scenarios/config_tree.hpp"
+#include "scenarios/file_output.hpp"
+#include "scenarios/rig_figures.hpp"
+#include "scenarios/rig_picture.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RigArguments : CalibrationArguments {
+  std::string rig;
+  std::string out;  // empty: no picture
+};
+
+CalibratedRig read(const RigArguments& arguments) {
+  const CalibrationOptions options = calibration_options(arguments);
+  const fs::path path = rig_path(arguments.rig);
+  try {
+    return read_calibrated_rig(path, options);
+  } catch (const std::runtime_error& error) {
+    throw ScenarioError(error.what());
+  }
+}
+
+void write_picture(const fs::path& file, const cv::Mat& picture) {
+  if (file.extension() != ".png" && file.extension() != ".jpg")
+    throw ScenarioError(fmt::format("--out {}: expected a .png or .jpg", file.string()));
+  std::vector<unsigned char> bytes;
+  cv::imencode(file.extension().string(), picture, bytes);
+  write_whole_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+int run_rig(const RigArguments& arguments) {
+  const CalibratedRig calibrated = read(arguments);
+  const RigFigures figures = rig_figures(calibrated.rig, PushbroomConfig());
+  if (!arguments.out.empty()) write_picture(arguments.out, draw_rig(calibrated.rig, figures));
+  fmt::print("{}", to_report(calibrated, figures));
+  if (!arguments.out.empty()) fmt::print("  {:<20}{}\n", "picture", arguments.out);
+  return 0;
+}
+
+}  // namespace
+
+void add_rig_command(CLI::App& app, Command& chosen) {
+  const auto arguments = std::make_shared<RigArguments>();
+  CLI::App* command = app.add_subcommand("rig", "show what a calibration means: disparities, depths, views");
+  command
+      ->add_option(
+          "FILE", arguments->rig,
+          "a rig file, OpenCV XML or YAML, a folder of them, a EuRoC folder, or a name in models/rigs")
+      ->required();
+  add_calibration_options(*command, *arguments);
+  command->add_option("--out", arguments->out, "draw the rig from above into this .png or .jpg");
+  command->callback([arguments, &chosen] { chosen = [arguments] { return run_rig(*arguments); }; });
+}
+
+}  // namespace understory

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "perception/stereo_hit.hpp"
+#include "perception/stereo_rig.hpp"
+#include "scenarios/picture_folder.hpp"
+#include "scenarios/posed_map.hpp"
+#include "scenarios/video_writer.hpp"
+
+namespace understory {
+
+/// What a person looks at after a detection run: the overlay of every frame, as overlays/000000.png ... or as
+/// overlay.mp4.
+class DetectionPictures {
+ public:
+  /// `film_rate_hz`: pictures a second of the film; 0 for single pictures.
+  DetectionPictures(const std::filesystem::path& folder, const StereoRig& rig, double film_rate_hz);
+
+  /// `left`: rectified. `map`, where there is one that covers the frame: its points go in as red dots.
+  void add(const cv::Mat& left, const std::vector<StereoHit>& hits, double depth_m, const PosedMap* map);
+  void finish();
+
+ private:
+  StereoRig rig_;
+  int scale_;
+  std::unique_ptr<PictureFolder> pictures_;
+  std::unique_ptr<VideoFile> film_;
+  int count_ = 0;
+};
+
+}  // namespace understory

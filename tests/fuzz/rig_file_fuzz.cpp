@@ -1,0 +1,10 @@
+#include "perception/io/rig_file.hpp"
+#include "tests/fuzz/fuzzed_file.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace understory;
+  static const std::filesystem::path file = fuzz::folder() / "rig.yaml";
+  fuzz::write(file, fuzz::text_of(data, size));
+  fuzz::expect_rig_or_complaint([] { return read_rig(file); });
+  return 0;
+}

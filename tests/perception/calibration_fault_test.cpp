@@ -1,0 +1,246 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <string>
+
+#include "perception/io/calibration_file.hpp"
+#include "tests/support/euroc_text.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+/// Whatever a calibration holds, reading it ends in a rig or in one line that says what was expected where.
+namespace understory {
+namespace {
+
+using support::TemporaryFolder;
+
+const std::filesystem::path paper_xml =
+    std::filesystem::path(UNDERSTORY_SOURCE_DIR) / "models/rigs/raw/paper.xml";
+
+CalibrationOptions centimetres() {
+  CalibrationOptions options;
+  options.meters_per_unit = 0.01;
+  return options;
+}
+
+/// What the reader says of `path`; "" where it finds nothing wrong.
+std::string complaint(const std::filesystem::path& path, const CalibrationOptions& options) {
+  try {
+    read_calibrated_rig(path, options);
+    return "";
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+}
+
+void expect_line(const std::string& found, const std::string& beginning, const std::string& part) {
+  EXPECT_EQ(found.find(beginning), 0u) << found << "\n  should begin with " << beginning;
+  EXPECT_NE(found.find(part), std::string::npos) << found << "\n  should say " << part;
+  EXPECT_EQ(found.find('\n'), std::string::npos) << found;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+struct Fault {
+  std::string from, to;
+  std::string place;     ///< after the file's name
+  std::string expected;  ///< somewhere in the line
+};
+
+const std::string m1 = "<M1 type_id=\"opencv-matrix\"><rows>3</rows><cols>3</cols><dt>d</dt>";
+const std::string d1 = "<D1 type_id=\"opencv-matrix\"><rows>1</rows><cols>8</cols><dt>d</dt>";
+
+TEST(CalibrationFaults, OpenCvXml) {
+  const TemporaryFolder folder;
+  const std::string good = support::content_of(paper_xml);
+  const std::vector<Fault> faults{
+      {"M1 type_id=\"opencv-matrix\"", "M1", ":6: M1: ", "expected an OpenCV matrix"},
+      {"<M1", "<M3", ":11: rig: ", "expected </M3>"},
+      {m1, "<M1>", ":6: M1: ", "expected an OpenCV matrix"},
+      {"<rows>3</rows><cols>3</cols>", "<rows>4</rows><cols>3</cols>",
+       ":7: M1.data: ", "12 numbers, found 9"},
+      {"<rows>3</rows><cols>3</cols>", "<rows>1</rows><cols>9</cols>", ":6: M1: ", "expected 3 x 3"},
+      {"<rows>3</rows>", "<rows>99999</rows>", ":6: M1.rows: ", "from 0 to 16"},
+      {"<rows>3</rows>", "<rows>-3</rows>", ":6: M1.rows: ", "found '-3'"},
+      {"<rows>3</rows>", "<rows>2.5</rows>", ":6: M1.rows: ", "whole number"},
+      {"<rows>3</rows>", "", ":6: M1.rows: ", "expected this key, found none"},
+      {"<dt>d</dt>", "<dt>u</dt>", ":6: M1.dt: ", "expected d or f"},
+      {"1.9372085296386336e+02", ".Nan", ":8: M1.data: ", "found '.Nan'"},
+      {"1.9372085296386336e+02", "inf", ":8: M1.data: ", "found 'inf'"},
+      {"1.9372085296386336e+02", "1e999", ":8: M1.data: ", "expected a number"},
+      {"1.9372085296386336e+02", "wide", ":8: M1.data: ", "found 'wide'"},
+      {"1.9372085296386336e+02", "", ":7: M1.data: ", "9 numbers, found 8"},
+      {"1.9372085296386336e+02 0.", "1.9372085296386336e+02 0.5", ":6: M1: ", "the form fx 0 cx"},
+      {"1.9372085296386336e+02", "-193.", ":6: M1: ", "focal lengths from"},
+      {"1.9498008610933283e+02", "1e6", ":6: M1: ", "principal point"},
+      {d1, replaced(d1, "8", "7"), ":13: D1.data: ", "7 numbers, found 8"},
+      {d1, replaced(replaced(d1, "1<", "2<"), "8", "4"), ":12: D1: ", "expected 4, 5 or 8 coefficients"},
+      {"1.1664112259935457e+01", "1e7", ":12: D1: ", "coefficients within"},
+      {"9.9972472944430446e-01", "0.9", ":17: R1: ", "expected a rotation"},
+      {"1.0569958496093750e+02 -6.3686387251681153e+03", "1.0569958496093750e+02 0.",
+       ": P2: ", "to the right"},
+      {"-6.3686387251681153e+03", "-6e8", ": baseline in m: ", "another unit"},
+      {"0. 1.8039546837176670e+02 1.0102472305297852e+02 0.", "0. 180.0 1.0102472305297852e+02 0.",
+       ": P1, P2: ", "same focal length"},
+      {"<image_width>376", "<image_width>1", ":4: image_width: ", "from 32 to 8192"},
+      {"<image_width>376</image_width>", "", ": image_width: ", "found none"},
+      {"<image_width>", "<image_height>240</image_height><image_width>",
+       ":5: image_height: ", "expected once"},
+      {"P1 type_id", "P0 type_id", ":28: rig: ", "expected </P0>"},
+      {"<opencv_storage>", "<storage>", ":52: rig: ", "expected </storage>"},
+      {"</opencv_storage>", "</opencv_storage>more", ":52: rig: ", "nothing after"},
+      {"<?xml version=\"1.0\"?>", "<!DOCTYPE a [<!ENTITY b \"c\">]>", ":1: rig: ", "expected OpenCV's XML"},
+  };
+  for (const Fault& fault : faults) {
+    const auto file = folder.write("rig.xml", replaced(good, fault.from, fault.to));
+    expect_line(complaint(file, centimetres()), file.string() + fault.place, fault.expected);
+  }
+}
+
+TEST(CalibrationFaults, OpenCvYaml) {
+  const TemporaryFolder folder;
+  const std::string good =
+      "%YAML:1.0\n---\nM1: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [ 300., 0., 200., 0., "
+      "300., 150., 0., 0., 1. ]\n"
+      "M2: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [ 300., 0., 200., 0., 300., 150., 0., "
+      "0., "
+      "1. ]\n"
+      "D1: !!opencv-matrix\n   rows: 0\n   cols: 0\n   dt: d\n   data: []\n"
+      "D2: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: f\n   data: [ 0., 0., 0., 0., 0. ]\n"
+      "R: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [ 1., 0., 0., 0., 1., 0., 0., 0., 1. "
+      "]\n"
+      "T: !!opencv-matrix\n   rows: 3\n   cols: 1\n   dt: d\n   data: [ -0.2, 0., 0. ]\n";
+  CalibrationOptions options{1, 400, 300, std::nullopt};
+  const auto file = folder.path() / "rig.yml";
+  folder.write("rig.yml", good);
+  EXPECT_EQ(complaint(file, options), "");
+  expect_line(complaint(file, {}), file.string() + ": image size: ", "--size");
+  options.width_px = 7;
+  expect_line(complaint(file, options), file.string() + ": image size: ", "32 to 8192");
+  options.width_px = 400;
+  const std::vector<Fault> faults{
+      {"M1: !!opencv-matrix", "M1:", ":3: M1: ", "expected an OpenCV matrix"},
+      {"data: [ 300., 0., 200., 0., 300.", "data: [ .Nan, 0., 200., 0., 300.", ":7: M1.data: ", "'.Nan'"},
+      {"rows: 1\n   cols: 5", "rows: 5\n   cols: 3", ":22: D2.data: ", "15 numbers, found 5"},
+      {"[ -0.2, 0., 0. ]", "[ -0.2, 0., 0. ", ":", "expected YAML"},
+      {"[ -0.2, 0., 0. ]", "[ 0.2, 0., 0. ]", ": P2: ", "to the right"},
+      {"[ -0.2, 0., 0. ]", "[ 0., -0.2, 0. ]", ": P2: ", "to the right"},
+      {"[ -0.2, 0., 0. ]", "[ 0., 0., 0. ]", ":23: R: ", "side by side"},
+      {"[ -0.2, 0., 0. ]", "[ -20., 0., 0. ]", ": baseline in m: ", "another unit"},
+      {"T:", "t:", ": T: ", "expected this matrix, found none"},
+      {"M2:", "M1:", ":8: M1: ", "expected once, found again"},
+      {"M2:", "? [a]\n:", ":8: rig: ", "plain word"},
+      {"D1: !!opencv-matrix", "D1: &again [*again]\nD3: !!opencv-matrix", ":13: rig: ", "found an alias"},
+      {"%YAML:1.0\n---\n", "%YAML:1.0\n---\na: 1\n---\n", ":4: rig: ", "one YAML document"},
+  };
+  for (const Fault& fault : faults) {
+    folder.write("rig.yml", replaced(good, fault.from, fault.to));
+    expect_line(complaint(file, options), file.string() + fault.place, fault.expected);
+  }
+}
+
+TEST(CalibrationFaults, Euroc) {
+  const TemporaryFolder folder;
+  const std::string good = support::euroc_sensor_text(support::euroc_left(), 300, 201);
+  folder.write("cam1/sensor.yaml", support::euroc_sensor_text(support::euroc_right(), 302, 197));
+  const std::vector<Fault> faults{
+      {"T_BS:", "T_SB:", ":3: T_BS: ", "expected this key, found none"},
+      {"cols: 4", "cols: 3", ":6: T_BS.cols: ", "from 4 to 4"},
+      {"data: [", "data: [1, ", ":8: T_BS.data: ", "16 numbers, found 17"},
+      {"data: [", "data: [.inf, ", ":8: T_BS.data: ", "16 numbers"},
+      {", 0, 0, 0, 1]", ", 0, 0, 1, 1]", ":5: T_BS: ", "last row"},
+      {"-0.02", "200", ":5: T_BS: ", "within 10 m"},
+      {"[400, 300]", "[400]", ":10: resolution: ", "2 numbers, found 1"},
+      {"[400, 300]", "[400, 0]", ":10: resolution: ", "from 32 to 8192"},
+      {"[400, 300]", "[400.5, 300]", ":10: resolution: ", "whole numbers"},
+      {"[400, 300]", "[400, 301]", "", "the same as cam0's"},
+      {"pinhole", "omni", ":11: camera_model: ", "expected pinhole, found 'omni'"},
+      {"[300,", "[0,", ":12: intrinsics: ", "too short"},
+      {"radial-tangential", "equidistant", ":13: distortion_model: ", "found 'equidistant'"},
+      {", -0.0001]", "]", ":14: distortion_coefficients: ", "4 numbers, found 3"},
+      {"%YAML:1.0", "a: [", ":", "expected YAML"},
+  };
+  const std::string left_file = (folder.path() / "cam0" / "sensor.yaml").string();
+  for (const Fault& fault : faults) {
+    folder.write("cam0/sensor.yaml", replaced(good, fault.from, fault.to));
+    expect_line(complaint(folder.path(), {}), fault.place.empty() ? "" : left_file + fault.place,
+                fault.expected);
+  }
+  folder.write("cam0/sensor.yaml", good);
+  EXPECT_EQ(complaint(folder.path(), {}), "");
+  expect_line(complaint(folder.path(), {1, 376, 240, 5.0}),
+              folder.path().string() + ": image size: ", "400x300");
+  std::filesystem::remove_all(folder.path() / "cam1");
+  expect_line(complaint(folder.path(), {}), folder.path().string(), "expected a readable file");
+}
+
+TEST(CalibrationFaults, FilesAndFolders) {
+  const TemporaryFolder folder;
+  expect_line(complaint("/nonexistent", {}), "/nonexistent: rig: ", "expected a readable file");
+  expect_line(complaint(folder.path(), {}), folder.path().string() + ": M1: ", "M1.xml, M1.yml or M1.yaml");
+  expect_line(complaint("/dev/zero", {}), "/dev/zero: rig: ", "at most 1 MiB");
+  expect_line(complaint(folder.write("empty.xml", ""), {}), folder.path().string(),
+              "expected one YAML document");
+  folder.write("M1.xml", support::content_of(paper_xml));
+  folder.write("M1.yml", "M1: 3\n");
+  expect_line(complaint(folder.path(), {}), (folder.path() / "M1.yml").string() + ":1: M1: ", "M1.xml too");
+  expect_line(complaint(paper_xml, {}), paper_xml.string() + ": baseline in m: ", "found 35.3038");
+  expect_line(complaint(paper_xml, {0.01, {}, {}, 1e-3}),
+              paper_xml.string() + ": detection depth: ", "0.1 to 1000");
+  expect_line(complaint(paper_xml, {0.01, {}, {}, 500.0}),
+              paper_xml.string() + ": detection depth: ", "infinity");
+  expect_line(complaint(paper_xml, {0.01, 640, 480, {}}), paper_xml.string() + ": image size: ", "376x240");
+  expect_line(complaint(paper_xml, {-1, {}, {}, {}}), paper_xml.string() + ": unit: ", "above 0");
+}
+
+/// Bytes on which a parser may go on for ever: found by fuzzing.
+TEST(CalibrationFaults, StrayMarksEnd) {
+  const TemporaryFolder folder;
+  for (const char* text : {", w", ",a: [b", "} a", "]", "- a\n,", "a: 1\n, b", "a: b\n] c", ": : :"}) {
+    const std::string found = complaint(folder.write("stray.yaml", text), {});
+    expect_line(found, (folder.path() / "stray.yaml").string() + ":", "expected");
+  }
+}
+
+/// Nesting that overflows the stack of cv::FileStorage.
+TEST(CalibrationFaults, DeepNesting) {
+  const TemporaryFolder folder;
+  std::string xml = "<?xml version=\"1.0\"?><opencv_storage>", yaml = "%YAML:1.0\n---\nM1: ";
+  for (int i = 0; i < 100'000; ++i) {
+    xml += "<a>";
+    yaml += "[";
+  }
+  expect_line(complaint(folder.write("deep.xml", xml), {}), folder.path().string(), "at most 16");
+  expect_line(complaint(folder.write("deep.yml", yaml), {}), folder.path().string(), "expected");
+}
+
+TEST(CalibrationFaults, TruncatedAnywhere) {
+  const TemporaryFolder folder;
+  const std::string good = support::content_of(paper_xml);
+  for (std::size_t size = 0; size + 20 < good.size(); size += 13) {
+    const std::string found = complaint(folder.write("cut.xml", good.substr(0, size)), centimetres());
+    expect_line(found, (folder.path() / "cut.xml").string() + ":", "expected");
+  }
+}
+
+TEST(CalibrationFaults, AnyBytesEndInARigOrInOneLine) {
+  const TemporaryFolder folder;
+  const std::string good = support::content_of(paper_xml);
+  std::mt19937 random(1);
+  for (int round = 0; round < 2000; ++round) {
+    std::string text = good;
+    for (int i = 0; i < 4; ++i) text[random() % text.size()] = static_cast<char>(random() % 256);
+    const std::string found = complaint(folder.write("any.xml", text), centimetres());
+    const bool is_one_line =
+        std::none_of(found.begin(), found.end(), [](char c) { return c == '\n' || c == '\0'; });
+    EXPECT_TRUE(is_one_line) << found;
+    EXPECT_LT(found.size(), 1000u);
+  }
+}
+
+}  // namespace
+}  // namespace understory

@@ -1,0 +1,193 @@
+#include "perception/io/calibration_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/core/persistence.hpp>
+#include <string>
+
+#include "perception/pushbroom_stereo.hpp"
+#include "tests/perception/rigs.hpp"
+#include "tests/support/euroc_text.hpp"
+#include "tests/support/shared_data.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace understory {
+namespace {
+
+using support::TemporaryFolder;
+
+const std::filesystem::path rigs = std::filesystem::path(UNDERSTORY_SOURCE_DIR) / "models" / "rigs";
+
+CalibratedRig paper_rig(double depth_m = 4.8) {
+  CalibrationOptions options;
+  options.meters_per_unit = 0.01;
+  options.detection_depth_m = depth_m;
+  return read_calibrated_rig(rigs / "raw" / "paper.xml", options);
+}
+
+/// Figures of the original aircraft's records: nearest whole disparity and one pixel either way.
+TEST(CalibrationFile, ThePapersRigLooksWhereItsRecordsSay) {
+  const CalibratedRig read = paper_rig();
+  EXPECT_EQ(read.rig.name, "paper");
+  EXPECT_NEAR(read.rig.focal_px, 180.4, 0.01);
+  EXPECT_NEAR(read.rig.baseline_m, 0.353, 1e-4);
+  EXPECT_NEAR(read.rig.center_left_x_px, 197.5, 0.05);
+  EXPECT_NEAR(read.rig.center_right_x_px, 105.7, 0.01);
+  EXPECT_NEAR(read.rig.center_y_px, 101.0, 0.03);
+  EXPECT_EQ(read.calibration->left.distortion.size(), 8u);
+  EXPECT_EQ(read.calibration->right.distortion.size(), 8u);
+  const PushbroomStereo detector(read.rig, paper_rule());
+  EXPECT_NEAR(detector.detection_depth_m(), 4.81, 0.005);
+  EXPECT_NEAR(detector.one_pixel_interval().near_m, 4.47, 0.005);
+  EXPECT_NEAR(detector.one_pixel_interval().far_m, 5.20, 0.005);
+}
+
+TEST(CalibrationFile, TheLaterRigLooksWhereItsRecordsSay) {
+  const CalibratedRig read = read_calibrated_rig(rigs / "raw" / "long.xml", {});  // 10 m: nobody says
+  EXPECT_NEAR(read.rig.focal_px, 386.9, 0.05);
+  EXPECT_NEAR(read.rig.baseline_m, 0.334, 5e-4);
+  EXPECT_NEAR(read.calibration->left.camera_matrix(0, 0), 321, 0.5);
+  EXPECT_EQ(read.calibration->left.distortion.size(), 5u);
+  const PushbroomStereo detector(read.rig, paper_rule());
+  EXPECT_NEAR(detector.detection_depth_m(), 10.14, 0.005);
+  EXPECT_NEAR(detector.one_pixel_interval().near_m, 9.40, 0.005);
+  EXPECT_NEAR(detector.one_pixel_interval().far_m, 11.0, 0.05);
+}
+
+TEST(CalibrationFile, TheRecordsOwnFoldersSayTheSame) {
+  for (const auto& [folder, name, unit] : {std::tuple("rigs/calib-02-20-2014", "paper.xml", 0.01),
+                                           std::tuple("rigs/calib-odroid-cam1", "long.xml", 1.0)}) {
+    const auto path = support::shared_data(folder);
+    if (!path) GTEST_SKIP() << support::missing_data(folder);
+    CalibrationOptions options{unit, 376, 240, 5.0};
+    const CalibratedRig theirs = read_calibrated_rig(*path, options);
+    const CalibratedRig ours = read_calibrated_rig(rigs / "raw" / name, options);
+    EXPECT_EQ(theirs.rig.focal_px, ours.rig.focal_px);
+    EXPECT_EQ(theirs.rig.baseline_m, ours.rig.baseline_m);
+    EXPECT_EQ(theirs.calibration->right.distortion, ours.calibration->right.distortion);
+    EXPECT_EQ(theirs.calibration->right.camera_matrix, ours.calibration->right.camera_matrix);
+    EXPECT_EQ(theirs.calibration->left.rectification, ours.calibration->left.rectification);
+  }
+}
+
+TEST(CalibrationFile, RigFilesComeRectified) {
+  const CalibratedRig read = read_calibrated_rig(rigs / "paper.yaml", {});
+  EXPECT_FALSE(read.calibration);
+  EXPECT_EQ(read.rig.detection_depth_m, 4.8);
+  EXPECT_TRUE(read.rig.T_body_camera.isApprox(support::house_rig("paper.yaml").T_body_camera, 0));
+  CalibrationOptions options;
+  options.detection_depth_m = 3;
+  EXPECT_EQ(read_calibrated_rig(rigs / "paper.yaml", options).rig.detection_depth_m, 3);
+}
+
+void write_matrices(cv::FileStorage& storage, const StereoCalibration& calibration) {
+  storage << "M1" << cv::Mat(calibration.left.camera_matrix) << "D1"
+          << cv::Mat(calibration.left.distortion).t() << "R1" << cv::Mat(calibration.left.rectification)
+          << "P1" << cv::Mat(calibration.left.projection) << "M2" << cv::Mat(calibration.right.camera_matrix)
+          << "D2" << cv::Mat(calibration.right.distortion).t() << "R2"
+          << cv::Mat(calibration.right.rectification) << "P2" << cv::Mat(calibration.right.projection);
+}
+
+void expect_equal(const StereoCalibration& found, const StereoCalibration& expected) {
+  for (const auto& [one, other] : {std::pair(&found.left, &expected.left), {&found.right, &expected.right}}) {
+    EXPECT_EQ(one->camera_matrix, other->camera_matrix);
+    EXPECT_EQ(one->distortion, other->distortion);
+    EXPECT_EQ(one->rectification, other->rectification);
+    EXPECT_EQ(one->projection, other->projection);
+  }
+  EXPECT_EQ(found.width_px, expected.width_px);
+  EXPECT_EQ(found.height_px, expected.height_px);
+}
+
+/// OpenCV itself writes what we read, every bit of every number.
+TEST(CalibrationFile, ReadsWhatOpenCvWrites) {
+  const TemporaryFolder folder;
+  StereoCalibration calibration = *paper_rig().calibration;  // in metres by now
+  for (const char* name : {"one.xml", "one.yml", "one.yaml"}) {
+    cv::FileStorage storage((folder.path() / name).string(), cv::FileStorage::WRITE);
+    storage << "calibration_time"
+            << "Thu 20 Feb 2014, 12:00"
+            << "image_width" << 376 << "image_height" << 240 << "views" << std::vector<double>{1, 2, 3};
+    write_matrices(storage, calibration);
+    storage.release();
+    expect_equal(*read_calibrated_rig(folder.path() / name, {}).calibration, calibration);
+  }
+}
+
+TEST(CalibrationFile, ReadsFoldersOfOneMatrixAFile) {
+  const TemporaryFolder folder;
+  const StereoCalibration calibration = *paper_rig().calibration;
+  const cv::FileStorage all((rigs / "raw" / "paper.xml").string(), cv::FileStorage::READ);
+  for (const std::string name : {"M1", "D1", "R1", "P1", "M2", "D2", "R2", "P2"}) {
+    cv::Mat matrix;
+    all[name] >> matrix;  // so OpenCV reads the committed file, too
+    cv::FileStorage one((folder.path() / (name + ".xml")).string(), cv::FileStorage::WRITE);
+    one << name << matrix;
+  }
+  CalibrationOptions options{0.01, 376, 240, 4.8};
+  const CalibratedRig read = read_calibrated_rig(folder.path(), options);
+  expect_equal(*read.calibration, calibration);
+  EXPECT_EQ(read.rig.name, folder.path().filename().string());
+  EXPECT_EQ(read_calibrated_rig(folder.path() / "", options).rig.name, read.rig.name);
+}
+
+/// As OpenCV's stereo_calib sample leaves them; and with 14 coefficients, as cv::stereoCalibrate gives them.
+TEST(CalibrationFile, RectifiesWhereOnlyRotationAndTranslationAreKnown) {
+  const TemporaryFolder folder;
+  const StereoCalibration calibration = *paper_rig().calibration;
+  const cv::Matx33d R = calibration.right.rectification.t() * calibration.left.rectification;
+  const cv::Vec3d t_cm = calibration.right.rectification.t() * cv::Vec3d(-35.3, 0, 0);
+  cv::FileStorage intrinsics((folder.path() / "intrinsics.yml").string(), cv::FileStorage::WRITE);
+  cv::Mat left14 = cv::Mat::zeros(1, 14, CV_64F);
+  cv::Mat(calibration.left.distortion).reshape(0, 1).copyTo(left14.colRange(0, 8));
+  intrinsics << "M1" << cv::Mat(calibration.left.camera_matrix) << "D1" << left14 << "M2"
+             << cv::Mat(calibration.right.camera_matrix) << "D2" << cv::Mat(calibration.right.distortion);
+  intrinsics.release();
+  cv::FileStorage extrinsics((folder.path() / "extrinsics.yml").string(), cv::FileStorage::WRITE);
+  extrinsics << "R" << cv::Mat(R) << "T" << cv::Mat(t_cm);
+  extrinsics.release();
+  const CalibratedRig read = read_calibrated_rig(folder.path(), {0.01, 376, 240, 4.8});
+  EXPECT_EQ(read.calibration->left.distortion, calibration.left.distortion);
+  EXPECT_NEAR(read.rig.baseline_m, 0.353, 1e-9);
+  EXPECT_NEAR(read.rig.infinity_disparity_px(), 0, 1e-9);  // principal points alike
+  // Rectified axes: x along the baseline, whatever turn about it the two libraries' versions choose.
+  const cv::Vec3d x_right = read.calibration->right.rectification * t_cm / cv::norm(t_cm);
+  EXPECT_NEAR(x_right[0], -1, 1e-9);
+}
+
+TEST(CalibrationFile, ReadsEurocFoldersAndKeepsTheirBody) {
+  const TemporaryFolder folder;
+  folder.write("mav0/cam0/sensor.yaml", support::euroc_sensor_text(support::euroc_left(), 300, 201));
+  folder.write("mav0/cam1/sensor.yaml", support::euroc_sensor_text(support::euroc_right(), 302, 197));
+  for (const std::filesystem::path& path : {folder.path(), folder.path() / "mav0", folder.path() / "mav0/"}) {
+    const CalibratedRig read = read_calibrated_rig(path, {});
+    EXPECT_EQ(read.rig.name, folder.path().filename().string());
+    EXPECT_EQ(read.rig.width_px, 400);
+    EXPECT_EQ(read.rig.height_px, 300);
+    EXPECT_EQ(read.calibration->left.camera_matrix, cv::Matx33d(300, 0, 201, 0, 301, 148.5, 0, 0, 1));
+    EXPECT_EQ(read.calibration->right.distortion, (std::vector<double>{-0.28, 0.07, 0.0002, -0.0001}));
+    EXPECT_TRUE(read.calibration->T_body_left.isApprox(support::euroc_left(), 1e-12));
+    const Eigen::Vector3d between_body_m =
+        support::euroc_right().translation() - support::euroc_left().translation();
+    EXPECT_NEAR(read.rig.baseline_m, between_body_m.norm(), 1e-9);
+    // The rectified camera's x axis points to the right camera.
+    EXPECT_TRUE(read.rig.T_body_camera.linear().col(0).isApprox(between_body_m.normalized(), 1e-9));
+    EXPECT_TRUE(read.rig.T_body_camera.translation().isApprox(support::euroc_left().translation(), 1e-12));
+  }
+}
+
+TEST(CalibrationFile, ReadsARealEurocFolder) {
+  const std::string name = "stereo/euroc-v1_01";
+  const auto path = support::shared_data(name);
+  if (!path) GTEST_SKIP() << support::missing_data(name);
+  const CalibratedRig read = read_calibrated_rig(*path, {});
+  EXPECT_EQ(read.rig.width_px, 752);
+  EXPECT_EQ(read.rig.height_px, 480);
+  EXPECT_NEAR(read.rig.baseline_m, 0.110, 5e-4);  // as the MAV's makers give it: 11 cm
+  EXPECT_NEAR(read.rig.focal_px, 458, 25);        // near the raw cameras' own
+  // Cameras look along the IMU's z.
+  EXPECT_NEAR(read.rig.T_body_camera.linear()(2, 2), 1, 0.01);
+}
+
+}  // namespace
+}  // namespace understory

@@ -1,0 +1,167 @@
+#include "perception/io/image_sequence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "perception/io/euroc_images.hpp"
+#include "perception/io/image_names.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace understory {
+namespace {
+
+template <typename Read>
+std::string complaint(Read&& read) {
+  try {
+    read();
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+using Names = std::vector<std::string>;
+
+TEST(ImageNames, NumbersSortByValue) {
+  Names names{"b1", "a10", "a9", "a", "a09", "img_2_left", "img_10_left", "img_2"};
+  std::sort(names.begin(), names.end(), [](const auto& a, const auto& b) { return comes_before(a, b); });
+  EXPECT_EQ(names, (Names{"a", "a09", "a9", "a10", "b1", "img_2", "img_2_left", "img_10_left"}));
+}
+
+TEST(ImageNames, TimesAreToldByTheirForm) {
+  EXPECT_EQ(time_in_name("1403715273262142976"), 1403715273262142976);
+  EXPECT_EQ(time_in_name("1305031102.175304"), 1305031102175304000);
+  EXPECT_EQ(time_in_name("0.5"), 500'000'000);
+  for (const char* none :
+       {"000001", "left", "img_1403715273262142976", "1.", ".5", "1.2.3", "99999999999999999999"})
+    EXPECT_FALSE(time_in_name(none)) << none;
+}
+
+TEST(ImageNames, PairWhereNothingCanBeMissing) {
+  EXPECT_FALSE(first_unpaired({"a", "b"}, {"a", "b"}));
+  EXPECT_FALSE(first_unpaired({"left_1", "left_3"}, {"right_1", "right_3"}));
+  EXPECT_FALSE(first_unpaired({"img0", "img1"}, {"img2", "img3"}));
+  const auto lone = [](const Names& first, const Names& second) {
+    const auto found = first_unpaired(first, second);
+    return !found ? std::string("none") : (found->of_first ? first : second)[found->index];
+  };
+  EXPECT_EQ(lone({"1", "2", "3"}, {"1", "3"}), "2");
+  EXPECT_EQ(lone({"1", "3"}, {"1", "2", "3"}), "2");
+  EXPECT_EQ(lone({"1", "2", "3"}, {"1", "2"}), "3");
+  EXPECT_EQ(lone({"1", "2"}, {"2", "3"}), "1");  // overlapping numbers: one is missing at either end
+  EXPECT_EQ(lone({"1", "4"}, {"5", "6"}), "1");  // a gap
+  EXPECT_EQ(lone({"ann", "bob"}, {"ann", "cat"}), "bob");
+}
+
+TEST(ImageSequence, PairsFoldersInNumericalOrder) {
+  const support::TemporaryFolder folder;
+  for (const char* number : {"1", "2", "10"}) {
+    folder.write(std::string("l/img_") + number + ".png", "");
+    folder.write(std::string("r/img_") + number + ".PNG", "");
+  }
+  folder.write("l/notes.txt", "");
+  folder.write("l/.hidden.png", "");
+  const ImageSequence sequence = folder_sequence(folder.path() / "l", folder.path() / "r");
+  ASSERT_EQ(sequence.pairs.size(), 3u);
+  EXPECT_FALSE(sequence.timed);
+  EXPECT_EQ(sequence.pairs[1].left, folder.path() / "l/img_2.png");
+  EXPECT_EQ(sequence.pairs[2].right, folder.path() / "r/img_10.PNG");
+  EXPECT_EQ(sequence.pairs[2].t_ns, 0);
+}
+
+TEST(ImageSequence, TakesTimesFromNames) {
+  const support::TemporaryFolder folder;
+  for (const char* eye : {"l/", "r/"})
+    for (const char* time : {"9.75", "10.25"}) folder.write(std::string(eye) + time + ".png", "");
+  const ImageSequence sequence = folder_sequence(folder.path() / "l", folder.path() / "r");
+  ASSERT_TRUE(sequence.timed);
+  EXPECT_EQ(sequence.pairs[0].t_ns, 9'750'000'000);
+  EXPECT_EQ(sequence.pairs[1].t_ns, 10'250'000'000);
+  folder.write("l/9.8.png", "");
+  folder.write("r/9.8.png", "");  // a time after 9.75, but a number before 75: order and times disagree
+  EXPECT_NE(complaint([&] {
+              folder_sequence(folder.path() / "l", folder.path() / "r");
+            }).find("9.75.png: expected times"),
+            std::string::npos);
+}
+
+TEST(ImageSequence, SaysWhichImageHasNoPartner) {
+  const support::TemporaryFolder folder;
+  folder.write("l/1.png", "");
+  folder.write("l/2.png", "");
+  folder.write("r/1.png", "");
+  const auto pairing = [&] {
+    return complaint([&] { folder_sequence(folder.path() / "l", folder.path() / "r"); });
+  };
+  EXPECT_EQ(pairing(), (folder.path() / "l/2.png").string() + ": expected its partner in " +
+                           (folder.path() / "r").string() + ", found none (2 left images, 1 right)");
+  std::filesystem::create_directories(folder.path() / "empty");
+  EXPECT_NE(complaint([&] {
+              folder_sequence(folder.path() / "empty", folder.path() / "r");
+            }).find("expected images"),
+            std::string::npos);
+  EXPECT_NE(complaint([&] {
+              folder_sequence(folder.path() / "none", folder.path() / "r");
+            }).find("readable folder"),
+            std::string::npos);
+  EXPECT_NE(complaint([&] {
+              single_pair(folder.path() / "l/1.png", folder.path() / "r/2.png");
+            }).find("r/2.png: expected"),
+            std::string::npos);
+}
+
+struct Euroc : testing::Test {
+  support::TemporaryFolder folder;
+  void write(const std::string& camera, const std::vector<std::string>& times) {
+    std::string list = "#timestamp [ns],filename\r\n";
+    for (const std::string& time : times) {
+      list += time + "," + time + ".png\r\n";
+      folder.write("mav0/" + camera + "/data/" + time + ".png", "");
+    }
+    folder.write("mav0/" + camera + "/data.csv", list);
+  }
+};
+
+TEST_F(Euroc, PairsByTimeAndCountsTheRest) {
+  write("cam0", {"100", "200", "300", "400"});
+  write("cam1", {"100", "300", "350", "400"});
+  for (const auto& place : {folder.path(), folder.path() / "mav0"}) {
+    const ImageSequence sequence = euroc_sequence(place);
+    ASSERT_EQ(sequence.pairs.size(), 3u);
+    EXPECT_TRUE(sequence.timed);
+    EXPECT_EQ(sequence.unpaired, 2);
+    EXPECT_EQ(sequence.pairs[1].t_ns, 300);
+    EXPECT_EQ(sequence.pairs[1].right, folder.path() / "mav0/cam1/data/300.png");
+  }
+}
+
+TEST_F(Euroc, RefusesWhatIsMissing) {
+  EXPECT_NE(complaint([&] { euroc_sequence(folder.path()); }).find("expected a EuRoC folder"),
+            std::string::npos);
+  write("cam0", {"100"});
+  write("cam1", {"200"});
+  EXPECT_NE(complaint([&] { euroc_sequence(folder.path()); }).find("found none"), std::string::npos);
+  write("cam1", {"100"});
+  std::filesystem::remove(folder.path() / "mav0/cam1/data/100.png");
+  EXPECT_NE(complaint([&] { euroc_sequence(folder.path()); }).find("cam1/data/100.png: expected the image"),
+            std::string::npos);
+  std::filesystem::remove(folder.path() / "mav0/cam1/data.csv");
+  EXPECT_NE(complaint([&] { euroc_sequence(folder.path()); }).find("cam1/data.csv: expected a readable"),
+            std::string::npos);
+}
+
+TEST(EurocImages, NamesTheLineOfEveryFault) {
+  const auto reading = [](const std::string& text) {
+    return complaint([&] { parse_euroc_images(text, "d"); });
+  };
+  EXPECT_EQ(reading("1,a.png\n2,b.png"), "none");
+  for (const char* broken : {"2", "2,", "x,b.png", "2,b.png,c", "-2,b.png", "2,../b.png", "2.5,b.png"})
+    EXPECT_EQ(reading("1,a.png\n" + std::string(broken)).find("d:2: expected 't,file name'"), 0u) << broken;
+  EXPECT_EQ(reading("2,a.png\n2,b.png"), "d:2: expected times that increase from line to line");
+  EXPECT_EQ(reading("#t,name\n"), "d: expected at least one image, found none");
+}
+
+}  // namespace
+}  // namespace understory

@@ -1,0 +1,198 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "perception/io/hit_files.hpp"
+#include "perception/pushbroom_stereo.hpp"
+#include "tests/perception/rigs.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/written_pairs.hpp"
+
+/// understory detect on images whose content is known.
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Detect : testing::Test {
+  support::TemporaryFolder folder;
+  StereoRig rig = support::house_rig("paper.yaml");
+  std::string left = (folder.path() / "left").string(), right = (folder.path() / "right").string();
+  std::string out = (folder.path() / "out").string();
+
+  std::string folders() const { return left + " " + right; }
+  std::string to_out() const { return " --rig paper --out " + out; }
+  std::string found(const char* file) const { return support::content_of(fs::path(out) / file); }
+
+  /// The same pairs in memory, no file and no command between.
+  std::vector<FrameHits> expected(const std::vector<StereoFrame>& frames, const PushbroomConfig& rule) const {
+    PushbroomStereo detector(rig, rule);
+    std::vector<FrameHits> all;
+    for (const StereoFrame& frame : frames)
+      all.push_back({static_cast<std::int64_t>(all.size()), frame.t_ns, detector.detect(frame)});
+    return all;
+  }
+};
+
+std::size_t count_of(const std::vector<FrameHits>& frames) {
+  std::size_t count = 0;
+  for (const FrameHits& frame : frames) count += frame.hits.size();
+  return count;
+}
+
+std::vector<Eigen::Vector3d> positions_in(const std::string& ply) {
+  std::istringstream text(ply.substr(ply.find("end_header\n") + 11));
+  std::vector<Eigen::Vector3d> positions;
+  for (std::string line; std::getline(text, line);) {
+    Eigen::Vector3d& p = positions.emplace_back();
+    std::istringstream(line) >> p.x() >> p.y() >> p.z();
+  }
+  return positions;
+}
+
+TEST_F(Detect, FoldersGiveTheHitsThatThePairsGiveInMemory) {
+  std::vector<StereoFrame> frames = support::planes(rig, 2);
+  frames.push_back(support::planes(rig, 1, 1.5).front());
+  support::write_pairs(folder.path(), frames, {"1", "2", "10"});
+  for (const bool is_paper : {true, false}) {
+    const auto hits = expected(frames, is_paper ? paper_rule() : robust_rule());
+    ASSERT_GT(count_of(hits), 100u);
+    const auto outcome = support::understory(std::string("detect ") + folders() + to_out() +
+                                             (is_paper ? " --rule paper" : ""));
+    EXPECT_EQ(outcome.status, 0) << outcome.text;
+    EXPECT_EQ(found("points.csv"), hits_to_csv(hits));
+    EXPECT_EQ(found("points.ply"), hits_to_ply(hits));
+    EXPECT_NE(outcome.text.find(std::to_string(count_of(hits)) + ", "), std::string::npos) << outcome.text;
+    EXPECT_TRUE(fs::exists(fs::path(out) / "overlays/000002.png"));
+    EXPECT_FALSE(fs::exists(fs::path(out) / "map.ply"));
+  }
+  const auto one = support::understory("detect " + left + "/2.png " + right + "/2.png" + to_out());
+  EXPECT_EQ(one.status, 0) << one.text;
+  EXPECT_EQ(found("points.csv"), hits_to_csv(expected({frames[1]}, robust_rule())));
+  EXPECT_FALSE(fs::exists(fs::path(out) / "overlays/000001.png"));  // of the run before
+}
+
+TEST_F(Detect, AVideoGivesTheSameHitsAtItsTimes) {
+  std::vector<StereoFrame> frames = support::planes(rig, 3);
+  const std::string video = (folder.path() / "both.mkv").string();
+  cv::VideoWriter writer(video, cv::CAP_FFMPEG, cv::VideoWriter::fourcc('F', 'F', 'V', '1'), 20,
+                         cv::Size(2 * rig.width_px, rig.height_px));  // a codec without loss
+  if (!writer.isOpened()) GTEST_SKIP() << "FFmpeg has no FFV1 encoder here";
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    cv::Mat both, picture;
+    cv::hconcat(frames[i].left, frames[i].right, both);
+    cv::cvtColor(both, picture, cv::COLOR_GRAY2BGR);
+    writer.write(picture);
+    frames[i].t_ns = static_cast<std::int64_t>(i) * 50'000'000;
+  }
+  writer.release();
+  const auto outcome = support::understory("detect " + video + " --video" + to_out());
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  EXPECT_EQ(found("points.csv"), hits_to_csv(expected(frames, robust_rule())));
+  cv::VideoCapture film((fs::path(out) / "overlay.mp4").string(), cv::CAP_FFMPEG);
+  EXPECT_EQ(film.get(cv::CAP_PROP_FRAME_COUNT), 3);
+  EXPECT_EQ(film.get(cv::CAP_PROP_FRAME_WIDTH), 2 * rig.width_px);
+  EXPECT_FALSE(fs::exists(fs::path(out) / "overlays"));
+}
+
+TEST_F(Detect, PosesCarryHitsIntoTheWorld) {
+  // A wall ahead, met at the detection depth with the camera level: every point lies in one plane.
+  const std::vector<StereoFrame> frames = support::planes(rig, 2);
+  support::write_pairs(folder.path(), frames, {"100.50", "101.00"});
+  const double pitch_down_rad = 10.97 * std::numbers::pi / 180;  // as the rig is mounted
+  const Eigen::Quaterniond q(Eigen::AngleAxisd(-pitch_down_rad, Eigen::Vector3d::UnitY()));
+  std::ostringstream poses;
+  poses.precision(12);
+  for (const double t_s : {100.0, 101.0})  // 2 m/s along x
+    poses << t_s << " " << 2 * (t_s - 100) << " 5 3 " << q.x() << " " << q.y() << " " << q.z() << " " << q.w()
+          << "\n";
+  const auto outcome =
+      support::understory("detect " + folders() + to_out() + " --set map.voxel_m=0 --poses " +
+                          folder.write("poses.txt", poses.str()).string());
+  ASSERT_EQ(outcome.status, 0) << outcome.text;
+  const std::vector<Eigen::Vector3d> points = positions_in(found("map.ply"));
+  const auto hits = expected(frames, robust_rule());
+  ASSERT_EQ(points.size(), count_of(hits));
+  const double depth_m = PushbroomStereo(rig, robust_rule()).detection_depth_m();
+  const Eigen::Vector3d camera = q * Eigen::Vector3d(0.10, 0.1765, 0);  // the paper rig's left camera
+  std::size_t i = 0;
+  for (const FrameHits& frame : hits) {
+    const double flown_m = frame.frame == 0 ? 1.0 : 2.0;
+    for (const StereoHit& hit : frame.hits) {
+      const Eigen::Vector3d expected_world(flown_m + camera.x() + depth_m,
+                                           5 + camera.y() - hit.position_camera.x(),
+                                           3 + camera.z() - hit.position_camera.y());
+      EXPECT_LT((points[i++] - expected_world).norm(), 2e-4);
+    }
+  }
+}
+
+TEST_F(Detect, FramesOutsideThePosesAreReportedAndLeftOutOfTheMap) {
+  const std::vector<StereoFrame> frames = support::planes(rig, 3);
+  support::write_pairs(folder.path(), frames, {"1.0", "2.0", "3.0"});
+  const std::string poses =
+      folder.write("poses.csv", "1500000000,0,0,0,1,0,0,0\n2500000000,0,0,0,1,0,0,0\n").string();
+  const auto outcome =
+      support::understory("detect " + folders() + to_out() + " --set map.voxel_m=0 --poses " + poses);
+  ASSERT_EQ(outcome.status, 0) << outcome.text;
+  EXPECT_NE(outcome.text.find("2 frames lie outside the poses' time"), std::string::npos) << outcome.text;
+  EXPECT_EQ(positions_in(found("map.ply")).size(), expected(frames, robust_rule())[1].hits.size());
+  const std::string later = folder.write("later.csv", "9500000000,0,0,0,1,0,0,0\n").string();
+  support::expect_refusal("detect " + folders() + to_out() + " --poses " + later,
+                          "later.csv: expected poses at the images' time, 1.000 to 3.000 s, found 9.500");
+}
+
+TEST_F(Detect, BadInputIsOneLineAndLeavesNoResult) {
+  support::write_pairs(folder.path(), support::planes(rig, 3), {"a1", "a2", "a3"});
+  const std::string detect = "detect " + folders() + to_out();
+  const auto refuse = [](const std::string& arguments, const std::string& part) {
+    support::expect_refusal(arguments, part);
+  };
+  refuse("detect", "INPUT");
+  refuse("detect " + folders() + " --out " + out, "expected a rig (--rig)");
+  refuse("detect " + folders() + " --rig none --out " + out, "none: expected a rig file");
+  refuse(detect + " --size 752", "--size 752: expected WIDTHxHEIGHT");
+  refuse(detect + " --depth 4000", "depth");
+  refuse(detect + " --rule best", "--rule");
+  refuse(detect + " --unit inch", "--unit");
+  refuse(detect + " --set pushbroom.edges=3", "pushbroom.edges: expected a known key");
+  refuse(detect + " --poses " + folder.write("p.txt", "0 0 0 0 0 0 0 1\n1 0 0\n").string(),
+         "p.txt:2: expected");
+  refuse(detect + " --poses " + folder.write("q.txt", "0 0 0 0 0 0 0 1\n").string(),
+         "expected images with times");
+  refuse("detect " + folders() + " --rig paper --out " + folder.write("taken", "").string() + "/out",
+         "expected a writable output");
+  refuse("detect " + left + " " + (folder.path() / "none").string() + to_out(),
+         "none: found no such file or folder");
+  cv::imwrite(left + "/a1.png", cv::Mat(rig.height_px, rig.width_px, CV_16UC1, cv::Scalar(5)));
+  refuse(detect, "left/a1.png: expected an 8-bit gray image, found 16-bit gray");
+  cv::imwrite(left + "/a1.png", cv::Mat(480, 752, CV_8UC1, cv::Scalar(5)));
+  cv::imwrite(right + "/a1.png", cv::Mat(480, 752, CV_8UC1, cv::Scalar(5)));
+  refuse(detect, "left/a1.png: expected 376x240 as");
+  fs::remove(right + "/a2.png");
+  refuse(detect, "left/a2.png: expected its partner in");
+  EXPECT_FALSE(fs::exists(fs::path(out)));
+}
+
+TEST_F(Detect, AFaultHalfWayLeavesNothingThatLooksWhole) {
+  support::write_pairs(folder.path(), support::planes(rig, 3), {"a1", "a2", "a3"});
+  ASSERT_EQ(support::understory("detect " + folders() + to_out()).status, 0);
+  cv::imwrite(right + "/a3.png", cv::Mat(rig.height_px, rig.width_px, CV_8UC3, cv::Scalar(5)));
+  for (const char* video : {"", " --video"})
+    support::expect_refusal("detect " + folders() + to_out() + video,
+                            "right/a3.png: expected an 8-bit gray image");
+  EXPECT_TRUE(fs::is_empty(out));  // nor anything of the run before
+  fs::create_directories(fs::path(out) / "overlays");
+  std::ofstream(fs::path(out) / "overlays/mine.txt") << "keep";
+  support::expect_refusal("detect " + left + "/a1.png " + right + "/a1.png" + to_out(), "found mine.txt");
+  EXPECT_TRUE(fs::exists(fs::path(out) / "overlays/mine.txt"));
+}
+
+}  // namespace
+}  // namespace understory
