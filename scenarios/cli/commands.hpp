@@ -26,6 +26,7 @@ void add_fly_command(CLI::App& app, Command& chosen);
 void add_evaluate_command(CLI::App& app, Command& chosen);
 void add_rig_command(CLI::App& app, Command& chosen);
 void add_detect_command(CLI::App& app, Command& chosen);
+void add_bench_command(CLI::App& app, Command& chosen);
 
 /// The scenario's name and --set, as every command that flies has them.
 struct ScenarioArguments {

@@ -32,6 +32,7 @@ int run(int argc, char** argv) {
   add_evaluate_command(app, chosen);
   add_rig_command(app, chosen);
   add_detect_command(app, chosen);
+  add_bench_command(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

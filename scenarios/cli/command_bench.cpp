@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "perception/io/stereo_recording.hpp"
+#include "scenarios/bench/bench.hpp"
+#include "scenarios/bench/stereo_scenes.hpp"
+#include "scenarios/cli/commands.hpp"
+#include "scenarios/config_tree.hpp"
+#include "scenarios/file_output.hpp"
+
+namespace understory {
+namespace {
+
+struct BenchArguments : CalibrationArguments {
+  std::vector<std::string> inputs;
+  std::string rig;  // empty: the later real rig, or the inputs' own
+  std::string json;
+  int pairs = 64;
+  int rounds = 20;
+};
+
+std::vector<StereoFrame> recorded(const BenchArguments& arguments) {
+  StereoRecording recording({arguments.inputs.begin(), arguments.inputs.end()});
+  std::vector<StereoFrame> frames;
+  StereoFrame frame;
+  while (static_cast<int>(frames.size()) < arguments.pairs && recording.read(frame))
+    frames.push_back({frame.t_ns, frame.left.clone(), frame.right.clone()});
+  return frames;
+}
+
+int run_bench(const BenchArguments& arguments) {
+  std::filesystem::path rig_file = arguments.rig;
+  if (rig_file.empty())
+    rig_file = arguments.inputs.empty() ? project_root() / "models" / "rigs" / "raw" / "long.xml"
+                                        : std::filesystem::path(arguments.inputs.front());
+  CalibratedRig rig;
+  std::vector<StereoFrame> frames;
+  try {
+    rig = read_calibrated_rig(arguments.rig.empty() ? rig_file : rig_path(arguments.rig),
+                              calibration_options(arguments));
+    if (!arguments.inputs.empty()) frames = recorded(arguments);
+  } catch (const std::runtime_error& error) {
+    throw ScenarioError(error.what());
+  }
+  if (frames.empty()) frames = stereo_scenes(rig, arguments.pairs, 1);
+  if (frames.front().left.cols != rig.rig.width_px || frames.front().left.rows != rig.rig.height_px)
+    throw ScenarioError(fmt::format("{}: expected images of {}x{}, as the rig has them",
+                                    arguments.inputs.front(), rig.rig.width_px, rig.rig.height_px));
+  BenchOptions options;
+  options.rounds = arguments.rounds;
+  if (isatty(STDOUT_FILENO) == 1)
+    options.on_progress = [](int round, int rounds) {
+      fmt::print("\r\033[Kround {} of {}", round + 1, rounds);
+      std::fflush(stdout);
+    };
+  const std::vector<BenchRow> rows = bench_detectors(rig, frames, options);
+  if (isatty(STDOUT_FILENO) == 1) fmt::print("\r\033[K");
+  fmt::print("{} {} pairs, {}x{}, rig {}, looking {:.2f} m ahead\n{}", frames.size(),
+             arguments.inputs.empty() ? "rendered" : "recorded", rig.rig.width_px, rig.rig.height_px,
+             rig.rig.name, rig.rig.detection_depth_m, to_table(rows));
+  if (!arguments.json.empty()) write_whole_file(arguments.json, to_json(rows));
+  return 0;
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app, Command& chosen) {
+  const auto arguments = std::make_shared<BenchArguments>();
+  CLI::App* command = app.add_subcommand("bench", "time the detector against OpenCV's remap and matchers");
+  command->add_option("INPUT", arguments->inputs,
+                      "recorded pairs, as for detect (default: rendered pairs, none twice)");
+  command->add_option("--rig", arguments->rig,
+                      "as for rig (default: the long rig's raw cameras, or INPUT's own)");
+  add_calibration_options(*command, *arguments);
+  command->add_option("--pairs", arguments->pairs, "how many")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 10000));
+  command->add_option("--rounds", arguments->rounds, "over all pairs")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--json", arguments->json, "also write the rows there");
+  command->callback([arguments, &chosen] { chosen = [arguments] { return run_bench(*arguments); }; });
+}
+
+}  // namespace understory

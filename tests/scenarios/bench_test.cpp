@@ -1,0 +1,50 @@
+#include "scenarios/bench/bench.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+
+#include "perception/pushbroom_stereo.hpp"
+#include "perception/rectify.hpp"
+#include "scenarios/bench/stereo_scenes.hpp"
+
+namespace understory {
+namespace {
+
+CalibratedRig long_rig() { return read_calibrated_rig(UNDERSTORY_SOURCE_DIR "/models/rigs/raw/long.xml", {}); }
+
+TEST(StereoScenes, ShowTextureAtTheDetectionDepthAndNeverTheSameTwice) {
+  const CalibratedRig rig = long_rig();
+  const std::vector<StereoFrame> frames = stereo_scenes(rig, 4, 1);
+  PushbroomConfig config = robust_rule();
+  PushbroomStereo detector(*rig.calibration, rig.rig.detection_depth_m, config);
+  std::size_t hits = 0;
+  for (const StereoFrame& frame : frames) hits += detector.detect(frame).size();
+  EXPECT_GT(hits, 10u);  // both eyes see one world
+  EXPECT_GT(cv::norm(frames[0].left, frames[1].left, cv::NORM_L1), 1e5);
+  EXPECT_GT(cv::norm(frames[0].left, frames[0].right, cv::NORM_L1), 1e5);
+  const std::vector<StereoFrame> again = stereo_scenes(rig, 1, 1);
+  EXPECT_EQ(cv::norm(again[0].right, frames[0].right, cv::NORM_L1), 0);
+}
+
+TEST(Bench, HasARowForEachClaimWithItsYardstick) {
+  const CalibratedRig rig = long_rig();
+  const std::vector<BenchRow> rows = bench_detectors(rig, stereo_scenes(rig, 2, 1), {.rounds = 1});
+  const auto list = nlohmann::json::parse(to_json(rows));
+  ASSERT_EQ(list.size(), rows.size());
+  int with_ratio = 0;
+  for (const auto& row : list) {
+    EXPECT_GT(row["median_ms"].get<double>(), 0);
+    EXPECT_LE(row["median_ms"].get<double>(), row["p99_ms"].get<double>());
+    EXPECT_GE(row["threads"].get<int>(), 1);
+    if (row["yardstick"].is_null()) continue;
+    ++with_ratio;
+    EXPECT_GT(row["ratio"].get<double>(), 0) << row["name"];
+    EXPECT_NE(to_json(rows).find("\"name\": " + row["yardstick"].dump()), std::string::npos);
+  }
+  EXPECT_EQ(with_ratio, static_cast<int>(rows.size()) - 2);  // remap and StereoBM are the yardsticks
+}
+
+}  // namespace
+}  // namespace understory
