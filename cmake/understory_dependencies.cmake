@@ -12,6 +12,9 @@ target_link_libraries(opencv_core_parts INTERFACE opencv_core opencv_imgproc ope
 add_library(opencv_file_parts INTERFACE)      # images and videos, for readers and recorders
 target_link_libraries(opencv_file_parts INTERFACE opencv_core_parts opencv_imgcodecs opencv_videoio)
 
+find_package(TBB REQUIRED)
+find_package(hwy REQUIRED)
+
 # OMPL_LIBRARIES also names Boost parts that nothing here calls: keep libompl alone.
 find_package(ompl REQUIRED)
 list(FILTER OMPL_LIBRARIES INCLUDE REGEX "libompl\\.so")
@@ -30,4 +33,5 @@ if(UNDERSTORY_SIM)
 endif()
 if(UNDERSTORY_TESTS)
   find_package(GTest REQUIRED)
+  find_package(rapidcheck REQUIRED)
 endif()

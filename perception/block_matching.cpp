@@ -23,18 +23,18 @@ BlockMatching::BlockMatching(const StereoRig& rig, const BlockMatchingConfig& co
   matcher_->setSpeckleRange(config.speckle_range);
 }
 
-std::vector<StereoHit> BlockMatching::detect(const StereoFrame& frame) {
+const std::vector<StereoHit>& BlockMatching::detect(const StereoFrame& frame) {
   view_of(frame.left, rig_);  // for their assertions
   view_of(frame.right, rig_);
   matcher_->compute(frame.left, frame.right, disparity_);
-  std::vector<StereoHit> hits;
+  hits_.clear();
   for (int row_px = 0; row_px + config_.cell_px <= rig_.height_px; row_px += config_.cell_px)
     for (int column_px = 0; column_px + config_.cell_px <= rig_.width_px; column_px += config_.cell_px)
-      add_cell(column_px, row_px, hits);
-  return hits;
+      add_cell(column_px, row_px);
+  return hits_;
 }
 
-void BlockMatching::add_cell(int column_px, int row_px, std::vector<StereoHit>& hits) {
+void BlockMatching::add_cell(int column_px, int row_px) {
   cell_.clear();
   for (int v = row_px; v < row_px + config_.cell_px; ++v) {
     const auto* row = disparity_.ptr<std::int16_t>(v);
@@ -56,7 +56,7 @@ void BlockMatching::add_cell(int column_px, int row_px, std::vector<StereoHit>& 
   const double depth_m = rig_.depth_m(hit.disparity_px), center_px = 0.5 * (config_.cell_px - 1);
   hit.position_camera = {(column_px + center_px - rig_.center_left_x_px) * depth_m / rig_.focal_px,
                          (row_px + center_px - rig_.center_y_px) * depth_m / rig_.focal_px, depth_m};
-  hits.push_back(hit);
+  hits_.push_back(hit);
 }
 
 }  // namespace understory

@@ -47,10 +47,10 @@ void visit_fields(Visitor& visit, BlockMatchingConfig& config) {
 class BlockMatching : public ObstacleDetector {
  public:
   BlockMatching(const StereoRig& rig, const BlockMatchingConfig& config);
-  std::vector<StereoHit> detect(const StereoFrame& frame) override;
+  const std::vector<StereoHit>& detect(const StereoFrame& frame) override;
 
  private:
-  void add_cell(int column_px, int row_px, std::vector<StereoHit>& hits);
+  void add_cell(int column_px, int row_px);
 
   StereoRig rig_;
   BlockMatchingConfig config_;
@@ -58,6 +58,7 @@ class BlockMatching : public ObstacleDetector {
   cv::Ptr<cv::StereoBM> matcher_;
   cv::Mat disparity_;  // CV_16S, sixteenths of a pixel
   std::vector<std::int16_t> cell_;
+  std::vector<StereoHit> hits_;
 };
 
 }  // namespace understory

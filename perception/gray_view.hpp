@@ -14,6 +14,11 @@ struct GrayView {
   int height_px = 0;
 
   const std::uint8_t* row(int row_px) const { return data + row_px * stride; }
+  /// Whether `count` bytes from (column, row) on lie inside the image's memory, following rows included: what
+  /// a vector load needs to know.
+  bool can_read(int column_px, int row_px, int count) const {
+    return row_px * stride + column_px + count <= (height_px - 1) * stride + width_px;
+  }
 };
 
 }  // namespace understory

@@ -22,13 +22,11 @@ bool has_company(const std::vector<StereoHit>& hits, std::size_t index, int leas
 
 }  // namespace
 
-std::vector<StereoHit> without_isolated(const std::vector<StereoHit>& hits, int least_points,
-                                        double radius_m) {
-  std::vector<StereoHit> kept;
-  kept.reserve(hits.size());
+void without_isolated(const std::vector<StereoHit>& hits, int least_points, double radius_m,
+                      std::vector<StereoHit>& kept) {
+  kept.clear();
   for (std::size_t index = 0; index < hits.size(); ++index)
     if (has_company(hits, index, least_points, radius_m)) kept.push_back(hits[index]);
-  return kept;
 }
 
 }  // namespace understory

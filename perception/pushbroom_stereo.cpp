@@ -1,5 +1,7 @@
 #include "perception/pushbroom_stereo.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -12,18 +14,6 @@ namespace understory {
 namespace {
 
 int whole(double pixels) { return static_cast<int>(std::lround(pixels)); }
-
-UniquenessTest uniqueness_test(const StereoRig& rig, const PushbroomConfig& config, int detection_px) {
-  const int infinity_px = whole(rig.infinity_disparity_px());
-  const int nearest_px = static_cast<int>(std::floor(rig.disparity_px(config.uniqueness_least_depth_m)));
-  return {detection_px, std::min(infinity_px, detection_px), std::max(nearest_px, detection_px),
-          config.uniqueness_ratio};
-}
-
-int sum_of_block_columns(const std::vector<std::uint16_t>& sums, int column_px) {
-  const std::uint16_t* first = sums.data() + column_px;
-  return first[0] + first[1] + first[2] + first[3] + first[4];
-}
 
 }  // namespace
 
@@ -40,78 +30,105 @@ PushbroomConfig robust_rule() {
 }
 
 PushbroomStereo::PushbroomStereo(const StereoRig& rig, const PushbroomConfig& config)
-    : rig_(rig),
-      config_(config),
-      disparity_px_(whole(rig.disparity_px(rig.detection_depth_m))),
-      infinity_px_(whole(rig.infinity_disparity_px())),
-      depth_m_(rig.depth_m(disparity_px_)),
-      score_limit_units_(score_limit_units(config.score_limit)),
-      uniqueness_(uniqueness_test(rig, config, disparity_px_)) {
-  assert_always(disparity_px_ > rig.infinity_disparity_px() + 1,
-                "detection depth within a pixel of infinity");
-  assert_always(std::abs(disparity_px_) + block_px <= rig.width_px,
-                "detection disparity wider than the image");
-  assert_always(config.stride_px > 0 && config.invariance_row_step_px > 0, "strides must be positive");
-  window_ = {config.invariance_columns_px, config.invariance_rows_px, config.invariance_row_step_px,
-             config.least_edge_sum, score_limit_units(config.invariance_score_limit)};
-}
-
-DepthInterval PushbroomStereo::one_pixel_interval() const {
-  return {rig_.depth_m(disparity_px_ + 1), rig_.depth_m(disparity_px_ - 1)};
-}
-
-std::vector<StereoHit> PushbroomStereo::detect(const StereoFrame& frame) {
-  const GrayView left = view_of(frame.left, rig_), right = view_of(frame.right, rig_);
-  edge_map(left, left_edges_);
-  edge_map(right, right_edges_);
-  std::vector<StereoHit> hits;
-  const int last_row_px = std::min(config_.last_row_px, rig_.height_px - block_px);
-  for (int row_px = 0; row_px <= last_row_px; row_px += config_.stride_px)
-    detect_row(left, right, row_px, hits);
-  if (config_.isolation)
-    return without_isolated(hits, config_.isolation_least_points, config_.isolation_radius_m);
-  return hits;
-}
-
-void PushbroomStereo::detect_row(const GrayView& left, const GrayView& right, int row_px,
-                                 std::vector<StereoHit>& hits) {
-  column_sums(view_of(left_edges_, left.width_px, left.height_px), row_px, left_sums_);
-  column_sums(view_of(right_edges_, right.width_px, right.height_px), row_px, right_sums_);
-  // Both the block and its partner at column - disparity must lie inside their images.
-  const int first = std::max(0, disparity_px_);
-  const int last = left.width_px - block_px + std::min(0, disparity_px_);
-  for (int column_px = first; column_px <= last; column_px += config_.stride_px) {
-    const int left_edge_sum = sum_of_block_columns(left_sums_, column_px);
-    if (left_edge_sum < config_.least_edge_sum) continue;
-    const int right_column_px = column_px - disparity_px_;
-    const int right_edge_sum = sum_of_block_columns(right_sums_, right_column_px);
-    if (right_edge_sum < config_.least_edge_sum) continue;
-    const int sad = block_sad(left.row(row_px) + column_px, left.stride, right.row(row_px) + right_column_px,
-                              right.stride);
-    if (!scores_below(sad, left_edge_sum + right_edge_sum, score_limit_units_)) continue;
-    if (!passes_filters(left, right, column_px, row_px, left_edge_sum)) continue;
-    hits.push_back(hit_at(column_px, row_px, sad, left_edge_sum + right_edge_sum));
+    : rig_(rig), config_(config), infinity_px_(whole(rig.infinity_disparity_px())) {
+  std::vector<double> depths_m = config.depths_m;
+  if (depths_m.empty()) depths_m.push_back(rig.detection_depth_m);
+  for (const double asked_m : depths_m) {
+    const int px = whole(rig.disparity_px(asked_m));
+    assert_always(px > rig.infinity_disparity_px() + 1, "detection depth within a pixel of infinity");
+    depths_.push_back({px, rig.depth_m(px), {rig.depth_m(px + 1), rig.depth_m(px - 1)}});
   }
+  assert_always(config.stride_px > 0 && config.invariance_row_step_px > 0, "strides must be positive");
+  for (int i = 0; i < config.threads; ++i) bands_.push_back({PushbroomKernel(block_rule()), {}, {}});
 }
 
-bool PushbroomStereo::passes_filters(const GrayView& left, const GrayView& right, int column_px, int row_px,
-                                     int left_edge_sum) {
-  if (config_.uniqueness && !uniqueness_.unique(left, right, column_px, row_px)) return false;
-  return !config_.horizontal_invariance ||
-         !self_similar(left, right, view_of(right_edges_, right.width_px, right.height_px), column_px, row_px,
-                       column_px - infinity_px_, left_edge_sum, window_);
+PushbroomStereo::PushbroomStereo(const StereoCalibration& calibration, double detection_depth_m,
+                                 const PushbroomConfig& config)
+    : PushbroomStereo(rectified_rig(calibration, detection_depth_m), config) {
+  const int width = calibration.width_px, height = calibration.height_px;
+  maps_.emplace(Maps{{nearest_places(calibration.left, width, height), width, height},
+                     {nearest_places(calibration.right, width, height), width, height}});
+  for (Band& band : bands_)
+    for (auto* image : {&band.left, &band.right})
+      image->resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
 }
 
-StereoHit PushbroomStereo::hit_at(int column_px, int row_px, int sad, int edge_sum) const {
+BlockRule PushbroomStereo::block_rule() const {
+  BlockRule rule;
+  rule.width_px = rig_.width_px;
+  rule.height_px = rig_.height_px;
+  rule.stride_px = config_.stride_px;
+  rule.last_row_px = config_.last_row_px;
+  rule.every_pixel = config_.every_pixel;
+  for (const Depth& depth : depths_)
+    rule.disparities.push_back(
+        {depth.disparity_px, config_.least_edge_sum, score_limit_units(config_.score_limit)});
+  rule.horizontal_invariance = config_.horizontal_invariance;
+  rule.infinity_px = infinity_px_;
+  rule.window = {config_.invariance_columns_px, config_.invariance_rows_px, config_.invariance_row_step_px,
+                 config_.least_edge_sum, score_limit_units(config_.invariance_score_limit)};
+  rule.uniqueness = config_.uniqueness;
+  rule.uniqueness_ratio = config_.uniqueness_ratio;
+  rule.least_disparity_px = infinity_px_;
+  rule.greatest_disparity_px =
+      static_cast<int>(std::floor(rig_.disparity_px(config_.uniqueness_least_depth_m)));
+  return rule;
+}
+
+const std::vector<StereoHit>& PushbroomStereo::detect(const StereoFrame& frame) {
+  const GrayView left = view_of(frame.left, rig_), right = view_of(frame.right, rig_);
+  if (maps_) {
+    maps_->left.prepare(left.stride);
+    maps_->right.prepare(right.stride);
+  }
+  const int threads = static_cast<int>(bands_.size());
+  if (threads == 1) {
+    search(left, right, 0);
+  } else {
+    tbb::parallel_for(
+        0, threads, [&](int index) { search(left, right, index); }, tbb::static_partitioner());
+  }
+  all_hits_.clear();
+  for (const Band& band : bands_)
+    for (const BlockMatch& match : *band.matches) all_hits_.push_back(hit_of(match));
+  if (!config_.isolation) return all_hits_;
+  without_isolated(all_hits_, config_.isolation_least_points, config_.isolation_radius_m, hits_);
+  return hits_;
+}
+
+void PushbroomStereo::search(const GrayView& left, const GrayView& right, int index) {
+  Band& band = bands_[static_cast<std::size_t>(index)];
+  const int strips = band.kernel.strip_count(), bands = static_cast<int>(bands_.size());
+  const int first = strips * index / bands, last = strips * (index + 1) / bands;
+  if (!maps_) {
+    band.matches = &band.kernel.search(left, right, first, last);
+    return;
+  }
+  // The edge map looks one row beyond the blocks, and the invariance window's beyond its own.
+  const int stride_px = config_.every_pixel ? block_px : config_.stride_px;
+  const int beyond = 1 + (config_.horizontal_invariance ? config_.invariance_rows_px : 0);
+  const int first_row = std::max(0, first * stride_px - beyond);
+  const int last_row = std::min(rig_.height_px, (last - 1) * stride_px + 2 * block_px + beyond);
+  maps_->left.apply(left, first_row, last_row, band.left.data(), rig_.width_px);
+  maps_->right.apply(right, first_row, last_row, band.right.data(), rig_.width_px);
+  band.matches =
+      &band.kernel.search({band.left.data(), rig_.width_px, rig_.width_px, rig_.height_px},
+                          {band.right.data(), rig_.width_px, rig_.width_px, rig_.height_px}, first, last);
+}
+
+StereoHit PushbroomStereo::hit_of(const BlockMatch& match) const {
+  const Depth& depth = depths_[static_cast<std::size_t>(match.disparity)];
   const double center_px = 0.5 * (block_px - 1);
   StereoHit hit;
-  hit.position_camera = {(column_px + center_px - rig_.center_left_x_px) * depth_m_ / rig_.focal_px,
-                         (row_px + center_px - rig_.center_y_px) * depth_m_ / rig_.focal_px, depth_m_};
-  hit.column_px = column_px;
-  hit.row_px = row_px;
-  hit.disparity_px = disparity_px_;
-  hit.score = static_cast<double>(sad) / edge_sum;
-  hit.edge_sum = edge_sum;
+  hit.position_camera = {
+      (match.column_px + center_px - rig_.center_left_x_px) * depth.depth_m / rig_.focal_px,
+      (match.row_px + center_px - rig_.center_y_px) * depth.depth_m / rig_.focal_px, depth.depth_m};
+  hit.column_px = match.column_px;
+  hit.row_px = match.row_px;
+  hit.disparity_px = depth.disparity_px;
+  hit.edge_sum = match.left_edge_sum + match.right_edge_sum;
+  hit.score = match.sad / hit.edge_sum;
+  hit.depth = depth.interval;
   return hit;
 }
 

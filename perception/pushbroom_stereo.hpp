@@ -1,19 +1,23 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "perception/obstacle_detector.hpp"
-#include "perception/self_similarity.hpp"
+#include "perception/pushbroom_kernel.hpp"
+#include "perception/rectify.hpp"
 #include "perception/stereo_rig.hpp"
-#include "perception/uniqueness.hpp"
 
 namespace understory {
 
 /// Every number and every rule of the detector. Defaults are the paper's rule as the original's public code
 /// had it (Barry & Tedrake 2015); each rule is a switch of its own.
 struct PushbroomConfig {
+  std::vector<double> depths_m;  ///< to look at; empty: the rig's own detection depth. 0.1 .. 1000
+  int threads = 1;               ///< 1 .. 64; hits do not depend on it
   int stride_px = 5;         ///< from block to block, both ways; 1 .. 100; 5 sets the 5x5 blocks side by side
+  bool every_pixel = false;  ///< dense: a window at every pixel, of each 5x5 cell of windows the best counts
   int last_row_px = 205;     ///< top edge of the lowest row of blocks; rows below see the ground
   int least_edge_sum = 860;  ///< Laplacian sum asked of each image's block by itself; 0 .. 6375
   double score_limit = 54.0 / 333.0;  ///< hit if S = SAD / (both edge sums) is below; exact to 1/333000
@@ -43,7 +47,9 @@ PushbroomConfig robust_rule();
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, PushbroomConfig& config) {
+  visit("threads", config.threads, 1, 64);
   visit("stride_px", config.stride_px, 1, 100);
+  visit("every_pixel", config.every_pixel);
   visit("last_row_px", config.last_row_px, 0, 4000);
   visit("least_edge_sum", config.least_edge_sum, 0, 6375);
   visit("score_limit", config.score_limit, 0.0, 10.0);
@@ -60,43 +66,58 @@ void visit_fields(Visitor& visit, PushbroomConfig& config) {
   visit("isolation_radius_m", config.isolation_radius_m, 0.0, 100.0);
 }
 
-/// Depths between which a block's true disparity lies one pixel or less from the detection disparity, m.
-struct DepthInterval {
-  double near_m = 0;
-  double far_m = 0;
-};
-
-/// Pushbroom stereo (Barry & Tedrake 2015): looks at one disparity only, and lets the aircraft's motion sweep
-/// that surface through the world. Plain and exact; one thread. Detection disparity and infinity come from
-/// the rig.
+/// Pushbroom stereo (Barry & Tedrake 2015): looks at one disparity only (or a few), and lets the aircraft's
+/// motion sweep that surface through the world. Exact: the same hits on every instruction set and with any
+/// number of threads. Detection disparities and infinity come from the rig.
 class PushbroomStereo : public ObstacleDetector {
  public:
-  /// Asserts that the rig's detection depth gives a disparity beyond infinity and inside the image.
+  /// Asserts that each detection depth gives a disparity beyond infinity and inside the image.
   PushbroomStereo(const StereoRig& rig, const PushbroomConfig& config);
+  /// For raw pairs: each is rectified to the nearest pixel on the way, as far as the rule looks, which equals
+  /// Rectifier and then detection. detection_depth_m serves where the config names no depths. Images must be
+  /// at least ByteRemap::chunk_px wide.
+  PushbroomStereo(const StereoCalibration& calibration, double detection_depth_m,
+                  const PushbroomConfig& config);
 
-  std::vector<StereoHit> detect(const StereoFrame& frame) override;
+  const std::vector<StereoHit>& detect(const StereoFrame& frame) override;
 
-  /// Depth of the whole disparity used: where hits are put. Near, not equal to, the rig's detection_depth_m.
-  double detection_depth_m() const { return depth_m_; }
-  DepthInterval one_pixel_interval() const;
-  int detection_disparity_px() const { return disparity_px_; }
+  int depth_count() const { return static_cast<int>(depths_.size()); }
+  /// Depth of the whole disparity used: where hits are put. Near, not equal to, the depth asked for.
+  double detection_depth_m(int depth = 0) const { return depths_[static_cast<std::size_t>(depth)].depth_m; }
+  DepthInterval one_pixel_interval(int depth = 0) const {
+    return depths_[static_cast<std::size_t>(depth)].interval;
+  }
+  int detection_disparity_px(int depth = 0) const {
+    return depths_[static_cast<std::size_t>(depth)].disparity_px;
+  }
   int infinity_disparity_px() const { return infinity_px_; }  ///< rounded, as the whole-pixel searches use it
 
  private:
-  void detect_row(const GrayView& left, const GrayView& right, int row_px, std::vector<StereoHit>& hits);
-  bool passes_filters(const GrayView& left, const GrayView& right, int column_px, int row_px,
-                      int left_edge_sum);
-  StereoHit hit_at(int column_px, int row_px, int sad, int edge_sum) const;
+  struct Depth {
+    int disparity_px = 0;
+    double depth_m = 0;
+    DepthInterval interval;
+  };
+  /// Part of the strips, one thread's work.
+  struct Band {
+    PushbroomKernel kernel;
+    std::vector<std::uint8_t> left, right;  ///< rectified images, the band's rows
+    const std::vector<BlockMatch>* matches = nullptr;
+  };
+  struct Maps {
+    ByteRemap left, right;
+  };
+  BlockRule block_rule() const;
+  void search(const GrayView& left, const GrayView& right, int index);
+  StereoHit hit_of(const BlockMatch& match) const;
 
   StereoRig rig_;
   PushbroomConfig config_;
-  int disparity_px_, infinity_px_;
-  double depth_m_;
-  std::int64_t score_limit_units_;
-  SelfSimilarityWindow window_;
-  UniquenessTest uniqueness_;
-  std::vector<std::uint8_t> left_edges_, right_edges_;
-  std::vector<std::uint16_t> left_sums_, right_sums_;
+  int infinity_px_;
+  std::vector<Depth> depths_;
+  std::optional<Maps> maps_;  ///< where pairs come raw
+  std::vector<Band> bands_;   ///< one for each thread
+  std::vector<StereoHit> all_hits_, hits_;
 };
 
 }  // namespace understory

@@ -7,28 +7,49 @@
 
 namespace understory {
 
+std::vector<std::int16_t> nearest_places(const CameraCalibration& camera, int width_px, int height_px) {
+  cv::Mat u, v, places, fractions;
+  cv::initUndistortRectifyMap(camera.camera_matrix, camera.distortion, camera.rectification,
+                              camera.projection, {width_px, height_px}, CV_32FC1, u, v);
+  cv::convertMaps(u, v, places, fractions, CV_16SC2, true);
+  const auto* first = places.ptr<std::int16_t>();
+  return {first, first + 2 * places.total()};
+}
+
 Rectifier::Rectifier(const StereoCalibration& calibration, Interpolation interpolation)
     : width_px_(calibration.width_px), height_px_(calibration.height_px), interpolation_(interpolation) {
+  const bool nearest = interpolation == Interpolation::nearest;
   const auto prepare = [&](const CameraCalibration& camera, Eye& eye) {
     cv::Mat u, v;
     cv::initUndistortRectifyMap(camera.camera_matrix, camera.distortion, camera.rectification,
                                 camera.projection, {width_px_, height_px_}, CV_32FC1, u, v);
-    cv::convertMaps(u, v, eye.places, eye.fractions, CV_16SC2, interpolation == Interpolation::nearest);
+    cv::convertMaps(u, v, eye.places, eye.fractions, CV_16SC2, nearest);
+    eye.image.create(height_px_, width_px_, CV_8UC1);
+    if (nearest && width_px_ >= ByteRemap::chunk_px) {
+      eye.remap.emplace(nearest_places(camera, width_px_, height_px_), width_px_, height_px_);
+    }
   };
   prepare(calibration.left, left_);
   prepare(calibration.right, right_);
 }
 
 StereoFrame Rectifier::rectify(const StereoFrame& raw) {
-  const auto remap = [this](const cv::Mat& image, Eye& eye) {
-    assert_always(image.type() == CV_8UC1 && image.cols == width_px_ && image.rows == height_px_,
-                  "a raw image must be 8-bit gray and of the calibration's size");
-    cv::remap(image, eye.image, eye.places, eye.fractions,
+  return {raw.t_ns, rectify(raw.left, left_), rectify(raw.right, right_)};
+}
+
+const cv::Mat& Rectifier::rectify(const cv::Mat& raw, Eye& eye) {
+  assert_always(raw.type() == CV_8UC1 && raw.cols == width_px_ && raw.rows == height_px_,
+                "a raw image must be 8-bit gray and of the calibration's size");
+  if (eye.remap) {
+    const GrayView source{raw.data, static_cast<std::ptrdiff_t>(raw.step[0]), raw.cols, raw.rows};
+    eye.remap->prepare(source.stride);
+    eye.remap->apply(source, 0, height_px_, eye.image.data, static_cast<std::ptrdiff_t>(eye.image.step[0]));
+  } else {
+    cv::remap(raw, eye.image, eye.places, eye.fractions,
               interpolation_ == Interpolation::nearest ? cv::INTER_NEAREST : cv::INTER_LINEAR,
               cv::BORDER_CONSTANT);
-    return eye.image;
-  };
-  return {raw.t_ns, remap(raw.left, left_), remap(raw.right, right_)};
+  }
+  return eye.image;
 }
 
 }  // namespace understory

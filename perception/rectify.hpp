@@ -1,5 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "perception/byte_remap.hpp"
 #include "perception/stereo_calibration.hpp"
 #include "perception/stereo_frame.hpp"
 
@@ -7,7 +12,12 @@ namespace understory {
 
 enum class Interpolation { nearest, bilinear };
 
-/// Turns raw pairs into rectified ones. The maps are made once (OpenCV's initUndistortRectifyMap).
+/// For each rectified pixel, row by row, the column and row of the raw pixel nearest to what it shows (may
+/// lie outside the image): cv::convertMaps' places for nearest neighbours.
+std::vector<std::int16_t> nearest_places(const CameraCalibration& camera, int width_px, int height_px);
+
+/// Turns raw pairs into rectified ones, as cv::remap does with the maps of cv::initUndistortRectifyMap; the
+/// maps are made once.
 class Rectifier {
  public:
   Rectifier(const StereoCalibration& calibration, Interpolation interpolation);
@@ -17,11 +27,18 @@ class Rectifier {
   /// are 0.
   StereoFrame rectify(const StereoFrame& raw);
 
+  /// One of the two: threads may turn one each at the same time.
+  const cv::Mat& rectify_left(const cv::Mat& raw) { return rectify(raw, left_); }
+  const cv::Mat& rectify_right(const cv::Mat& raw) { return rectify(raw, right_); }
+
  private:
   struct Eye {
-    cv::Mat places, fractions;  // CV_16SC2 and, for bilinear, CV_16UC1 (cv::convertMaps)
+    cv::Mat places, fractions;       // CV_16SC2 and, for bilinear, CV_16UC1 (cv::convertMaps)
+    std::optional<ByteRemap> remap;  // for nearest, where the image is wide enough
     cv::Mat image;
   };
+  const cv::Mat& rectify(const cv::Mat& raw, Eye& eye);
+
   int width_px_, height_px_;
   Interpolation interpolation_;
   Eye left_, right_;

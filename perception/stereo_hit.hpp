@@ -4,6 +4,12 @@
 
 namespace understory {
 
+/// Depths between which a block's true disparity lies one pixel or less from the disparity used, m.
+struct DepthInterval {
+  double near_m = 0;
+  double far_m = 0;
+};
+
 /// One detection in one stereo pair: a block of the left image that matches at the detection disparity.
 struct StereoHit {
   Eigen::Vector3d position_camera = Eigen::Vector3d::Zero();  ///< centre of the block, left camera frame, m
@@ -12,6 +18,7 @@ struct StereoHit {
   double disparity_px = 0;                                    ///< u_left - u_right
   double score = 0;     ///< the paper's S = SAD / (sum of both blocks' edges); smaller is better
   double edge_sum = 0;  ///< sum of both blocks' Laplacian edge sums
+  DepthInterval depth;  ///< what the whole disparity leaves open; both 0 where a detector does not say
 };
 
 }  // namespace understory

@@ -7,24 +7,60 @@
 #include "perception/assertion.hpp"
 #include "perception/block_score.hpp"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "perception/uniqueness.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target, which decides what highway.h means.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace understory {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// sads[i] = SAD of the block with the right block i columns further, for i < count and up to a vector beyond.
+void RowSads(const std::uint8_t* block, std::ptrdiff_t left_stride, const std::uint8_t* search,
+             std::ptrdiff_t right_stride, int count, std::uint16_t* sads) {
+  const hn::ScalableTag<std::uint8_t> d;
+  const hn::ScalableTag<std::uint16_t> d16;
+  const auto low = hn::Set(d16, 0xFF);
+  for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
+    auto even = hn::Zero(d16), odd = hn::Zero(d16);
+    for (int v = 0; v < block_px; ++v)
+      for (int u = 0; u < block_px; ++u) {
+        const auto here = hn::Set(d, block[v * left_stride + u]);
+        const auto there = hn::LoadU(d, search + v * right_stride + i + u);
+        const auto pairs =
+            hn::BitCast(d16, hn::Or(hn::SaturatedSub(here, there), hn::SaturatedSub(there, here)));
+        even = hn::Add(even, hn::And(pairs, low));
+        odd = hn::Add(odd, hn::ShiftRight<8>(pairs));
+      }
+    hn::StoreInterleaved2(even, odd, d16, sads + i);
+  }
+}
+
+// Whether one of the sads is at most `limit`.
+bool AnyAtMost(const std::uint16_t* sads, int count, std::uint16_t limit) {
+  const hn::ScalableTag<std::uint16_t> d16;
+  auto least = hn::Set(d16, std::uint16_t{65535});
+  for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d16)))
+    least = hn::Min(least, hn::LoadU(d16, sads + i));
+  return !hn::AllFalse(d16, hn::Eq(hn::SaturatedSub(least, hn::Set(d16, limit)), hn::Zero(d16)));
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace understory
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace understory {
 namespace {
 
-std::uint8_t difference(std::uint8_t a, std::uint8_t b) {
-  return static_cast<std::uint8_t>(std::max(a, b) - std::min(a, b));
-}
+HWY_EXPORT(RowSads);
+HWY_EXPORT(AnyAtMost);
 
-/// sad[i] += the differences of one row of the left block with the right block's i columns further: a loop
-/// over columns, in bytes, which the compiler vectorises.
-void add_row(const std::uint8_t* left, const std::uint8_t* right, int count, std::uint16_t* __restrict sad) {
-  static_assert(block_px == 5);
-  const std::uint8_t l0 = left[0], l1 = left[1], l2 = left[2], l3 = left[3], l4 = left[4];
-  for (int i = 0; i < count; ++i) {
-    sad[i] = static_cast<std::uint16_t>(sad[i] + difference(l0, right[i]) + difference(l1, right[i + 1]) +
-                                        difference(l2, right[i + 2]) + difference(l3, right[i + 3]) +
-                                        difference(l4, right[i + 4]));
-  }
-}
+constexpr int over_read_px = 128;  // a vector of loads, and one of stores, past the last column searched
 
 }  // namespace
 
@@ -37,10 +73,11 @@ UniquenessTest::UniquenessTest(int detection_disparity_px, int least_disparity_p
   assert_always(least_px_ <= detection_px_ && detection_px_ <= greatest_px_,
                 "detection disparity outside the range");
   assert_always(ratio >= 1.0, "uniqueness ratio below 1");
+  sads_.resize(static_cast<std::size_t>(greatest_px_ - least_px_ + 1 + over_read_px));
 }
 
 bool UniquenessTest::unique(const GrayView& left, const GrayView& right, int column_px, int row_px) {
-  // A greater disparity is a smaller right column; columns run upwards so that the inner loop reads forwards.
+  // A greater disparity is a smaller right column; columns run upwards so that loads read forwards.
   const int first = std::max(0, column_px - greatest_px_);
   const int last = std::min(right.width_px - block_px, column_px - least_px_);
   const int count = last - first + 1;
@@ -52,19 +89,22 @@ bool UniquenessTest::unique(const GrayView& left, const GrayView& right, int col
   const int best = block_sad(block, left.stride, search + chosen, right.stride);
   for (const int i : {chosen - 1, chosen + 1})
     if (i >= 0 && i < count && block_sad(block, left.stride, search + i, right.stride) < best) return false;
-  fill_sad(block, left.stride, search, right.stride, count);
-  for (int i = 0; i < count; ++i)
-    if (std::abs(i - chosen) > 1 &&
-        std::int64_t{1000} * sad_[static_cast<std::size_t>(i)] <= ratio_thousandths_ * best)
-      return false;
-  return true;
-}
 
-void UniquenessTest::fill_sad(const std::uint8_t* block, std::ptrdiff_t left_stride,
-                              const std::uint8_t* search, std::ptrdiff_t right_stride, int count) {
-  sad_.assign(static_cast<std::size_t>(count), 0);
-  for (int v = 0; v < block_px; ++v, block += left_stride, search += right_stride)
-    add_row(block, search, count, sad_.data());
+  if (right.can_read(first, row_px + block_px - 1, count + over_read_px)) {
+    HWY_DYNAMIC_DISPATCH(RowSads)(block, left.stride, search, right.stride, count, sads_.data());
+  } else {
+    for (int i = 0; i < count; ++i)
+      sads_[static_cast<std::size_t>(i)] =
+          static_cast<std::uint16_t>(block_sad(block, left.stride, search + i, right.stride));
+  }
+  const auto limit =
+      static_cast<std::uint16_t>(std::min<std::int64_t>(ratio_thousandths_ * best / 1000, 65534));
+  const auto unlike = std::uint16_t{65535};
+  for (int i = std::max(0, chosen - 1); i <= std::min(count - 1, chosen + 1); ++i)
+    sads_[static_cast<std::size_t>(i)] = unlike;
+  std::fill_n(sads_.begin() + count, over_read_px / 2, unlike);
+  return !HWY_DYNAMIC_DISPATCH(AnyAtMost)(sads_.data(), count, limit);
 }
 
 }  // namespace understory
+#endif  // HWY_ONCE

@@ -21,12 +21,9 @@ class UniquenessTest {
   bool unique(const GrayView& left, const GrayView& right, int column_px, int row_px);
 
  private:
-  void fill_sad(const std::uint8_t* block, std::ptrdiff_t left_stride, const std::uint8_t* search,
-                std::ptrdiff_t right_stride, int count);
-
   int detection_px_, least_px_, greatest_px_;
-  std::int64_t ratio_thousandths_;  // whole numbers, so that every machine decides alike
-  std::vector<std::uint16_t> sad_;  // by right column, ascending
+  std::int64_t ratio_thousandths_;   // whole numbers, so that every machine decides alike
+  std::vector<std::uint16_t> sads_;  // by right column, ascending
 };
 
 }  // namespace understory

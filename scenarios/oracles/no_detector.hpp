@@ -7,7 +7,10 @@ namespace understory {
 /// The blind aircraft: what the course itself lets pass.
 class NoDetector : public ObstacleDetector {
  public:
-  std::vector<StereoHit> detect(const StereoFrame&) override { return {}; }
+  const std::vector<StereoHit>& detect(const StereoFrame&) override { return none_; }
+
+ private:
+  std::vector<StereoHit> none_;
 };
 
 }  // namespace understory

@@ -47,7 +47,7 @@ TrueDepth::TrueDepth(const StereoRig& rig, std::vector<Obstacle> obstacles, cons
   greatest_depth_m_ = parallax_px > 1 ? rig.focal_px * rig.baseline_m / (parallax_px - 1) : infinity;
 }
 
-std::vector<StereoHit> TrueDepth::detect(const StereoFrame& frame) {
+const std::vector<StereoHit>& TrueDepth::detect(const StereoFrame& frame) {
   const Eigen::Isometry3d T_camera_world =
       (history_.at(frame.t_ns).T_world_body * rig_.T_body_camera).inverse();
   const double corner_x =
@@ -62,8 +62,8 @@ std::vector<StereoHit> TrueDepth::detect(const StereoFrame& frame) {
     const bool is_ahead = std::max(seen.from.z(), seen.to.z()) + bar.radius_m > 0;
     if (is_ahead && (seen.from + nearest * along).norm() < reach_m + bar.radius_m) bars.push_back(seen);
   }
-  std::vector<StereoHit> hits;
-  if (bars.empty()) return hits;
+  hits_.clear();
+  if (bars.empty()) return hits_;
   for (int row = 0; row <= last_row_px && row + block_px <= rig_.height_px; row += block_px) {
     for (int column = 0; column + block_px <= rig_.width_px; column += block_px) {
       const Eigen::Vector3d ray((column + 2 - rig_.center_left_x_px) / rig_.focal_px,
@@ -74,10 +74,10 @@ std::vector<StereoHit> TrueDepth::detect(const StereoFrame& frame) {
             std::min(depth_m, ray_meets_bar(Eigen::Vector3d::Zero(), ray, bar.from, bar.to, bar.radius_m));
       }
       if (depth_m < least_depth_m_ || depth_m > greatest_depth_m_ || depth_m == infinity) continue;
-      hits.push_back({depth_m * ray, column, row, rig_.disparity_px(depth_m), 0.0, 0.0});
+      hits_.push_back({depth_m * ray, column, row, rig_.disparity_px(depth_m), 0.0, 0.0, {}});
     }
   }
-  return hits;
+  return hits_;
 }
 
 }  // namespace understory

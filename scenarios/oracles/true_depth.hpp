@@ -17,7 +17,7 @@ class TrueDepth : public ObstacleDetector {
  public:
   /// Keeps a reference to the history, which must hold the moment of every frame it is given.
   TrueDepth(const StereoRig& rig, std::vector<Obstacle> obstacles, const TruthHistory& history);
-  std::vector<StereoHit> detect(const StereoFrame& frame) override;
+  const std::vector<StereoHit>& detect(const StereoFrame& frame) override;
 
   /// The depths between which a block counts, m: one pixel either way of the nearest whole disparity.
   double least_depth_m() const { return least_depth_m_; }
@@ -29,6 +29,7 @@ class TrueDepth : public ObstacleDetector {
   const TruthHistory& history_;
   double least_depth_m_ = 0;
   double greatest_depth_m_ = 0;
+  std::vector<StereoHit> hits_;
 };
 
 /// Where a ray first meets a bar's side: the multiple of `direction` from `origin`; +infinity where it does

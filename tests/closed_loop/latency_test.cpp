@@ -25,13 +25,13 @@ class OpeningEyes : public ObstacleDetector {
   OpeningEyes(const StereoRig& rig, const std::vector<Obstacle>& obstacles, const TruthHistory& history,
               std::int64_t opens_ns)
       : eyes_(rig, obstacles, history), opens_ns_(opens_ns) {}
-  std::vector<StereoHit> detect(const StereoFrame& frame) override {
-    if (frame.t_ns < opens_ns_) return {};
-    return eyes_.detect(frame);
+  const std::vector<StereoHit>& detect(const StereoFrame& frame) override {
+    return frame.t_ns < opens_ns_ ? nothing_ : eyes_.detect(frame);
   }
 
  private:
   TrueDepth eyes_;
+  const std::vector<StereoHit> nothing_;
   std::int64_t opens_ns_;
 };
 

@@ -3,14 +3,22 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <tuple>
 
 #include "perception/isolation.hpp"
 #include "tests/perception/rigs.hpp"
 #include "tests/support/synthetic_stereo.hpp"
 
 namespace understory {
+
+bool operator==(const StereoHit& a, const StereoHit& b) {
+  return a.position_camera == b.position_camera && a.column_px == b.column_px && a.row_px == b.row_px &&
+         a.disparity_px == b.disparity_px && a.score == b.score && a.edge_sum == b.edge_sum;
+}
+
 namespace {
 
 using support::house_rig;
@@ -142,6 +150,98 @@ TEST(PushbroomStereo, DerivesTheRecordedDepthsFromTheRigs) {
   EXPECT_NEAR(later.one_pixel_interval().far_m, 11.0, 0.01);
 }
 
+/// A raw pair that shows the plane once rectified: each raw pixel takes the rectified pixel it is seen at.
+StereoFrame raw_of(const StereoFrame& rectified, const StereoCalibration& calibration) {
+  const auto raw_image = [&](const cv::Mat& image, const CameraCalibration& camera) {
+    std::vector<cv::Point2f> pixels, places;
+    for (int v = 0; v < image.rows; ++v)
+      for (int u = 0; u < image.cols; ++u) pixels.emplace_back(static_cast<float>(u), static_cast<float>(v));
+    cv::undistortPoints(pixels, places, camera.camera_matrix, camera.distortion, camera.rectification,
+                        camera.projection);
+    cv::Mat raw;
+    cv::remap(image, raw, cv::Mat(places).reshape(2, image.rows), cv::noArray(), cv::INTER_LINEAR);
+    return raw;
+  };
+  return {rectified.t_ns, raw_image(rectified.left, calibration.left),
+          raw_image(rectified.right, calibration.right)};
+}
+
+StereoCalibration distorting_calibration(const StereoRig& rig) {
+  StereoCalibration calibration{"distorting", rig.width_px, rig.height_px, {}, {}, rig.T_body_camera};
+  for (const bool is_left : {true, false}) {
+    const double center = is_left ? rig.center_left_x_px : rig.center_right_x_px;
+    CameraCalibration camera;
+    camera.camera_matrix = {0.9 * rig.focal_px, 0, 188, 0, 0.9 * rig.focal_px, 119, 0, 0, 1};
+    camera.distortion = {-0.12, 0.02, 0.001, -0.001};
+    cv::Mat turn;
+    cv::Rodrigues(cv::Vec3d(0.01, is_left ? 0.02 : -0.02, is_left ? 0.005 : -0.008), turn);
+    turn.copyTo(camera.rectification);
+    camera.projection = {rig.focal_px,
+                         0,
+                         center,
+                         is_left ? 0 : -rig.focal_px * rig.baseline_m,
+                         0,
+                         rig.focal_px,
+                         rig.center_y_px,
+                         0,
+                         0,
+                         0,
+                         1,
+                         0};
+    (is_left ? calibration.left : calibration.right) = camera;
+  }
+  return calibration;
+}
+
+TEST(PushbroomStereo, RawPairsGiveTheHitsOfRectifiedOnesWithAnyNumberOfThreads) {
+  const StereoRig rig = house_rig("long.yaml");
+  const StereoCalibration calibration = distorting_calibration(rig);
+  const StereoFrame raw =
+      raw_of(render_plane(rig, {.depth_m = PushbroomStereo(rig, {}).detection_depth_m()}), calibration);
+  const StereoFrame rectified = Rectifier(calibration, Interpolation::nearest).rectify(raw);
+  for (PushbroomConfig config : {paper_rule(), robust_rule()})
+    for (const bool every_pixel : {false, true}) {
+      config.every_pixel = every_pixel;
+      config.threads = 1;
+      const std::vector<StereoHit> expected = PushbroomStereo(rig, config).detect(rectified);
+      EXPECT_GT(expected.size(), 100u);
+      for (const int threads : {1, 2, 3, 7}) {
+        config.threads = threads;
+        EXPECT_EQ(PushbroomStereo(rig, config).detect(rectified), expected);
+        PushbroomStereo raw_detector(calibration, rig.detection_depth_m, config);
+        EXPECT_EQ(raw_detector.detect(raw), expected);
+        EXPECT_EQ(raw_detector.detect(raw), expected);
+      }
+    }
+}
+
+TEST(PushbroomStereo, SeveralDepthsFindWhatEachWouldFindAlone) {
+  const StereoRig rig = house_rig("long.yaml");
+  const std::vector<double> depths_m{10.1, 7.0, 5.0};
+  for (const double depth_m : depths_m) {
+    const StereoFrame frame = render_plane(rig, {.depth_m = depth_m});
+    PushbroomConfig config = robust_rule();
+    config.isolation = false;
+    config.depths_m = depths_m;
+    std::vector<StereoHit> together = PushbroomStereo(rig, config).detect(frame), alone;
+    for (const double one : depths_m) {
+      config.depths_m = {one};
+      const std::vector<StereoHit> hits = PushbroomStereo(rig, config).detect(frame);
+      alone.insert(alone.end(), hits.begin(), hits.end());
+    }
+    std::sort(alone.begin(), alone.end(), [](const StereoHit& a, const StereoHit& b) {
+      return std::tuple(a.row_px, a.column_px, -a.position_camera.z()) <
+             std::tuple(b.row_px, b.column_px, -b.position_camera.z());
+    });
+    EXPECT_EQ(together, alone);
+    const auto at_depth = std::count_if(together.begin(), together.end(), [&](const StereoHit& hit) {
+      return hit.depth.near_m <= depth_m && depth_m <= hit.depth.far_m;
+    });
+    EXPECT_GT(at_depth, 100);
+    EXPECT_GT(static_cast<double>(at_depth), 0.99 * static_cast<double>(together.size()));
+  }
+}
+
 TEST(PushbroomStereo, RefusesImagesOfAnotherSizeOrKind) {
   const StereoRig rig = house_rig("paper.yaml");
   PushbroomStereo detector(rig, paper_rule());
@@ -156,12 +256,17 @@ TEST(Isolation, KeepsExactlyTheHitsWithCompany) {
   const double x[] = {0.0, 0.9, 5.0,
                       1.7, 5.5, 9.0};  // 0.0 has one other within 1 m, 0.9 two, 1.7 one, 5.0 one
   for (std::size_t i = 0; i < 6; ++i) hits[i].position_camera = {x[i], 0, 10};
-  const auto three = without_isolated(hits, 3, 1.0);
-  ASSERT_EQ(three.size(), 1u);
-  EXPECT_DOUBLE_EQ(three[0].position_camera.x(), 0.9);
-  EXPECT_EQ(without_isolated(hits, 2, 1.0).size(), 5u);
-  EXPECT_EQ(without_isolated(hits, 1, 1.0).size(), 6u);
-  EXPECT_TRUE(without_isolated({}, 3, 1.0).empty());
+  const auto kept = [&](int least_points) {
+    std::vector<StereoHit> some;
+    without_isolated(hits, least_points, 1.0, some);
+    return some;
+  };
+  ASSERT_EQ(kept(3).size(), 1u);
+  EXPECT_DOUBLE_EQ(kept(3)[0].position_camera.x(), 0.9);
+  EXPECT_EQ(kept(2).size(), 5u);
+  EXPECT_EQ(kept(1).size(), 6u);
+  hits.clear();
+  EXPECT_TRUE(kept(3).empty());
 }
 
 }  // namespace

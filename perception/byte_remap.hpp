@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "perception/gray_view.hpp"
+
+namespace understory {
+
+/// A fixed rearrangement of the pixels of an 8-bit image, as rectification to the nearest pixel is one. What
+/// cv::remap does pixel by pixel, done sixteen at a time with byte shuffles: neighbours in the output lie
+/// near each other in the source, so that a few loads hold them all. Equal to cv::remap bit for bit.
+class ByteRemap {
+ public:
+  static constexpr int chunk_px = 16;
+
+  /// `places`: for each output pixel, row by row, the column and row of its source pixel; outside the source
+  /// (both images are width_px x height_px) the output is 0. Width at least chunk_px.
+  ByteRemap(const std::vector<std::int16_t>& places, int width_px, int height_px);
+
+  /// To be called before apply() for a source whose rows are `stride` bytes apart.
+  void prepare(std::ptrdiff_t stride);
+
+  /// Fills the output's rows first_row_px .. last_row_px - 1; `output` is its row 0, not the source itself.
+  /// Threads may fill rows of one image each.
+  void apply(const GrayView& source, int first_row_px, int last_row_px, std::uint8_t* output,
+             std::ptrdiff_t output_stride) const;
+
+ private:
+  /// Pixels of one chunk that one load of the source holds.
+  struct Load {
+    int column_px = 0, row_px = 0;
+  };
+
+  int width_px_, height_px_;
+  std::vector<Load> loads_;
+  std::vector<std::uint8_t> indices_;  ///< chunk_px for each load: where in it each output pixel lies
+  std::vector<std::int32_t> ends_;     ///< for each chunk, the number of loads up to its last
+  std::ptrdiff_t stride_ = 0;          ///< that offsets_ are for
+  std::vector<std::int32_t> offsets_;  ///< of each load in the source
+};
+
+}  // namespace understory

@@ -1,0 +1,112 @@
+#include "perception/dense_search.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace understory {
+namespace {
+
+constexpr int ring_rows = block_px + 1;  // a window's rows and the one that comes in
+
+bool scores_better(const BlockMatch& a, const BlockMatch& b) {
+  return static_cast<std::int64_t>(a.sad) * (b.left_edge_sum + b.right_edge_sum) <
+         static_cast<std::int64_t>(b.sad) * (a.left_edge_sum + a.right_edge_sum);
+}
+
+}  // namespace
+
+DenseSearch::DenseSearch(const BlockRule& rule)
+    : rule_(rule),
+      edge_columns_(edge_columns(rule)),
+      left_edges_(rule.width_px, ring_rows),
+      left_running_(rule.width_px),
+      right_running_(rule.width_px) {
+  for (const DisparityRule& one : rule.disparities) {
+    const SearchColumns columns = search_columns(rule, one);
+    searches_.push_back({columns, candidate_test(one.least_edge_sum, one.limit_units),
+                         RunningSums(columns.count), EdgeMap(columns.count, ring_rows),
+                         std::vector<BlockMatch>(static_cast<std::size_t>(columns.count / block_px + 1))});
+  }
+  const auto padded = static_cast<std::size_t>(rule.width_px + 2 * over_read_px);
+  for (auto* sums : {&left_sums_, &right_sums_, &sads_}) sums->resize(padded);
+  candidates_.resize(padded / 64 + 1);
+}
+
+void DenseSearch::search(const GrayView& left, const GrayView& right, int first_row_px, int last_row_px,
+                         EdgeMap& right_edges, std::vector<BlockMatch>& matches) {
+  const EdgeColumns& edges = edge_columns_;
+  left_running_.clear();
+  right_running_.clear();
+  for (Search& search : searches_) search.sums.clear();
+  for (int v = first_row_px; v + 1 < first_row_px + block_px; ++v)
+    take_row_in(left, right, v, true, right_edges);
+  for (int row = first_row_px; row < last_row_px; ++row) {
+    if ((row - first_row_px) % block_px == 0)
+      for (Search& search : searches_)
+        std::fill(search.best.begin(), search.best.end(), BlockMatch{.sad = -1});
+    take_row_in(left, right, row + block_px - 1, row == first_row_px, right_edges);
+    left_running_.window_sums(rule_.width_px - edges.left_first_px, left_sums_.data() + edges.left_first_px);
+    right_running_.window_sums(edges.right_last_px - edges.right_first_px,
+                               right_sums_.data() + edges.right_first_px);
+    for (std::size_t i = 0; i < searches_.size(); ++i) take_candidates(row, i);
+    if ((row - first_row_px) % block_px == block_px - 1 || row + 1 == last_row_px) take_best(matches);
+  }
+}
+
+void DenseSearch::take_row_in(const GrayView& left, const GrayView& right, int row_px, bool is_first_window,
+                              EdgeMap& right_edges) {
+  const EdgeColumns& edges = edge_columns_;
+  const StripRows left_rows = left_reader_.rows(left, row_px), right_rows = right_reader_.rows(right, row_px);
+  edge_row(left_rows.row[0], left_rows.row[1], left_rows.row[2], edges.left_first_px, rule_.width_px,
+           rule_.width_px, left_edges_.row(row_px % ring_rows));
+  edge_row(right_rows.row[0], right_rows.row[1], right_rows.row[2], edges.right_first_px, edges.right_last_px,
+           rule_.width_px, right_edges.row(row_px));
+  const auto move = [&](RunningSums& sums, EdgeMap& rows, int modulus, int first_px, int count) {
+    const std::uint8_t* removed =
+        is_first_window ? nullptr : rows.row((row_px - block_px) % modulus) + first_px;
+    sums.move(rows.row(row_px % modulus) + first_px, removed, count);
+  };
+  move(left_running_, left_edges_, ring_rows, edges.left_first_px, rule_.width_px - edges.left_first_px);
+  move(right_running_, right_edges, rule_.height_px, edges.right_first_px,
+       edges.right_last_px - edges.right_first_px);
+  for (Search& search : searches_) {
+    difference_row(left_rows.row[1] + search.columns.left_px, right_rows.row[1] + search.columns.right_px,
+                   search.columns.count, search.differences.row(row_px % ring_rows));
+    move(search.sums, search.differences, ring_rows, 0, search.columns.count);
+  }
+}
+
+void DenseSearch::take_candidates(int row_px, std::size_t disparity) {
+  Search& search = searches_[disparity];
+  const auto& [left_px, right_px, count] = search.columns;
+  const std::int64_t limit_units = rule_.disparities[disparity].limit_units;
+  search.sums.window_sums(count, sads_.data());
+  find_candidates(sads_.data(), left_sums_.data() + left_px, right_sums_.data() + right_px, count,
+                  search.test, candidates_.data());
+  for (int first = 0; first + block_px <= count; first += 64) {
+    std::uint64_t bits = candidates_[static_cast<std::size_t>(first) / 64];
+    for (; bits != 0; bits &= bits - 1) {
+      const int x = first + std::countr_zero(bits);
+      if (x + block_px > count) break;
+      const BlockMatch match{left_px + x,
+                             row_px,
+                             static_cast<int>(disparity),
+                             sads_[static_cast<std::size_t>(x)],
+                             left_sums_[static_cast<std::size_t>(left_px + x)],
+                             right_sums_[static_cast<std::size_t>(right_px + x)]};
+      BlockMatch& best = search.best[static_cast<std::size_t>(x / block_px)];
+      if (best.sad >= 0 && !scores_better(match, best)) continue;
+      if (scores_below(match.sad, match.left_edge_sum + match.right_edge_sum, limit_units)) best = match;
+    }
+  }
+}
+
+void DenseSearch::take_best(std::vector<BlockMatch>& matches) {
+  std::size_t cells = 0;
+  for (const Search& search : searches_) cells = std::max(cells, search.best.size());
+  for (std::size_t cell = 0; cell < cells; ++cell)
+    for (const Search& search : searches_)
+      if (cell < search.best.size() && search.best[cell].sad >= 0) matches.push_back(search.best[cell]);
+}
+
+}  // namespace understory

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "perception/block_rule.hpp"
+#include "perception/dense_search.hpp"
+#include "perception/strip_search.hpp"
+#include "perception/uniqueness.hpp"
+
+namespace understory {
+
+/// Finds the blocks that pass a rule: pointer and stride in, whole numbers out, no image library. The same
+/// matches, bit for bit, on every instruction set. Owns the buffers it needs: for several threads, one kernel
+/// each, over strips of their own. Allocates nothing once it has seen as many matches as it will.
+class PushbroomKernel {
+ public:
+  /// Asserts that the rule is sound.
+  explicit PushbroomKernel(const BlockRule& rule);
+
+  /// Rows of blocks in an image; dense, rows of cells.
+  int strip_count() const;
+
+  /// The matches of the strips first_strip .. last_strip - 1, by row, then column, then disparity (dense: by
+  /// row of cells, then cell, then disparity). The images have the rule's size. The answer holds until the
+  /// next call.
+  const std::vector<BlockMatch>& search(const GrayView& left, const GrayView& right, int first_strip,
+                                        int last_strip);
+
+ private:
+  void fill_right_edges(const GrayView& right, int first_row_px, int end_row_px);
+  void drop_unlike_the_rule(const GrayView& left, const GrayView& right);
+
+  BlockRule rule_;
+  std::optional<StripSearch> strips_;  ///< one of the two
+  std::optional<DenseSearch> dense_;
+  std::vector<UniquenessTest> uniqueness_;  ///< one for each disparity
+  StripReader right_reader_;
+  EdgeMap right_edges_;
+  std::vector<BlockMatch> matches_;
+};
+
+}  // namespace understory

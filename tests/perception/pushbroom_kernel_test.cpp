@@ -1,0 +1,217 @@
+// The fast kernel against the plain one, bit for bit, on every instruction set of this machine: real kinds of
+// texture, flat, striped and saturated images, odd and tiny sizes, and rules drawn at random.
+#include "perception/pushbroom_kernel.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <hwy/targets.h>
+#include <random>
+
+#include "perception/block_score.hpp"
+#include "tests/support/plain_pushbroom.hpp"
+
+namespace understory {
+
+bool operator==(const BlockMatch& a, const BlockMatch& b) {
+  return a.column_px == b.column_px && a.row_px == b.row_px && a.disparity == b.disparity && a.sad == b.sad &&
+         a.left_edge_sum == b.left_edge_sum && a.right_edge_sum == b.right_edge_sum;
+}
+void PrintTo(const BlockMatch& match, std::ostream* out) {
+  *out << "(" << match.column_px << ", " << match.row_px << ", #" << match.disparity << ", sad " << match.sad
+       << ", edges " << match.left_edge_sum << " " << match.right_edge_sum << ")";
+}
+
+namespace {
+
+enum class Texture { noise, saturated, flat, stripes, smooth, sparse };
+
+/// A pair whose right image is the left one moved by `disparity_px` in one half and by nothing in the other,
+/// with a little noise, so that every branch is taken. Memory ends with the last pixel.
+struct Pair {
+  int width_px, height_px;
+  std::vector<std::uint8_t> left, right;
+  GrayView left_view() const { return {left.data(), width_px, width_px, height_px}; }
+  GrayView right_view() const { return {right.data(), width_px, width_px, height_px}; }
+};
+
+std::uint8_t pixel(Texture texture, int u, int v, std::mt19937_64& generator) {
+  const auto random = static_cast<int>(generator() >> 56);
+  switch (texture) {
+    case Texture::noise:
+      return static_cast<std::uint8_t>(random);
+    case Texture::saturated:
+      return random % 2 != 0 ? 255 : 0;
+    case Texture::flat:
+      return 131;
+    case Texture::stripes:
+      return static_cast<std::uint8_t>((u / 3 % 4) * 60 + random % 16);
+    case Texture::smooth:
+      return static_cast<std::uint8_t>(128 + 90 * std::sin(0.9 * u + 0.31 * v * (u % 7)) + random % 8);
+    case Texture::sparse:
+      return random < 8 ? 255 : 20;
+  }
+  return 0;
+}
+
+Pair pair_of(int width_px, int height_px, Texture texture, int disparity_px, std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  Pair pair{width_px, height_px, {}, {}};
+  const auto count = static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
+  pair.left.resize(count);
+  pair.right.resize(count);
+  for (int v = 0; v < height_px; ++v)
+    for (int u = 0; u < width_px; ++u)
+      pair.left[static_cast<std::size_t>(v * width_px + u)] = pixel(texture, u, v, generator);
+  for (int v = 0; v < height_px; ++v)
+    for (int u = 0; u < width_px; ++u) {
+      const int from = std::clamp(u + (v / 20 % 2 == 0 ? disparity_px : 0), 0, width_px - 1);
+      const int value =
+          pair.left[static_cast<std::size_t>(v * width_px + from)] + static_cast<int>(generator() % 9) - 4;
+      pair.right[static_cast<std::size_t>(v * width_px + u)] =
+          static_cast<std::uint8_t>(std::clamp(value, 0, 255));
+    }
+  return pair;
+}
+
+BlockRule rule_of(int width_px, int height_px, std::vector<int> disparities) {
+  BlockRule rule;
+  rule.width_px = width_px;
+  rule.height_px = height_px;
+  rule.last_row_px = height_px;
+  for (const int d : disparities) rule.disparities.push_back({d, 215, score_limit_units(0.25)});
+  rule.infinity_px = disparities.front() / 2;
+  rule.window.limit_units = score_limit_units(0.324);
+  rule.least_disparity_px = rule.infinity_px;
+  rule.greatest_disparity_px = disparities.front() + 20;
+  return rule;
+}
+
+/// Over every instruction set there is; `bands` threads' worth of kernels. Returns the number of matches.
+std::size_t expect_equal(const BlockRule& rule, const Pair& pair, int bands = 1) {
+  const std::vector<BlockMatch> expected = support::plain_matches(rule, pair.left_view(), pair.right_view());
+  for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
+    const std::int64_t target = targets & -targets;
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    PushbroomKernel kernel(rule);
+    std::vector<BlockMatch> found;
+    for (int band = 0; band < bands; ++band) {
+      const auto& matches =
+          kernel.search(pair.left_view(), pair.right_view(), kernel.strip_count() * band / bands,
+                        kernel.strip_count() * (band + 1) / bands);
+      found.insert(found.end(), matches.begin(), matches.end());
+    }
+    EXPECT_EQ(found, expected) << hwy::TargetName(target);
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+  return expected.size();
+}
+
+TEST(PushbroomKernel, EqualsThePlainRuleOnEveryTextureAndInstructionSet) {
+  std::size_t with_invariance = 0, with_uniqueness = 0, bare = 0;
+  for (const Texture texture : {Texture::noise, Texture::saturated, Texture::flat, Texture::stripes,
+                                Texture::smooth, Texture::sparse}) {
+    const Pair pair = pair_of(376, 240, texture, 33, 7);
+    BlockRule rule = rule_of(376, 240, {33});
+    bare += expect_equal(rule, pair);
+    rule.horizontal_invariance = true;
+    with_invariance += expect_equal(rule, pair);
+    rule.horizontal_invariance = false;
+    rule.uniqueness = true;
+    with_uniqueness += expect_equal(rule, pair);
+  }
+  EXPECT_GT(bare, 1000u);
+  EXPECT_GT(with_invariance, 100u);
+  EXPECT_LT(with_invariance, bare);
+  EXPECT_GT(with_uniqueness, 100u);
+  EXPECT_LT(with_uniqueness, bare);
+}
+
+TEST(PushbroomKernel, EqualsThePlainRuleWithSeveralDisparitiesAndBands) {
+  const Pair pair = pair_of(376, 240, Texture::noise, 33, 8);
+  BlockRule rule = rule_of(376, 240, {33, 28, 0, -17, 46});
+  rule.horizontal_invariance = true;
+  for (const int bands : {1, 2, 3, 50}) EXPECT_GT(expect_equal(rule, pair, bands), 100u);
+}
+
+TEST(PushbroomKernel, EqualsThePlainRuleAtEveryPixel) {
+  std::size_t bare = 0, with_invariance = 0;
+  for (const Texture texture :
+       {Texture::noise, Texture::saturated, Texture::flat, Texture::stripes, Texture::smooth}) {
+    const Pair pair = pair_of(376, 240, texture, 33, 8);
+    BlockRule rule = rule_of(376, 240, {33, 28});
+    rule.every_pixel = true;
+    rule.last_row_px = 203;  // not a whole number of cells
+    bare += expect_equal(rule, pair, 3);
+    rule.horizontal_invariance = true;
+    with_invariance += expect_equal(rule, pair, 2);
+  }
+  EXPECT_GT(bare, 1000u);
+  EXPECT_GT(with_invariance, 100u);
+}
+
+TEST(PushbroomKernel, EqualsThePlainRuleOnOddAndTinyImages) {
+  for (const auto& [width, height] : std::vector<std::pair<int, int>>{
+           {5, 5}, {6, 5}, {7, 9}, {13, 6}, {33, 7}, {64, 11}, {65, 12}, {127, 17}, {129, 33}, {301, 64}}) {
+    for (const int disparity : {0, 1, width - 5, -(width - 5), width / 3}) {
+      if (std::abs(disparity) + block_px > width) continue;
+      const Pair pair = pair_of(width, height, Texture::noise, disparity, 9);
+      for (const int filters : {0, 1, 2, 3}) {
+        BlockRule rule = rule_of(width, height, {disparity});
+        rule.horizontal_invariance = (filters & 1) != 0;
+        rule.uniqueness = (filters & 2) != 0;
+        rule.every_pixel = filters == 0 && width % 3 == 0;
+        rule.window.rows_each_side_px = 2;
+        expect_equal(rule, pair);
+      }
+    }
+  }
+}
+
+TEST(PushbroomKernel, EqualsThePlainRuleForRulesDrawnAtRandom) {
+  const bool holds = rc::check([] {
+    const int width = *rc::gen::inRange(8, 200), height = *rc::gen::inRange(5, 60);
+    const auto texture = static_cast<Texture>(*rc::gen::inRange(0, 6));
+    const int disparity = *rc::gen::inRange(-(width - 5), width - 4);
+    const Pair pair = pair_of(width, height, texture, disparity, *rc::gen::inRange<std::uint64_t>(1, 1000));
+    BlockRule rule = rule_of(width, height, {disparity});
+    if (*rc::gen::arbitrary<bool>())
+      rule.disparities.push_back({*rc::gen::inRange(-(width - 5), width - 4), 0, score_limit_units(10)});
+    rule.stride_px = *rc::gen::inRange(1, 9);
+    rule.every_pixel = *rc::gen::arbitrary<bool>();
+    rule.last_row_px = *rc::gen::inRange(0, 60);
+    rule.disparities.front().least_edge_sum = *rc::gen::inRange(0, largest_edge_sum + 1);
+    rule.disparities.front().limit_units = *rc::gen::inRange<std::int64_t>(0, 10 * score_unit);
+    rule.horizontal_invariance = *rc::gen::arbitrary<bool>();
+    rule.uniqueness = *rc::gen::arbitrary<bool>();
+    rule.infinity_px = *rc::gen::inRange(-width, width);
+    rule.least_disparity_px = *rc::gen::inRange(-width, width);
+    rule.greatest_disparity_px = *rc::gen::inRange(rule.least_disparity_px, 2 * width);
+    rule.uniqueness_ratio = *rc::gen::inRange(1000, 100000) / 1000.0;
+    rule.window.columns_each_side_px = *rc::gen::inRange(0, 12);
+    rule.window.rows_each_side_px = *rc::gen::inRange(0, 10);
+    rule.window.row_step_px = *rc::gen::inRange(1, 6);
+    rule.window.least_edge_sum = *rc::gen::inRange(0, 3000);
+    rule.window.limit_units = *rc::gen::inRange<std::int64_t>(0, score_unit);
+    expect_equal(rule, pair, *rc::gen::inRange(1, 4));
+    RC_ASSERT(!testing::Test::HasFailure());
+  });
+  EXPECT_TRUE(holds);
+}
+
+TEST(PushbroomKernel, RefusesRulesThatCannotBeMeant) {
+  BlockRule rule = rule_of(100, 50, {10});
+  EXPECT_NO_THROW(PushbroomKernel{rule});
+  rule.disparities.front().disparity_px = 96;
+  EXPECT_THROW(PushbroomKernel{rule}, std::logic_error);
+  rule = rule_of(100, 4, {10});
+  EXPECT_THROW(PushbroomKernel{rule}, std::logic_error);
+  rule = rule_of(100, 50, {10});
+  rule.stride_px = 0;
+  EXPECT_THROW(PushbroomKernel{rule}, std::logic_error);
+}
+
+}  // namespace
+}  // namespace understory

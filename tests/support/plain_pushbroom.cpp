@@ -1,0 +1,139 @@
+#include "tests/support/plain_pushbroom.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+#include "perception/block_score.hpp"
+
+namespace understory::support {
+namespace {
+
+std::uint8_t saturate(int response) { return static_cast<std::uint8_t>(std::clamp(response, 0, 255)); }
+
+int mirrored(int at, int count) { return at < 0 ? -at : at >= count ? 2 * (count - 1) - at : at; }
+
+struct Images {
+  GrayView left, right, left_edges, right_edges;
+};
+
+bool inside(const GrayView& image, int column_px, int row_px) {
+  return column_px >= 0 && row_px >= 0 && column_px + block_px <= image.width_px &&
+         row_px + block_px <= image.height_px;
+}
+
+int edges_at(const GrayView& edges, int column_px, int row_px) {
+  return block_sum(edges.row(row_px) + column_px, edges.stride);
+}
+
+int sad_of(const Images& images, int column_px, int row_px, int right_column_px, int right_row_px) {
+  return block_sad(images.left.row(row_px) + column_px, images.left.stride,
+                   images.right.row(right_row_px) + right_column_px, images.right.stride);
+}
+
+bool repeats(const BlockRule& rule, const Images& images, const BlockMatch& match) {
+  const SelfSimilarityWindow& window = rule.window;
+  for (int dv = -window.rows_each_side_px; dv <= window.rows_each_side_px; dv += window.row_step_px)
+    for (int du = -window.columns_each_side_px; du <= window.columns_each_side_px; ++du) {
+      const int u = match.column_px - rule.infinity_px + du, v = match.row_px + dv;
+      if (!inside(images.right, u, v)) return true;
+      const int edges = edges_at(images.right_edges, u, v);
+      if (edges >= window.least_edge_sum && scores_below(sad_of(images, match.column_px, match.row_px, u, v),
+                                                         match.left_edge_sum + edges, window.limit_units))
+        return true;
+    }
+  // The window's last row and column count as part of it even where the steps do not reach them.
+  return !inside(images.right, match.column_px - rule.infinity_px, match.row_px + window.rows_each_side_px);
+}
+
+bool unique(const BlockRule& rule, const Images& images, const BlockMatch& match) {
+  const int detection = rule.disparities[static_cast<std::size_t>(match.disparity)].disparity_px;
+  const auto thousandths = std::llround(1000 * rule.uniqueness_ratio);
+  for (int d = std::min(detection, rule.least_disparity_px);
+       d <= std::max(detection, rule.greatest_disparity_px); ++d) {
+    if (d == detection || !inside(images.right, match.column_px - d, match.row_px)) continue;
+    const int other = sad_of(images, match.column_px, match.row_px, match.column_px - d, match.row_px);
+    if (std::abs(d - detection) == 1 ? other < match.sad : 1000LL * other <= thousandths * match.sad)
+      return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void edge_map(const GrayView& image, std::vector<std::uint8_t>& edges) {
+  const int width = image.width_px, height = image.height_px;
+  edges.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (int v = 0; v < height; ++v) {
+    const std::uint8_t* above = image.row(mirrored(v - 1, height));
+    const std::uint8_t* below = image.row(mirrored(v + 1, height));
+    for (int u = 0; u < width; ++u) {
+      const int before = mirrored(u - 1, width), after = mirrored(u + 1, width);
+      const int corners = above[before] + above[after] + below[before] + below[after];
+      edges[static_cast<std::size_t>(v * width + u)] = saturate(2 * corners - 8 * image.row(v)[u]);
+    }
+  }
+}
+
+GrayView view_of(const std::vector<std::uint8_t>& packed, int width_px, int height_px) {
+  return {packed.data(), width_px, width_px, height_px};
+}
+
+namespace {
+
+// The best window of each cell, cells counted from the first column of their disparity's search.
+std::vector<BlockMatch> best_of_cells(const BlockRule& rule, const std::vector<BlockMatch>& windows) {
+  std::map<std::array<int, 3>, BlockMatch> best;  // by row of cells, cell, disparity
+  for (const BlockMatch& match : windows) {
+    const int first = std::max(0, rule.disparities[static_cast<std::size_t>(match.disparity)].disparity_px);
+    const auto [at, is_new] = best.try_emplace(
+        {match.row_px / block_px, (match.column_px - first) / block_px, match.disparity}, match);
+    const double score = static_cast<double>(match.sad) / (match.left_edge_sum + match.right_edge_sum);
+    const BlockMatch& other = at->second;
+    // Doubles tell any two such fractions apart: they differ by more than 1 part in 2e8.
+    if (!is_new && score < static_cast<double>(other.sad) / (other.left_edge_sum + other.right_edge_sum))
+      at->second = match;
+  }
+  std::vector<BlockMatch> matches;
+  for (const auto& [cell, match] : best) matches.push_back(match);
+  return matches;
+}
+
+}  // namespace
+
+std::vector<BlockMatch> plain_matches(const BlockRule& rule, const GrayView& left, const GrayView& right) {
+  std::vector<std::uint8_t> left_edges, right_edges;
+  edge_map(left, left_edges);
+  edge_map(right, right_edges);
+  const Images images{left, right, view_of(left_edges, left.width_px, left.height_px),
+                      view_of(right_edges, right.width_px, right.height_px)};
+  const int stride = rule.every_pixel ? 1 : rule.stride_px;
+  std::vector<BlockMatch> matches;
+  for (int row = 0; row <= rule.last_row_px; row += stride)
+    for (int column = 0; column < left.width_px; ++column)
+      for (std::size_t i = 0; i < rule.disparities.size(); ++i) {
+        const DisparityRule& one = rule.disparities[i];
+        const int first = std::max(0, one.disparity_px), partner = column - one.disparity_px;
+        if (column < first || (column - first) % stride != 0) continue;
+        if (!inside(left, column, row) || !inside(right, partner, row)) continue;
+        const BlockMatch match{column,
+                               row,
+                               static_cast<int>(i),
+                               sad_of(images, column, row, partner, row),
+                               edges_at(images.left_edges, column, row),
+                               edges_at(images.right_edges, partner, row)};
+        if (match.left_edge_sum < one.least_edge_sum || match.right_edge_sum < one.least_edge_sum) continue;
+        if (!scores_below(match.sad, match.left_edge_sum + match.right_edge_sum, one.limit_units)) continue;
+        matches.push_back(match);
+      }
+  if (rule.every_pixel) matches = best_of_cells(rule, matches);
+  std::erase_if(matches, [&](const BlockMatch& match) {
+    return (rule.uniqueness && !unique(rule, images, match)) ||
+           (rule.horizontal_invariance && repeats(rule, images, match));
+  });
+  return matches;
+}
+
+}  // namespace understory::support
