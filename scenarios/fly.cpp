@@ -174,7 +174,9 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
       pending.pop_front();
       stopwatch.time("detect", [&] { autopilot.on(frame); });
       record.observe(looks ? frame : StereoFrame{frame.t_ns, {}, {}}, autopilot.hits().size());
-      record.remember_of_frame(autopilot.map().points(), frame.t_ns);
+      record.remember_of_frame(
+          autopilot.map().points(), frame.t_ns,
+          history.at(frame.t_ns).T_world_body * state_source->state_at(frame.t_ns).T_world_body.inverse());
       if (film)
         stopwatch.time("film", [&] { film->observe(frame, autopilot, *state_source, aircraft.data()); });
     }

@@ -71,13 +71,13 @@ class TopView {
     const double right_m = left_m_ + image_.cols / px_per_m_;
     for (double x_m = std::ceil(left_m_ / step_m) * step_m; x_m < right_m; x_m += step_m) {
       cv::line(image_, place(x_m, bottom_m_), place(x_m, top_m_), pale);
-      write(image_, fmt::format("{:.3g} m", std::abs(x_m) < 1e-9 ? 0.0 : x_m),
+      write(image_, fmt::format("{:g} m", std::abs(x_m) < 1e-9 ? 0.0 : x_m),
             {place(x_m, 0).x + 4.0, image_.rows - 8.0}, ink, Anchor::left, 0.42);
     }
     for (double z_m = 0; z_m < top_m_; z_m += step_m) {
       cv::line(image_, place(left_m_, z_m), place(right_m, z_m), pale);
       if (place(0, z_m).y > 20)
-        write(image_, fmt::format("{:.3g} m", z_m), {6.0, place(0, z_m).y - 4.0}, ink, Anchor::left, 0.42);
+        write(image_, fmt::format("{:g} m", z_m), {6.0, place(0, z_m).y - 4.0}, ink, Anchor::left, 0.42);
     }
   }
 
@@ -235,7 +235,9 @@ cv::Mat draw_rig(const StereoRig& rig, const RigFigures& figures) {
   TopView(image({margin_px, title_px, width_px - panel_px - 3 * margin_px, height_px - title_px - margin_px}),
           rig, figures)
       .draw();
-  draw_images(image, rig, figures, {width_px - panel_px - margin_px, title_px + 20}, panel_px);
+  constexpr int sheet_height_px = 285;  // two of them, and what is said below
+  const int sheet_width_px = std::min(panel_px, sheet_height_px * rig.width_px / rig.height_px);
+  draw_images(image, rig, figures, {width_px - panel_px - margin_px, title_px + 20}, sheet_width_px);
   return image;
 }
 

@@ -102,9 +102,12 @@ void RunRecord::observe(const StereoFrame& frame, std::size_t hit_count) {
   result_.detections += static_cast<std::int64_t>(hit_count);
 }
 
-void RunRecord::remember_of_frame(const std::vector<ObstaclePoint>& points, std::int64_t t_ns) {
+void RunRecord::remember_of_frame(const std::vector<ObstaclePoint>& points, std::int64_t t_ns,
+                                  const Eigen::Isometry3d& T_true_estimated) {
   for (const ObstaclePoint& point : points) {
-    if (point.t_ns == t_ns && point.sightings == 1) points_.push_back(point);
+    if (point.t_ns != t_ns || point.sightings != 1) continue;
+    points_.push_back(point);
+    true_positions_world_.push_back(T_true_estimated * point.position_world);
   }
   result_.remembered_points = static_cast<std::int64_t>(points_.size());
 }
@@ -130,11 +133,12 @@ void RunRecord::finish(Ending ending) {
   }
   if (obstacles_.size() <= 8) {  // a course of few, named bars: say what was seen of each
     for (const Obstacle& bar : obstacles_) {
-      const auto near = [&](const ObstaclePoint& point) {
-        return segment_distance_m({point.position_world, point.position_world},
-                                  {bar.from_world, bar.to_world}) < bar.radius_m + 0.5;
+      const auto near = [&](const Eigen::Vector3d& point_world) {
+        return segment_distance_m({point_world, point_world}, {bar.from_world, bar.to_world}) <
+               bar.radius_m + 0.5;
       };
-      result_.points_on_obstacles.emplace_back(bar.name, std::count_if(points_.begin(), points_.end(), near));
+      result_.points_on_obstacles.emplace_back(
+          bar.name, std::count_if(true_positions_world_.begin(), true_positions_world_.end(), near));
     }
   }
   result_.digest = digest_.hex();

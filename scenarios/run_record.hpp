@@ -28,7 +28,10 @@ class RunRecord {
   /// Every frame, images into the digest.
   void observe(const StereoFrame& frame, std::size_t hit_count);
   /// The map's points after a frame: keeps those that this frame brought in (not those it only saw again).
-  void remember_of_frame(const std::vector<ObstaclePoint>& points, std::int64_t t_ns);
+  /// `T_true_estimated`: what turns the estimator's world into the true one at the image's moment, so that
+  /// points can be counted on true obstacles whatever the odometry frame has drifted until then.
+  void remember_of_frame(const std::vector<ObstaclePoint>& points, std::int64_t t_ns,
+                         const Eigen::Isometry3d& T_true_estimated);
 
   /// Fields the loop itself knows (replans, timings, ending) are set here directly.
   FlightResult& result() { return result_; }
@@ -45,6 +48,8 @@ class RunRecord {
   RunDigest digest_;
   std::string trajectory_;
   std::vector<ObstaclePoint> points_;
+  std::vector<Eigen::Vector3d>
+      true_positions_world_;  ///< of points_, seen from where the aircraft really was
   Truth last_truth_;
   double released_s_ = 0;
   double error_sum_m_ = 0;

@@ -60,8 +60,8 @@ class Matrices {
     }
     if (holder == nullptr)
       throw_file_fault(path_.string(), 0, key,
-                       is_folder_ ? fmt::format("expected this matrix in {0}.xml, {0}.yml or {0}.yaml", key)
-                                  : "expected this matrix, found none");
+                       is_folder_ ? fmt::format("expected this key in {0}.xml, {0}.yml or {0}.yaml", key)
+                                  : "expected this key, found none");
     return *holder;
   }
 
@@ -83,7 +83,6 @@ void read_rectification(Matrices& matrices, StereoCalibration& calibration, doub
   calibration.right.rectification = opencv_rotation(matrices.with("R2"), "R2");
   calibration.left.projection = opencv_projection(matrices.with("P1"), "P1");
   calibration.right.projection = opencv_projection(matrices.with("P2"), "P2");
-  // R T could say the same, but these are what the rig's maker rectified with.
   if (calibration.left.projection(0, 3) != 0)
     matrices.with("P1").fail("P1", "expected P1(0,3) to be 0: the left camera is the origin");
   calibration.right.projection(0, 3) *= meters_per_unit;
@@ -113,6 +112,7 @@ StereoCalibration read_opencv_calibration(const fs::path& path, const Calibratio
   const ImageSize size = agreed_image_size(path.string(), size_in(matrices), options);
   calibration.width_px = size.width_px;
   calibration.height_px = size.height_px;
+  // Where both are there, R and T say nothing more: these are what the rig's maker rectified with.
   const std::array<std::string, 4> rectified{"R1", "R2", "P1", "P2"};
   if (std::any_of(rectified.begin(), rectified.end(), [&](const auto& key) { return matrices.has(key); }))
     read_rectification(matrices, calibration, options.meters_per_unit);

@@ -131,7 +131,7 @@ TEST(CalibrationFaults, OpenCvYaml) {
       {"[ -0.2, 0., 0. ]", "[ 0., -0.2, 0. ]", ": P2: ", "to the right"},
       {"[ -0.2, 0., 0. ]", "[ 0., 0., 0. ]", ":23: R: ", "side by side"},
       {"[ -0.2, 0., 0. ]", "[ -20., 0., 0. ]", ": baseline in m: ", "another unit"},
-      {"T:", "t:", ": T: ", "expected this matrix, found none"},
+      {"T:", "t:", ": T: ", "expected this key, found none"},
       {"M2:", "M1:", ":8: M1: ", "expected once, found again"},
       {"M2:", "? [a]\n:", ":8: rig: ", "plain word"},
       {"D1: !!opencv-matrix", "D1: &again [*again]\nD3: !!opencv-matrix", ":13: rig: ", "found an alias"},

@@ -78,7 +78,7 @@ TEST(Cli, BadRigsAreNamedInOneLine) {
   expect_refusal("rig " + raw_rigs + "long.xml --depth deep", "--depth");
   expect_refusal("rig " + raw_rigs + "long.xml --depth nan", "detection depth: expected 0.1 to 1000 m");
   expect_refusal("rig " + raw_rigs + "long.xml --depth 800", "nearer than infinity");
-  expect_refusal("rig " + folder.path.string(), "M1: expected this matrix");
+  expect_refusal("rig " + folder.path.string(), "M1: expected this key in M1.xml");
   expect_refusal("rig " + folder.file("rig.yaml", "name: [\n"), "rig.yaml:");
   expect_refusal("rig " + folder.file("rig.xml", "<opencv_storage><M1>"),
                  "rig.xml:1: rig: expected OpenCV's XML");
