@@ -34,7 +34,7 @@ std::string frames_text(const DetectionResult& result) {
                                  result.rectified_here ? "rectified here" : "taken as rectified");
   if (count != result.frames_expected) text += fmt::format("; the video claims {}", result.frames_expected);
   if (result.unpaired_images > 0)
-    text += fmt::format("; {} images without partner left out", result.unpaired_images);
+    text += fmt::format("; images without partner, left out: {}", result.unpaired_images);
   return text;
 }
 
@@ -42,7 +42,7 @@ std::string map_text(const DetectionResult& result) {
   std::string text = fmt::format("{} points", *result.remembered_points);
   const auto outside = std::count_if(result.frames.begin(), result.frames.end(),
                                      [](const FrameRecord& f) { return !f.in_map; });
-  if (outside > 0) text += fmt::format("; {} frames lie outside the poses' time and are not in it", outside);
+  if (outside > 0) text += fmt::format("; frames outside the poses' time, left out: {}", outside);
   return text;
 }
 

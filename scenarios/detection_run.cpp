@@ -27,9 +27,9 @@ double seconds_since(Clock::time_point begin) {
 
 /// Runs `work` and adds its wall time to `sum_ms`; gives back what `work` gives.
 template <typename Work>
-auto timed(double& sum_ms, Work&& work) {
+decltype(auto) timed(double& sum_ms, Work&& work) {
   const Clock::time_point begin = Clock::now();
-  auto made = work();
+  decltype(auto) made = work();
   sum_ms += 1e3 * seconds_since(begin);
   return made;
 }
@@ -91,7 +91,7 @@ DetectionResult run_detection(const DetectionOptions& options) {
         rectifier ? timed(record.rectify_ms, [&] { return rectifier->rectify(frame); }) : frame;
     FrameHits& seen = hits.emplace_back();
     seen = {std::ssize(result.frames), frame.t_ns,
-            timed(record.detect_ms, [&] { return detector.detect(rectified); })};
+            timed(record.detect_ms, [&]() -> decltype(auto) { return detector.detect(rectified); })};
     record.hits = std::ssize(seen.hits);
     record.in_map = map && map->insert(seen.hits, frame.t_ns);
     pictures.add(rectified.left, seen.hits, detector.detection_depth_m(), record.in_map ? &*map : nullptr);

@@ -91,8 +91,10 @@ std::optional<std::int64_t> seconds_in(std::string_view cell) {
 
 std::string text_of(const std::filesystem::path& file) {
   std::error_code ignored;
+  const auto kind = std::filesystem::status(file, ignored).type();
+  const bool is_endless = kind == std::filesystem::file_type::character;  // a device
   std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file, ignored))
+  if (!stream || kind == std::filesystem::file_type::directory || is_endless)
     throw std::runtime_error(file.string() + ": expected a readable file");
   std::ostringstream text;
   text << stream.rdbuf();

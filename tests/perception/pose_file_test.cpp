@@ -119,6 +119,7 @@ TEST(PoseFile, NamesTheLineOfEveryFault) {
   EXPECT_EQ(euroc("5,0,0,0,1,0,0,0\n4,0,0,0,1,0,0,0\n"),
             "p:2: expected times that increase from line to line");
   EXPECT_EQ(complaint([] { read_poses("/nonexistent"); }), "/nonexistent: expected a readable file");
+  EXPECT_EQ(complaint([] { read_poses("/dev/zero"); }), "/dev/zero: expected a readable file");
   EXPECT_EQ(complaint([] { read_poses("/tmp"); }), "/tmp: expected a readable file");
 }
 

@@ -69,7 +69,7 @@ TEST_F(DetectReal, HitsLieWhereDenseMatchingPutsThem) {
     EXPECT_NE(outcome.text.find("4 of 752x480 px, rectified here"), std::string::npos) << outcome.text;
     return agreement(support::content_of(out + "/points.csv"), disparities);
   };
-  // Where the textured strips on the floor lie. A fifth of the dense pixels lie within a pixel of this depth.
+  // Where a checkerboard stands. A fifth of the dense pixels lie within a pixel of this depth.
   const Agreement robust = detect(" --depth 2.2"), paper = detect(" --depth 2.2 --rule paper");
   EXPECT_GT(robust.hits, 100);
   EXPECT_GT(robust.within_a_pixel, 0.9 * robust.hits);
@@ -94,7 +94,7 @@ TEST_F(DetectReal, AVehicleAtRestRemembersEachPointOnce) {
   };
   const auto hits = lines("points.csv") - 1, remembered = lines("map.ply") - 11;
   EXPECT_GT(remembered, 20);
-  EXPECT_LT(remembered, hits / 2);  // four looks at the same strips
+  EXPECT_LT(remembered, hits / 2);  // four looks at the same board
 }
 
 TEST_F(DetectReal, ACalibrationOfAnotherResolutionIsRefused) {

@@ -141,7 +141,8 @@ TEST_F(Detect, FramesOutsideThePosesAreReportedAndLeftOutOfTheMap) {
   const auto outcome =
       support::understory("detect " + folders() + to_out() + " --set map.voxel_m=0 --poses " + poses);
   ASSERT_EQ(outcome.status, 0) << outcome.text;
-  EXPECT_NE(outcome.text.find("2 frames lie outside the poses' time"), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("frames outside the poses' time, left out: 2"), std::string::npos)
+      << outcome.text;
   EXPECT_EQ(positions_in(found("map.ply")).size(), expected(frames, robust_rule())[1].hits.size());
   const std::string later = folder.write("later.csv", "9500000000,0,0,0,1,0,0,0\n").string();
   support::expect_refusal("detect " + folders() + to_out() + " --poses " + later,
@@ -175,6 +176,12 @@ TEST_F(Detect, BadInputIsOneLineAndLeavesNoResult) {
   cv::imwrite(left + "/a1.png", cv::Mat(480, 752, CV_8UC1, cv::Scalar(5)));
   cv::imwrite(right + "/a1.png", cv::Mat(480, 752, CV_8UC1, cv::Scalar(5)));
   refuse(detect, "left/a1.png: expected 376x240 as");
+  std::string sizeless = support::content_of(fs::path(UNDERSTORY_SOURCE_DIR) / "models/rigs/raw/paper.xml");
+  for (const char* line : {"<image_width>376</image_width>", "<image_height>240</image_height>"})
+    sizeless.replace(sizeless.find(line), std::string(line).size(), "");
+  refuse("detect " + left + "/a1.png " + right + "/a1.png --unit cm --out " + out + " --rig " +
+             folder.write("sizeless.xml", sizeless).string(),
+         "expected a principal point in the middle of the 752x480 images");
   fs::remove(right + "/a2.png");
   refuse(detect, "left/a2.png: expected its partner in");
   EXPECT_FALSE(fs::exists(fs::path(out)));
