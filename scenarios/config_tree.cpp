@@ -1,12 +1,14 @@
 #include "scenarios/config_tree.hpp"
 
 #include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <sstream>
 
 namespace understory {
 namespace {
@@ -57,19 +59,43 @@ ConfigNode convert(const YAML::Node& yaml, const std::string& name, const std::s
   return node;
 }
 
+class IgnoredEvents : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+  }
+  void OnMapEnd() override {}
+};
+
+/// Not by YAML::LoadAll, which never returns from a stray comma (yaml-cpp 0.7 finds one empty document there
+/// after the other).
+bool holds_one_document(const std::string& text) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  IgnoredEvents events;
+  return parser.HandleNextDocument(events) && !parser.HandleNextDocument(events);
+}
+
 }  // namespace
 
 ConfigNode parse_config_text(const std::string& text, const std::string& name) {
-  std::vector<YAML::Node> documents;
+  YAML::Node document;
   try {
-    documents = YAML::LoadAll(text);
+    if (holds_one_document(text)) document = YAML::Load(text);
   } catch (const YAML::Exception& error) {
     throw ScenarioError(fmt::format("{}: expected YAML: {}", place(name, error.mark), one_line(error.msg)));
   }
-  if (documents.size() != 1 || !documents.front().IsMap()) {
+  if (!document.IsMap()) {
     throw ScenarioError(fmt::format("{}:1: expected one YAML document with keys and values", name));
   }
-  return convert(documents.front(), name, "");
+  return convert(document, name, "");
 }
 
 ConfigNode parse_config_file(const std::filesystem::path& file) {

@@ -9,6 +9,7 @@
 #include "estimation/filter.hpp"
 #include "perception/block_matching.hpp"
 #include "perception/io/rig_file.hpp"
+#include "perception/io/rig_limits.hpp"
 #include "perception/pushbroom_stereo.hpp"
 #include "planning/autopilot.hpp"
 #include "scenarios/due.hpp"
@@ -46,6 +47,13 @@ std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const St
                                               const TruthHistory& history) {
   switch (scenario.perception.detector) {
     case DetectorKind::pushbroom:
+      for (const double depth_m : scenario.perception.pushbroom.depths_m) {
+        StereoRig asked = rig;
+        asked.detection_depth_m = depth_m;
+        if (!rig_limits::detection_depth_in_view(asked))
+          throw ScenarioError(fmt::format(
+              "perception.depths_m: expected depths the rig {} can look at, got {} m", rig.name, depth_m));
+      }
       return std::make_unique<PushbroomStereo>(rig, scenario.perception.pushbroom);
     case DetectorKind::block_matching:
       return std::make_unique<BlockMatching>(rig, scenario.perception.block_matching);

@@ -177,6 +177,7 @@ template <typename Visitor>
 void visit_fields(Visitor& visit, PerceptionSection& section) {
   visit("detector", section.detector, detector_names);
   visit("rule", section.rule, rule_names);
+  visit("depths_m", section.pushbroom.depths_m, 0.1, 1000.0);  // to look at; empty: the rig's own
   visit("pushbroom", section.pushbroom);
   visit("block_matching", section.block_matching);
 }

@@ -12,7 +12,9 @@
 namespace understory {
 namespace {
 
-CalibratedRig long_rig() { return read_calibrated_rig(UNDERSTORY_SOURCE_DIR "/models/rigs/raw/long.xml", {}); }
+CalibratedRig long_rig() {
+  return read_calibrated_rig(UNDERSTORY_SOURCE_DIR "/models/rigs/raw/long.xml", {});
+}
 
 TEST(StereoScenes, ShowTextureAtTheDetectionDepthAndNeverTheSameTwice) {
   const CalibratedRig rig = long_rig();

@@ -120,6 +120,8 @@ TEST(Cli, BadScenariosAreNamedByFileLineAndKey) {
   expect_refusal("fly clear --set 'forest={clear_m: 9, clear_m: 9}'",
                  "forest.clear_m: expected each key once");
   expect_refusal("fly clear --seed x", "seed: expected a whole number");
+  expect_refusal("fly clear --set 'perception.depths_m=[10, 900]' --out " + folder.path.string(),
+                 "perception.depths_m: expected depths the rig long can look at, got 900 m");
   expect_refusal("evaluate clear --seeds 9:1", "--seeds 9:1");
 }
 
