@@ -9,9 +9,12 @@ endif()
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 
 add_library(understory_settings INTERFACE)
-target_include_directories(understory_settings INTERFACE ${PROJECT_SOURCE_DIR})
+target_include_directories(understory_settings INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                           $<INSTALL_INTERFACE:include/understory>)
+target_compile_features(understory_settings INTERFACE cxx_std_20)
+# Warnings are the project's own affair: who uses the installed package keeps theirs.
 target_compile_options(understory_settings INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Werror -ffp-contract=off)
+  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wnon-virtual-dtor;-Werror;-ffp-contract=off>")
 if(UNDERSTORY_SANITIZE)
   # GCC's manual: with sanitizers on, -Wmaybe-uninitialized reports what is not so (std::regex in GCC 12).
   target_compile_options(understory_settings INTERFACE

@@ -8,10 +8,16 @@ namespace {
 
 constexpr int ring_rows = block_px + 1;  // a window's rows and the one that comes in
 
-bool scores_better(const BlockMatch& a, const BlockMatch& b) {
-  return static_cast<std::int64_t>(a.sad) * (b.left_edge_sum + b.right_edge_sum) <
-         static_cast<std::int64_t>(b.sad) * (a.left_edge_sum + a.right_edge_sum);
+// A window in one word: SAD, left and right edge sum (below 2^13 each) and its row and column in the cell.
+// Edges of 0 lose against every window.
+std::uint64_t packed(std::uint64_t sad, std::uint64_t left_edges, std::uint64_t right_edges,
+                     std::uint64_t row, std::uint64_t column) {
+  return sad | left_edges << 16 | right_edges << 32 | row << 48 | column << 56;
 }
+std::uint32_t sad_of(std::uint64_t window) { return window & 0xFFFF; }
+std::uint32_t left_edges_of(std::uint64_t window) { return window >> 16 & 0xFFFF; }
+std::uint32_t right_edges_of(std::uint64_t window) { return window >> 32 & 0xFFFF; }
+constexpr std::uint64_t no_window = 1;
 
 }  // namespace
 
@@ -25,7 +31,7 @@ DenseSearch::DenseSearch(const BlockRule& rule)
     const SearchColumns columns = search_columns(rule, one);
     searches_.push_back({columns, candidate_test(one.least_edge_sum, one.limit_units),
                          RunningSums(columns.count), EdgeMap(columns.count, ring_rows),
-                         std::vector<BlockMatch>(static_cast<std::size_t>(columns.count / block_px + 1))});
+                         std::vector<std::uint64_t>(static_cast<std::size_t>(columns.count / block_px + 1))});
   }
   const auto padded = static_cast<std::size_t>(rule.width_px + 2 * over_read_px);
   for (auto* sums : {&left_sums_, &right_sums_, &sads_}) sums->resize(padded);
@@ -42,14 +48,14 @@ void DenseSearch::search(const GrayView& left, const GrayView& right, int first_
     take_row_in(left, right, v, true, right_edges);
   for (int row = first_row_px; row < last_row_px; ++row) {
     if ((row - first_row_px) % block_px == 0)
-      for (Search& search : searches_)
-        std::fill(search.best.begin(), search.best.end(), BlockMatch{.sad = -1});
+      for (Search& search : searches_) std::fill(search.best.begin(), search.best.end(), no_window);
     take_row_in(left, right, row + block_px - 1, row == first_row_px, right_edges);
     left_running_.window_sums(rule_.width_px - edges.left_first_px, left_sums_.data() + edges.left_first_px);
     right_running_.window_sums(edges.right_last_px - edges.right_first_px,
                                right_sums_.data() + edges.right_first_px);
     for (std::size_t i = 0; i < searches_.size(); ++i) take_candidates(row, i);
-    if ((row - first_row_px) % block_px == block_px - 1 || row + 1 == last_row_px) take_best(matches);
+    if ((row - first_row_px) % block_px == block_px - 1 || row + 1 == last_row_px)
+      take_best(row - row % block_px, matches);
   }
 }
 
@@ -76,37 +82,49 @@ void DenseSearch::take_row_in(const GrayView& left, const GrayView& right, int r
   }
 }
 
+// Windows that match lie together and their scores come in any order, so branches on them would be guessed
+// wrong half the time: the better of two is picked without one. Whether the best really passes is asked once,
+// in take_best: where it does not, none of its cell does.
 void DenseSearch::take_candidates(int row_px, std::size_t disparity) {
   Search& search = searches_[disparity];
   const auto& [left_px, right_px, count] = search.columns;
-  const std::int64_t limit_units = rule_.disparities[disparity].limit_units;
   search.sums.window_sums(count, sads_.data());
   find_candidates(sads_.data(), left_sums_.data() + left_px, right_sums_.data() + right_px, count,
                   search.test, candidates_.data());
   for (int first = 0; first + block_px <= count; first += 64) {
     std::uint64_t bits = candidates_[static_cast<std::size_t>(first) / 64];
+    if (first + 64 + block_px > count) bits &= (std::uint64_t{2} << (count - block_px - first)) - 1;
     for (; bits != 0; bits &= bits - 1) {
-      const int x = first + std::countr_zero(bits);
-      if (x + block_px > count) break;
-      const BlockMatch match{left_px + x,
-                             row_px,
-                             static_cast<int>(disparity),
-                             sads_[static_cast<std::size_t>(x)],
-                             left_sums_[static_cast<std::size_t>(left_px + x)],
-                             right_sums_[static_cast<std::size_t>(right_px + x)]};
-      BlockMatch& best = search.best[static_cast<std::size_t>(x / block_px)];
-      if (best.sad >= 0 && !scores_better(match, best)) continue;
-      if (scores_below(match.sad, match.left_edge_sum + match.right_edge_sum, limit_units)) best = match;
+      const int x = first + std::countr_zero(bits), cell = x / block_px;
+      const std::uint32_t sad = sads_[static_cast<std::size_t>(x)];
+      const std::uint32_t left = left_sums_[static_cast<std::size_t>(left_px + x)];
+      const std::uint32_t right = right_sums_[static_cast<std::size_t>(right_px + x)];
+      std::uint64_t& best = search.best[static_cast<std::size_t>(cell)];
+      // Both products stay below 2^27.
+      const bool better = sad * (left_edges_of(best) + right_edges_of(best)) < sad_of(best) * (left + right);
+      const std::uint64_t window = packed(sad, left, right, static_cast<std::uint64_t>(row_px % block_px),
+                                          static_cast<std::uint64_t>(x - block_px * cell));
+      best ^= (best ^ window) & (std::uint64_t{0} - std::uint64_t{better});
     }
   }
 }
 
-void DenseSearch::take_best(std::vector<BlockMatch>& matches) {
+void DenseSearch::take_best(int first_row_px, std::vector<BlockMatch>& matches) {
   std::size_t cells = 0;
   for (const Search& search : searches_) cells = std::max(cells, search.best.size());
   for (std::size_t cell = 0; cell < cells; ++cell)
-    for (const Search& search : searches_)
-      if (cell < search.best.size() && search.best[cell].sad >= 0) matches.push_back(search.best[cell]);
+    for (std::size_t i = 0; i < searches_.size(); ++i) {
+      const Search& search = searches_[i];
+      if (cell >= search.best.size()) continue;
+      const std::uint64_t best = search.best[cell];
+      const int sad = static_cast<int>(sad_of(best)), left_edges = static_cast<int>(left_edges_of(best)),
+                right_edges = static_cast<int>(right_edges_of(best));
+      if (!scores_below(sad, left_edges + right_edges, rule_.disparities[i].limit_units)) continue;
+      const int column_px =
+          search.columns.left_px + block_px * static_cast<int>(cell) + static_cast<int>(best >> 56);
+      matches.push_back({column_px, first_row_px + static_cast<int>(best >> 48 & 0xFF), static_cast<int>(i),
+                         sad, left_edges, right_edges});
+    }
 }
 
 }  // namespace understory

@@ -24,15 +24,15 @@ class DenseSearch {
   struct Search {
     SearchColumns columns;
     CandidateTest test;
-    RunningSums sums;              ///< of the differences
-    EdgeMap differences;           ///< the last rows, by row modulo its height
-    std::vector<BlockMatch> best;  ///< of each cell of a row of cells; sad below 0 where there is none
+    RunningSums sums;                 ///< of the differences
+    EdgeMap differences;              ///< the last rows, by row modulo its height
+    std::vector<std::uint64_t> best;  ///< of each cell of a row of cells, packed (dense_search.cpp)
   };
   /// Takes a row into the sums, and the row five above it out of them.
   void take_row_in(const GrayView& left, const GrayView& right, int row_px, bool is_first_window,
                    EdgeMap& right_edges);
   void take_candidates(int row_px, std::size_t disparity);
-  void take_best(std::vector<BlockMatch>& matches);
+  void take_best(int first_row_px, std::vector<BlockMatch>& matches);
 
   BlockRule rule_;
   EdgeColumns edge_columns_;

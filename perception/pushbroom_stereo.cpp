@@ -17,6 +17,8 @@ int whole(double pixels) { return static_cast<int>(std::lround(pixels)); }
 
 }  // namespace
 
+int last_row_px_of(int height_px) { return whole(PushbroomConfig().last_row_px * height_px / 240.0); }
+
 PushbroomConfig paper_rule() { return {}; }
 
 PushbroomConfig robust_rule() {

@@ -38,6 +38,9 @@ struct PushbroomConfig {
   double isolation_radius_m = 1.0;
 };
 
+/// The last row of blocks, 205 of the paper's 240 rows, in an image of this height.
+int last_row_px_of(int height_px);
+
 /// The paper's rule, exactly.
 PushbroomConfig paper_rule();
 /// Uniqueness instead of the invariance filter, gentler thresholds, 3 points within 1 m: on rendered forests

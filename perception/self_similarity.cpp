@@ -1,7 +1,5 @@
 #include "perception/self_similarity.hpp"
 
-#include <cstring>
-
 #include "perception/block_score.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -35,7 +33,8 @@ struct ShiftIndices {
 };
 
 struct WindowTask {
-  std::uint8_t block_rows[block_px][load_bytes] = {};  // the left block, zeros behind it
+  const std::uint8_t* block = nullptr;  // the left block
+  std::ptrdiff_t left_stride = 0;
   const std::uint8_t* right = nullptr;  // the right image, at the window's first column and row
   std::ptrdiff_t right_stride = 0;
   const std::uint8_t* right_edges = nullptr;  // its edge map, at the same place
@@ -60,26 +59,24 @@ HWY_INLINE hn::Vec<Sums> SumsOfDifferences(hn::Vec<Bytes> a, hn::Vec<Bytes> b) {
 }
 
 // Whether a block of the window that begins at `row` is similar.
-HWY_INLINE bool RowIsSimilar(const WindowTask& task, int row, const SelfSimilarityWindow& window,
-                             const ShiftIndices& indices) {
+HWY_INLINE bool RowIsSimilar(const WindowTask& task, const hn::Vec<Bytes>* block, int row,
+                             const SelfSimilarityWindow& window, const ShiftIndices& indices) {
   const Bytes d;
   const Sums d64;
   const hn::Repartition<std::uint32_t, Bytes> d32;
   const hn::RebindToSigned<Sums> signed64;
   const int groups = static_cast<int>(hn::Lanes(d)) / group_bytes;
   const int shifts = 2 * window.columns_each_side_px + 1;
-  const auto same = hn::LoadU(d, indices.same);
   for (int first = 0; first < shifts; first += groups) {
     const int column = first / shift_count * shift_count;
     const auto shifted = hn::LoadU(d, indices.shifted + (first - column) * group_bytes);
     auto sad = hn::Zero(d64), edges = hn::Zero(d64);
     for (int v = 0; v < block_px; ++v) {
-      const auto block = hn::TableLookupBytesOr0(hn::LoadDup128(d, task.block_rows[v]), same);
       const auto other = hn::TableLookupBytesOr0(
           hn::LoadDup128(d, task.right + (row + v) * task.right_stride + column), shifted);
       const auto other_edges = hn::TableLookupBytesOr0(
           hn::LoadDup128(d, task.right_edges + (row + v) * task.right_edges_stride + column), shifted);
-      sad = hn::Add(sad, SumsOfDifferences(block, other));
+      sad = hn::Add(sad, SumsOfDifferences(block[v], other));
       edges = hn::Add(edges, hn::SumsOf8(other_edges));
     }
     // SAD / (both edge sums) < limit, as block_score.hpp has it; 64 bits hold every product.
@@ -99,13 +96,18 @@ HWY_INLINE bool RowIsSimilar(const WindowTask& task, int row, const SelfSimilari
 
 bool WindowIsSimilar(const WindowTask& task, const SelfSimilarityWindow& window,
                      const ShiftIndices& indices) {
+  const Bytes d;
+  hn::Vec<Bytes> block[block_px];
+  for (int v = 0; v < block_px; ++v)
+    block[v] = hn::TableLookupBytesOr0(hn::LoadDup128(d, task.block + v * task.left_stride),
+                                       hn::LoadU(d, indices.same));
   const int row_count = 2 * window.rows_each_side_px / window.row_step_px + 1;
   // What repeats usually does so near the block's own row: from the middle outwards.
   const int middle = row_count / 2;
   for (int i = 0; i < 2 * row_count; ++i) {
     const int index = middle + (i % 2 == 0 ? i / 2 : -(i + 1) / 2);
     if (index < 0 || index >= row_count) continue;
-    if (RowIsSimilar(task, index * window.row_step_px, window, indices)) return true;
+    if (RowIsSimilar(task, block, index * window.row_step_px, window, indices)) return true;
   }
   return false;
 }
@@ -129,8 +131,8 @@ bool window_inside(const GrayView& image, int column_px, int row_px, const SelfS
 bool similar_one_by_one(const WindowTask& task, const SelfSimilarityWindow& window) {
   for (int v = 0; v <= 2 * window.rows_each_side_px; v += window.row_step_px)
     for (int u = 0; u <= 2 * window.columns_each_side_px; ++u) {
-      const int sad = block_sad(task.block_rows[0], load_bytes, task.right + v * task.right_stride + u,
-                                task.right_stride);
+      const int sad =
+          block_sad(task.block, task.left_stride, task.right + v * task.right_stride + u, task.right_stride);
       const int edges =
           block_sum(task.right_edges + v * task.right_edges_stride + u, task.right_edges_stride);
       if (edges >= window.least_edge_sum && scores_below(sad, task.left_edge_sum + edges, window.limit_units))
@@ -148,8 +150,8 @@ bool self_similar(const GrayView& left, const GrayView& right, const GrayView& r
   const int first_column = infinity_column_px - window.columns_each_side_px;
   const int first_row = row_px - window.rows_each_side_px;
   WindowTask task;
-  for (int v = 0; v < block_px; ++v)
-    std::memcpy(task.block_rows[v], left.row(row_px + v) + column_px, block_px);
+  task.block = left.row(row_px) + column_px;
+  task.left_stride = left.stride;
   task.right = right.row(first_row) + first_column;
   task.right_stride = right.stride;
   task.right_edges = right_edges.row(first_row) + first_column;
@@ -157,7 +159,8 @@ bool self_similar(const GrayView& left, const GrayView& right, const GrayView& r
   task.left_edge_sum = left_edge_sum;
   const int last_row = row_px + window.rows_each_side_px + block_px - 1;
   const int bytes = 2 * window.columns_each_side_px + load_bytes;
-  if (!right.can_read(first_column, last_row, bytes) || !right_edges.can_read(first_column, last_row, bytes))
+  if (!left.can_read(column_px, row_px + block_px - 1, load_bytes) ||
+      !right.can_read(first_column, last_row, bytes) || !right_edges.can_read(first_column, last_row, bytes))
     return similar_one_by_one(task, window);
   return HWY_DYNAMIC_DISPATCH(WindowIsSimilar)(task, window, indices);
 }

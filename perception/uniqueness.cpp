@@ -40,6 +40,28 @@ void RowSads(const std::uint8_t* block, std::ptrdiff_t left_stride, const std::u
   }
 }
 
+// The SADs of the block with the right blocks 0, 1 and 2 columns further.
+void NeighbourSads(const std::uint8_t* block, std::ptrdiff_t left_stride, const std::uint8_t* search,
+                   std::ptrdiff_t right_stride, std::uint64_t* sads) {
+  const hn::Full128<std::uint8_t> d;
+  const hn::Repartition<std::uint64_t, decltype(d)> d64;
+  // A block's row of five bytes, at column 0 and 1, 2 and 3, in groups of eight; 128 gives zero.
+  alignas(16) constexpr std::uint8_t same[] = {0, 1, 2, 3, 4, 128, 128, 128, 0, 1, 2, 3, 4, 128, 128, 128};
+  alignas(16) constexpr std::uint8_t low[] = {0, 1, 2, 3, 4, 128, 128, 128, 1, 2, 3, 4, 5, 128, 128, 128};
+  alignas(16) constexpr std::uint8_t high[] = {2, 3, 4, 5, 6, 128, 128, 128, 3, 4, 5, 6, 7, 128, 128, 128};
+  auto first = hn::Zero(d64), second = hn::Zero(d64);
+  for (int v = 0; v < block_px; ++v) {
+    const auto here = hn::TableLookupBytesOr0(hn::LoadU(d, block + v * left_stride), hn::Load(d, same));
+    const auto row = hn::LoadU(d, search + v * right_stride);
+    const auto a = hn::TableLookupBytesOr0(row, hn::Load(d, low));
+    const auto b = hn::TableLookupBytesOr0(row, hn::Load(d, high));
+    first = hn::Add(first, hn::SumsOf8(hn::Or(hn::SaturatedSub(here, a), hn::SaturatedSub(a, here))));
+    second = hn::Add(second, hn::SumsOf8(hn::Or(hn::SaturatedSub(here, b), hn::SaturatedSub(b, here))));
+  }
+  hn::StoreU(first, d64, sads);
+  hn::StoreU(second, d64, sads + 2);
+}
+
 // Whether one of the sads is at most `limit`.
 bool AnyAtMost(const std::uint16_t* sads, int count, std::uint16_t limit) {
   const hn::ScalableTag<std::uint16_t> d16;
@@ -58,6 +80,7 @@ namespace understory {
 namespace {
 
 HWY_EXPORT(RowSads);
+HWY_EXPORT(NeighbourSads);
 HWY_EXPORT(AnyAtMost);
 
 constexpr int over_read_px = 128;  // a vector of loads, and one of stores, past the last column searched
@@ -85,10 +108,22 @@ bool UniquenessTest::unique(const GrayView& left, const GrayView& right, int col
   assert_always(chosen >= 0 && chosen < count, "the right block lies outside the image");
   const std::uint8_t* block = left.row(row_px) + column_px;
   const std::uint8_t* search = right.row(row_px) + first;
-  // Most candidates fail against a neighbour, which costs two blocks; only the rest search the row.
-  const int best = block_sad(block, left.stride, search + chosen, right.stride);
-  for (const int i : {chosen - 1, chosen + 1})
-    if (i >= 0 && i < count && block_sad(block, left.stride, search + i, right.stride) < best) return false;
+  // Most candidates fail against a neighbour, which costs three blocks; only the rest search the row.
+  std::uint64_t sads[4] = {};
+  constexpr int load_bytes = 16;
+  const int last_row = row_px + block_px - 1;
+  if (chosen > 0 && chosen + 1 < count && left.can_read(column_px, last_row, load_bytes) &&
+      right.can_read(first + chosen - 1, last_row, load_bytes)) {
+    HWY_DYNAMIC_DISPATCH(NeighbourSads)(block, left.stride, search + chosen - 1, right.stride, sads);
+  } else {
+    for (const int i : {0, 1, 2}) {
+      const int at =
+          std::clamp(chosen - 1 + i, 0, count - 1);  // beyond the range: the block itself, or its like
+      sads[i] = static_cast<std::uint64_t>(block_sad(block, left.stride, search + at, right.stride));
+    }
+  }
+  const auto best = static_cast<int>(sads[1]);
+  if (sads[0] < sads[1] || sads[2] < sads[1]) return false;
 
   if (right.can_read(first, row_px + block_px - 1, count + over_read_px)) {
     HWY_DYNAMIC_DISPATCH(RowSads)(block, left.stride, search, right.stride, count, sads_.data());

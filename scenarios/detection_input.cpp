@@ -62,11 +62,9 @@ CalibratedRig rig_for(const DetectionOptions& options, const StereoRecording& re
 }
 
 DetectionConfig config_for(const DetectionOptions& options, const StereoRig& rig) {
-  constexpr double paper_rows = 240;
   DetectionConfig config;
   config.pushbroom = options.rule;
-  config.pushbroom.last_row_px =
-      static_cast<int>(std::lround(options.rule.last_row_px * rig.height_px / paper_rows));
+  config.pushbroom.last_row_px = last_row_px_of(rig.height_px);
   for (const std::string& setting : options.settings) read_config(parse_assignment(setting), config);
   return config;
 }

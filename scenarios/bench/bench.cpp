@@ -105,12 +105,14 @@ void add_detectors(const CalibratedRig& rig, const std::vector<StereoFrame>& raw
              std::size_t i) mutable { detector.detect(raw[i]); },
          {}});
   };
-  PushbroomConfig paper = paper_rule(), two_threads = paper_rule(), dense = paper_rule(), four = paper_rule();
+  PushbroomConfig paper = paper_rule(), ours = robust_rule();
+  paper.last_row_px = ours.last_row_px = last_row_px_of(rig.rig.height_px);
+  PushbroomConfig two_threads = paper, dense = paper, four = paper;
   two_threads.threads = 2;
   dense.every_pixel = true;
   four.depths_m = depths_around(rig.rig, 4);
   detect(one_depth_name, paper, matching_name);
-  detect("detect, our rule", robust_rule(), matching_name);
+  detect("detect, our rule", ours, matching_name);
   detect("detect, 4 depths", four, one_depth_name);
   if (rig.calibration)
     benches.push_back(
@@ -124,7 +126,6 @@ void add_detectors(const CalibratedRig& rig, const std::vector<StereoFrame>& raw
   detect_raw("rectify and detect", paper);
   detect_raw("rectify and detect, two threads", two_threads);
   detect_raw("rectify and detect, every pixel", dense);
-  PushbroomConfig ours = robust_rule();
   detect_raw("rectify and detect, our rule", ours);
 }
 

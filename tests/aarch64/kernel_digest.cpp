@@ -1,0 +1,90 @@
+// Runs the detector's kernel over made-up pairs, compares it with the plain rule, and prints a digest of all
+// matches: the same number on every processor. Exit status 1 where kernel and plain rule differ.
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <random>
+#include <vector>
+
+#include "perception/pushbroom_kernel.hpp"
+#include "tests/support/plain_pushbroom.hpp"
+
+using namespace understory;
+
+namespace {
+
+constexpr int width_px = 376, height_px = 240, disparity_px = 33;
+
+std::vector<std::uint8_t> left_image(std::mt19937_64& generator, bool saturated) {
+  std::vector<std::uint8_t> image(width_px * height_px);
+  for (std::uint8_t& pixel : image) {
+    const auto bits = static_cast<std::uint8_t>(generator() >> 56);
+    pixel = saturated ? (bits & 1 ? 255 : 0) : bits;
+  }
+  return image;
+}
+
+// The left image moved by the disparity in every other band of twenty rows, with a little noise.
+std::vector<std::uint8_t> right_image(const std::vector<std::uint8_t>& left, std::mt19937_64& generator) {
+  std::vector<std::uint8_t> image(left.size());
+  for (int v = 0; v < height_px; ++v)
+    for (int u = 0; u < width_px; ++u) {
+      const int from = std::min(u + (v / 20 % 2 == 0 ? disparity_px : 0), width_px - 1);
+      const int value =
+          left[static_cast<std::size_t>(v * width_px + from)] + static_cast<int>(generator() % 9) - 4;
+      image[static_cast<std::size_t>(v * width_px + u)] =
+          static_cast<std::uint8_t>(std::clamp(value, 0, 255));
+    }
+  return image;
+}
+
+BlockRule rule(int variant) {
+  BlockRule rule;
+  rule.width_px = width_px;
+  rule.height_px = height_px;
+  rule.last_row_px = 205;
+  rule.disparities = {{disparity_px, 215, score_limit_units(0.25)}};
+  if (variant == 3) rule.disparities.push_back({28, 215, score_limit_units(0.25)});
+  rule.every_pixel = variant == 2;
+  rule.horizontal_invariance = variant == 0 || variant == 3;
+  rule.infinity_px = 20;
+  rule.window.limit_units = score_limit_units(0.324);
+  rule.uniqueness = variant == 1;
+  rule.least_disparity_px = 20;
+  rule.greatest_disparity_px = 106;
+  return rule;
+}
+
+}  // namespace
+
+int main() {
+  std::mt19937_64 generator(3);
+  std::uint64_t digest = 14695981039346656037u;  // FNV-1a
+  std::size_t count = 0;
+  for (int pair = 0; pair < 6; ++pair) {
+    const std::vector<std::uint8_t> left = left_image(generator, pair % 3 == 2),
+                                    right = right_image(left, generator);
+    const GrayView left_view{left.data(), width_px, width_px, height_px};
+    const GrayView right_view{right.data(), width_px, width_px, height_px};
+    for (int variant = 0; variant < 4; ++variant) {
+      PushbroomKernel kernel(rule(variant));
+      const auto& found = kernel.search(left_view, right_view, 0, kernel.strip_count());
+      const auto expected = support::plain_matches(rule(variant), left_view, right_view);
+      bool equal = found.size() == expected.size();
+      for (std::size_t i = 0; equal && i < found.size(); ++i) {
+        const int a[] = {found[i].column_px, found[i].row_px,        found[i].disparity,
+                         found[i].sad,       found[i].left_edge_sum, found[i].right_edge_sum};
+        const int b[] = {expected[i].column_px, expected[i].row_px,        expected[i].disparity,
+                         expected[i].sad,       expected[i].left_edge_sum, expected[i].right_edge_sum};
+        for (int k = 0; k < 6; ++k) {
+          equal = equal && a[k] == b[k];
+          digest = (digest ^ static_cast<std::uint64_t>(a[k])) * 1099511628211u;
+        }
+      }
+      if (!equal) return std::printf("pair %d, variant %d: kernel and plain rule differ\n", pair, variant), 1;
+      count += found.size();
+    }
+  }
+  std::printf("%zu matches, digest %016llx\n", count, static_cast<unsigned long long>(digest));
+  return count > 1000 ? 0 : 1;
+}

@@ -1,0 +1,25 @@
+# Run by CTest: BUILD (the project's build folder), EXAMPLE, RIG, COMPILER and WORK are given.
+file(REMOVE_RECURSE ${WORK})
+file(MAKE_DIRECTORY ${WORK})
+function(must)
+  execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "${ARGV}: ${status}\n${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+must(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
+must(${CMAKE_COMMAND} -S ${EXAMPLE} -B ${WORK}/build -G Ninja -D CMAKE_PREFIX_PATH=${WORK}/prefix
+     -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_BUILD_TYPE=Release)
+must(${CMAKE_COMMAND} --build ${WORK}/build)
+# Two gray pictures of the rig's size, written by hand: the simplest image format there is.
+string(REPEAT "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ!?" 1410 pixels)
+string(SUBSTRING "${pixels}" 0 90240 pixels)
+foreach(side left right)
+  file(WRITE ${WORK}/${side}.pgm "P5\n376 240\n255\n${pixels}")
+endforeach()
+must(${WORK}/build/example ${RIG} ${WORK}/left.pgm ${WORK}/right.pgm)
+if(NOT output MATCHES "looking 10.14 m ahead: [0-9]+ points")
+  message(FATAL_ERROR "the example said: ${output}")
+endif()
