@@ -106,10 +106,14 @@ void ByteRemap::apply(const GrayView& source, int first_row_px, int last_row_px,
   const int chunks = (width_px_ + chunk_px - 1) / chunk_px;
   const std::size_t first_chunk = static_cast<std::size_t>(first_row_px) * static_cast<std::size_t>(chunks);
   const std::int32_t* offsets = offsets_.data() + (first_chunk == 0 ? 0 : ends_[first_chunk - 1]);
-  for (int v = first_row_px; v < last_row_px; ++v)
+  for (int v = first_row_px; v < last_row_px; ++v) {
+    constexpr int ahead = 12;  // rows: the map's own bend, and as long as memory takes to answer
+    if (offsets != offsets_.data() + offsets_.size())
+      source.prefetch(static_cast<int>(*offsets / stride_) + ahead, 1);
     offsets = HWY_DYNAMIC_DISPATCH(RemapRow)(
         source.data, offsets, offsets_.data(), indices_.data() + chunk_px * (offsets - offsets_.data()),
         ends_.data() + v * chunks, width_px_, output + v * output_stride);
+  }
 }
 
 }  // namespace understory

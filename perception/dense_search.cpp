@@ -110,12 +110,9 @@ void DenseSearch::take_candidates(int row_px, std::size_t disparity) {
 }
 
 void DenseSearch::take_best(int first_row_px, std::vector<BlockMatch>& matches) {
-  std::size_t cells = 0;
-  for (const Search& search : searches_) cells = std::max(cells, search.best.size());
-  for (std::size_t cell = 0; cell < cells; ++cell)
-    for (std::size_t i = 0; i < searches_.size(); ++i) {
-      const Search& search = searches_[i];
-      if (cell >= search.best.size()) continue;
+  for (std::size_t i = 0; i < searches_.size(); ++i) {
+    const Search& search = searches_[i];
+    for (std::size_t cell = 0; cell < search.best.size(); ++cell) {
       const std::uint64_t best = search.best[cell];
       const int sad = static_cast<int>(sad_of(best)), left_edges = static_cast<int>(left_edges_of(best)),
                 right_edges = static_cast<int>(right_edges_of(best));
@@ -125,6 +122,7 @@ void DenseSearch::take_best(int first_row_px, std::vector<BlockMatch>& matches) 
       matches.push_back({column_px, first_row_px + static_cast<int>(best >> 48 & 0xFF), static_cast<int>(i),
                          sad, left_edges, right_edges});
     }
+  }
 }
 
 }  // namespace understory

@@ -15,7 +15,7 @@ class DenseSearch {
   explicit DenseSearch(const BlockRule& rule);
 
   /// Appends the best match of each cell whose windows begin at the rows first_row_px .. last_row_px - 1
-  /// (whole rows of cells), by row of cells, then cell, then disparity. The edges of the right image go to
+  /// (whole rows of cells), by row of cells, then disparity, then cell. The edges of the right image go to
   /// `right_edges`, rows first_row_px .. last_row_px + 3.
   void search(const GrayView& left, const GrayView& right, int first_row_px, int last_row_px,
               EdgeMap& right_edges, std::vector<BlockMatch>& matches);

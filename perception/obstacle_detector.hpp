@@ -13,7 +13,7 @@ class ObstacleDetector {
  public:
   virtual ~ObstacleDetector() = default;
   /// `frame` must have the rig's size and be CV_8UC1; a breach is a programming error and asserts.
-  /// Hits come in a fixed order (by row, then column), so that equal frames give equal outputs. They hold
+  /// Hits come in a fixed order (from top to bottom), so that equal frames give equal outputs. They hold
   /// until the next call.
   virtual const std::vector<StereoHit>& detect(const StereoFrame& frame) = 0;
 };

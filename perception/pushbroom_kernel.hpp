@@ -21,9 +21,8 @@ class PushbroomKernel {
   /// Rows of blocks in an image; dense, rows of cells.
   int strip_count() const;
 
-  /// The matches of the strips first_strip .. last_strip - 1, by row, then column, then disparity (dense: by
-  /// row of cells, then cell, then disparity). The images have the rule's size. The answer holds until the
-  /// next call.
+  /// The matches of the strips first_strip .. last_strip - 1, by strip, then disparity, then column. The
+  /// images have the rule's size. The answer holds until the next call.
   const std::vector<BlockMatch>& search(const GrayView& left, const GrayView& right, int first_strip,
                                         int last_strip);
 

@@ -29,12 +29,14 @@ StripSearch::StripSearch(const BlockRule& rule) : rule_(rule), edge_columns_(edg
 
 void StripSearch::search(const GrayView& left, const GrayView& right, int row_px, EdgeMap* right_edges,
                          std::vector<BlockMatch>& matches) {
+  constexpr int ahead = 4;  // strips: about as long as memory takes to answer
+  left.prefetch(row_px + ahead * rule_.stride_px, rule_.stride_px);
+  right.prefetch(row_px + ahead * rule_.stride_px, rule_.stride_px);
   const StripRows left_rows = left_reader_.rows(left, row_px), right_rows = right_reader_.rows(right, row_px);
   strip_edge_sums(left_rows, edge_columns_.left_first_px, rule_.width_px, rule_.width_px, column_scratch_,
                   left_sums_.data(), nullptr, 0);
   strip_edge_sums(right_rows, edge_columns_.right_first_px, edge_columns_.right_last_px, rule_.width_px,
                   column_scratch_, right_sums_.data(), right_edges, row_px);
-  const std::size_t first_match = matches.size();
   for (std::size_t i = 0; i < searches_.size(); ++i) {
     const auto& [columns, test, blocks] = searches_[i];
     strip_sads(left_rows, columns.left_px, right_rows, columns.right_px, columns.count, column_sads_.data(),
@@ -43,11 +45,6 @@ void StripSearch::search(const GrayView& left, const GrayView& right, int row_px
                     columns.count, test, candidates_.data());
     take_candidates(left, right, row_px, i, matches);
   }
-  if (searches_.size() == 1) return;
-  std::sort(matches.begin() + static_cast<std::ptrdiff_t>(first_match), matches.end(),
-            [](const BlockMatch& a, const BlockMatch& b) {
-              return a.column_px != b.column_px ? a.column_px < b.column_px : a.disparity < b.disparity;
-            });
 }
 
 void StripSearch::take_candidates(const GrayView& left, const GrayView& right, int row_px,

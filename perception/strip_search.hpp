@@ -14,7 +14,7 @@ class StripSearch {
  public:
   explicit StripSearch(const BlockRule& rule);
 
-  /// Appends the matches of the blocks that begin at row_px, by column, then disparity. Where `right_edges`
+  /// Appends the matches of the blocks that begin at row_px, by disparity, then column. Where `right_edges`
   /// is given, the right image's edges go there, five rows.
   void search(const GrayView& left, const GrayView& right, int row_px, EdgeMap* right_edges,
               std::vector<BlockMatch>& matches);

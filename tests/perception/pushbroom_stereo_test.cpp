@@ -230,8 +230,8 @@ TEST(PushbroomStereo, SeveralDepthsFindWhatEachWouldFindAlone) {
       alone.insert(alone.end(), hits.begin(), hits.end());
     }
     std::sort(alone.begin(), alone.end(), [](const StereoHit& a, const StereoHit& b) {
-      return std::tuple(a.row_px, a.column_px, -a.position_camera.z()) <
-             std::tuple(b.row_px, b.column_px, -b.position_camera.z());
+      return std::tuple(a.row_px, -a.position_camera.z(), a.column_px) <
+             std::tuple(b.row_px, -b.position_camera.z(), b.column_px);
     });
     EXPECT_EQ(together, alone);
     const auto at_depth = std::count_if(together.begin(), together.end(), [&](const StereoHit& hit) {

@@ -85,11 +85,11 @@ namespace {
 
 // The best window of each cell, cells counted from the first column of their disparity's search.
 std::vector<BlockMatch> best_of_cells(const BlockRule& rule, const std::vector<BlockMatch>& windows) {
-  std::map<std::array<int, 3>, BlockMatch> best;  // by row of cells, cell, disparity
+  std::map<std::array<int, 3>, BlockMatch> best;  // by row of cells, disparity, cell
   for (const BlockMatch& match : windows) {
     const int first = std::max(0, rule.disparities[static_cast<std::size_t>(match.disparity)].disparity_px);
     const auto [at, is_new] = best.try_emplace(
-        {match.row_px / block_px, (match.column_px - first) / block_px, match.disparity}, match);
+        {match.row_px / block_px, match.disparity, (match.column_px - first) / block_px}, match);
     const double score = static_cast<double>(match.sad) / (match.left_edge_sum + match.right_edge_sum);
     const BlockMatch& other = at->second;
     // Doubles tell any two such fractions apart: they differ by more than 1 part in 2e8.
@@ -112,8 +112,8 @@ std::vector<BlockMatch> plain_matches(const BlockRule& rule, const GrayView& lef
   const int stride = rule.every_pixel ? 1 : rule.stride_px;
   std::vector<BlockMatch> matches;
   for (int row = 0; row <= rule.last_row_px; row += stride)
-    for (int column = 0; column < left.width_px; ++column)
-      for (std::size_t i = 0; i < rule.disparities.size(); ++i) {
+    for (std::size_t i = 0; i < rule.disparities.size(); ++i)
+      for (int column = 0; column < left.width_px; ++column) {
         const DisparityRule& one = rule.disparities[i];
         const int first = std::max(0, one.disparity_px), partner = column - one.disparity_px;
         if (column < first || (column - first) % stride != 0) continue;
