@@ -32,6 +32,8 @@ struct BlockRule {
   bool uniqueness = false;
   int least_disparity_px = 0, greatest_disparity_px = 0;  ///< range searched, widened to hold the disparity
   double uniqueness_ratio = 2;
+
+  bool neighbours = false;  ///< whether matches say how well the disparities one pixel away would do
 };
 
 /// A block of the left image that passed.
@@ -40,6 +42,8 @@ struct BlockMatch {
   int disparity = 0;              ///< index into BlockRule::disparities
   int sad = 0;
   int left_edge_sum = 0, right_edge_sum = 0;
+  /// SAD at the disparity one pixel less and more; -1 where nobody asked or the block there leaves the image.
+  int sad_below = -1, sad_above = -1;
 };
 
 /// Where the blocks of one disparity lie: column x of a search is left_px + x and right_px + x, x < count.

@@ -35,6 +35,7 @@ const std::vector<BlockMatch>& PushbroomKernel::search(const GrayView& left, con
   if (rule_.horizontal_invariance && !matches_.empty())
     fill_right_edges(right, first_row, std::min(last_row + block_px, rule_.height_px));
   if (rule_.horizontal_invariance || rule_.uniqueness) drop_unlike_the_rule(left, right);
+  if (rule_.neighbours) look_beside(left, right);
   return matches_;
 }
 
@@ -50,6 +51,20 @@ void PushbroomKernel::fill_right_edges(const GrayView& right, int first_row_px, 
     const StripRows rows = right_reader_.rows(right, v);
     edge_row(rows.row[0], rows.row[1], rows.row[2], columns.right_first_px, columns.right_last_px,
              rule_.width_px, right_edges_.row(v));
+  }
+}
+
+void PushbroomKernel::look_beside(const GrayView& left, const GrayView& right) {
+  for (BlockMatch& match : matches_) {
+    const int disparity_px = rule_.disparities[static_cast<std::size_t>(match.disparity)].disparity_px;
+    const auto sad_at = [&](int at_px) {
+      const int column_px = match.column_px - at_px;
+      if (column_px < 0 || column_px + block_px > rule_.width_px) return -1;
+      return block_sad(left.row(match.row_px) + match.column_px, left.stride,
+                       right.row(match.row_px) + column_px, right.stride);
+    };
+    match.sad_below = sad_at(disparity_px - 1);
+    match.sad_above = sad_at(disparity_px + 1);
   }
 }
 

@@ -29,6 +29,7 @@ class PushbroomKernel {
  private:
   void fill_right_edges(const GrayView& right, int first_row_px, int end_row_px);
   void drop_unlike_the_rule(const GrayView& left, const GrayView& right);
+  void look_beside(const GrayView& left, const GrayView& right);
 
   BlockRule rule_;
   std::optional<StripSearch> strips_;  ///< one of the two

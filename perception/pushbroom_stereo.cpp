@@ -15,6 +15,14 @@ namespace {
 
 int whole(double pixels) { return static_cast<int>(std::lround(pixels)); }
 
+/// Where the parabola through a match's SAD and those beside it is least, in pixels of disparity; 0 where the
+/// neighbours are not known or one of them is better.
+double vertex_px(const BlockMatch& match) {
+  if (match.sad_below < match.sad || match.sad_above < match.sad) return 0;
+  const int bend = match.sad_below - 2 * match.sad + match.sad_above;
+  return bend > 0 ? 0.5 * (match.sad_below - match.sad_above) / bend : 0;
+}
+
 }  // namespace
 
 int last_row_px_of(int height_px) { return whole(PushbroomConfig().last_row_px * height_px / 240.0); }
@@ -40,6 +48,9 @@ PushbroomStereo::PushbroomStereo(const StereoRig& rig, const PushbroomConfig& co
     assert_always(px > rig.infinity_disparity_px() + 1, "detection depth within a pixel of infinity");
     depths_.push_back({px, rig.depth_m(px), {rig.depth_m(px + 1), rig.depth_m(px - 1)}});
   }
+  for (const auto* thresholds : {&config.depths_least_edge_sum, &config.depths_score_limit})
+    assert_always(thresholds->empty() || thresholds->size() == depths_.size(),
+                  "expected a threshold for each depth, or none");
   assert_always(config.stride_px > 0 && config.invariance_row_step_px > 0, "strides must be positive");
   for (int i = 0; i < config.threads; ++i) bands_.push_back({PushbroomKernel(block_rule()), {}, {}});
 }
@@ -62,13 +73,18 @@ BlockRule PushbroomStereo::block_rule() const {
   rule.stride_px = config_.stride_px;
   rule.last_row_px = config_.last_row_px;
   rule.every_pixel = config_.every_pixel;
-  for (const Depth& depth : depths_)
-    rule.disparities.push_back(
-        {depth.disparity_px, config_.least_edge_sum, score_limit_units(config_.score_limit)});
+  for (std::size_t i = 0; i < depths_.size(); ++i) {
+    const double edges =
+        config_.depths_least_edge_sum.empty() ? config_.least_edge_sum : config_.depths_least_edge_sum[i];
+    const double limit =
+        config_.depths_score_limit.empty() ? config_.score_limit : config_.depths_score_limit[i];
+    rule.disparities.push_back({depths_[i].disparity_px, whole(edges), score_limit_units(limit)});
+  }
   rule.horizontal_invariance = config_.horizontal_invariance;
   rule.infinity_px = infinity_px_;
   rule.window = {config_.invariance_columns_px, config_.invariance_rows_px, config_.invariance_row_step_px,
                  config_.least_edge_sum, score_limit_units(config_.invariance_score_limit)};
+  rule.neighbours = config_.subpixel;
   rule.uniqueness = config_.uniqueness;
   rule.uniqueness_ratio = config_.uniqueness_ratio;
   rule.least_disparity_px = infinity_px_;
@@ -122,15 +138,16 @@ StereoHit PushbroomStereo::hit_of(const BlockMatch& match) const {
   const Depth& depth = depths_[static_cast<std::size_t>(match.disparity)];
   const double center_px = 0.5 * (block_px - 1);
   StereoHit hit;
-  hit.position_camera = {
-      (match.column_px + center_px - rig_.center_left_x_px) * depth.depth_m / rig_.focal_px,
-      (match.row_px + center_px - rig_.center_y_px) * depth.depth_m / rig_.focal_px, depth.depth_m};
   hit.column_px = match.column_px;
   hit.row_px = match.row_px;
-  hit.disparity_px = depth.disparity_px;
+  hit.disparity_px = depth.disparity_px + vertex_px(match);
   hit.edge_sum = match.left_edge_sum + match.right_edge_sum;
   hit.score = match.sad / hit.edge_sum;
   hit.depth = depth.interval;
+  const double depth_m =
+      hit.disparity_px == depth.disparity_px ? depth.depth_m : rig_.depth_m(hit.disparity_px);
+  hit.position_camera = {(match.column_px + center_px - rig_.center_left_x_px) * depth_m / rig_.focal_px,
+                         (match.row_px + center_px - rig_.center_y_px) * depth_m / rig_.focal_px, depth_m};
   return hit;
 }
 

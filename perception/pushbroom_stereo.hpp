@@ -15,7 +15,10 @@ namespace understory {
 /// had it (Barry & Tedrake 2015); each rule is a switch of its own.
 struct PushbroomConfig {
   std::vector<double> depths_m;  ///< to look at; empty: the rig's own detection depth. 0.1 .. 1000
-  int threads = 1;               ///< 1 .. 64; hits do not depend on it
+  /// For each of depths_m its own threshold, in their order; empty: the ones below for all. Same ranges as
+  /// there.
+  std::vector<double> depths_least_edge_sum, depths_score_limit;
+  int threads = 1;           ///< 1 .. 64; hits do not depend on it
   int stride_px = 5;         ///< from block to block, both ways; 1 .. 100; 5 sets the 5x5 blocks side by side
   bool every_pixel = false;  ///< dense: a window at every pixel, of each 5x5 cell of windows the best counts
   int last_row_px = 205;     ///< top edge of the lowest row of blocks; rows below see the ground
@@ -32,6 +35,10 @@ struct PushbroomConfig {
   double uniqueness_ratio = 2.0;  ///< no other disparity within this many times its SAD
   double uniqueness_least_depth_m =
       1.5;  ///< range searched: infinity to here (the paper ignores nearer points)
+
+  /// Puts a hit at the vertex of the parabola through the SADs of its disparity and the two beside it, at
+  /// most half a pixel away, where its own is the least of the three.
+  bool subpixel = false;
 
   bool isolation = false;          ///< a hit needs company in its own frame
   int isolation_least_points = 3;  ///< itself included (the original's avoidance)
@@ -64,6 +71,9 @@ void visit_fields(Visitor& visit, PushbroomConfig& config) {
   visit("uniqueness", config.uniqueness);
   visit("uniqueness_ratio", config.uniqueness_ratio, 1.0, 100.0);
   visit("uniqueness_least_depth_m", config.uniqueness_least_depth_m, 0.1, 100.0);
+  visit("depths_least_edge_sum", config.depths_least_edge_sum, 0, 6375);
+  visit("depths_score_limit", config.depths_score_limit, 0.0, 10.0);
+  visit("subpixel", config.subpixel);
   visit("isolation", config.isolation);
   visit("isolation_least_points", config.isolation_least_points, 1, 1000);
   visit("isolation_radius_m", config.isolation_radius_m, 0.0, 100.0);
@@ -74,7 +84,8 @@ void visit_fields(Visitor& visit, PushbroomConfig& config) {
 /// number of threads. Detection disparities and infinity come from the rig.
 class PushbroomStereo : public ObstacleDetector {
  public:
-  /// Asserts that each detection depth gives a disparity beyond infinity and inside the image.
+  /// Asserts that each detection depth gives a disparity beyond infinity and inside the image, and that there
+  /// are as many thresholds as depths, or none.
   PushbroomStereo(const StereoRig& rig, const PushbroomConfig& config);
   /// For raw pairs: each is rectified to the nearest pixel on the way, as far as the rule looks, which equals
   /// Rectifier and then detection. detection_depth_m serves where the config names no depths. Images must be

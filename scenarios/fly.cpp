@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -46,7 +47,14 @@ std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const St
                                               const std::vector<Obstacle>& obstacles,
                                               const TruthHistory& history) {
   switch (scenario.perception.detector) {
-    case DetectorKind::pushbroom:
+    case DetectorKind::pushbroom: {
+      const PushbroomConfig& config = scenario.perception.pushbroom;
+      const std::size_t depths = std::max<std::size_t>(1, config.depths_m.size());
+      for (const auto* thresholds : {&config.depths_least_edge_sum, &config.depths_score_limit})
+        if (!thresholds->empty() && thresholds->size() != depths)
+          throw ScenarioError(
+              fmt::format("perception.pushbroom: expected thresholds for each of {} depths or none, got {}",
+                          depths, thresholds->size()));
       for (const double depth_m : scenario.perception.pushbroom.depths_m) {
         StereoRig asked = rig;
         asked.detection_depth_m = depth_m;
@@ -55,6 +63,7 @@ std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const St
               "perception.depths_m: expected depths the rig {} can look at, got {} m", rig.name, depth_m));
       }
       return std::make_unique<PushbroomStereo>(rig, scenario.perception.pushbroom);
+    }
     case DetectorKind::block_matching:
       return std::make_unique<BlockMatching>(rig, scenario.perception.block_matching);
     case DetectorKind::true_depth:

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
@@ -240,6 +241,58 @@ TEST(PushbroomStereo, SeveralDepthsFindWhatEachWouldFindAlone) {
     EXPECT_GT(at_depth, 100);
     EXPECT_GT(static_cast<double>(at_depth), 0.99 * static_cast<double>(together.size()));
   }
+}
+
+/// Root mean square of the hits' error in disparity on planes up to half a pixel beside the detection's.
+double disparity_error_px(const StereoRig& rig, const PushbroomConfig& config) {
+  PushbroomStereo detector(rig, config);
+  double squares = 0;
+  int count = 0;
+  for (const double beside_px : {-0.5, -0.3, -0.1, 0.0, 0.2, 0.4}) {
+    const double true_px = detector.detection_disparity_px() + beside_px;
+    for (const StereoHit& hit : detector.detect(render_plane(rig, {.depth_m = rig.depth_m(true_px)}))) {
+      squares += (hit.disparity_px - true_px) * (hit.disparity_px - true_px);
+      ++count;
+      EXPECT_NEAR(hit.position_camera.z(), rig.depth_m(hit.disparity_px), 1e-9);
+      EXPECT_LE(std::abs(hit.disparity_px - detector.detection_disparity_px()), 0.5);
+    }
+  }
+  EXPECT_GT(count, 1000);
+  return std::sqrt(squares / count);
+}
+
+TEST(PushbroomStereo, AParabolaTakesAThirdOfTheErrorInDisparityAway) {
+  for (const char* name : {"paper.yaml", "long.yaml"})
+    for (PushbroomConfig config : {paper_rule(), robust_rule()}) {
+      const double whole_px = disparity_error_px(house_rig(name), config);
+      config.subpixel = true;
+      const double parabola_px = disparity_error_px(house_rig(name), config);
+      EXPECT_LT(parabola_px, 0.65 * whole_px) << name << ": " << whole_px << " px to " << parabola_px;
+    }
+}
+
+TEST(PushbroomStereo, EachDepthHasItsOwnThresholdsWhereTheyAreGiven) {
+  const StereoRig rig = house_rig("long.yaml");
+  const StereoFrame frame = render_plane(rig, {.depth_m = 7});
+  PushbroomConfig config = robust_rule();
+  config.isolation = false;
+  config.depths_m = {10.1, 7.0};
+  const auto hits_at_7 = [&](const PushbroomConfig& some) {
+    PushbroomStereo detector(rig, some);
+    const auto& hits = detector.detect(frame);
+    return std::count_if(hits.begin(), hits.end(), [&](const StereoHit& hit) {
+      return hit.position_camera.z() == detector.detection_depth_m(1);
+    });
+  };
+  const auto all = hits_at_7(config);
+  EXPECT_GT(all, 100);
+  config.depths_score_limit = {0.25, 0.02};
+  EXPECT_LT(hits_at_7(config), all);
+  config.depths_score_limit = {0.02, 0.25};
+  config.depths_least_edge_sum = {6375, 215};
+  EXPECT_EQ(hits_at_7(config), all);
+  config.depths_least_edge_sum = {215};
+  EXPECT_THROW(PushbroomStereo(rig, config), std::logic_error);
 }
 
 TEST(PushbroomStereo, RefusesImagesOfAnotherSizeOrKind) {
