@@ -9,7 +9,9 @@
 #include <random>
 
 #include "perception/block_score.hpp"
+#include "perception/io/stereo_recording.hpp"
 #include "tests/support/plain_pushbroom.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace understory {
 
@@ -127,6 +129,30 @@ TEST(PushbroomKernel, EqualsThePlainRuleOnEveryTextureAndInstructionSet) {
   EXPECT_LT(with_invariance, bare);
   EXPECT_GT(with_uniqueness, 100u);
   EXPECT_LT(with_uniqueness, bare);
+}
+
+// Called so that it stays out of the thread sanitizer's tests, as all that read image files.
+TEST(Recordings, GiveTheKernelTheMatchesOfThePlainRule) {
+  const std::string name = "stereo/euroc-v1_01";
+  const auto path = support::shared_data(name);
+  if (!path) GTEST_SKIP() << support::missing_data(name);
+  StereoRecording recording({*path});
+  std::size_t pairs = 0, found = 0;
+  for (StereoFrame frame; recording.read(frame); ++pairs) {
+    const int width = frame.left.cols, height = frame.left.rows;
+    Pair pair{width, height, {}, {}};
+    pair.left.assign(frame.left.datastart, frame.left.dataend);
+    pair.right.assign(frame.right.datastart, frame.right.dataend);
+    for (const int variant : {0, 1, 2}) {
+      BlockRule rule = rule_of(width, height, {22, 16});
+      rule.horizontal_invariance = variant == 0;
+      rule.uniqueness = variant == 1;
+      rule.every_pixel = variant == 2;
+      found += expect_equal(rule, pair, 2);
+    }
+  }
+  EXPECT_EQ(pairs, 4u);
+  EXPECT_GT(found, 500u);
 }
 
 TEST(PushbroomKernel, EqualsThePlainRuleWithSeveralDisparitiesAndBands) {
