@@ -7,11 +7,21 @@
 
 namespace understory {
 
-std::vector<std::int16_t> nearest_places(const CameraCalibration& camera, int width_px, int height_px) {
-  cv::Mat u, v, places, fractions;
+namespace {
+
+void make_maps(const CameraCalibration& camera, const cv::Size& size, bool nearest, cv::Mat& places,
+               cv::Mat& fractions) {
+  cv::Mat u, v;
   cv::initUndistortRectifyMap(camera.camera_matrix, camera.distortion, camera.rectification,
-                              camera.projection, {width_px, height_px}, CV_32FC1, u, v);
-  cv::convertMaps(u, v, places, fractions, CV_16SC2, true);
+                              camera.projection, size, CV_32FC1, u, v);
+  cv::convertMaps(u, v, places, fractions, CV_16SC2, nearest);
+}
+
+}  // namespace
+
+std::vector<std::int16_t> nearest_places(const CameraCalibration& camera, int width_px, int height_px) {
+  cv::Mat places, fractions;
+  make_maps(camera, {width_px, height_px}, true, places, fractions);
   const auto* first = places.ptr<std::int16_t>();
   return {first, first + 2 * places.total()};
 }
@@ -20,13 +30,11 @@ Rectifier::Rectifier(const StereoCalibration& calibration, Interpolation interpo
     : width_px_(calibration.width_px), height_px_(calibration.height_px), interpolation_(interpolation) {
   const bool nearest = interpolation == Interpolation::nearest;
   const auto prepare = [&](const CameraCalibration& camera, Eye& eye) {
-    cv::Mat u, v;
-    cv::initUndistortRectifyMap(camera.camera_matrix, camera.distortion, camera.rectification,
-                                camera.projection, {width_px_, height_px_}, CV_32FC1, u, v);
-    cv::convertMaps(u, v, eye.places, eye.fractions, CV_16SC2, nearest);
     eye.image.create(height_px_, width_px_, CV_8UC1);
     if (nearest && width_px_ >= ByteRemap::chunk_px) {
       eye.remap.emplace(nearest_places(camera, width_px_, height_px_), width_px_, height_px_);
+    } else {
+      make_maps(camera, {width_px_, height_px_}, nearest, eye.places, eye.fractions);
     }
   };
   prepare(calibration.left, left_);

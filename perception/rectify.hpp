@@ -33,8 +33,8 @@ class Rectifier {
 
  private:
   struct Eye {
-    cv::Mat places, fractions;       // CV_16SC2 and, for bilinear, CV_16UC1 (cv::convertMaps)
     std::optional<ByteRemap> remap;  // for nearest, where the image is wide enough
+    cv::Mat places, fractions;       // otherwise: cv::convertMaps' CV_16SC2 and, for bilinear, CV_16UC1
     cv::Mat image;
   };
   const cv::Mat& rectify(const cv::Mat& raw, Eye& eye);
