@@ -12,6 +12,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// CTest runs the cases side by side, each in a process of its own.
+fs::path temporary_file(const std::string& name) {
+  const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
+  return fs::path(testing::TempDir()) / ("understory_" + test + "_" + name);
+}
+
 fs::path result_file(std::uint64_t seed, Ending ending) {
   FlightResult result;
   result.seed = seed;
@@ -20,7 +26,7 @@ fs::path result_file(std::uint64_t seed, Ending ending) {
   result.replans_solved = 3;
   result.replans_fallback = 1;
   result.digest = "00ff";
-  const fs::path file = fs::path(testing::TempDir()) / "understory_result.json";
+  const fs::path file = temporary_file("result.json");
   write_whole_file(file, to_json(result));
   return file;
 }
@@ -29,7 +35,7 @@ TEST(FlightTable, KeepsRowsOfItsConfigurationOnly) {
   FlightTable table("abc");
   table.add_result(result_file(7, Ending::collision));
   table.add_result(result_file(3, Ending::goal));
-  const fs::path csv = fs::path(testing::TempDir()) / "understory_table.csv";
+  const fs::path csv = temporary_file("table.csv");
   write_whole_file(csv, table.to_csv());
   FlightTable same("abc");
   same.read(csv);
@@ -53,7 +59,7 @@ TEST(FlightTable, SummaryCountsTheSeedsAskedFor) {
 
 TEST(FlightTable, AHalfWrittenResultIsNoResult) {
   FlightTable table("abc");
-  const fs::path file = fs::path(testing::TempDir()) / "understory_half.json";
+  const fs::path file = temporary_file("half.json");
   std::ofstream(file) << "{\"outcome\": \"go";
   EXPECT_THROW(table.add_result(file), MachineError);
   EXPECT_THROW(table.add_result("/nowhere.json"), MachineError);
