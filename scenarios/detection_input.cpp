@@ -11,6 +11,7 @@
 #include "perception/io/pose_file.hpp"
 #include "scenarios/bad_input.hpp"
 #include "scenarios/config_reader.hpp"
+#include "scenarios/detection_depths.hpp"
 
 namespace understory {
 namespace {
@@ -66,6 +67,7 @@ DetectionConfig config_for(const DetectionOptions& options, const StereoRig& rig
   config.pushbroom = options.rule;
   config.pushbroom.last_row_px = last_row_px_of(rig.height_px);
   for (const std::string& setting : options.settings) read_config(parse_assignment(setting), config);
+  check_depths(config.pushbroom, rig, "depths_m", "pushbroom");
   return config;
 }
 

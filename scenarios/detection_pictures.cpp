@@ -17,16 +17,15 @@ cv::Mat of_even_size(const cv::Mat& picture) {
 }  // namespace
 
 DetectionPictures::DetectionPictures(const std::filesystem::path& folder, const StereoRig& rig,
-                                     double film_rate_hz)
-    : rig_(rig), scale_(rig.width_px < narrow_px ? 2 : 1) {
+                                     std::string looked_at, double film_rate_hz)
+    : rig_(rig), looked_at_(std::move(looked_at)), scale_(rig.width_px < narrow_px ? 2 : 1) {
   if (film_rate_hz > 0)
     film_ = std::make_unique<VideoFile>(folder / "overlay.mp4", film_rate_hz);
   else
     pictures_ = std::make_unique<PictureFolder>(folder / "overlays");
 }
 
-void DetectionPictures::add(const cv::Mat& left, const std::vector<StereoHit>& hits, double depth_m,
-                            const PosedMap* map) {
+void DetectionPictures::add(const cv::Mat& left, const std::vector<StereoHit>& hits, const PosedMap* map) {
   OverlayMoment moment;
   moment.left = left;
   moment.hits = hits;
@@ -34,7 +33,7 @@ void DetectionPictures::add(const cv::Mat& left, const std::vector<StereoHit>& h
     moment.remembered = map->points();
     moment.T_world_camera = map->T_world_camera();
   }
-  moment.caption = fmt::format("frame {}: {} hits at {:.2f} m", count_++, hits.size(), depth_m);
+  moment.caption = fmt::format("frame {}: {} hits at {}", count_++, hits.size(), looked_at_);
   const cv::Mat picture = draw_overlay(moment, rig_, scale_);
   if (film_)
     film_->add(of_even_size(picture));

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <string>
 #include <vector>
 
 #include "perception/stereo_hit.hpp"
@@ -18,14 +19,17 @@ namespace understory {
 class DetectionPictures {
  public:
   /// `film_rate_hz`: pictures a second of the film; 0 for single pictures.
-  DetectionPictures(const std::filesystem::path& folder, const StereoRig& rig, double film_rate_hz);
+  /// `looked_at`: the depths, for the caption: "10.14 m".
+  DetectionPictures(const std::filesystem::path& folder, const StereoRig& rig, std::string looked_at,
+                    double film_rate_hz);
 
   /// `left`: rectified. `map`, where there is one that covers the frame: its points go in as red dots.
-  void add(const cv::Mat& left, const std::vector<StereoHit>& hits, double depth_m, const PosedMap* map);
+  void add(const cv::Mat& left, const std::vector<StereoHit>& hits, const PosedMap* map);
   void finish();
 
  private:
   StereoRig rig_;
+  std::string looked_at_;
   int scale_;
   std::unique_ptr<PictureFolder> pictures_;
   std::unique_ptr<VideoFile> film_;

@@ -71,10 +71,11 @@ std::string to_report(const DetectionResult& result) {
   std::string text = row("frames", frames_text(result));
   text += row("rig", fmt::format("{}: focal length {:.1f} px, baseline {:.3f} m", rig.name, rig.focal_px,
                                  rig.baseline_m));
-  text +=
-      row("looked at", fmt::format("{:.2f} m ({} px; a pixel either way {:.2f} to {:.2f} m), rows 0 to {}",
-                                   result.depth_m, result.disparity_px, result.one_pixel.near_m,
-                                   result.one_pixel.far_m, result.last_row_px));
+  for (const DetectionResult::Depth& depth : result.depths)
+    text +=
+        row("looked at", fmt::format("{:.2f} m ({} px; a pixel either way {:.2f} to {:.2f} m), rows 0 to {}",
+                                     depth.depth_m, depth.disparity_px, depth.one_pixel.near_m,
+                                     depth.one_pixel.far_m, result.last_row_px));
   text += row("hits", hits_text(result.frames));
   if (result.rectified_here) text += row("rectify", times_text(result.frames, &FrameRecord::rectify_ms));
   text += row("detect", times_text(result.frames, &FrameRecord::detect_ms));

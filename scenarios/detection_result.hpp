@@ -23,9 +23,12 @@ struct FrameRecord {
 struct DetectionResult {
   StereoRig rig;
   bool rectified_here = false;  ///< images came raw
-  double depth_m = 0;           ///< of the whole disparity looked at
-  int disparity_px = 0;
-  DepthInterval one_pixel;
+  struct Depth {
+    double depth_m = 0;  ///< of the whole disparity looked at
+    int disparity_px = 0;
+    DepthInterval one_pixel;
+  };
+  std::vector<Depth> depths;
   int last_row_px = 0;
   std::vector<FrameRecord> frames;
   std::int64_t frames_expected = 0;  ///< said by the input; a video's container may say too many

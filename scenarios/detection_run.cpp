@@ -48,13 +48,19 @@ DetectionResult described(const CalibratedRig& camera, const PushbroomStereo& de
   DetectionResult result;
   result.rig = camera.rig;
   result.rectified_here = camera.calibration.has_value();
-  result.depth_m = detector.detection_depth_m();
-  result.disparity_px = detector.detection_disparity_px();
-  result.one_pixel = detector.one_pixel_interval();
+  for (int i = 0; i < detector.depth_count(); ++i)
+    result.depths.push_back(
+        {detector.detection_depth_m(i), detector.detection_disparity_px(i), detector.one_pixel_interval(i)});
   result.last_row_px = config.pushbroom.last_row_px;
   result.frames_expected = recording.frame_count();
   result.unpaired_images = recording.unpaired();
   return result;
+}
+
+std::string depths_text(const DetectionResult& result) {
+  std::vector<std::string> texts;
+  for (const auto& depth : result.depths) texts.push_back(fmt::format("{:.2f}", depth.depth_m));
+  return fmt::format("{} m", fmt::join(texts, ", "));
 }
 
 /// What an earlier run left must not pass for this one's.
@@ -78,9 +84,9 @@ DetectionResult run_detection(const DetectionOptions& options) {
   if (camera.calibration) rectifier.emplace(*camera.calibration, Interpolation::nearest);
   PushbroomStereo detector(camera.rig, config.pushbroom);
   prepare(options.output_folder);
-  DetectionPictures pictures(options.output_folder, camera.rig, options.video ? film_rate_hz(recording) : 0);
-
   DetectionResult result = described(camera, detector, config, recording);
+  DetectionPictures pictures(options.output_folder, camera.rig, depths_text(result),
+                             options.video ? film_rate_hz(recording) : 0);
   std::vector<FrameHits> hits;
   std::int64_t hit_count = 0;
   StereoFrame frame;
@@ -94,7 +100,7 @@ DetectionResult run_detection(const DetectionOptions& options) {
             timed(record.detect_ms, [&]() -> decltype(auto) { return detector.detect(rectified); })};
     record.hits = std::ssize(seen.hits);
     record.in_map = map && map->insert(seen.hits, frame.t_ns);
-    pictures.add(rectified.left, seen.hits, detector.detection_depth_m(), record.in_map ? &*map : nullptr);
+    pictures.add(rectified.left, seen.hits, record.in_map ? &*map : nullptr);
     result.frames.push_back(record);
     hit_count += record.hits;
     if (options.on_progress)

@@ -12,7 +12,7 @@
 
 namespace understory {
 
-/// The numbers of a detection run. In --set: pushbroom.least_edge_sum, map.max_age_s ...
+/// The numbers of a detection run. In --set: depths_m, pushbroom.least_edge_sum, map.max_age_s ...
 struct DetectionConfig {
   PushbroomConfig pushbroom = robust_rule();
   LocalMapConfig map;
@@ -20,6 +20,7 @@ struct DetectionConfig {
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, DetectionConfig& config) {
+  visit("depths_m", config.pushbroom.depths_m, 0.1, 1000.0);  // to look at; empty: the rig's own
   visit("pushbroom", config.pushbroom);
   visit("map", config.map);
 }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -10,9 +9,9 @@
 #include "estimation/filter.hpp"
 #include "perception/block_matching.hpp"
 #include "perception/io/rig_file.hpp"
-#include "perception/io/rig_limits.hpp"
 #include "perception/pushbroom_stereo.hpp"
 #include "planning/autopilot.hpp"
+#include "scenarios/detection_depths.hpp"
 #include "scenarios/due.hpp"
 #include "scenarios/file_output.hpp"
 #include "scenarios/flight_film.hpp"
@@ -47,23 +46,9 @@ std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const St
                                               const std::vector<Obstacle>& obstacles,
                                               const TruthHistory& history) {
   switch (scenario.perception.detector) {
-    case DetectorKind::pushbroom: {
-      const PushbroomConfig& config = scenario.perception.pushbroom;
-      const std::size_t depths = std::max<std::size_t>(1, config.depths_m.size());
-      for (const auto* thresholds : {&config.depths_least_edge_sum, &config.depths_score_limit})
-        if (!thresholds->empty() && thresholds->size() != depths)
-          throw ScenarioError(
-              fmt::format("perception.pushbroom: expected thresholds for each of {} depths or none, got {}",
-                          depths, thresholds->size()));
-      for (const double depth_m : scenario.perception.pushbroom.depths_m) {
-        StereoRig asked = rig;
-        asked.detection_depth_m = depth_m;
-        if (!rig_limits::detection_depth_in_view(asked))
-          throw ScenarioError(fmt::format(
-              "perception.depths_m: expected depths the rig {} can look at, got {} m", rig.name, depth_m));
-      }
+    case DetectorKind::pushbroom:
+      check_depths(scenario.perception.pushbroom, rig, "perception.depths_m", "perception.pushbroom");
       return std::make_unique<PushbroomStereo>(rig, scenario.perception.pushbroom);
-    }
     case DetectorKind::block_matching:
       return std::make_unique<BlockMatching>(rig, scenario.perception.block_matching);
     case DetectorKind::true_depth:

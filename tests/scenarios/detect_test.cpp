@@ -78,6 +78,21 @@ TEST_F(Detect, FoldersGiveTheHitsThatThePairsGiveInMemory) {
   EXPECT_FALSE(fs::exists(fs::path(out) / "overlays/000001.png"));  // of the run before
 }
 
+TEST_F(Detect, SeveralDepthsGiveTheHitsOfEach) {
+  const std::vector<StereoFrame> frames = support::planes(rig, 2);
+  support::write_pairs(folder.path(), frames, {"1", "2"});
+  PushbroomConfig rule = robust_rule();
+  rule.depths_m = {rig.detection_depth_m, 4.0};
+  rule.depths_score_limit = {0.25, 0.2};
+  const auto outcome = support::understory("detect " + folders() + to_out() +
+                                           " --set depths_m=[4.8,4.0] "
+                                           "--set pushbroom.depths_score_limit=[0.25,0.2]");
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  EXPECT_EQ(found("points.csv"), hits_to_csv(expected(frames, rule)));
+  EXPECT_NE(outcome.text.find("looked at         4.8"), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("looked at         3.9"), std::string::npos) << outcome.text;
+}
+
 TEST_F(Detect, AVideoGivesTheSameHitsAtItsTimes) {
   std::vector<StereoFrame> frames = support::planes(rig, 3);
   const std::string video = (folder.path() / "both.mkv").string();
@@ -163,6 +178,10 @@ TEST_F(Detect, BadInputIsOneLineAndLeavesNoResult) {
   refuse(detect + " --rule best", "--rule");
   refuse(detect + " --unit inch", "--unit");
   refuse(detect + " --set pushbroom.edges=3", "pushbroom.edges: expected a known key");
+  refuse(detect + " --set depths_m=[4.8,900]",
+         "depths_m: expected depths the rig paper can look at, got 900 m");
+  refuse(detect + " --set pushbroom.depths_score_limit=[0.1,0.2]",
+         "pushbroom: expected thresholds for each of 1 depths or none, got 2");
   refuse(detect + " --poses " + folder.write("p.txt", "0 0 0 0 0 0 0 1\n1 0 0\n").string(),
          "p.txt:2: expected");
   refuse(detect + " --poses " + folder.write("q.txt", "0 0 0 0 0 0 0 1\n").string(),

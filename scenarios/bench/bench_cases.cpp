@@ -1,0 +1,109 @@
+#include "scenarios/bench/bench_cases.hpp"
+
+#include <memory>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "perception/pushbroom_stereo.hpp"
+#include "perception/rectify.hpp"
+
+namespace understory {
+namespace {
+
+constexpr const char* remap_name = "OpenCV remap of the pair, nearest";
+constexpr const char* matching_name = "OpenCV StereoBM, 64 disparities, block 9";
+constexpr const char* one_depth_name = "detect, 5x5 stride";
+
+/// OpenCV's ways to see, with the images rectified beforehand.
+void add_yardsticks(const CalibratedRig& rig, const std::vector<StereoFrame>& raw,
+                    const std::vector<StereoFrame>& rectified, std::vector<BenchCase>& cases) {
+  if (rig.calibration) {
+    const auto map_of = [&](const CameraCalibration& camera) {
+      const std::vector<std::int16_t> places = nearest_places(camera, rig.rig.width_px, rig.rig.height_px);
+      return cv::Mat(rig.rig.height_px, rig.rig.width_px, CV_16SC2, const_cast<std::int16_t*>(places.data()))
+          .clone();
+    };
+    cases.push_back({remap_name, 1, "", 1,
+                     [&raw, left = map_of(rig.calibration->left), right = map_of(rig.calibration->right),
+                      out = cv::Mat()](std::size_t i) mutable {
+                       cv::remap(raw[i].left, out, left, cv::noArray(), cv::INTER_NEAREST);
+                       cv::remap(raw[i].right, out, right, cv::noArray(), cv::INTER_NEAREST);
+                     }});
+  }
+  cases.push_back(
+      {matching_name, 1, "", 4,
+       [&rectified, matcher = cv::StereoBM::create(64, 9), out = cv::Mat()](std::size_t i) mutable {
+         matcher->compute(rectified[i].left, rectified[i].right, out);
+       }});
+  cases.push_back(
+      {"OpenCV StereoSGBM, 64 disparities, block 9", 1, matching_name, 10,
+       [&rectified, matcher = cv::StereoSGBM::create(0, 64, 9), out = cv::Mat()](std::size_t i) mutable {
+         matcher->compute(rectified[i].left, rectified[i].right, out);
+       }});
+}
+
+/// Depths at and around the rig's own: whole pixels of disparity apart.
+std::vector<double> depths_around(const StereoRig& rig, int count) {
+  const double px = rig.disparity_px(rig.detection_depth_m);
+  std::vector<double> depths_m;
+  for (int i = 0; i < count; ++i) depths_m.push_back(rig.depth_m(px + 3 * i));
+  return depths_m;
+}
+
+void add_detectors(const CalibratedRig& rig, const std::vector<StereoFrame>& raw,
+                   const std::vector<StereoFrame>& rectified, std::vector<BenchCase>& cases) {
+  const auto detect = [&](const std::string& name, const PushbroomConfig& config,
+                          const std::string& yardstick) {
+    cases.push_back({name, config.threads, yardstick, 1,
+                     [&rectified, detector = PushbroomStereo(rig.rig, config)](std::size_t i) mutable {
+                       detector.detect(rectified[i]);
+                     }});
+  };
+  const auto detect_raw = [&](const std::string& name, const PushbroomConfig& config) {
+    if (!rig.calibration) return;
+    cases.push_back({name, config.threads, remap_name, 1,
+                     [&raw, detector = PushbroomStereo(*rig.calibration, rig.rig.detection_depth_m, config)](
+                         std::size_t i) mutable { detector.detect(raw[i]); }});
+  };
+  PushbroomConfig paper = paper_rule(), ours = robust_rule();
+  paper.last_row_px = ours.last_row_px = last_row_px_of(rig.rig.height_px);
+  PushbroomConfig two_threads = paper, dense = paper, four = paper;
+  two_threads.threads = 2;
+  dense.every_pixel = true;
+  four.depths_m = depths_around(rig.rig, 4);
+  detect(one_depth_name, paper, matching_name);
+  detect("detect, our rule", ours, matching_name);
+  detect("detect, 4 depths", four, one_depth_name);
+  if (rig.calibration)
+    cases.push_back(
+        {"rectify, nearest", 1, remap_name, 1,
+         [&raw, rectifier = std::make_shared<Rectifier>(*rig.calibration, Interpolation::nearest)](
+             std::size_t i) { rectifier->rectify(raw[i]); }});
+  detect_raw("rectify and detect", paper);
+  detect_raw("rectify and detect, two threads", two_threads);
+  detect_raw("rectify and detect, every pixel", dense);
+  detect_raw("rectify and detect, our rule", ours);
+}
+
+}  // namespace
+
+BenchPairs bench_pairs(const CalibratedRig& rig, const std::vector<StereoFrame>& frames) {
+  BenchPairs pairs{frames, frames};
+  if (!rig.calibration) return pairs;
+  Rectifier rectifier(*rig.calibration, Interpolation::nearest);
+  for (StereoFrame& frame : pairs.rectified) {
+    const StereoFrame turned = rectifier.rectify(frame);
+    frame = {frame.t_ns, turned.left.clone(), turned.right.clone()};
+  }
+  return pairs;
+}
+
+std::vector<BenchCase> bench_cases(const CalibratedRig& rig, const BenchPairs& pairs) {
+  cv::setNumThreads(1);
+  std::vector<BenchCase> cases;
+  add_yardsticks(rig, pairs.delivered, pairs.rectified, cases);
+  add_detectors(rig, pairs.delivered, pairs.rectified, cases);
+  return cases;
+}
+
+}  // namespace understory
