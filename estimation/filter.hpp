@@ -26,6 +26,7 @@ class Filter : public StateSource {
   void on(const PitotSample& sample) override;
   void on(const BarometerSample& sample) override;
   void on(const MagnetometerSample& sample) override;
+  void on(const GpsSample&) override {}
   const State& state() const override { return state_; }
   State state_at(std::int64_t t_ns) const override { return history_.at(t_ns); }
 

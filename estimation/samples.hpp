@@ -30,4 +30,11 @@ struct MagnetometerSample {
       Eigen::Vector3d::Zero();  ///< microtesla; declination taken as zero (north = world y)
 };
 
+/// Satellite positioning. Arrives late: t_ns is the moment it speaks of.
+struct GpsSample {
+  std::int64_t t_ns = 0;
+  Eigen::Vector3d position_world_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();
+};
+
 }  // namespace understory

@@ -16,6 +16,7 @@ class StateSource {
   virtual void on(const PitotSample& sample) = 0;
   virtual void on(const BarometerSample& sample) = 0;
   virtual void on(const MagnetometerSample& sample) = 0;
+  virtual void on(const GpsSample& sample) = 0;
   /// Newest state (its t_ns is that of the newest IMU sample).
   virtual const State& state() const = 0;
   /// State at an earlier moment, interpolated from the recorded history (0.5 s are kept); the nearest end of

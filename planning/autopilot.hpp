@@ -49,6 +49,7 @@ class Autopilot {
   void on(const PitotSample& sample) { state_source_.on(sample); }
   void on(const BarometerSample& sample) { state_source_.on(sample); }
   void on(const MagnetometerSample& sample) { state_source_.on(sample); }
+  void on(const GpsSample& sample) { state_source_.on(sample); }
   void on(const StereoFrame& frame);
   /// Plans for the moment at which the plan will take effect; does nothing while one is being computed
   /// (plan_latency_s long), so that a rate of calls above that changes nothing.

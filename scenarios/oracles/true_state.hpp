@@ -13,6 +13,7 @@ class TrueState : public StateSource {
   void on(const PitotSample&) override {}
   void on(const BarometerSample&) override {}
   void on(const MagnetometerSample&) override {}
+  void on(const GpsSample&) override {}
   const State& state() const override { return state_; }
   State state_at(std::int64_t t_ns) const override;
 
