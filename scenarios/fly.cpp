@@ -143,8 +143,10 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   TruthHistory history;
   const auto detector = detector_of(scenario, rig, obstacles, history);
   const auto state_source = state_source_of(scenario, history);
-  Autopilot autopilot(scenario.autopilot.autopilot, scenario.airframe, rig, scenario.mission(), *detector,
-                      *state_source, seed_for(scenario.seed, "planner"));
+  AutopilotConfig autopilot_config = scenario.autopilot.autopilot;
+  autopilot_config.resightings.depths_m = scenario.perception.pushbroom.depths_m;
+  Autopilot autopilot(autopilot_config, scenario.airframe, rig, scenario.mission(), *detector, *state_source,
+                      seed_for(scenario.seed, "planner"));
 
   const Due due(scenario);
   const auto latency_ns = static_cast<std::int64_t>(scenario.cameras.latency_s * 1e9);
@@ -160,6 +162,7 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   for (std::int64_t step = 0; !ending; ++step) {
     const Truth& truth = aircraft.truth();
     history.observe(truth);
+    if (options.on_truth) options.on_truth(truth);
     stopwatch.time("estimate", [&] {
       if (due.imu(step)) autopilot.on(sensors.imu.measure(truth));
       if (due.pitot(step)) autopilot.on(sensors.pitot.measure(truth));
