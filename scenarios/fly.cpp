@@ -67,7 +67,7 @@ std::unique_ptr<StateSource> state_source_of(const Scenario& scenario, const Tru
 World world_of(const Scenario& scenario, const std::filesystem::path& models_folder,
                const std::vector<Obstacle>& obstacles) {
   try {
-    return build_world(models_folder, scenario.airframe, obstacles, scenario.world_config());
+    return build_world(models_folder, scenario.flown_airframe(), obstacles, scenario.world_config());
   } catch (const std::runtime_error& error) {
     throw MachineError(error.what());  // the models are the project's, not the caller's
   }
@@ -85,7 +85,9 @@ std::unique_ptr<StereoCameras> cameras_of(const Scenario& scenario, const World&
 
 Aircraft aircraft_of(const Scenario& scenario, const World& world) {
   try {
-    return Aircraft(*world.model, scenario.airframe, scenario.launch, scenario.wind_world_mps);
+    const Wind wind(scenario.wind_world_mps, scenario.wind, scenario.stand(),
+                    seed_for(scenario.seed, "wind"));
+    return Aircraft(*world.model, scenario.flown_airframe(), scenario.launch, wind, scenario.actuators);
   } catch (const std::runtime_error& error) {
     throw ScenarioError(error.what());
   }
