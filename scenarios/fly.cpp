@@ -16,6 +16,7 @@
 #include "scenarios/file_output.hpp"
 #include "scenarios/flight_film.hpp"
 #include "scenarios/named_seed.hpp"
+#include "scenarios/onboard_sensors.hpp"
 #include "scenarios/oracles/no_detector.hpp"
 #include "scenarios/oracles/true_depth.hpp"
 #include "scenarios/oracles/true_state.hpp"
@@ -91,19 +92,6 @@ Aircraft aircraft_of(const Scenario& scenario, const World& world) {
   }
 }
 
-/// The aircraft's sensors, each with a generator of its own.
-struct Sensors {
-  Sensors(const Scenario& scenario, std::uint64_t seed)
-      : imu(scenario.sensors.sensors.imu, seed_for(seed, "imu")),
-        pitot(scenario.sensors.sensors.pitot, scenario.airframe.air_density_kgpm3, seed_for(seed, "pitot")),
-        barometer(scenario.sensors.sensors.barometer, seed_for(seed, "barometer")),
-        magnetometer(scenario.sensors.sensors.magnetometer, seed_for(seed, "magnetometer")) {}
-  Imu imu;
-  Pitot pitot;
-  Barometer barometer;
-  Magnetometer magnetometer;
-};
-
 void take_counts(const Autopilot& autopilot, const Stopwatch& stopwatch, FlightResult& result) {
   const PlannerCounts& counts = autopilot.counts();
   result.replans_straight = counts.straight;
@@ -138,7 +126,7 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   const bool looks = scenario.perception.detector == DetectorKind::pushbroom ||
                      scenario.perception.detector == DetectorKind::block_matching;
   const auto cameras = looks || options.video ? cameras_of(scenario, world, rig) : nullptr;
-  Sensors sensors(scenario, scenario.sensor_seed());
+  OnboardSensors sensors(scenario);
 
   TruthHistory history;
   const auto detector = detector_of(scenario, rig, obstacles, history);
@@ -160,16 +148,12 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   for (std::int64_t step = 0; !ending; ++step) {
     const Truth& truth = aircraft.truth();
     history.observe(truth);
-    stopwatch.time("estimate", [&] {
-      if (due.imu(step)) autopilot.on(sensors.imu.measure(truth));
-      if (due.pitot(step)) autopilot.on(sensors.pitot.measure(truth));
-      if (due.barometer(step)) autopilot.on(sensors.barometer.measure(truth));
-      if (due.magnetometer(step)) autopilot.on(sensors.magnetometer.measure(truth));
-    });
+    stopwatch.time("estimate", [&] { sensors.deliver(due, step, truth, autopilot); });
     if (due.camera(step)) {
       pending.push_back(
           cameras ? stopwatch.time("render", [&] { return cameras->capture(aircraft.data(), truth.t_ns); })
                   : StereoFrame{truth.t_ns, {}, {}});
+      if (!sensors.faults().pass(pending.back())) pending.pop_back();
     }
     while (!pending.empty() && truth.t_ns >= pending.front().t_ns + latency_ns) {
       const StereoFrame frame = std::move(pending.front());
