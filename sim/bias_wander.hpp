@@ -11,10 +11,10 @@ namespace understory {
 /// "in-run bias stability" of data sheets), and a random walk that lifts the curve's far end.
 ///
 /// Flicker has no finite process. Here it is the sum of six first-order Gauss-Markov processes whose time
-/// constants stand a decade apart, 0.1 s to 10,000 s: their Allan deviation is flat within 2 % from 3 s to
-/// 2,000 s and 4 % low at 1 s. Each has the deviation floor * sqrt(ln 10 / (2 ln 2)): a decade of 1/f noise
-/// of spectrum B^2 / (2 pi f) holds B^2 ln 10 / pi of variance, and the floor is B * sqrt(2 ln 2 / pi) =
-/// 0.664 B (IEEE Std 952-1997, annex C).
+/// constants stand a decade apart, 0.1 s to 10,000 s: their Allan deviation is flat within 2.5 % from 1 s to
+/// 3,000 s. Each has the deviation floor * sqrt(ln 10 / (2 ln 2)): a decade of 1/f noise of spectrum
+/// B^2 / (2 pi f) holds B^2 ln 10 / pi of variance, and the floor is B * sqrt(2 ln 2 / pi) = 0.664 B
+/// (IEEE Std 952-1997, annex C).
 class BiasWander {
  public:
   /// `floor` in the sensor's unit, `random_walk` in that unit per square root of a second (IEEE's K). What is

@@ -20,15 +20,15 @@ ImuConfig mpu_6000() {
   imu.gyro_noise_radps = gyro_density * std::sqrt(imu_rate_hz);
   imu.gyro_bias_instability_radps = 4.6 / 3600 * degree;
   imu.gyro_walk_radpsps_rthz = std::sqrt(3.0) * gyro_density / 500;
-  imu.gyro_scale = 0.01;           // tolerance 3 %, taken as three sigma
-  imu.gyro_misalignment = 0.0067;  // cross-axis sensitivity 2 %, likewise
-  imu.gyro_vibration_radpspn = 0.02;
+  imu.gyro_scale = 0.01;              // tolerance 3 %, taken as three sigma
+  imu.gyro_misalignment = 0.0067;     // cross-axis sensitivity 2 %, likewise
+  imu.gyro_vibration_radpspn = 0.02;  // typical
   imu.accelerometer_noise_mps2 = accelerometer_density * std::sqrt(imu_rate_hz);
   imu.accelerometer_bias_instability_mps2 = 36e-6 * standard_gravity_mps2;
   imu.accelerometer_walk_mps2ps_rthz = std::sqrt(3.0) * accelerometer_density / 800;
   imu.accelerometer_scale = 0.01;
   imu.accelerometer_misalignment = 0.0067;
-  // Typical of a soft mount: 1.5 m/s^2 in cruise, 5 at full thrust, where autopilots' guides begin to warn.
+  // Not from a data sheet, typical of a soft mount: about 1.5 m/s^2 in cruise, 5 at full thrust.
   imu.accelerometer_vibration_mps2pn = 1.0;
   return imu;
 }
@@ -36,7 +36,7 @@ ImuConfig mpu_6000() {
 SensorsConfig consumer() {
   SensorsConfig sensors;
   sensors.imu = mpu_6000();
-  sensors.pitot.dead_zone_pa = 4;
+  sensors.pitot.dead_zone_pa = 4;  // 2.6 m/s; this and the rest typical
   sensors.pitot.recovery_loss = 2;
   sensors.barometer.wash_m_per_n = 0.26;
   sensors.magnetometer.soft_iron = 0.01;
