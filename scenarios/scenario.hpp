@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "estimation/filter_config.hpp"
 #include "perception/block_matching.hpp"
@@ -17,7 +18,9 @@
 #include "scenarios/goalposts.hpp"
 #include "sim/actuators.hpp"
 #include "sim/aircraft.hpp"
+#include "sim/faults.hpp"
 #include "sim/model_mismatch.hpp"
+#include "sim/sensor_grades.hpp"
 #include "sim/sensors.hpp"
 #include "sim/stereo_cameras.hpp"
 #include "sim/wind.hpp"
@@ -46,6 +49,11 @@ inline constexpr std::array<std::pair<std::string_view, RulePreset>, 2> rule_nam
     {{"robust", RulePreset::robust}, {"paper", RulePreset::paper}}};
 inline constexpr std::array<std::pair<std::string_view, FilterPreset>, 2> filter_preset_names{
     {{"tuned", FilterPreset::tuned}, {"original", FilterPreset::original}}};
+inline constexpr std::array<std::pair<std::string_view, SensorGrade>, 4> sensor_grade_names{
+    {{"ideal", SensorGrade::ideal},
+     {"plain", SensorGrade::plain},
+     {"consumer", SensorGrade::consumer},
+     {"rough", SensorGrade::rough}}};
 
 /// The word a scenario uses for a value.
 inline std::string_view word_for(DetectorKind kind) {
@@ -90,6 +98,7 @@ struct CameraSection {
 
 struct SensorSection {
   std::uint64_t seed = 0;  ///< of every sensor's noise, the cameras' too; 0: the scenario's seed
+  SensorGrade grade = SensorGrade::plain;  ///< what the keys beside it start from (docs/sensors.md)
   SensorsConfig sensors;
 };
 
@@ -129,6 +138,7 @@ struct Scenario {
   WorldSection world;
   CameraSection cameras;
   SensorSection sensors;
+  std::vector<FaultConfig> faults;  ///< of sensors and cameras, by schedule
   PerceptionSection perception;
   EstimationSection estimation;
   AutopilotSection autopilot;
@@ -183,6 +193,7 @@ void visit_fields(Visitor& visit, CameraSection& section) {
 template <typename Visitor>
 void visit_fields(Visitor& visit, SensorSection& section) {
   visit("seed", section.seed, std::uint64_t{0}, std::uint64_t{1} << 32);
+  visit("grade", section.grade, sensor_grade_names);
   visit_fields(visit, section.sensors);
 }
 
@@ -227,6 +238,7 @@ void visit_fields(Visitor& visit, Scenario& scenario) {
   visit("world", scenario.world);
   visit("cameras", scenario.cameras);
   visit("sensors", scenario.sensors);
+  visit("faults", scenario.faults);
   visit("perception", scenario.perception);
   visit("estimation", scenario.estimation);
   visit("autopilot", scenario.autopilot);

@@ -59,6 +59,39 @@ TEST(Scenario, RefusesContradictions) {
   EXPECT_THROW(scenario_from_text("world: {obstacles_visible: false}\n", "a.yaml"), ScenarioError);
 }
 
+TEST(Scenario, AGradeIsWhereTheKeysBesideItStart) {
+  const Scenario rough = scenario_from_text("sensors: {grade: rough, imu: {gyro_scale: 0.002}}\n", "a.yaml");
+  EXPECT_EQ(rough.sensors.sensors.imu.gyro_scale, 0.002);
+  EXPECT_EQ(rough.sensors.sensors.imu.accelerometer_scale,
+            sensors_of_grade(SensorGrade::rough).imu.accelerometer_scale);
+  const Scenario plain = scenario_from_text("seed: 5\n", "a.yaml");
+  EXPECT_EQ(plain.sensors.sensors.imu.gyro_scale, 0);
+  EXPECT_EQ(
+      scenario_from_text("seed: 5\n", "a.yaml", {"sensors.grade=ideal"}).sensors.sensors.imu.gyro_noise_radps,
+      0);
+}
+
+TEST(Scenario, FaultsAreReadWrittenAndChecked) {
+  const Scenario scenario = scenario_from_text(
+      "faults:\n  - {sensor: pitot, kind: block, at_s: 2}\n  - {sensor: gyro, kind: bias, at_s: 1, "
+      "duration_s: 0.5, value: 0.1}\n",
+      "a.yaml");
+  ASSERT_EQ(scenario.faults.size(), 2u);
+  EXPECT_EQ(scenario.faults[1].sensor, FaultySensor::gyro);
+  EXPECT_EQ(scenario.faults[1].value, 0.1);
+  const Scenario again = scenario_from_text(scenario_to_text(scenario), "again.yaml");
+  ASSERT_EQ(again.faults.size(), 2u);
+  EXPECT_EQ(again.faults[1].duration_s, 0.5);
+  EXPECT_TRUE(scenario_from_text(scenario_to_text(scenario), "again.yaml", {"faults=[]"}).faults.empty());
+  try {
+    scenario_from_text("seed: 1\nfaults:\n  - sensor: barometer\n    kind: block\n", "a.yaml");
+    FAIL() << "accepted";
+  } catch (const ScenarioError& error) {
+    EXPECT_STREQ(error.what(),
+                 "a.yaml:4: faults[0].kind: expected, for this sensor, freeze | dropout | bias | saturate");
+  }
+}
+
 TEST(Scenario, ProofSwitchesReachTheWorld) {
   const Scenario scenario =
       scenario_from_text("forest: {invisible: true}\n", "a.yaml", {"forest.intangible=true"});
