@@ -61,7 +61,6 @@ TEST(Scenario, RefusesContradictions) {
   EXPECT_THROW(scenario_from_text("world: {obstacles_visible: false}\n", "a.yaml"), ScenarioError);
 }
 
-<<<<<<< HEAD
 TEST(Scenario, AGradeIsWhereTheKeysBesideItStart) {
   const Scenario rough = scenario_from_text("sensors: {grade: rough, imu: {gyro_scale: 0.002}}\n", "a.yaml");
   EXPECT_EQ(rough.sensors.sensors.imu.gyro_scale, 0.002);
@@ -93,7 +92,8 @@ TEST(Scenario, FaultsAreReadWrittenAndChecked) {
     EXPECT_STREQ(error.what(),
                  "a.yaml:4: faults[0].kind: expected, for this sensor, freeze | dropout | bias | saturate");
   }
-=======
+}
+
 TEST(Scenario, TheAircraftThatFliesMayDifferFromTheStacks) {
   const Scenario scenario = scenario_from_text("mismatch: {mass_percent: 10}\n", "a.yaml");
   EXPECT_DOUBLE_EQ(scenario.flown_airframe().mass_kg, 1.1 * scenario.airframe.mass_kg);
@@ -107,7 +107,6 @@ TEST(Scenario, ShelterIsWhereTheForestIs) {
   EXPECT_EQ(stand.half_width_m, 25);
   EXPECT_EQ(stand.canopy_top_m, 9);
   EXPECT_EQ(scenario_from_text("course: clear\n", "a.yaml").stand().canopy_top_m, 0);
->>>>>>> aircraft
 }
 
 TEST(Scenario, ProofSwitchesReachTheWorld) {
