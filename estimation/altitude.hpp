@@ -50,6 +50,7 @@ class BarometerOffset {
   explicit BarometerOffset(double prior_sigma_m, double noise_m = 0.3);
   void observe(double excess_m);
   double value_m() const { return value_m_; }
+  double variance_m2() const { return variance_m2_; }
 
  private:
   double variance_m2_;

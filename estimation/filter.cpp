@@ -200,14 +200,16 @@ void Filter::launch(std::int64_t t_ns) {
   // What no length of rest reveals: an accelerometer bias, which passed for tilt, and the moment of firing.
   const double tilt = rest.accelerometer_bias_mps2 / config_.gravity_mps2;
   state_.covariance.diagonal().segment<2>(attitude_block).array() += tilt * tilt;
+  // Heights count from the barometer's zero from now on: what is not known of its offset is not known of z.
+  state_.covariance(position_block + 2, position_block + 2) += barometer_offset_.variance_m2();
   state_.covariance(velocity_block, velocity_block) +=
       rest.launch_speed_sigma_mps * rest.launch_speed_sigma_mps;
 }
 
 void Filter::in_flight(const ImuSample& sample) {
   // While the catapult pushes, its rail carries the aircraft: the forces are not the air's.
-  const bool on_rail = sample.specific_force_body_mps2.x() > 0.5 * config_.rest.launch_threshold_mps2;
-  if (on_rail || state_.velocity_body_mps.x() < config_.airspeed.usable_mps) return;
+  on_rail_ = sample.specific_force_body_mps2.x() > 0.5 * config_.rest.launch_threshold_mps2;
+  if (on_rail_ || state_.velocity_body_mps.x() < config_.airspeed.usable_mps) return;
   if (config_.sideslip.model != SideslipModel::off)
     fuse(Aid::sideslip,
          sideslip(state_, sample.specific_force_body_mps2.y(), config_.sideslip, config_.model), sample.t_ns);
@@ -218,7 +220,8 @@ void Filter::in_flight(const ImuSample& sample) {
 }
 
 void Filter::on(const PitotSample& sample) {
-  if (!launched() || !std::isfinite(sample.airspeed_mps)) return;
+  // On the rail the velocity still lacks half an IMU sample of the catapult's push, which its end gives back.
+  if (!launched() || on_rail_ || !std::isfinite(sample.airspeed_mps)) return;
   // Slow readings are poor, unless the aircraft is not slow at all: then they are a fault to be seen.
   const bool is_slow = air_velocity(state_).body_mps.x() < 1.5 * config_.airspeed.usable_mps;
   if (is_slow && sample.airspeed_mps < config_.airspeed.usable_mps) return;

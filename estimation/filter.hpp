@@ -65,6 +65,7 @@ class Filter : public StateSource {
   ImuSample previous_;  ///< the newest IMU sample taken, clamped
   bool started_ = false;
   bool at_rest_ = false;
+  bool on_rail_ = false;  ///< launched, and the catapult still pushes
   std::optional<std::int64_t> launch_t_ns_;
   std::int64_t imu_gaps_ = 0;
   LaunchDetector launch_detector_;

@@ -194,7 +194,7 @@ void Aircraft::set_elevons() {
   set("right_elevon", actuators_.right_elevon_rad());
 }
 
-void Aircraft::read_truth(const Eigen::Vector3d& acceleration_world_mps2) {
+void Aircraft::read_truth(const Eigen::Vector3d& rail_acceleration_world_mps2) {
   const mjtNum* position = data_->qpos;
   const Eigen::Quaterniond attitude(position[3], position[4], position[5], position[6]);
   truth_.t_ns = t_ns();
@@ -202,11 +202,17 @@ void Aircraft::read_truth(const Eigen::Vector3d& acceleration_world_mps2) {
   truth_.T_world_body.translation() = Eigen::Map<const Eigen::Vector3d>(position);
   truth_.velocity_world_mps = vector_at(data_->qvel);
   truth_.angular_rate_body_radps = vector_at(data_->qvel + 3);
-  const Eigen::Vector3d gravity_world(0, 0, -airframe_.gravity_mps2);
-  truth_.specific_force_body_mps2 =
-      truth_.T_world_body.linear().transpose() * (acceleration_world_mps2 - gravity_world);
   truth_.wind_world_mps = wind_.at(truth_.T_world_body.translation());
   const AirState felt = air();
+  if (step_ > release_step_) {
+    // The air's force at this very moment: a difference of velocities would be that of the step before, in
+    // axes that have turned since, and in a dodge the estimator would integrate that to 0.1 m/s.
+    truth_.specific_force_body_mps2 = aerodynamic_wrench(airframe_, felt).force_body_n / airframe_.mass_kg;
+  } else {
+    const Eigen::Vector3d gravity_world(0, 0, -airframe_.gravity_mps2);
+    truth_.specific_force_body_mps2 =
+        truth_.T_world_body.linear().transpose() * (rail_acceleration_world_mps2 - gravity_world);
+  }
   truth_.left_elevon_rad = felt.left_elevon_rad;
   truth_.right_elevon_rad = felt.right_elevon_rad;
   truth_.thrust_n = felt.thrust_n;

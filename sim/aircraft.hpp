@@ -89,7 +89,7 @@ class Aircraft {
   void set_body(const Eigen::Isometry3d& T_world_body, const Eigen::Vector3d& velocity_world_mps,
                 const Eigen::Vector3d& angular_rate_body_radps);
   void set_elevons();
-  void read_truth(const Eigen::Vector3d& acceleration_world_mps2);
+  void read_truth(const Eigen::Vector3d& rail_acceleration_world_mps2);
 
   const mjModel& model_;
   DataPointer data_;

@@ -25,9 +25,9 @@ double normal_quantile(double probability) {
   return 0.5 * (low + high);
 }
 
-Consistency averaged(const std::string& name, int degrees, const std::vector<std::vector<TrialMoment>>& trials,
-                     double release_s, double from_s, double to_s,
-                     const std::function<double(const TrialMoment&)>& squared) {
+Consistency averaged(const std::string& name, int degrees,
+                     const std::vector<std::vector<TrialMoment>>& trials, double release_s, double from_s,
+                     double to_s, const std::function<double(const TrialMoment&)>& squared) {
   Consistency result;
   result.name = name;
   result.degrees = degrees;
@@ -67,9 +67,9 @@ std::vector<Consistency> consistency(const std::vector<std::vector<TrialMoment>>
       return moment.innovations_squared[static_cast<std::size_t>(aid)];
     });
   };
-  return {nees("attitude", attitude_block), nees("velocity", velocity_block),
+  return {nees("attitude", attitude_block),       nees("velocity", velocity_block),
           nees("position drift", position_block), nis("airspeed", Aid::airspeed),
-          nis("altitude", Aid::altitude), nis("sideslip", Aid::sideslip)};
+          nis("altitude", Aid::altitude),         nis("sideslip", Aid::sideslip)};
 }
 
 double chi_square_quantile_of_many(double probability, double degrees) {

@@ -13,10 +13,10 @@ struct Consistency {
   std::string name;
   int degrees = 3;
   std::vector<double> since_release_s;
-  std::vector<double> average;       ///< over the flights; `degrees` is what it should be
-  double low = 0, high = 0;          ///< 95 % of the averages of an honest filter lie between
-  double share_inside = 0;           ///< of the moments
-  double mean_over_degrees = 0;      ///< of all moments and flights, divided by `degrees`: 1 is honest
+  std::vector<double> average;   ///< over the flights; `degrees` is what it should be
+  double low = 0, high = 0;      ///< 95 % of the averages of an honest filter lie between
+  double share_inside = 0;       ///< of the moments
+  double mean_over_degrees = 0;  ///< of all moments and flights, divided by `degrees`: 1 is honest
 };
 
 /// NEES of attitude, velocity and position drift, NIS of airspeed, altitude and sideslip, from `from_s` to

@@ -43,7 +43,8 @@ class SightingAgain {
       : rig_(flight.rig),
         latency_ns_(std::llround(flight.scenario.cameras.latency_s * 1e9)),
         resightings_(known(config)) {
-    for (const double depth_m : config.depths_m) sights_.emplace_back(flight.rig, depth_m, flight.obstacles, history);
+    for (const double depth_m : config.depths_m)
+      sights_.emplace_back(flight.rig, depth_m, flight.obstacles, history);
     period_steps_ = physics_rate_hz / flight.scenario.cameras.rate_hz;
   }
   void step(std::int64_t step, std::int64_t t_ns, Filter& filter) {
@@ -56,7 +57,8 @@ class SightingAgain {
       for (Sight& sight : sights_) sight.see(image_ns, hits_);
       resightings_.insert(hits_, filter.state_at(image_ns).T_world_body * rig_.T_body_camera, image_ns);
       for (const Resighting& again : resightings_.completed())
-        filter.on(ResightingSample{again.t_ns, again.earlier_ns, again.discrepancy_world_m, again.covariance_m2});
+        filter.on(
+            ResightingSample{again.t_ns, again.earlier_ns, again.discrepancy_world_m, again.covariance_m2});
     }
   }
 
@@ -112,13 +114,15 @@ std::vector<TrialMoment> run_trial(const RecordedFlight& flight, const TrialConf
   return moments;
 }
 
-std::vector<Drift> drifts(const RecordedFlight& flight, const std::vector<TrialMoment>& moments, double sight_m,
-                          double from_s) {
+std::vector<Drift> drifts(const RecordedFlight& flight, const std::vector<TrialMoment>& moments,
+                          double sight_m, double from_s) {
   const double release_s = static_cast<double>(flight.release_step) / physics_rate_hz;
   const Eigen::Vector3d forward_body =
       (flight.rig.T_body_camera.linear() * Eigen::Vector3d::UnitZ()).normalized();
   std::vector<Drift> found;
-  const auto seconds = [](const TrialMoment& moment) { return 1e-9 * static_cast<double>(moment.truth.t_ns); };
+  const auto seconds = [](const TrialMoment& moment) {
+    return 1e-9 * static_cast<double>(moment.truth.t_ns);
+  };
   double next_s = release_s + from_s;
   for (std::size_t seen = 0; seen < moments.size(); ++seen) {
     if (seconds(moments[seen]) < next_s) continue;

@@ -34,7 +34,7 @@ std::vector<TrialMoment> run_trial(const RecordedFlight& flight, const TrialConf
 
 /// How the error of a remembered obstacle grew from its detection `sight_m` ahead to its passing.
 struct Drift {
-  double seen_s = 0;                                     ///< when it was detected
+  double seen_s = 0;                                         ///< when it was detected
   Eigen::Vector2d along_across_m = Eigen::Vector2d::Zero();  ///< level, in the passing aircraft's course
   double vertical_m = 0;
   double total_m() const { return std::hypot(along_across_m.norm(), vertical_m); }
@@ -44,8 +44,8 @@ struct Drift {
 };
 
 /// A detection every 0.05 s from `from_s` after the release on, for as long as the passing is in the record.
-std::vector<Drift> drifts(const RecordedFlight& flight, const std::vector<TrialMoment>& moments, double sight_m,
-                          double from_s = 0.5);
+std::vector<Drift> drifts(const RecordedFlight& flight, const std::vector<TrialMoment>& moments,
+                          double sight_m, double from_s = 0.5);
 
 /// Error of the estimate in the filter's coordinates. What the truth does not name as a state (biases) is
 /// left zero.

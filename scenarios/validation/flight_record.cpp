@@ -20,8 +20,15 @@ RecordedMoment moment(const std::array<double, columns>& n) {
       (Eigen::AngleAxisd(n[6], Vector3d::UnitZ()) * Eigen::AngleAxisd(n[5], Vector3d::UnitY()) *
        Eigen::AngleAxisd(n[4], Vector3d::UnitX()))
           .toRotationMatrix();
-  return {n[0], {n[1], n[2], n[3]}, n[4], n[5], n[6], attitude, {n[7], n[8], n[9]},
-          {n[13], n[14], n[15]}, {n[10], n[11], n[12]}};
+  return {n[0],
+          {n[1], n[2], n[3]},
+          n[4],
+          n[5],
+          n[6],
+          attitude,
+          {n[7], n[8], n[9]},
+          {n[13], n[14], n[15]},
+          {n[10], n[11], n[12]}};
 }
 
 /// Trapezoids over the record's own velocities.
