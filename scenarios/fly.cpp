@@ -68,7 +68,7 @@ std::unique_ptr<StateSource> state_source_of(const Scenario& scenario, const Tru
 World world_of(const Scenario& scenario, const std::filesystem::path& models_folder,
                const std::vector<Obstacle>& obstacles) {
   try {
-    return build_world(models_folder, scenario.airframe, obstacles, scenario.world_config());
+    return build_world(models_folder, scenario.flown_airframe(), obstacles, scenario.world_config());
   } catch (const std::runtime_error& error) {
     throw MachineError(error.what());  // the models are the project's, not the caller's
   }
@@ -86,7 +86,9 @@ std::unique_ptr<StereoCameras> cameras_of(const Scenario& scenario, const World&
 
 Aircraft aircraft_of(const Scenario& scenario, const World& world) {
   try {
-    return Aircraft(*world.model, scenario.airframe, scenario.launch, scenario.wind_world_mps);
+    const Wind wind(scenario.wind_world_mps, scenario.wind, scenario.stand(),
+                    seed_for(scenario.seed, "wind"));
+    return Aircraft(*world.model, scenario.flown_airframe(), scenario.launch, wind, scenario.actuators);
   } catch (const std::runtime_error& error) {
     throw ScenarioError(error.what());
   }
@@ -131,8 +133,10 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   TruthHistory history;
   const auto detector = detector_of(scenario, rig, obstacles, history);
   const auto state_source = state_source_of(scenario, history);
-  Autopilot autopilot(scenario.autopilot.autopilot, scenario.airframe, rig, scenario.mission(), *detector,
-                      *state_source, seed_for(scenario.seed, "planner"));
+  AutopilotConfig autopilot_config = scenario.autopilot.autopilot;
+  autopilot_config.resightings.depths_m = scenario.perception.pushbroom.depths_m;
+  Autopilot autopilot(autopilot_config, scenario.airframe, rig, scenario.mission(), *detector, *state_source,
+                      seed_for(scenario.seed, "planner"));
 
   const Due due(scenario);
   const auto latency_ns = static_cast<std::int64_t>(scenario.cameras.latency_s * 1e9);
@@ -148,6 +152,7 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   for (std::int64_t step = 0; !ending; ++step) {
     const Truth& truth = aircraft.truth();
     history.observe(truth);
+    if (options.on_truth) options.on_truth(truth);
     stopwatch.time("estimate", [&] { sensors.deliver(due, step, truth, autopilot); });
     if (due.camera(step)) {
       pending.push_back(

@@ -1,0 +1,22 @@
+#include "scenarios/validation/aircraft_page.hpp"
+
+#include "planning/airframe.hpp"
+#include "scenarios/validation/trim_section.hpp"
+
+namespace understory {
+
+ValidationPage aircraft_page(const std::filesystem::path&) {
+  const Airframe airframe;
+  ValidationPage page;
+  page.file = "flight_model";
+  page.title = "The flight model";
+  page.introduction =
+      "The simulated delta wing (`sim/aerodynamics`, `sim/aircraft`) beside what is known of the real one. "
+      "`understory validate --out docs` writes this page and its figures, and ends with status 1 where one "
+      "of its "
+      "tolerances is broken.\n";
+  page.sections = {trim_section(airframe)};
+  return page;
+}
+
+}  // namespace understory

@@ -1,0 +1,72 @@
+#include "scenarios/validation/flight_record.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <fstream>
+#include <sstream>
+
+#include "scenarios/config_tree.hpp"
+
+namespace understory {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t columns = 16;
+
+RecordedMoment moment(const std::array<double, columns>& n) {
+  const Eigen::Matrix3d attitude =
+      (Eigen::AngleAxisd(n[6], Vector3d::UnitZ()) * Eigen::AngleAxisd(n[5], Vector3d::UnitY()) *
+       Eigen::AngleAxisd(n[4], Vector3d::UnitX()))
+          .toRotationMatrix();
+  return {n[0], {n[1], n[2], n[3]}, n[4], n[5], n[6], attitude, {n[7], n[8], n[9]},
+          {n[13], n[14], n[15]}, {n[10], n[11], n[12]}};
+}
+
+/// Trapezoids over the record's own velocities.
+void integrate_heights(std::vector<RecordedMoment>& moments) {
+  moments[0].position_world.z() = 0;
+  for (std::size_t i = 1; i < moments.size(); ++i) {
+    const double before = (moments[i - 1].R_world_body * moments[i - 1].velocity_body_mps).z();
+    const double after = (moments[i].R_world_body * moments[i].velocity_body_mps).z();
+    moments[i].position_world.z() =
+        moments[i - 1].position_world.z() + 0.5 * (before + after) * (moments[i].t_s - moments[i - 1].t_s);
+  }
+}
+
+}  // namespace
+
+AirborneStart FlightRecord::start() const {
+  const RecordedMoment& first = moments.front();
+  return {first.R_world_body, first.velocity_body_mps, first.angular_rate_body_radps, first.controls};
+}
+
+FlightRecord read_flight_record(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream)
+    throw ScenarioError(fmt::format("{}: cannot be read (the record of a real flight)", file.string()));
+  FlightRecord record;
+  int line_number = 0;
+  for (std::string line; std::getline(stream, line);) {
+    ++line_number;
+    if (line.empty() || line[0] == '#' || line[0] == 't') continue;
+    std::istringstream cells(line);
+    std::array<double, columns> numbers{};
+    char comma = 0;
+    for (std::size_t i = 0; i < columns; ++i) {
+      cells >> numbers[i];
+      if (i + 1 < columns) cells >> comma;
+    }
+    if (!cells || !(cells >> std::ws).eof())
+      throw ScenarioError(fmt::format("{}:{}: expected {} numbers", file.string(), line_number, columns));
+    record.moments.push_back(moment(numbers));
+  }
+  constexpr std::size_t least_moments = 2;
+  if (record.moments.size() < least_moments)
+    throw ScenarioError(fmt::format("{}: expected at least {} moments", file.string(), least_moments));
+  integrate_heights(record.moments);
+  return record;
+}
+
+}  // namespace understory
