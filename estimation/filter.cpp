@@ -64,10 +64,10 @@ Filter::Filter(const FilterConfig& config)
       launch_detector_(config.rest.launch_threshold_mps2),
       barometer_offset_(config.altitude.offset_sigma_m, config.altitude.noise_m),
       altitude_drift_(config.altitude) {
-  const FaultConfig& faults = config.faults;
+  const DistrustConfig& distrust = config.distrust;
   const auto gate = [&](int degrees) {
-    return Gate(chi_square_quantile(faults.gate_probability, degrees), faults.gate_patience_s,
-                faults.exclude ? Distrust::exclude : Distrust::believe);
+    return Gate(chi_square_quantile(distrust.gate_probability, degrees), distrust.gate_patience_s,
+                distrust.exclude ? Distrust::exclude : Distrust::believe);
   };
   gates_.assign(aid_count, gate(1));
   gates_[static_cast<std::size_t>(Aid::gps)] = gate(3);
@@ -81,7 +81,7 @@ void Filter::on(const ImuSample& raw) {
   if (!started_) return start(sample);
   if (sample.t_ns <= state_.t_ns) return;
   const double dt_s =
-      std::min(1e-9 * static_cast<double>(sample.t_ns - state_.t_ns), config_.faults.longest_gap_s);
+      std::min(1e-9 * static_cast<double>(sample.t_ns - state_.t_ns), config_.distrust.longest_gap_s);
   propagate(sample, dt_s);
   take_rates(sample, dt_s);
   if (launched()) {
@@ -133,7 +133,7 @@ void Filter::propagate(const ImuSample& sample, double dt_s) {
   understory::propagate(state_.covariance, by, noise, dt_s, config_.model);
   state_.gust_world_mps *= std::exp(-dt_s / noise.gust_time_s);
   state_.t_ns = sample.t_ns;
-  if (launched() && dt_s > config_.faults.imu_gap_s) ++imu_gaps_;
+  if (launched() && dt_s > config_.distrust.imu_gap_s) ++imu_gaps_;
 }
 
 ProcessNoise Filter::process_noise(double dt_s) const {
@@ -148,12 +148,12 @@ ProcessNoise Filter::process_noise(double dt_s) const {
   if (extra.pitot_bias) noise.pitot_bias_walk_rthz = extra.pitot_bias_walk_rthz;
   if (extra.gust) noise.gust_sigma_mps = extra.gust_sigma_mps;
   noise.gust_time_s = extra.gust_length_m / std::max(state_.velocity_body_mps.norm(), 1.0);
-  if (dt_s > config_.faults.imu_gap_s) {
+  if (dt_s > config_.distrust.imu_gap_s) {
     // A mean that is wrong by sigma over dt is a density of sigma * sqrt(dt).
     const double root = std::sqrt(dt_s);
-    noise.gyro_radps_rthz = std::hypot(noise.gyro_radps_rthz, config_.faults.gap_rate_sigma_radps * root);
+    noise.gyro_radps_rthz = std::hypot(noise.gyro_radps_rthz, config_.distrust.gap_rate_sigma_radps * root);
     noise.accelerometer_mps2_rthz =
-        std::hypot(noise.accelerometer_mps2_rthz, config_.faults.gap_force_sigma_mps2 * root);
+        std::hypot(noise.accelerometer_mps2_rthz, config_.distrust.gap_force_sigma_mps2 * root);
   }
   return noise;
 }
@@ -281,7 +281,7 @@ FilterConfig original_filter() {
   config.gyro_noise_radps_rthz = 0.5 * degree;
   config.accelerometer_noise_mps2_rthz = 0.2;
   config.smooth_frame = false;
-  config.faults.exclude = false;  // it had no gates to speak of
+  config.distrust.exclude = false;  // it had no gates to speak of
   config.airspeed.sigma_mps = std::sqrt(15.0);
   config.sideslip.model = SideslipModel::zero;
   config.sideslip.zero_sigma_mps = std::sqrt(5.0);

@@ -52,7 +52,7 @@ struct ExtraStatesConfig {
 };
 
 /// What the filter does about sensors that fail.
-struct FaultConfig {
+struct DistrustConfig {
   double gate_probability = 0.999;  ///< 0.5..0.999999: of a good measurement to pass its chi-square gate
   double gate_patience_s = 0.25;    ///< s, 0..1e6: disagreement for longer is a fault
   bool exclude = true;  ///< a faulty sensor stays out until it has agreed as long; false: it is believed
@@ -85,7 +85,7 @@ struct FilterConfig {
   double max_force_mps2 = 157.0;    ///< m/s^2, 20..2000: accelerometer's full scale (16 g); beyond is clamped
   double force_low_pass_hz = 30.0;  ///< Hz, 0.1..1000: of State::specific_force_body_mps2
   ExtraStatesConfig states;
-  FaultConfig faults;
+  DistrustConfig distrust;
   AirspeedConfig airspeed;
   SideslipConfig sideslip;
   AngleOfAttackConfig angle_of_attack;
@@ -136,7 +136,7 @@ void visit_fields(Visitor& visit, ExtraStatesConfig& config) {
 }
 
 template <typename Visitor>
-void visit_fields(Visitor& visit, FaultConfig& config) {
+void visit_fields(Visitor& visit, DistrustConfig& config) {
   visit("gate_probability", config.gate_probability, 0.5, 0.999999);
   visit("gate_patience_s", config.gate_patience_s, 0.0, 1e6);
   visit("exclude", config.exclude);
@@ -162,7 +162,7 @@ void visit_fields(Visitor& visit, FilterConfig& config) {
   visit("max_force_mps2", config.max_force_mps2, 20.0, 2000.0);
   visit("force_low_pass_hz", config.force_low_pass_hz, 0.1, 1000.0);
   visit("states", config.states);
-  visit("faults", config.faults);
+  visit("distrust", config.distrust);
   visit("airspeed", config.airspeed);
   visit("sideslip", config.sideslip);
   visit("angle_of_attack", config.angle_of_attack);

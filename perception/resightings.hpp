@@ -12,7 +12,9 @@ namespace understory {
 struct ResightingsConfig {
   bool enabled = false;
   std::vector<double> depths_m;  ///< that the detector looks at; the composition knows them, no key says them
-  double cluster_m = 0.7;  ///< level distance from a cluster's centre within which hits of one depth join it
+  /// Level distance from a cluster's centre within which hits of one depth join it. While a trunk crosses the
+  /// depth interval of a pixel (1.6 m at 10 m), its places smear over as much in the odometry frame.
+  double cluster_m = 1.2;
   int least_hits = 8;      ///< a cluster of fewer is left alone
   double settle_s = 0.04;  ///< a nearer cluster without a hit for as long is complete
   double match_m = 1.5;    ///< level distance between the two places of one obstacle, at most

@@ -110,16 +110,20 @@ void take_counts(const Autopilot& autopilot, const Stopwatch& stopwatch, FlightR
   result.wall_s = stopwatch.elapsed_s();
 }
 
+void prepare_run_folder(const Scenario& scenario, const std::filesystem::path& folder) {
+  prepare_output_folder(folder);
+  for (const char* file : {"result.json", "trajectory.csv", "map.ply", "flight.mp4", "still.png"}) {
+    std::filesystem::remove(folder / file);  // of an earlier run: must not pass for this one's
+  }
+  write_whole_file(folder / "scenario.yaml", scenario_to_text(scenario));
+}
+
 }  // namespace
 
 FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   Stopwatch stopwatch;
   const StereoRig rig = rig_of(scenario, options.models_folder);
-  prepare_output_folder(options.output_folder);
-  for (const char* file : {"result.json", "trajectory.csv", "map.ply", "flight.mp4", "still.png"}) {
-    std::filesystem::remove(options.output_folder / file);  // of an earlier run: must not pass for this one's
-  }
-  write_whole_file(options.output_folder / "scenario.yaml", scenario_to_text(scenario));
+  if (!options.output_folder.empty()) prepare_run_folder(scenario, options.output_folder);
 
   const std::vector<Obstacle> obstacles = course_obstacles(scenario);
   const World world = world_of(scenario, options.models_folder, obstacles);
@@ -188,7 +192,7 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   record.finish(*ending);
   take_counts(autopilot, stopwatch, record.result());
   if (film) film->finish();
-  record.write(options.output_folder);
+  if (!options.output_folder.empty()) record.write(options.output_folder);
   return record.result();
 }
 

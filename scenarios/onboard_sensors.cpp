@@ -16,19 +16,4 @@ OnboardSensors::OnboardSensors(const Scenario& scenario)
       gps_delay_ns_(std::llround(scenario.sensors.sensors.gps.delay_s * 1e9)),
       faults_(scenario.faults) {}
 
-void OnboardSensors::deliver(const Due& due, std::int64_t step, const Truth& truth, Autopilot& autopilot) {
-  const auto deliver_now = [&](auto sample) {
-    if (faults_.pass(sample)) autopilot.on(sample);
-  };
-  if (due.imu(step)) deliver_now(imu_.measure(truth));
-  if (due.pitot(step)) deliver_now(pitot_.measure(truth));
-  if (due.barometer(step)) deliver_now(barometer_.measure(truth));
-  if (due.magnetometer(step)) deliver_now(magnetometer_.measure(truth));
-  if (due.gps(step)) fixes_under_way_.push_back(gps_.measure(truth));
-  while (!fixes_under_way_.empty() && truth.t_ns >= fixes_under_way_.front().t_ns + gps_delay_ns_) {
-    deliver_now(fixes_under_way_.front());
-    fixes_under_way_.pop_front();
-  }
-}
-
 }  // namespace understory

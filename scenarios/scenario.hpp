@@ -138,7 +138,7 @@ struct Scenario {
   WorldSection world;
   CameraSection cameras;
   SensorSection sensors;
-  std::vector<SensorFault> faults;  ///< of sensors and cameras, by schedule
+  std::vector<FaultConfig> faults;  ///< of sensors and cameras, by schedule
   PerceptionSection perception;
   EstimationSection estimation;
   AutopilotSection autopilot;

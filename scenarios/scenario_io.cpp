@@ -56,7 +56,7 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
   expect(divides(scenario.sensors.sensors.gps_rate_hz),
          "sensors.gps_rate_hz: expected a rate that divides 1200");
   for (std::size_t i = 0; i < scenario.faults.size(); ++i) {
-    const SensorFault& fault = scenario.faults[i];
+    const FaultConfig& fault = scenario.faults[i];
     expect(can_have(fault.sensor, fault.kind),
            fmt::format("faults[{}].kind: expected, for this sensor, {}", i, fault_kinds_of(fault.sensor)));
   }

@@ -80,7 +80,7 @@ void Aircraft::step(const Controls& controls) {
   set_elevons();
   update_moment();
   const Eigen::Vector3d velocity_now = vector_at(data_->qvel);
-  wind_.advance(static_cast<double>(step_) * step_s_, step_s_, vector_at(data_->qpos), velocity_now);
+  wind_.advance(t_ns(), step_s_, vector_at(data_->qpos), velocity_now);
   read_truth((velocity_now - velocity_before) / step_s_);
 }
 
@@ -197,7 +197,7 @@ void Aircraft::set_elevons() {
 void Aircraft::read_truth(const Eigen::Vector3d& acceleration_world_mps2) {
   const mjtNum* position = data_->qpos;
   const Eigen::Quaterniond attitude(position[3], position[4], position[5], position[6]);
-  truth_.t_ns = step_ * 1'000'000'000 / rate_hz_;
+  truth_.t_ns = t_ns();
   truth_.T_world_body = Eigen::Isometry3d(attitude.normalized());
   truth_.T_world_body.translation() = Eigen::Map<const Eigen::Vector3d>(position);
   truth_.velocity_world_mps = vector_at(data_->qvel);

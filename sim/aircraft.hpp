@@ -78,6 +78,7 @@ class Aircraft {
     double radius_m;
   };
 
+  std::int64_t t_ns() const { return step_ * 1'000'000'000 / rate_hz_; }
   void read_outline();
   bool anything_near() const;
   void update_moment();

@@ -15,8 +15,8 @@ struct DrydenScales {
 
 /// L_w = h, L_u = L_v = h / (0.177 + 0.000823 h)^1.2, sigma_w = 0.1 W20,
 /// sigma_u = sigma_v = sigma_w / (0.177 + 0.000823 h)^0.4, h in feet above ground, W20 the mean wind at 20 ft
-/// (6.1 m). The model holds from 10 to 1000 ft; heights outside are taken at its ends. (MIL-HDBK-1797 calls
-/// twice these lengths by the same names and has the same spectra.)
+/// (6.1 m). The model holds from 10 to 1000 ft; heights outside are taken at its ends. (MIL-HDBK-1797
+/// writes 2 L for what is L here, for v and w.)
 DrydenScales low_altitude_dryden(double altitude_m, double wind20_mps);
 
 /// A frozen field that the aircraft flies through (Taylor): its state goes on with the distance flown in the

@@ -6,7 +6,7 @@
 namespace understory {
 namespace {
 
-bool in_force(const SensorFault& fault, std::int64_t t_ns) {
+bool in_force(const FaultConfig& fault, std::int64_t t_ns) {
   const std::int64_t from_ns = std::llround(fault.at_s * 1e9);
   return t_ns >= from_ns && t_ns < from_ns + std::llround(fault.duration_s * 1e9);
 }
@@ -45,14 +45,14 @@ bool can_have(FaultySensor sensor, FaultKind kind) {
 }
 
 bool Faults::has(FaultySensor sensor, FaultKind kind, std::int64_t t_ns) const {
-  return std::any_of(schedule_.begin(), schedule_.end(), [&](const SensorFault& fault) {
+  return std::any_of(schedule_.begin(), schedule_.end(), [&](const FaultConfig& fault) {
     return fault.sensor == sensor && fault.kind == kind && in_force(fault, t_ns);
   });
 }
 
 template <typename Reading>
 Reading Faults::altered(FaultySensor sensor, std::int64_t t_ns, Reading reading) const {
-  for (const SensorFault& fault : schedule_) {
+  for (const FaultConfig& fault : schedule_) {
     if (fault.sensor != sensor || !in_force(fault, t_ns)) continue;
     if (fault.kind == FaultKind::bias) reading = shifted(reading, fault.value);
     if (fault.kind == FaultKind::saturate) reading = cut(reading, std::abs(fault.value));

@@ -39,7 +39,7 @@ inline constexpr std::array<std::pair<std::string_view, FaultKind>, 5> fault_kin
      {"block", FaultKind::block}}};
 
 /// One entry of a scenario's `faults`: at_s <= t < at_s + duration_s, by the moment of measurement.
-struct SensorFault {
+struct FaultConfig {
   FaultySensor sensor = FaultySensor::pitot;
   FaultKind kind = FaultKind::dropout;
   double at_s = 0;           ///< of simulated time, which begins 0.25 s of rest before the catapult fires
@@ -48,7 +48,7 @@ struct SensorFault {
 };
 
 template <typename Visitor>
-void visit_fields(Visitor& visit, SensorFault& fault) {
+void visit_fields(Visitor& visit, FaultConfig& fault) {
   visit("sensor", fault.sensor, faulty_sensor_names);
   visit("kind", fault.kind, fault_kind_names);
   visit("at_s", fault.at_s, 0.0, 1000.0);
@@ -63,7 +63,7 @@ bool can_have(FaultySensor sensor, FaultKind kind);
 /// Stands between sensors and autopilot and breaks what passes as the schedule says. Knows no truth.
 class Faults {
  public:
-  explicit Faults(std::vector<SensorFault> schedule) : schedule_(std::move(schedule)) {}
+  explicit Faults(std::vector<FaultConfig> schedule) : schedule_(std::move(schedule)) {}
 
   /// Breaks a sample as the schedule says; false: it never arrives. In order of time for each sensor.
   bool pass(ImuSample& sample);
@@ -88,7 +88,7 @@ class Faults {
   template <typename Reading>
   Reading held(bool frozen, Reading reading, std::optional<Reading>& last) const;
 
-  std::vector<SensorFault> schedule_;
+  std::vector<FaultConfig> schedule_;
   LastReadings last_;
 };
 

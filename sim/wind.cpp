@@ -12,7 +12,7 @@ Wind::Wind(const Eigen::Vector3d& mean_world_mps, const WindConfig& config, cons
            std::uint64_t seed)
     : mean_world_mps_(mean_world_mps), config_(config), stand_(stand), turbulence_(seed) {}
 
-void Wind::advance(double t_s, double step_s, const Eigen::Vector3d& position_world,
+void Wind::advance(std::int64_t t_ns, double step_s, const Eigen::Vector3d& position_world,
                    const Eigen::Vector3d& velocity_world_mps) {
   const double altitude_m = position_world.z();
   const Eigen::Vector3d mean_world_mps = shelter_at(position_world) * mean_at(altitude_m);
@@ -20,7 +20,7 @@ void Wind::advance(double t_s, double step_s, const Eigen::Vector3d& position_wo
   if (config_.turbulence_wind20_mps > 0) {
     turbulence_.advance(distance_m, low_altitude_dryden(altitude_m, 0).length_m);
   }
-  if (t_s > config_.gust.start_s) into_gust_m_ += distance_m;
+  if (t_ns > std::llround(1e9 * config_.gust.start_s)) into_gust_m_ += distance_m;
 }
 
 Eigen::Vector3d Wind::at(const Eigen::Vector3d& position_world) const {

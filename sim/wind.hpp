@@ -68,8 +68,8 @@ class Wind {
   Wind(const Eigen::Vector3d& mean_world_mps, const WindConfig& config, const ForestStand& stand,
        std::uint64_t seed);
 
-  /// One step of the aircraft's way through the air, ending at `t_s`.
-  void advance(double t_s, double step_s, const Eigen::Vector3d& position_world,
+  /// One step of the aircraft's way through the air, ending at `t_ns`.
+  void advance(std::int64_t t_ns, double step_s, const Eigen::Vector3d& position_world,
                const Eigen::Vector3d& velocity_world_mps);
 
   /// The wind now. Only where the aircraft is does it have a meaning: turbulence and gust are known along the

@@ -151,7 +151,7 @@ TEST(Filter, HandlingWithoutAStrokeIsNoLaunch) {
 TEST(Filter, APitotBiasOfThreeMetresPerSecondMovesTheEstimate) {
   const std::vector<Moment> flight = fly(straight(), 4.0);
   FilterConfig believing;
-  believing.faults.exclude = false;
+  believing.distrust.exclude = false;
   Filter filter(believing);
   Sensors sensors({}, 6);
   sensors.extra_pitot_mps = 3;

@@ -35,7 +35,7 @@ Modelled modelled() {
   config.heading.sigma_rad = set.errors.field_noise / (48 * std::cos(67 * M_PI / 180));
   config.sideslip.sigma_mps2 = config.angle_of_attack.sigma_mps2 = set.errors.force_noise;
   config.sideslip.model_error = config.angle_of_attack.model_error = 0;
-  config.faults.gate_probability = 0.999999;
+  config.distrust.gate_probability = 0.999999;
   config.start.horizontal_sigma_m = 0.5;
   config.start.vertical_sigma_m = 0.5;
   return set;

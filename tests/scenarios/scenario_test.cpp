@@ -33,6 +33,7 @@ TEST(Scenario, TheLibraryIsWhatTheMissionSays) {
   EXPECT_EQ(load_scenario(library / "paper.yaml").rig, "paper");
   EXPECT_EQ(load_scenario(library / "clear.yaml").course, Course::clear);
   EXPECT_EQ(load_scenario(library / "goalposts.yaml").course, Course::goalposts);
+  EXPECT_EQ(load_scenario(library / "windy.yaml").wind_world_mps, Eigen::Vector3d(0, 3, 0));
 }
 
 TEST(Scenario, EveryDefaultIsWritten) {
@@ -55,6 +56,7 @@ TEST(Scenario, SettingsComeAfterTheFile) {
 
 TEST(Scenario, RefusesContradictions) {
   EXPECT_THROW(scenario_from_text("forest: {radius_min_m: 0.3}\n", "a.yaml"), ScenarioError);
+  EXPECT_THROW(scenario_from_text("actuators: {pitch_speed_mps: 10}\n", "a.yaml"), ScenarioError);
   EXPECT_THROW(scenario_from_text("cameras: {rate_hz: 110}\n", "a.yaml"), ScenarioError);
   EXPECT_THROW(scenario_from_text("world: {obstacles_visible: false}\n", "a.yaml"), ScenarioError);
 }
@@ -90,6 +92,21 @@ TEST(Scenario, FaultsAreReadWrittenAndChecked) {
     EXPECT_STREQ(error.what(),
                  "a.yaml:4: faults[0].kind: expected, for this sensor, freeze | dropout | bias | saturate");
   }
+}
+
+TEST(Scenario, TheAircraftThatFliesMayDifferFromTheStacks) {
+  const Scenario scenario = scenario_from_text("mismatch: {mass_percent: 10}\n", "a.yaml");
+  EXPECT_DOUBLE_EQ(scenario.flown_airframe().mass_kg, 1.1 * scenario.airframe.mass_kg);
+  EXPECT_EQ(scenario.airframe.mass_kg, Airframe{}.mass_kg);
+}
+
+TEST(Scenario, ShelterIsWhereTheForestIs) {
+  const ForestStand stand = scenario_from_text("forest: {length_m: 40}\n", "a.yaml").stand();
+  EXPECT_EQ(stand.from_x_m, 15);
+  EXPECT_EQ(stand.to_x_m, 55);
+  EXPECT_EQ(stand.half_width_m, 25);
+  EXPECT_EQ(stand.canopy_top_m, 9);
+  EXPECT_EQ(scenario_from_text("course: clear\n", "a.yaml").stand().canopy_top_m, 0);
 }
 
 TEST(Scenario, ProofSwitchesReachTheWorld) {

@@ -12,14 +12,14 @@ using Eigen::Vector3d;
 constexpr std::int64_t second_ns = 1'000'000'000;
 
 /// From 2 s on, for one.
-SensorFault fault(FaultySensor sensor, FaultKind kind, double value = 0) {
+FaultConfig fault(FaultySensor sensor, FaultKind kind, double value = 0) {
   return {sensor, kind, 2, 1, value};
 }
 
 PitotSample reading(std::int64_t t_ns, double airspeed_mps) { return {t_ns, airspeed_mps}; }
 
 /// What arrives of the readings 10, 11, ... m/s at 0.0, 0.5, ... s; -1 where nothing does.
-std::vector<double> arrived(std::vector<SensorFault> schedule, int count = 8) {
+std::vector<double> arrived(std::vector<FaultConfig> schedule, int count = 8) {
   Faults faults(std::move(schedule));
   std::vector<double> all;
   for (int i = 0; i < count; ++i) {

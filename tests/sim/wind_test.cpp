@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/world.hpp"
+
 namespace understory {
 namespace {
 
@@ -23,8 +25,7 @@ struct Passage {
   Vector3d next() {
     ++step;
     const Vector3d position(0, 0, altitude_m);
-    wind.advance(static_cast<double>(step) * step_s, step_s, position,
-                 mean_world_mps + Vector3d(airspeed_mps, 0, 0));
+    wind.advance(time_of_step_ns(step), step_s, position, mean_world_mps + Vector3d(airspeed_mps, 0, 0));
     return wind.at(position);
   }
 };
