@@ -30,7 +30,8 @@ ConfigNode convert(const YAML::Node& yaml, const std::string& name, const std::s
   ConfigNode node;
   node.origin = place(name, yaml.Mark());
   if (depth > greatest_depth) {
-    throw ScenarioError(fmt::format("{}: {}: expected at most {} levels", node.origin, path, greatest_depth));
+    throw ScenarioError(fmt::format("{}: {}: expected at most {} levels", node.origin,
+                                    path.substr(0, path.find('[')), greatest_depth));
   }
   if (yaml.IsScalar()) {
     node.kind = ConfigNode::Kind::scalar;
