@@ -1,12 +1,16 @@
 #include "scenarios/validation/aircraft_page.hpp"
 
 #include "planning/airframe.hpp"
+#include "scenarios/validation/replay_section.hpp"
+#include "scenarios/validation/tracking_section.hpp"
 #include "scenarios/validation/trim_section.hpp"
 
 namespace understory {
 
-ValidationPage aircraft_page(const std::filesystem::path&) {
+ValidationPage aircraft_page(const std::filesystem::path& root) {
   const Airframe airframe;
+  const FreeFlight air(root / "models", airframe);
+  const FlightRecord record = read_flight_record(root / "tests" / "data" / "flight" / "left_jog.csv");
   ValidationPage page;
   page.file = "flight_model";
   page.title = "The flight model";
@@ -15,7 +19,8 @@ ValidationPage aircraft_page(const std::filesystem::path&) {
       "`understory validate --out docs` writes this page and its figures, and ends with status 1 where one "
       "of its "
       "tolerances is broken.\n";
-  page.sections = {trim_section(airframe)};
+  page.sections = {trim_section(airframe), replay_section(air, airframe, record),
+                   tracking_section(air, airframe, record)};
   return page;
 }
 

@@ -14,6 +14,7 @@ struct ReplayedMoment {
   Eigen::Matrix3d R_world_body = Eigen::Matrix3d::Identity();
   Eigen::Vector3d velocity_body_mps = Eigen::Vector3d::Zero();
 };
+ReplayedMoment replayed_moment(const Truth& truth, double t_s);
 using Replay = std::vector<ReplayedMoment>;
 
 /// The recorded inputs flown open loop from the recorded start: one moment for each of the record's.
