@@ -1,9 +1,13 @@
 #include "scenarios/validation/aircraft_page.hpp"
 
 #include "planning/airframe.hpp"
+#include "scenarios/validation/glide_section.hpp"
+#include "scenarios/validation/modes_section.hpp"
 #include "scenarios/validation/replay_section.hpp"
+#include "scenarios/validation/roll_section.hpp"
 #include "scenarios/validation/tracking_section.hpp"
 #include "scenarios/validation/trim_section.hpp"
+#include "scenarios/validation/turn_section.hpp"
 
 namespace understory {
 
@@ -19,7 +23,12 @@ ValidationPage aircraft_page(const std::filesystem::path& root) {
       "`understory validate --out docs` writes this page and its figures, and ends with status 1 where one "
       "of its "
       "tolerances is broken.\n";
-  page.sections = {trim_section(airframe), replay_section(air, airframe, record),
+  page.sections = {trim_section(airframe),
+                   modes_section(airframe),
+                   turn_section(airframe),
+                   glide_section(airframe),
+                   roll_section(air, airframe),
+                   replay_section(air, airframe, record),
                    tracking_section(air, airframe, record)};
   return page;
 }
