@@ -52,12 +52,10 @@ Section glide_section(const Airframe& airframe) {
   section.title = "Glide";
   section.markdown = fmt::format(
       "Without thrust. Flat plates and the identified body drag (0.0443 m² along the body) make a poor "
-      "glider: the best "
-      "glide ratio is {:.2f} at {:.1f} m/s, the least sink {:.2f} m/s at {:.1f} m/s. FACTS has no polar; its "
-      "thrust in level "
-      "flight says the same (5.08 N of 6.36 N of weight at 12.27 m/s: a ratio of 1.25). The drag was "
-      "identified with the "
-      "motor running, and a stopped propeller may drag more or less.\n",
+      "glider: the best glide ratio is {:.2f} at {:.1f} m/s, the least sink {:.2f} m/s at {:.1f} m/s. "
+      "FACTS has no polar; its thrust in level flight says the same (5.08 N of 6.36 N of weight at 12.27 "
+      "m/s: a ratio of 1.25). The drag was identified with the motor running, and a stopped propeller may "
+      "drag more or less.\n",
       best_ratio, best_ratio_speed, least_sink, least_sink_speed);
   section.figures = {{"glide", "Straight glide without thrust", to_svg({polar, attacks}, 2)}};
   return section;

@@ -63,16 +63,15 @@ Figure modes_figure(const Airframe& airframe) {
   const std::vector<std::string> along{"short period", "short period, fast part", "short period, slow part",
                                        "phugoid"};
   const std::vector<std::string> across{"roll subsidence", "dutch roll", "spiral"};
-  return {
-      "modes",
-      "Eigenvalues of the linearised flight over speed: real part (below 0: dies out) and, where it swings, "
-      "imaginary part",
-      to_svg({plot("Longitudinal: how fast it dies out", "real part (1/s)", along, real),
-              plot("Lateral: how fast it dies out", "real part (1/s)", across, real),
-              plot("Longitudinal: how fast it swings", "imaginary part (rad/s)", {"short period", "phugoid"},
-                   imaginary),
-              plot("Lateral: how fast it swings", "imaginary part (rad/s)", {"dutch roll"}, imaginary)},
-             2)};
+  return {"modes",
+          "Eigenvalues of the linearised flight over speed: real part (below 0: dies out) and, where it "
+          "swings, imaginary part",
+          to_svg({plot("Longitudinal: how fast it dies out", "real part (1/s)", along, real),
+                  plot("Lateral: how fast it dies out", "real part (1/s)", across, real),
+                  plot("Longitudinal: how fast it swings", "imaginary part (rad/s)",
+                       {"short period", "phugoid"}, imaginary),
+                  plot("Lateral: how fast it swings", "imaginary part (rad/s)", {"dutch roll"}, imaginary)},
+                 2)};
 }
 
 std::string mode_text(const Mode& mode) {
@@ -115,25 +114,18 @@ Section modes_section(const Airframe& airframe) {
   section.title = "Modes";
   section.markdown =
       "The six equations of the rigid body under `aerodynamic_wrench` and gravity, linearised by central "
-      "differences about "
-      "level trim, controls held. tests/scenarios/flight_analysis_test.cpp holds these equations against a "
-      "step of MuJoCo "
-      "and the eigenvalues against closed forms.\n\n" +
+      "differences about level trim, controls held. tests/scenarios/flight_analysis_test.cpp holds these "
+      "equations against a step of MuJoCo and the eigenvalues against closed forms.\n\n" +
       markdown_table({"airspeed (m/s)", "short period", "phugoid", "roll subsidence", "dutch roll", "spiral"},
                      rows) +
-      "\nThe flat plates make no pitching moment of their own: the elevons' lift behind the centre of mass "
-      "is all the "
-      "stability there is, and the identified pitch damping (0.115 N m s/rad) makes the short period so "
-      "stiff that below "
-      "10 m/s it no longer swings. Drag of about 0.8 of the lift damps the phugoid heavily. "
-      "The dutch roll "
-      "is weakly damped (the identified yaw damping is zero; only the winglets damp) "
-      "and the spiral opens: at 12 m/s slowly, at 8 m/s it doubles in 2.3 s, faster than the 4 s that "
-      "MIL-F-8785C leaves a "
-      "pilot at worst. The path follower, whose bank loop has 9 rad/s, does not notice. "
-      "FACTS gives no modes to "
-      "hold these "
-      "against.\n";
+      "\n"
+      "The flat plates make no pitching moment of their own: the elevons' lift behind the centre of mass "
+      "is all the stability there is, and the identified pitch damping (0.115 N m s/rad) makes the short "
+      "period so stiff that below 10 m/s it no longer swings. Drag of about 0.8 of the lift damps the "
+      "phugoid heavily. The dutch roll is weakly damped (the identified yaw damping is zero; only the "
+      "winglets damp) and the spiral opens: at 12 m/s slowly, at 8 m/s it doubles in 2.3 s, faster than "
+      "the 4 s that MIL-F-8785C leaves a pilot at worst. The path follower, whose bank loop has 9 rad/s, "
+      "does not notice. FACTS gives no modes to hold these against.\n";
   section.figures = {modes_figure(airframe)};
   section.checks = {
       at_least("all modes but the spiral die out (1: yes)", others_die_out ? 1 : 0, 1, ""),

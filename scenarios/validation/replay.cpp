@@ -59,6 +59,12 @@ double rms_roll_rad(const std::vector<ReplayError>& all) {
   return std::sqrt(sum / static_cast<double>(all.size()));
 }
 
+double greatest_horizontal_m(const std::vector<ReplayError>& all) {
+  double greatest = 0;
+  for (const ReplayError& error : all) greatest = std::max(greatest, error.horizontal_m);
+  return greatest;
+}
+
 double greatest_height_m(const std::vector<ReplayError>& all) {
   double greatest = 0;
   for (const ReplayError& error : all) greatest = std::max(greatest, std::abs(error.height_m));

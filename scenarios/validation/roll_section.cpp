@@ -137,21 +137,19 @@ Section roll_section(const FreeFlight& air, const Airframe& airframe) {
                                     even_rate, 0.05 * fact.rate_degps, fact.rate_degps, "deg/s"));
   }
   section.markdown =
-      "From level trim both elevons are sent to fixed deflections and reach them after the input delay of 20 "
-      "ms. Best pair: "
-      "that of a 9 by 9 grid which banks to 60 deg soonest. Mean at trim: one elevon up to its stop, the "
-      "other as far "
-      "down. The steady rate is where the roll moment vanishes at the trim's speed and angle of attack.\n\n" +
+      "From level trim both elevons are sent to fixed deflections and reach them after the input delay of "
+      "20 ms. Best pair: that of a 9 by 9 grid which banks to 60 deg soonest. Mean at trim: one elevon up "
+      "to its stop, the other as far down. The steady rate is where the roll moment vanishes at the trim's "
+      "speed and angle of attack.\n\n" +
       markdown_table(
           {"airspeed (m/s)", "to 60 deg, best pair (s)", "with a 30 ms servo lag",
            "mean at trim, with the lag", "FACTS", "steady rate, best pair (deg/s)", "mean at trim", "FACTS"},
           rows) +
-      "\nFACTS' rates are those with the mean at trim, within 5 %; letting the mean go is 9 to 19 % faster. "
-      "FACTS' time at 9 "
-      "m/s is met too. At 12.3 m/s the simulated aircraft is 0.06 s faster than FACTS says, which its text "
-      "does not explain: "
-      "0.29 s is what 20 ms of delay, 30 ms of lag and a roll time constant of 0.14 s (see the modes) make "
-      "of 488 deg/s.\n";
+      "\n"
+      "FACTS' rates are those with the mean at trim, within 5 %; letting the mean go is 9 to 19 % faster. "
+      "FACTS' time at 9 m/s is met too. At 12.3 m/s the simulated aircraft is 0.06 s faster than FACTS "
+      "says, which its text does not explain: 0.29 s is what 20 ms of delay, 30 ms of lag and a roll time "
+      "constant of 0.14 s (see the modes) make of 488 deg/s.\n";
   const RollCurve plain = roll_curve(air, airframe, fastest_roll, 0, "best pair"),
                   lagged = roll_curve(air, airframe, fastest_roll, servo_lag_s, "best pair, 30 ms servo lag"),
                   even = roll_curve(air, airframe, symmetric_roll, servo_lag_s, "mean at trim, 30 ms lag");

@@ -67,16 +67,12 @@ Section tracking_section(const FreeFlight& air, const Airframe& airframe, const 
   section.title = "The real left jog, closed loop";
   section.markdown = fmt::format(
       "`planning/path_follower` takes a bank and a climb. `scenarios/validation/path_tracking` makes both "
-      "from the "
-      "record's path: the acceleration across it {:.2f} s ahead, and a critically damped return of {:g} "
-      "rad/s to where "
-      "the aircraft should be. From the recorded start, with the true state at 200 Hz and the record's mean "
-      "speed ({:.2f} "
-      "m/s) as cruise speed, the follower stays within {:.2f} m of the path (height by integrated velocity), "
-      "and "
-      "within {:.2f} m of where the real aircraft was at the same time. It banks less and pulls harder than "
-      "the "
-      "recorded pilot did, and so comes near its cap of the angle of attack.\n",
+      "from the record's path: the acceleration across it {:.2f} s ahead, and a critically damped return "
+      "of {:g} rad/s to where the aircraft should be. From the recorded start, with the true state at 200 "
+      "Hz and the record's mean speed ({:.2f} m/s) as cruise speed, the follower stays within {:.2f} m of "
+      "the path (height by integrated velocity), and within {:.2f} m of where the real aircraft was at the "
+      "same time. It banks less and pulls harder than the real aircraft did, but stays below its cap of "
+      "the angle of attack.\n",
       config.lead_s, config.swing_radps, config.flight_model.cruise_speed_mps, worst, worst_moment);
   section.figures = {{"tracking", "The record's path flown by the path follower",
                       to_svg({path, distance, rolls, attacks}, 2)}};

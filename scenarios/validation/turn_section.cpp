@@ -137,21 +137,18 @@ Section turn_section(const Airframe& airframe) {
   }
   section.markdown =
       "Level turns of the whole aircraft (`scenarios/validation/steady_flight`: six equations, elevons and "
-      "sideslip "
-      "included) with all the thrust, the angle of attack capped at 30 deg. FACTS section 3 beside:\n\n" +
+      "sideslip included) with all the thrust, the angle of attack capped at 30 deg. FACTS section 3 "
+      "beside:\n\n" +
       markdown_table({"airspeed (m/s)", "sustained bank (radius)", "without pitch damping", "FACTS",
                       "load factor at 30 deg", "without pitch damping", "FACTS"},
                      rows) +
-      "\nFACTS' figures are those of the aircraft without the identified pitch damping (0.115 N m s/rad), to "
-      "the last digit "
-      "but one. With it, a turn costs more: the body pitches as it turns, the damping resists, and the "
-      "elevons that overcome "
-      "it push down and drag. The simulated aircraft, like the identified one, holds 2 to 4 deg less bank "
-      "and 8 % less load "
-      "factor than FACTS says; plans are made with this share (`planning/flight_model`, `balance_n`). The "
-      "load factor is 1 / cos(bank) to within 1 %, less what the side force of "
-      "the winglets "
-      "carries in the small sideslip that the turn needs.\n";
+      "\n"
+      "FACTS' figures are those of the aircraft without the identified pitch damping (0.115 N m s/rad), to "
+      "the last digit but one. With it, a turn costs more: the body pitches as it turns, the damping "
+      "resists, and the elevons that overcome it push down and drag. The simulated aircraft, like the "
+      "identified one, holds 2 to 4 deg less bank and 8 % less load factor than FACTS says; plans are made "
+      "with this share (`planning/flight_model`, `balance_n`). The load factor is 1 / cos(bank) to within "
+      "1 %, less what the side force of the winglets carries in the small sideslip that the turn needs.\n";
   section.figures = {turn_figure(airframe)};
   return section;
 }
