@@ -1,6 +1,7 @@
 #include "scenarios/validation/aircraft_page.hpp"
 
 #include "planning/airframe.hpp"
+#include "scenarios/validation/dodge_section.hpp"
 #include "scenarios/validation/fluid_section.hpp"
 #include "scenarios/validation/glide_section.hpp"
 #include "scenarios/validation/modes_section.hpp"
@@ -22,12 +23,14 @@ ValidationPage aircraft_page(const std::filesystem::path& root) {
   page.introduction =
       "The simulated delta wing (`sim/aerodynamics`, `sim/aircraft`) beside what is known of the real one. "
       "`understory validate --out docs` writes this page and its figures, and ends with status 1 where one "
-      "of its tolerances is broken.\n";
+      "of its tolerances is broken. FACTS: the figures that the project was given, from the flight records "
+      "of the original aircraft (2014 to 2017) or computed from its identified model.\n";
   page.sections = {trim_section(airframe),
                    modes_section(airframe),
                    turn_section(airframe),
                    glide_section(airframe),
                    roll_section(air, airframe),
+                   dodge_section(air, airframe),
                    replay_section(air, airframe, record),
                    tracking_section(air, airframe, record),
                    fluid_section(airframe)};
