@@ -50,13 +50,24 @@ std::string model_xml(const Airframe& airframe, const EllipsoidCoefficients& coe
   return xml + "</body></worldbody></mujoco>";
 }
 
+// MuJoCo's own handlers write a log file and wait for Enter.
+[[noreturn]] void raise_error(const char* message) {
+  throw std::runtime_error(std::string("MuJoCo: ") + message);
+}
+
+void require_room(int failure) {
+  if (failure != 0) throw std::runtime_error("MuJoCo: no room for plates.xml in its table of files");
+}
+
 }  // namespace
 
 EllipsoidFluid::EllipsoidFluid(const Airframe& airframe, const EllipsoidCoefficients& coefficients) {
+  mju_user_error = raise_error;
+  mju_user_warning = raise_error;
   const std::string xml = model_xml(airframe, coefficients);
   const std::unique_ptr<mjVFS> files = std::make_unique<mjVFS>();
   mj_defaultVFS(files.get());
-  mj_makeEmptyFileVFS(files.get(), "plates.xml", static_cast<int>(xml.size()));
+  require_room(mj_makeEmptyFileVFS(files.get(), "plates.xml", static_cast<int>(xml.size())));
   std::memcpy(files->filedata[0], xml.data(), xml.size());
   char message[1000] = "";
   model_.reset(mj_loadXML("plates.xml", files.get(), message, sizeof message));

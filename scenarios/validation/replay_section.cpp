@@ -192,17 +192,18 @@ std::string fit_words(const FreeFlight& air, const Airframe& airframe, const Fli
       "- and from the whole: {5}.\n\n"
       "The two halves agree within these uncertainties, and both ask for more roll damping and more elevon "
       "lift than was identified (0.074 and 1.3). Pitch damping is not told by the first half: fitted there "
-      "it runs away and ruins the second half. The whole record puts it back at the identified 0.115. "
-      "Which choice of parameters would do best on the second half played no part in the choice; here are "
-      "all of them:\n\n"
+      "it runs away and ruins the second half. The whole record puts it back at the identified 0.115. The "
+      "bar of a half is ours and it matters: with all three parameters fitted to the first half the second "
+      "is lost, and with a bar below the roll damping's share only the elevon lift would be fitted and the "
+      "roll's RMS stay above what is asked. All the choices, each fitted to the first half:\n\n"
       "{6}\n"
       "What the record cannot tell at all: the input delay (taken away it does to the roll what the fit "
-      "does, see the last row above) and a lag of the servos (the same); wind (the position is the "
-      "aircraft's own estimate, blind to it), thrust (held at its maximum throughout), and anything but "
-      "the product of elevon area and lift. The horizontal error cannot fall much below 0.1 m: the "
-      "record's position strays up to {7:.2f} m from the integral of its own velocity, 0.08 m within the "
-      "first quarter of a second. The simulator keeps the identified values: one and a half seconds of one "
-      "flight are too little to replace them.\n",
+      "does, last row of this section's first table) and a lag of the servos (the same), wind (the "
+      "position is the aircraft's own estimate, blind to it), thrust (held at its maximum throughout), and "
+      "anything but the product of elevon area and lift. The horizontal error cannot fall much below 0.1 "
+      "m: the record's position strays up to {7:.2f} m from the integral of its own velocity, 0.08 m "
+      "within the first quarter of a second. The simulator keeps the identified values: one and a half "
+      "seconds of one flight are too little to replace them.\n",
       fit.residual_memory, std::sqrt(fit.residual_memory), values_of(fit), correlation, values_of(second),
       values_of(whole), choices_table(air, airframe, record), greatest_contradiction_m(record));
 }
