@@ -5,8 +5,7 @@
 
 namespace understory {
 
-/// The pitot tube measures the air's speed along body x; the wind is taken as zero, so that it is the
-/// velocity's too.
+/// The pitot tube measures the aircraft's speed through the air along body x, and a bias that zeroing left.
 struct AirspeedConfig {
   double usable_mps =
       6.0;  ///< m/s, 0..20: slower readings are ignored (FACTS section 4: poor below flight speed)

@@ -11,6 +11,12 @@ Measurement<1> altitude(const State& state, const BarometerSample& sample, doubl
   return measurement;
 }
 
+void AltitudeDrift::observe(double excess_m) {
+  const double gain = variance_m2_ / (variance_m2_ + config_.noise_m * config_.noise_m);
+  value_m_ += gain * (excess_m - value_m_);
+  variance_m2_ *= 1 - gain;
+}
+
 BarometerOffset::BarometerOffset(double prior_sigma_m, double noise_m)
     : variance_m2_(prior_sigma_m * prior_sigma_m), noise_variance_m2_(noise_m * noise_m) {}
 

@@ -4,15 +4,19 @@
 
 namespace understory {
 
-void inject(State& state, const Vector12d& error, FilterModel model) {
+void inject(State& state, const ErrorVector& error, FilterModel model) {
   const Eigen::Matrix3d turned = state.T_world_body.linear() * so3::exp(error.segment<3>(attitude_block));
   // Back onto the manifold: rounding would otherwise add up over thousands of updates.
   state.T_world_body.linear() = Eigen::Quaterniond(turned).normalized().toRotationMatrix();
   state.velocity_body_mps += error.segment<3>(velocity_block);
   state.T_world_body.translation() += error.segment<3>(position_block);
-  const Eigen::Vector3d last = error.segment<3>(rate_block);
-  if (model == FilterModel::gyro_bias) state.gyro_bias_radps += last;
-  state.angular_rate_body_radps += rate_sign(model) * last;
+  const Eigen::Vector3d rate = error.segment<3>(rate_block);
+  if (model == FilterModel::gyro_bias) state.gyro_bias_radps += rate;
+  state.angular_rate_body_radps += rate_sign(model) * rate;
+  state.accelerometer_bias_mps2 += error.segment<3>(accelerometer_bias_block);
+  state.wind_world_mps += error.segment<2>(wind_block);
+  state.gust_world_mps += error.segment<2>(gust_block);
+  state.pitot_bias_mps += error[pitot_bias_block];
 }
 
 }  // namespace understory

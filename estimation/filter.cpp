@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/air_velocity.hpp"
 #include "estimation/so3.hpp"
 
 namespace understory {
 namespace {
 
-constexpr std::int64_t history_length_ns = 500'000'000;
+/// Long enough for the way between two detection depths, 5 m at the slowest flight.
+constexpr std::int64_t history_length_ns = 1'000'000'000;
 
 State starting_state(const FilterConfig& config) {
   const StartConfig& start = config.start;
@@ -20,10 +22,17 @@ State starting_state(const FilterConfig& config) {
                                  Eigen::AngleAxisd(start.roll_rad, Eigen::Vector3d::UnitX()))
                                     .toRotationMatrix();
   if (start.in_flight) state.velocity_body_mps = start.velocity_body_mps;
-  Vector12d sigma;
+  state.altitude_m = start.position_world_m.z();
+  const ExtraStatesConfig& extra = config.states;
+  const auto prior = [](bool on, double sigma) { return on ? sigma : 0.0; };
+  ErrorVector sigma;
   sigma << start.tilt_sigma_rad, start.tilt_sigma_rad, start.yaw_sigma_rad,
       Eigen::Vector3d::Constant(start.velocity_sigma_mps), start.horizontal_sigma_m, start.horizontal_sigma_m,
-      start.vertical_sigma_m, Eigen::Vector3d::Constant(start.gyro_bias_sigma_radps);
+      start.vertical_sigma_m, Eigen::Vector3d::Constant(start.gyro_bias_sigma_radps),
+      Eigen::Vector3d::Constant(prior(extra.accelerometer_bias, extra.accelerometer_bias_sigma_mps2)),
+      Eigen::Vector2d::Constant(prior(extra.wind, extra.wind_sigma_mps)),
+      Eigen::Vector2d::Constant(prior(extra.gust, extra.gust_sigma_mps)),
+      prior(extra.pitot_bias, extra.pitot_bias_sigma_mps);
   state.covariance = sigma.cwiseAbs2().asDiagonal();
   return state;
 }
@@ -53,12 +62,16 @@ Filter::Filter(const FilterConfig& config)
       state_(starting_state(config)),
       history_(history_length_ns),
       launch_detector_(config.rest.launch_threshold_mps2),
-      barometer_offset_(config.altitude.offset_sigma_m),
-      airspeed_gate_(chi_square_quantile(config.gate_probability, 1), config.gate_patience_s),
-      sideslip_gate_(airspeed_gate_),
-      angle_of_attack_gate_(airspeed_gate_),
-      altitude_gate_(airspeed_gate_),
-      heading_gate_(airspeed_gate_) {
+      barometer_offset_(config.altitude.offset_sigma_m, config.altitude.noise_m),
+      altitude_drift_(config.altitude) {
+  const DistrustConfig& distrust = config.distrust;
+  const auto gate = [&](int degrees) {
+    return Gate(chi_square_quantile(distrust.gate_probability, degrees), distrust.gate_patience_s,
+                distrust.exclude ? Distrust::exclude : Distrust::believe);
+  };
+  gates_.assign(aid_count, gate(1));
+  gates_[static_cast<std::size_t>(Aid::gps)] = gate(3);
+  gates_[static_cast<std::size_t>(Aid::resighting)] = gate(2);
   history_.record(state_);
 }
 
@@ -67,15 +80,18 @@ void Filter::on(const ImuSample& raw) {
   const ImuSample sample = clamped(raw, config_);
   if (!started_) return start(sample);
   if (sample.t_ns <= state_.t_ns) return;
-  const double dt_s = std::min(1e-9 * static_cast<double>(sample.t_ns - state_.t_ns), config_.max_gap_s);
+  const double dt_s =
+      std::min(1e-9 * static_cast<double>(sample.t_ns - state_.t_ns), config_.distrust.longest_gap_s);
   propagate(sample, dt_s);
   take_rates(sample, dt_s);
   if (launched()) {
     in_flight(sample);
     state_.distance_flown_m += state_.velocity_body_mps.norm() * dt_s;
+    altitude_drift_.pass(dt_s);
   } else {
     on_catapult(sample, dt_s);
   }
+  state_.altitude_m = state_.T_world_body.translation().z() + altitude_drift_.value_m();
   previous_ = sample;
   history_.record(state_);
 }
@@ -91,7 +107,7 @@ void Filter::start(const ImuSample& sample) {
   } else if (looks_at_rest(sample, config_.gravity_mps2, config_.rest)) {
     state_.T_world_body.linear() = levelled(sample.specific_force_body_mps2, config_.start.yaw_rad);
   }
-  history_ = History(history_length_ns);
+  history_.clear();
   history_.record(state_);
 }
 
@@ -110,12 +126,36 @@ void Filter::propagate(const ImuSample& sample, double dt_s) {
       0.5 * (previous_.specific_force_body_mps2 + sample.specific_force_body_mps2) +
       dt_s / 12 *
           step.angular_rate_body_radps.cross(sample.specific_force_body_mps2 -
-                                             previous_.specific_force_body_mps2);
+                                             previous_.specific_force_body_mps2) -
+      state_.accelerometer_bias_mps2;
   const StepDerivatives by = advance(state_, step, config_.gravity_mps2, config_.model);
-  const ProcessNoise noise{config_.gyro_noise_radps_rthz, config_.accelerometer_noise_mps2_rthz,
-                           rate_is_state ? config_.rate_walk_rthz : config_.gyro_bias_walk_rthz};
-  state_.covariance = propagated(state_.covariance, by, noise, dt_s, config_.model);
+  const ProcessNoise noise = process_noise(dt_s);
+  understory::propagate(state_.covariance, by, noise, dt_s, config_.model);
+  state_.gust_world_mps *= std::exp(-dt_s / noise.gust_time_s);
   state_.t_ns = sample.t_ns;
+  if (launched() && dt_s > config_.distrust.imu_gap_s) ++imu_gaps_;
+}
+
+ProcessNoise Filter::process_noise(double dt_s) const {
+  const ExtraStatesConfig& extra = config_.states;
+  const bool rate_is_state = config_.model == FilterModel::angular_rate;
+  ProcessNoise noise;
+  noise.gyro_radps_rthz = config_.gyro_noise_radps_rthz;
+  noise.accelerometer_mps2_rthz = config_.accelerometer_noise_mps2_rthz;
+  noise.rate_block_rthz = rate_is_state ? config_.rate_walk_rthz : config_.gyro_bias_walk_rthz;
+  if (extra.accelerometer_bias) noise.accelerometer_bias_walk_rthz = extra.accelerometer_bias_walk_rthz;
+  if (extra.wind) noise.wind_walk_rthz = extra.wind_walk_rthz;
+  if (extra.pitot_bias) noise.pitot_bias_walk_rthz = extra.pitot_bias_walk_rthz;
+  if (extra.gust) noise.gust_sigma_mps = extra.gust_sigma_mps;
+  noise.gust_time_s = extra.gust_length_m / std::max(state_.velocity_body_mps.norm(), 1.0);
+  if (dt_s > config_.distrust.imu_gap_s) {
+    // A mean that is wrong by sigma over dt is a density of sigma * sqrt(dt).
+    const double root = std::sqrt(dt_s);
+    noise.gyro_radps_rthz = std::hypot(noise.gyro_radps_rthz, config_.distrust.gap_rate_sigma_radps * root);
+    noise.accelerometer_mps2_rthz =
+        std::hypot(noise.accelerometer_mps2_rthz, config_.distrust.gap_force_sigma_mps2 * root);
+  }
+  return noise;
 }
 
 void Filter::take_rates(const ImuSample& sample, double dt_s) {
@@ -130,22 +170,22 @@ void Filter::take_rates(const ImuSample& sample, double dt_s) {
   gyro.innovation = sample.angular_rate_body_radps - state_.angular_rate_body_radps;
   gyro.jacobian.middleCols<3>(rate_block).setIdentity();
   gyro.noise *= std::max(config_.gyro_noise_radps_rthz * config_.gyro_noise_radps_rthz / dt_s, 1e-12);
-  correct(state_, gyro, config_.model, PositionGain::none);
+  correct(state_, gyro, config_.model, FrameGain::held);
 }
 
 void Filter::on_catapult(const ImuSample& sample, double dt_s) {
   at_rest_ = looks_at_rest(sample, config_.gravity_mps2, config_.rest);
   if (at_rest_) {
     const FilterModel model = config_.model;
-    correct(state_, zero_velocity(state_, config_.rest), model, PositionGain::full);
+    correct(state_, zero_velocity(state_, config_.rest), model, FrameGain::free);
     correct(state_, known_position(state_, config_.start.position_world_m, config_.rest), model,
-            PositionGain::full);
+            FrameGain::free);
     correct(state_,
             gravity_direction(state_, sample.specific_force_body_mps2, config_.gravity_mps2, config_.rest),
-            model, PositionGain::full);
+            model, FrameGain::free);
     if (model == FilterModel::gyro_bias) {
       const double sigma = std::max(config_.gyro_noise_radps_rthz, 1e-6) / std::sqrt(dt_s);
-      correct(state_, zero_rate(state_, sample.angular_rate_body_radps, sigma), model, PositionGain::full);
+      correct(state_, zero_rate(state_, sample.angular_rate_body_radps, sigma), model, FrameGain::free);
     }
   }
   // A soft launch never reaches the threshold: flying speed is launch enough.
@@ -168,42 +208,66 @@ void Filter::in_flight(const ImuSample& sample) {
   // While the catapult pushes, its rail carries the aircraft: the forces are not the air's.
   const bool on_rail = sample.specific_force_body_mps2.x() > 0.5 * config_.rest.launch_threshold_mps2;
   if (on_rail || state_.velocity_body_mps.x() < config_.airspeed.usable_mps) return;
-  if (config_.sideslip.model != SideslipModel::off) {
-    fuse(sideslip(state_, sample.specific_force_body_mps2.y(), config_.sideslip, config_.model),
-         sideslip_gate_, PositionGain::none, sample.t_ns);
-  }
-  if (config_.angle_of_attack.enabled) {
-    fuse(angle_of_attack(state_, sample.specific_force_body_mps2.z(), config_.angle_of_attack, config_.model),
-         angle_of_attack_gate_, PositionGain::none, sample.t_ns);
-  }
+  if (config_.sideslip.model != SideslipModel::off)
+    fuse(Aid::sideslip,
+         sideslip(state_, sample.specific_force_body_mps2.y(), config_.sideslip, config_.model), sample.t_ns);
+  if (config_.angle_of_attack.enabled)
+    fuse(Aid::angle_of_attack,
+         angle_of_attack(state_, sample.specific_force_body_mps2.z(), config_.angle_of_attack, config_.model),
+         sample.t_ns);
 }
 
 void Filter::on(const PitotSample& sample) {
-  if (!launched() || !std::isfinite(sample.airspeed_mps) || sample.airspeed_mps < config_.airspeed.usable_mps)
-    return;
-  fuse(airspeed(state_, sample, config_.airspeed), airspeed_gate_, PositionGain::none, sample.t_ns);
+  if (!launched() || !std::isfinite(sample.airspeed_mps)) return;
+  // Slow readings are poor, unless the aircraft is not slow at all: then they are a fault to be seen.
+  const bool is_slow = air_velocity(state_).body_mps.x() < 1.5 * config_.airspeed.usable_mps;
+  if (is_slow && sample.airspeed_mps < config_.airspeed.usable_mps) return;
+  if (fuse(Aid::airspeed, airspeed(state_, sample, config_.airspeed), sample.t_ns)) history_.record(state_);
 }
 
 void Filter::on(const BarometerSample& sample) {
   if (!std::isfinite(sample.altitude_m)) return;
-  if (launched()) {
-    fuse(altitude(state_, sample, barometer_offset_.value_m(), config_.altitude), altitude_gate_,
-         PositionGain::vertical, sample.t_ns);
-  } else if (at_rest_) {
-    barometer_offset_.observe(sample.altitude_m - config_.start.position_world_m.z());
+  if (!launched()) {
+    if (at_rest_) barometer_offset_.observe(sample.altitude_m - config_.start.position_world_m.z());
+    return;
   }
+  if (!fuse(Aid::altitude, altitude(state_, sample, barometer_offset_.value_m(), config_.altitude),
+            sample.t_ns))
+    return;
+  altitude_drift_.observe(sample.altitude_m - barometer_offset_.value_m() -
+                          state_.T_world_body.translation().z());
+  state_.altitude_m = state_.T_world_body.translation().z() + altitude_drift_.value_m();
+  history_.record(state_);
 }
 
 void Filter::on(const MagnetometerSample& sample) {
   if (!started_ || !config_.heading.enabled || !sample.field_body_ut.allFinite()) return;
   if (horizontal_field_ut(state_, sample) < config_.heading.least_horizontal_ut) return;
-  fuse(heading(state_, sample, config_.heading), heading_gate_, PositionGain::none, sample.t_ns);
+  if (fuse(Aid::heading, heading(state_, sample, config_.heading), sample.t_ns)) history_.record(state_);
 }
 
-void Filter::fuse(const Measurement<1>& measurement, Gate& gate, PositionGain position, std::int64_t t_ns) {
-  if (!gate.admits(normalized_innovation_squared(state_, measurement), t_ns)) return;
-  correct(state_, measurement, config_.model, config_.smooth_position ? position : PositionGain::full);
-  history_.record(state_);
+void Filter::on(const GpsSample& sample) {
+  if (!launched() || !config_.gps.enabled || !sample.velocity_world_mps.allFinite()) return;
+  if (sample.t_ns < *launch_t_ns_) return;
+  if (fuse(Aid::gps, ground_velocity(state_, history_.at(sample.t_ns), sample, config_.gps), state_.t_ns))
+    history_.record(state_);
+}
+
+void Filter::on(const ResightingSample& sample) {
+  if (!launched() || !config_.resightings || !sample.discrepancy_world_m.allFinite()) return;
+  const State earlier = history_.at(sample.earlier_ns), later = history_.at(sample.t_ns);
+  if (earlier.t_ns != sample.earlier_ns || later.t_ns != sample.t_ns) return;  // before what is remembered
+  if (fuse(Aid::resighting, ground_displacement(state_, earlier, later, sample), state_.t_ns))
+    history_.record(state_);
+}
+
+template <int M>
+bool Filter::fuse(Aid aid, const Measurement<M>& measurement, std::int64_t t_ns) {
+  Gate& gate = gates_[static_cast<std::size_t>(aid)];
+  if (!gate.admits(normalized_innovation_squared(state_, measurement), t_ns)) return false;
+  const bool held = config_.smooth_frame && launched();
+  correct(state_, measurement, config_.model, held ? FrameGain::held : FrameGain::free);
+  return true;
 }
 
 FilterConfig original_filter() {
@@ -216,7 +280,8 @@ FilterConfig original_filter() {
   config.start.vertical_sigma_m = 1.0;
   config.gyro_noise_radps_rthz = 0.5 * degree;
   config.accelerometer_noise_mps2_rthz = 0.2;
-  config.smooth_position = false;
+  config.smooth_frame = false;
+  config.distrust.exclude = false;  // it had no gates to speak of
   config.airspeed.sigma_mps = std::sqrt(15.0);
   config.sideslip.model = SideslipModel::zero;
   config.sideslip.zero_sigma_mps = std::sqrt(5.0);

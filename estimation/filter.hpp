@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "estimation/filter_config.hpp"
 #include "estimation/gate.hpp"
@@ -11,13 +12,18 @@
 
 namespace understory {
 
-/// Error-state Kalman filter with 12 error states (order of State::covariance), driven by the IMU. On the
-/// catapult it levels itself, learns the gyro bias and the barometer's offset and holds its place; the stroke
-/// is integrated from rest; in flight pitot, lateral and normal specific force, barometer and magnetometer
-/// correct it through gates. Samples with a value that is not finite are ignored, values beyond full scale
-/// clamped, IMU samples that are not newer than the last ignored, long gaps integrated as
-/// FilterConfig::max_gap_s. Nothing here throws. The error-state form and the angular_rate variant follow
-/// Bry, Bachrach and Roy 2012 and Sola 2017 (arXiv 1711.02508).
+/// The measurements that correct the filter in flight.
+enum class Aid { airspeed, sideslip, angle_of_attack, altitude, heading, gps, resighting };
+inline constexpr int aid_count = 7;
+
+/// Error-state Kalman filter (order of State::covariance), driven by the IMU. On the catapult it levels
+/// itself, learns the gyro bias and the barometer's offset and holds its place; the stroke is integrated from
+/// rest; in flight pitot, lateral and normal specific force, barometer, magnetometer, satellites and
+/// obstacles seen twice correct it through gates. Samples with a value that is not finite are ignored, values
+/// beyond full scale clamped, IMU samples that are not newer than the last ignored, long gaps integrated as
+/// DistrustConfig::longest_gap_s. Nothing here throws, and nothing allocates once half a second was recorded.
+/// The error-state form and the angular_rate variant follow Bry, Bachrach and Roy 2012 and Sola 2017 (arXiv
+/// 1711.02508).
 class Filter : public StateSource {
  public:
   explicit Filter(const FilterConfig& config);
@@ -26,13 +32,20 @@ class Filter : public StateSource {
   void on(const PitotSample& sample) override;
   void on(const BarometerSample& sample) override;
   void on(const MagnetometerSample& sample) override;
-  void on(const GpsSample&) override {}
+  void on(const GpsSample& sample) override;
+  void on(const ResightingSample& sample) override;
   const State& state() const override { return state_; }
   State state_at(std::int64_t t_ns) const override { return history_.at(t_ns); }
 
   bool launched() const { return launch_t_ns_.has_value(); }
   /// When the launch was detected (the second sample of the stroke); empty before.
   std::optional<std::int64_t> launch_t_ns() const { return launch_t_ns_; }
+  /// Whether an aid is left out because it has disagreed for too long.
+  bool faulty(Aid aid) const { return gates_[static_cast<std::size_t>(aid)].faulty(); }
+  /// Squared normalized innovation of an aid's newest measurement; nan before the first.
+  double innovation_squared(Aid aid) const { return gates_[static_cast<std::size_t>(aid)].newest(); }
+  /// IMU intervals longer than DistrustConfig::imu_gap_s.
+  std::int64_t imu_gaps() const { return imu_gaps_; }
 
  private:
   void start(const ImuSample& sample);
@@ -41,8 +54,10 @@ class Filter : public StateSource {
   void on_catapult(const ImuSample& sample, double dt_s);
   void in_flight(const ImuSample& sample);
   void launch(std::int64_t t_ns);
-  /// Corrects where the gate admits, then records the outcome as the newest moment of the history.
-  void fuse(const Measurement<1>& measurement, Gate& gate, PositionGain position, std::int64_t t_ns);
+  ProcessNoise process_noise(double dt_s) const;
+  /// Corrects where the aid's gate admits.
+  template <int M>
+  bool fuse(Aid aid, const Measurement<M>& measurement, std::int64_t t_ns);
 
   FilterConfig config_;
   State state_;
@@ -51,9 +66,11 @@ class Filter : public StateSource {
   bool started_ = false;
   bool at_rest_ = false;
   std::optional<std::int64_t> launch_t_ns_;
+  std::int64_t imu_gaps_ = 0;
   LaunchDetector launch_detector_;
   BarometerOffset barometer_offset_;
-  Gate airspeed_gate_, sideslip_gate_, angle_of_attack_gate_, altitude_gate_, heading_gate_;
+  AltitudeDrift altitude_drift_;
+  std::vector<Gate> gates_;  ///< one for each Aid
 };
 
 }  // namespace understory

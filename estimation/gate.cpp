@@ -23,17 +23,19 @@ double chi_square_quantile(double probability, int degrees) {
   return 0.5 * (below + above);
 }
 
-Gate::Gate(double threshold, double patience_s)
-    : threshold_(threshold), patience_ns_(static_cast<std::int64_t>(patience_s * 1e9)) {}
+Gate::Gate(double threshold, double patience_s, Distrust distrust)
+    : threshold_(threshold), patience_ns_(static_cast<std::int64_t>(patience_s * 1e9)), distrust_(distrust) {}
 
 bool Gate::admits(double squared, std::int64_t t_ns) {
+  newest_ = squared;
+  const bool agrees = std::isfinite(squared) && squared <= threshold_;
+  if (agrees != agrees_ || last_ns_ < 0) since_ns_ = t_ns;
+  agrees_ = agrees;
+  last_ns_ = t_ns;
+  if (t_ns - since_ns_ > patience_ns_) faulty_ = !agrees;
+  if (agrees && distrust_ == Distrust::believe) faulty_ = false;
   if (!std::isfinite(squared)) return false;
-  if (squared <= threshold_) {
-    first_refusal_ns_.reset();
-    return true;
-  }
-  if (!first_refusal_ns_) first_refusal_ns_ = t_ns;
-  return t_ns - *first_refusal_ns_ > patience_ns_;
+  return distrust_ == Distrust::exclude ? agrees && !faulty_ : agrees || faulty_;
 }
 
 }  // namespace understory

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <limits>
 
 namespace understory {
 
@@ -9,19 +9,33 @@ namespace understory {
 /// `probability` (in (0, 1)).
 double chi_square_quantile(double probability, int degrees);
 
-/// Keeps outliers of one sensor out. A sensor that disagrees for longer than `patience` is no outlier: then
-/// it is let in until it agrees again, so that a wrong estimate can be put right (and a biased sensor is
-/// believed).
+/// What is done with a sensor that has disagreed for longer than the patience.
+enum class Distrust {
+  believe,  ///< no outlier then: it is let in until it agrees again, so that a wrong estimate can be put
+            ///< right
+  exclude,  ///< faulty: it stays out until it has agreed for as long; the covariance grows meanwhile
+};
+
+/// Keeps outliers of one sensor out, and tells when it has become faulty.
 class Gate {
  public:
-  Gate(double threshold, double patience_s);
+  Gate(double threshold, double patience_s, Distrust distrust);
   /// Whether to use a measurement at t_ns whose squared normalized innovation is `squared`.
   bool admits(double squared, std::int64_t t_ns);
+  /// Whether the sensor has disagreed for longer than the patience and has not agreed as long since.
+  bool faulty() const { return faulty_; }
+  /// The newest squared normalized innovation; nan before the first.
+  double newest() const { return newest_; }
 
  private:
   double threshold_;
   std::int64_t patience_ns_;
-  std::optional<std::int64_t> first_refusal_ns_;
+  Distrust distrust_;
+  std::int64_t last_ns_ = -1;
+  std::int64_t since_ns_ = 0;  ///< agreed, or disagreed, since then without a break
+  bool agrees_ = true;
+  bool faulty_ = false;
+  double newest_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace understory

@@ -15,28 +15,38 @@ struct InertialStep {
   double dt_s = 0;
 };
 
-/// White noise of the inputs, as densities: over one interval each adds density^2 * dt to its integral's
-/// variance.
+/// White noise of the inputs and of what walks, as densities: over one interval each adds density^2 * dt to
+/// its integral's variance.
 struct ProcessNoise {
   double gyro_radps_rthz = 0;          ///< rad/s/sqrt(Hz); unused where the angular rate is a state
   double accelerometer_mps2_rthz = 0;  ///< m/s^2/sqrt(Hz)
   double rate_block_rthz = 0;          ///< rad/s^2/sqrt(Hz): walk of the gyro bias, or of the angular rate
+  double accelerometer_bias_walk_rthz = 0;  ///< m/s^3/sqrt(Hz)
+  double wind_walk_rthz = 0;                ///< m/s^2/sqrt(Hz)
+  double pitot_bias_walk_rthz = 0;          ///< m/s^2/sqrt(Hz)
+  double gust_sigma_mps = 0;                ///< that a gust tends to, per axis
+  double gust_time_s = 1;                   ///< its time constant
 };
 
-/// Derivatives of one step, twelve rows each: by the state, by the rotation vector of the step, by the
+/// Rows of attitude, velocity and position, which the step moves, and the states that move them: those, gyro
+/// and accelerometer biases.
+inline constexpr int motion_rows = 9, moving_columns = 15;
+
+/// Derivatives of the motion after one step: by the state before, by the rotation vector of the step, by the
 /// velocity increment of the step.
 struct StepDerivatives {
-  Matrix12d state;
-  Eigen::Matrix<double, 12, 3> rotation;
-  Eigen::Matrix<double, 12, 3> velocity_increment;
+  Eigen::Matrix<double, motion_rows, moving_columns> state;
+  Eigen::Matrix<double, motion_rows, 3> rotation;
+  Eigen::Matrix<double, motion_rows, 3> velocity_increment;
 };
 
-/// Strapdown step with the attitude at mid-interval for the specific force. Moves pose and velocity of
-/// `state` (nothing else) and returns the derivatives at its old value.
+/// Strapdown step with the attitude at mid-interval for the specific force. Moves pose, velocity and dead
+/// reckoning of `state` (nothing else) and returns the derivatives at its old value.
 StepDerivatives advance(State& state, const InertialStep& step, double gravity_mps2, FilterModel model);
 
-/// The covariance after the step.
-Matrix12d propagated(const Matrix12d& covariance, const StepDerivatives& by, const ProcessNoise& noise,
-                     double dt_s, FilterModel model);
+/// Turns `covariance` into that after the step. Only the rows that the step moves are multiplied: the others
+/// keep their values, but for gusts, which fade.
+void propagate(ErrorCovariance& covariance, const StepDerivatives& by, const ProcessNoise& noise, double dt_s,
+               FilterModel model);
 
 }  // namespace understory

@@ -37,4 +37,13 @@ struct GpsSample {
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();
 };
 
+/// An obstacle seen at one depth and, later and nearer, at a second: by how much its place in the odometry
+/// frame has moved meanwhile, level. The aircraft's own estimate drifted by the opposite.
+struct ResightingSample {
+  std::int64_t t_ns = 0;                                          ///< of the second sighting
+  std::int64_t earlier_ns = 0;                                    ///< of the first
+  Eigen::Vector2d discrepancy_world_m = Eigen::Vector2d::Zero();  ///< second place less first
+  Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Identity();    ///< of what vision got wrong in it
+};
+
 }  // namespace understory

@@ -17,9 +17,10 @@ class StateSource {
   virtual void on(const BarometerSample& sample) = 0;
   virtual void on(const MagnetometerSample& sample) = 0;
   virtual void on(const GpsSample& sample) = 0;
+  virtual void on(const ResightingSample& sample) = 0;
   /// Newest state (its t_ns is that of the newest IMU sample).
   virtual const State& state() const = 0;
-  /// State at an earlier moment, interpolated from the recorded history (0.5 s are kept); the nearest end of
+  /// State at an earlier moment, interpolated from the recorded history (1 s is kept); the nearest end of
   /// the history where t_ns lies outside it.
   virtual State state_at(std::int64_t t_ns) const = 0;
 };

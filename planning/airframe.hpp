@@ -17,6 +17,9 @@ struct Airframe {
   double span_m = 0.8636;
   double chord_m = 0.2097;
   double wing_area_m2 = 0.1811;
+  double wing_lift_factor =
+      1.0;  ///< on the flat plate's lift and drag: the identified wing is the plate itself
+  double wing_drag_factor = 1.0;
 
   double elevon_area_m2 = 0.012508;  ///< each
   double elevon_hinge_x_m = -0.12495;
@@ -48,6 +51,8 @@ void visit_fields(Visitor& visit, Airframe& airframe) {
   visit("span_m", airframe.span_m, 0.1, 5.0);
   visit("chord_m", airframe.chord_m, 0.02, 2.0);
   visit("wing_area_m2", airframe.wing_area_m2, 0.01, 5.0);
+  visit("wing_lift_factor", airframe.wing_lift_factor, 0.1, 10.0);
+  visit("wing_drag_factor", airframe.wing_drag_factor, 0.0, 10.0);
   visit("elevon_area_m2", airframe.elevon_area_m2, 1e-4, 1.0);
   visit("elevon_hinge_x_m", airframe.elevon_hinge_x_m, -2.0, 2.0);
   visit("elevon_y_m", airframe.elevon_y_m, 0.0, 5.0);

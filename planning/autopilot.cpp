@@ -20,7 +20,8 @@ Autopilot::Autopilot(const AutopilotConfig& config, const Airframe& airframe, co
       state_source_(state_source),
       model_(airframe, config.flight_model),
       planner_(config.planner, model_, mission, seed),
-      map_(config.map) {}
+      map_(config.map),
+      resightings_(config.resightings) {}
 
 void Autopilot::on(const ImuSample& sample) {
   state_source_.on(sample);
@@ -37,6 +38,10 @@ void Autopilot::on(const StereoFrame& frame) {
   const State seen = state_source_.state_at(frame.t_ns);  // the image's moment, not now
   hits_ = detector_.detect(frame);
   detections_ += static_cast<std::int64_t>(hits_.size());
+  resightings_.insert(hits_, seen.T_world_body * rig_.T_body_camera, frame.t_ns);
+  for (const Resighting& again : resightings_.completed())
+    state_source_.on(
+        ResightingSample{again.t_ns, again.earlier_ns, again.discrepancy_world_m, again.covariance_m2});
   map_.insert(hits_, seen.T_world_body * rig_.T_body_camera, frame.t_ns, seen.distance_flown_m);
   map_.forget_passed(state_source_.state().T_world_body, frame.t_ns);
 }
@@ -52,7 +57,12 @@ void Autopilot::replan(std::int64_t t_ns) {
       flight_state(state.T_world_body, state.velocity_body_mps, state.angular_rate_body_radps);
   for (std::int64_t at_ns = state.t_ns; at_ns < effective_ns; at_ns += nanoseconds(predict_step_s))
     start = model_.advance(start, command_at(plan_, at_ns), predict_step_s);
-  next_plan_ = planner_.plan(start, effective_ns, map_.trusted_points(), state.distance_flown_m);
+  // The planner thinks in heights over the ground, the map in the odometry's: they drift apart slowly.
+  const double ground_m = state.T_world_body.translation().z() - state.altitude_m;
+  start.position_world.z() -= ground_m;
+  std::vector<ObstaclePoint> points = map_.trusted_points();
+  for (ObstaclePoint& point : points) point.position_world.z() -= ground_m;
+  next_plan_ = planner_.plan(start, effective_ns, points, state.distance_flown_m);
   next_plan_due_ns_ = t_ns + nanoseconds(config_.plan_latency_s);
 }
 

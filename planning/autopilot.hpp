@@ -7,6 +7,7 @@
 #include "estimation/state_source.hpp"
 #include "perception/local_map.hpp"
 #include "perception/obstacle_detector.hpp"
+#include "perception/resightings.hpp"
 #include "perception/stereo_rig.hpp"
 #include "planning/avoidance_planner.hpp"
 #include "planning/controls.hpp"
@@ -20,6 +21,7 @@ struct AutopilotConfig {
   double throttle_delay_s = 0.28;  ///< from then to throttle and control; the rail takes 0.25 s of it
   double plan_latency_s = 0.006;   ///< what computing a plan costs in simulated time, before it takes effect
   LocalMapConfig map;
+  ResightingsConfig resightings;
   FlightModelConfig flight_model;
   PlannerConfig planner;
   PathFollowerConfig follower;
@@ -31,6 +33,7 @@ void visit_fields(Visitor& visit, AutopilotConfig& config) {
   visit("throttle_delay_s", config.throttle_delay_s, 0.0, 2.0);
   visit("plan_latency_s", config.plan_latency_s, 0.0, 0.2);
   visit("map", config.map);
+  visit("resightings", config.resightings);
   visit("flight_model", config.flight_model);
   visit("planner", config.planner);
   visit("follower", config.follower);
@@ -72,6 +75,7 @@ class Autopilot {
   FlightModel model_;
   AvoidancePlanner planner_;
   LocalMap map_;
+  Resightings resightings_;
   std::vector<StereoHit> hits_;
   std::int64_t detections_ = 0;
   Plan plan_;       ///< in force

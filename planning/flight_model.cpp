@@ -17,18 +17,21 @@ double dynamic_pressure_pa(const Airframe& airframe, double speed_mps) {
 FlightModel::FlightModel(const Airframe& airframe, const FlightModelConfig& config)
     : airframe_(airframe),
       config_(config),
+      lifting_area_m2_(airframe.wing_area_m2 * airframe.wing_lift_factor),
       elevon_arm_m_(-airframe.elevon_hinge_x_m + 0.5 * airframe.elevon_chord_m) {
   // Level flight at cruise speed: lift carries the weight, thrust carries what drag the plate and the body
   // make.
   const double q = dynamic_pressure_pa(airframe_, config_.cruise_speed_mps);
   const double weight_n = airframe_.mass_kg * airframe_.gravity_mps2;
-  const double sine = std::min(0.7, weight_n / (2 * q * airframe_.wing_area_m2));
-  level_thrust_n_ = std::min(airframe_.max_thrust_n, weight_n * sine + q * airframe_.body_drag_area_m2);
+  const double sine = std::min(0.7, weight_n / (2 * q * lifting_area_m2_));
+  const double drag_to_lift = airframe_.wing_drag_factor / airframe_.wing_lift_factor;
+  level_thrust_n_ =
+      std::min(airframe_.max_thrust_n, weight_n * sine * drag_to_lift + q * airframe_.body_drag_area_m2);
 }
 
 double FlightModel::path_pitch_rate_radps(const FlightState& state) const {
   const double q = dynamic_pressure_pa(airframe_, state.speed_mps);
-  const double normal_n = 2 * std::sin(state.angle_of_attack_rad) * q * airframe_.wing_area_m2;
+  const double normal_n = 2 * std::sin(state.angle_of_attack_rad) * q * lifting_area_m2_;
   const double weight_n = airframe_.mass_kg * airframe_.gravity_mps2;
   const double carried_n = weight_n * std::cos(state.climb_angle_rad) * std::cos(state.bank_rad);
   return (normal_n * std::cos(state.angle_of_attack_rad) - carried_n) / (airframe_.mass_kg * state.speed_mps);
@@ -47,7 +50,7 @@ double FlightModel::commanded_angle_of_attack_rad(const FlightState& state, doub
   // Lift is N cos(a) + X sin(a) with N = 2 sin(a) q S and X = thrust less body drag; cos(a) taken as now.
   const double forward_n = commanded_thrust_n(state) - q * airframe_.body_drag_area_m2;
   const double sine =
-      upward_n / (share * (2 * q * airframe_.wing_area_m2 * std::cos(state.angle_of_attack_rad) + forward_n));
+      upward_n / (share * (2 * q * lifting_area_m2_ * std::cos(state.angle_of_attack_rad) + forward_n));
   // Near the least speed pulling harder only stalls what is left: the cap closes towards level flight's own
   // angle.
   const double reserve = std::clamp((speed - config_.least_speed_mps + 0.5) / 1.0, 0.6, 1.0);
@@ -111,13 +114,16 @@ FlightState FlightModel::advance(const FlightState& state, const FlightCommand& 
   const double pitch_rate = path_pitch_rate_radps(state);
   const double body_pitch_rate = pitch_rate + (wanted_alpha - alpha) * alpha_decay / dt_s;
   const double balance_n = airframe_.rate_damping_nmspr.y() * body_pitch_rate / elevon_arm_m_;
-  const double normal_n = 2 * sin_alpha * q * airframe_.wing_area_m2 - balance_n;
+  const double normal_n = 2 * sin_alpha * q * lifting_area_m2_ - balance_n;
   const double side_n = side_force_n(state);
   // Body drag was identified along body x, as the thrust is: both lean with the nose.
   const double forward_n =
       commanded_thrust_n(state) - q * airframe_.body_drag_area_m2 * cos_alpha * cos_alpha;
   const double lift_n = normal_n * cos_alpha + forward_n * sin_alpha;
-  const double drag_n = normal_n * sin_alpha - forward_n * cos_alpha - side_n * std::sin(state.sideslip_rad);
+  // What makes the wing's drag other than the plate's that the normal force stands for: nothing by default.
+  const double more_drag_m2 = airframe_.wing_area_m2 * airframe_.wing_drag_factor - lifting_area_m2_;
+  const double drag_n = normal_n * sin_alpha - forward_n * cos_alpha - side_n * std::sin(state.sideslip_rad) +
+                        2 * sin_alpha * sin_alpha * q * more_drag_m2;
 
   // Yaw: winglets turn the nose into the wind; the elevons' lift, perpendicular to the flow, leans forward by
   // the angle of attack and so yaws as it rolls; gyroscopic coupling of roll and pitch.

@@ -90,6 +90,7 @@ class FlightModel {
  private:
   Airframe airframe_;
   FlightModelConfig config_;
+  double lifting_area_m2_;  ///< the wing's, times its lift factor
   double elevon_arm_m_;
   double level_thrust_n_;
 };

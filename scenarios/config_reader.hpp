@@ -32,11 +32,14 @@ class ConfigReader {
     } else if constexpr (std::is_same_v<T, std::string>) {
       if (node->kind != ConfigNode::Kind::scalar) refuse(*node, name, "a word");
       field = node->text;
+    } else if constexpr (is_vector<T>::value) {  // of structs; of numbers, which have bounds, below
+      if (node->kind != ConfigNode::Kind::list) refuse(*node, name, "a list of groups [{...}, ...]");
+      field.assign(node->children.size(), {});  // a list is given whole: no entry outlives an earlier one
+      for (std::size_t i = 0; i < field.size(); ++i) {
+        read_group(node->children[i], fmt::format("{}[{}]", name, i), field[i]);
+      }
     } else {
-      if (node->kind != ConfigNode::Kind::map) refuse(*node, name, "a group of keys");
-      ConfigReader nested(*node, full(name));
-      visit_fields(nested, field);
-      nested.finish();
+      read_group(*node, name, field);
     }
   }
 
@@ -90,6 +93,19 @@ class ConfigReader {
   }
 
  private:
+  template <typename T>
+  struct is_vector : std::false_type {};
+  template <typename T>
+  struct is_vector<std::vector<T>> : std::true_type {};
+
+  template <typename T>
+  void read_group(const ConfigNode& node, std::string_view name, T& field) {
+    if (node.kind != ConfigNode::Kind::map) refuse(node, name, "a group of keys");
+    ConfigReader nested(node, full(name));
+    visit_fields(nested, field);
+    nested.finish();
+  }
+
   const ConfigNode* take(std::string_view name) {
     known_.emplace_back(name);
     for (const ConfigNode& child : map_.children) {

@@ -38,7 +38,10 @@ ConfigNode convert(const YAML::Node& yaml, const std::string& name, const std::s
     node.quoted = yaml.Tag() == "!";
   } else if (yaml.IsSequence()) {
     node.kind = ConfigNode::Kind::list;
-    for (const YAML::Node& child : yaml) node.children.push_back(convert(child, name, path, depth + 1));
+    for (const YAML::Node& child : yaml) {
+      const std::string full = fmt::format("{}[{}]", path, node.children.size());
+      node.children.push_back(convert(child, name, full, depth + 1));
+    }
   } else if (yaml.IsMap()) {
     node.kind = ConfigNode::Kind::map;
     std::set<std::string> seen;
@@ -135,14 +138,28 @@ ConfigNode parse_assignment(const std::string& assignment) {
   }
 }
 
+namespace {
+
+/// The child that a word of a path names: "launch", or "faults[2]" for an entry of a list. None: null.
+const ConfigNode* child_of(const ConfigNode& node, std::string_view word) {
+  const std::size_t bracket = word.find('[');
+  const auto found = std::find_if(node.children.begin(), node.children.end(), [&](const ConfigNode& child) {
+    return child.key == word.substr(0, bracket);
+  });
+  if (found == node.children.end()) return nullptr;
+  if (bracket == std::string_view::npos) return &*found;
+  const std::size_t entry = std::stoul(std::string(word.substr(bracket + 1)));
+  return entry < found->children.size() ? &found->children[entry] : nullptr;
+}
+
+}  // namespace
+
 std::string origin_of(const std::vector<ConfigNode>& sources, std::string_view path) {
   for (auto source = sources.rbegin(); source != sources.rend(); ++source) {
     const ConfigNode* node = &*source;
     for (std::string_view rest = path; node != nullptr;) {
       const std::string_view key = rest.substr(0, rest.find('.'));
-      const auto found = std::find_if(node->children.begin(), node->children.end(),
-                                      [&](const ConfigNode& child) { return child.key == key; });
-      node = found == node->children.end() ? nullptr : &*found;
+      node = child_of(*node, key);
       if (node != nullptr && key.size() == rest.size()) return node->origin;
       rest.remove_prefix(std::min(rest.size(), key.size() + 1));
     }

@@ -21,6 +21,9 @@ class ConfigWriter {
       line(name, field ? "true" : "false");
     } else if constexpr (std::is_same_v<T, std::string>) {
       line(name, quoted(field));
+    } else if constexpr (requires { field.emplace_back(); }) {  // a list of structs
+      line(name, field.empty() ? "[]" : "");
+      for (auto& entry : field) write_entry(entry);
     } else {
       line(name, "");
       indent_ += 2;
@@ -51,6 +54,15 @@ class ConfigWriter {
   const std::string& text() const { return text_; }
 
  private:
+  template <typename T>
+  void write_entry(T& entry) {
+    const std::size_t start = text_.size();
+    indent_ += 4;
+    visit_fields(*this, entry);
+    indent_ -= 4;
+    text_[start + static_cast<std::size_t>(indent_) + 2] = '-';  // in front of its first key
+  }
+
   void line(std::string_view name, std::string_view value) {
     text_ += fmt::format("{:{}}{}:{}{}\n", "", indent_, name, value.empty() ? "" : " ", value);
   }

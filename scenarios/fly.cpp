@@ -16,6 +16,7 @@
 #include "scenarios/file_output.hpp"
 #include "scenarios/flight_film.hpp"
 #include "scenarios/named_seed.hpp"
+#include "scenarios/onboard_sensors.hpp"
 #include "scenarios/oracles/no_detector.hpp"
 #include "scenarios/oracles/true_depth.hpp"
 #include "scenarios/oracles/true_state.hpp"
@@ -67,7 +68,7 @@ std::unique_ptr<StateSource> state_source_of(const Scenario& scenario, const Tru
 World world_of(const Scenario& scenario, const std::filesystem::path& models_folder,
                const std::vector<Obstacle>& obstacles) {
   try {
-    return build_world(models_folder, scenario.airframe, obstacles, scenario.world_config());
+    return build_world(models_folder, scenario.flown_airframe(), obstacles, scenario.world_config());
   } catch (const std::runtime_error& error) {
     throw MachineError(error.what());  // the models are the project's, not the caller's
   }
@@ -85,24 +86,13 @@ std::unique_ptr<StereoCameras> cameras_of(const Scenario& scenario, const World&
 
 Aircraft aircraft_of(const Scenario& scenario, const World& world) {
   try {
-    return Aircraft(*world.model, scenario.airframe, scenario.launch, scenario.wind_world_mps);
+    const Wind wind(scenario.wind_world_mps, scenario.wind, scenario.stand(),
+                    seed_for(scenario.seed, "wind"));
+    return Aircraft(*world.model, scenario.flown_airframe(), scenario.launch, wind, scenario.actuators);
   } catch (const std::runtime_error& error) {
     throw ScenarioError(error.what());
   }
 }
-
-/// The aircraft's sensors, each with a generator of its own.
-struct Sensors {
-  Sensors(const Scenario& scenario, std::uint64_t seed)
-      : imu(scenario.sensors.sensors.imu, seed_for(seed, "imu")),
-        pitot(scenario.sensors.sensors.pitot, scenario.airframe.air_density_kgpm3, seed_for(seed, "pitot")),
-        barometer(scenario.sensors.sensors.barometer, seed_for(seed, "barometer")),
-        magnetometer(scenario.sensors.sensors.magnetometer, seed_for(seed, "magnetometer")) {}
-  Imu imu;
-  Pitot pitot;
-  Barometer barometer;
-  Magnetometer magnetometer;
-};
 
 void take_counts(const Autopilot& autopilot, const Stopwatch& stopwatch, FlightResult& result) {
   const PlannerCounts& counts = autopilot.counts();
@@ -120,16 +110,20 @@ void take_counts(const Autopilot& autopilot, const Stopwatch& stopwatch, FlightR
   result.wall_s = stopwatch.elapsed_s();
 }
 
+void prepare_run_folder(const Scenario& scenario, const std::filesystem::path& folder) {
+  prepare_output_folder(folder);
+  for (const char* file : {"result.json", "trajectory.csv", "map.ply", "flight.mp4", "still.png"}) {
+    std::filesystem::remove(folder / file);  // of an earlier run: must not pass for this one's
+  }
+  write_whole_file(folder / "scenario.yaml", scenario_to_text(scenario));
+}
+
 }  // namespace
 
 FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   Stopwatch stopwatch;
   const StereoRig rig = rig_of(scenario, options.models_folder);
-  prepare_output_folder(options.output_folder);
-  for (const char* file : {"result.json", "trajectory.csv", "map.ply", "flight.mp4", "still.png"}) {
-    std::filesystem::remove(options.output_folder / file);  // of an earlier run: must not pass for this one's
-  }
-  write_whole_file(options.output_folder / "scenario.yaml", scenario_to_text(scenario));
+  if (!options.output_folder.empty()) prepare_run_folder(scenario, options.output_folder);
 
   const std::vector<Obstacle> obstacles = course_obstacles(scenario);
   const World world = world_of(scenario, options.models_folder, obstacles);
@@ -138,13 +132,15 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   const bool looks = scenario.perception.detector == DetectorKind::pushbroom ||
                      scenario.perception.detector == DetectorKind::block_matching;
   const auto cameras = looks || options.video ? cameras_of(scenario, world, rig) : nullptr;
-  Sensors sensors(scenario, scenario.sensor_seed());
+  OnboardSensors sensors(scenario);
 
   TruthHistory history;
   const auto detector = detector_of(scenario, rig, obstacles, history);
   const auto state_source = state_source_of(scenario, history);
-  Autopilot autopilot(scenario.autopilot.autopilot, scenario.airframe, rig, scenario.mission(), *detector,
-                      *state_source, seed_for(scenario.seed, "planner"));
+  AutopilotConfig autopilot_config = scenario.autopilot.autopilot;
+  autopilot_config.resightings.depths_m = scenario.perception.pushbroom.depths_m;
+  Autopilot autopilot(autopilot_config, scenario.airframe, rig, scenario.mission(), *detector, *state_source,
+                      seed_for(scenario.seed, "planner"));
 
   const Due due(scenario);
   const auto latency_ns = static_cast<std::int64_t>(scenario.cameras.latency_s * 1e9);
@@ -160,16 +156,13 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   for (std::int64_t step = 0; !ending; ++step) {
     const Truth& truth = aircraft.truth();
     history.observe(truth);
-    stopwatch.time("estimate", [&] {
-      if (due.imu(step)) autopilot.on(sensors.imu.measure(truth));
-      if (due.pitot(step)) autopilot.on(sensors.pitot.measure(truth));
-      if (due.barometer(step)) autopilot.on(sensors.barometer.measure(truth));
-      if (due.magnetometer(step)) autopilot.on(sensors.magnetometer.measure(truth));
-    });
+    if (options.on_truth) options.on_truth(truth);
+    stopwatch.time("estimate", [&] { sensors.deliver(due, step, truth, autopilot); });
     if (due.camera(step)) {
       pending.push_back(
           cameras ? stopwatch.time("render", [&] { return cameras->capture(aircraft.data(), truth.t_ns); })
                   : StereoFrame{truth.t_ns, {}, {}});
+      if (!sensors.faults().pass(pending.back())) pending.pop_back();
     }
     while (!pending.empty() && truth.t_ns >= pending.front().t_ns + latency_ns) {
       const StereoFrame frame = std::move(pending.front());
@@ -199,7 +192,7 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   record.finish(*ending);
   take_counts(autopilot, stopwatch, record.result());
   if (film) film->finish();
-  record.write(options.output_folder);
+  if (!options.output_folder.empty()) record.write(options.output_folder);
   return record.result();
 }
 

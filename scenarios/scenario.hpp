@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "estimation/filter_config.hpp"
 #include "perception/block_matching.hpp"
@@ -15,9 +16,14 @@
 #include "planning/mission.hpp"
 #include "scenarios/forest.hpp"
 #include "scenarios/goalposts.hpp"
+#include "sim/actuators.hpp"
 #include "sim/aircraft.hpp"
+#include "sim/faults.hpp"
+#include "sim/model_mismatch.hpp"
+#include "sim/sensor_grades.hpp"
 #include "sim/sensors.hpp"
 #include "sim/stereo_cameras.hpp"
+#include "sim/wind.hpp"
 #include "sim/world.hpp"
 
 /// Everything a flight depends on. Each part is its module's own config struct, so that a field is named,
@@ -43,6 +49,11 @@ inline constexpr std::array<std::pair<std::string_view, RulePreset>, 2> rule_nam
     {{"robust", RulePreset::robust}, {"paper", RulePreset::paper}}};
 inline constexpr std::array<std::pair<std::string_view, FilterPreset>, 2> filter_preset_names{
     {{"tuned", FilterPreset::tuned}, {"original", FilterPreset::original}}};
+inline constexpr std::array<std::pair<std::string_view, SensorGrade>, 4> sensor_grade_names{
+    {{"ideal", SensorGrade::ideal},
+     {"plain", SensorGrade::plain},
+     {"consumer", SensorGrade::consumer},
+     {"rough", SensorGrade::rough}}};
 
 /// The word a scenario uses for a value.
 inline std::string_view word_for(DetectorKind kind) {
@@ -87,6 +98,7 @@ struct CameraSection {
 
 struct SensorSection {
   std::uint64_t seed = 0;  ///< of every sensor's noise, the cameras' too; 0: the scenario's seed
+  SensorGrade grade = SensorGrade::plain;  ///< what the keys beside it start from (docs/sensors.md)
   SensorsConfig sensors;
 };
 
@@ -113,16 +125,20 @@ struct Scenario {
   std::uint64_t seed = 1000;  ///< of the course, and of everything else unless said otherwise
   std::string rig = "long";   ///< a name in models/rigs, or a path to a rig file
   Course course = Course::forest;
-  double time_limit_s = 30;  ///< of simulated time
-  Eigen::Vector3d wind_world_mps = Eigen::Vector3d::Zero();
+  double time_limit_s = 30;                                  ///< of simulated time
+  Eigen::Vector3d wind_world_mps = Eigen::Vector3d::Zero();  ///< mean, at wind.reference_height_m
+  WindConfig wind;                                           ///< shear, turbulence, a gust, shelter
   BandConfig band;
   ForestConfig forest;
   GoalpostsConfig goalposts;
   LaunchConfig launch;
-  Airframe airframe;
+  Airframe airframe;        ///< what the stack believes in
+  MismatchConfig mismatch;  ///< how far the aircraft that flies is from it
+  ActuatorsConfig actuators;
   WorldSection world;
   CameraSection cameras;
   SensorSection sensors;
+  std::vector<FaultConfig> faults;  ///< of sensors and cameras, by schedule
   PerceptionSection perception;
   EstimationSection estimation;
   AutopilotSection autopilot;
@@ -135,6 +151,13 @@ struct Scenario {
             band.least_altitude_m,
             band.greatest_altitude_m,
             band.cruise_altitude_m};
+  }
+  /// The airframe of the simulator, mismatch included. The stack is never shown it.
+  Airframe flown_airframe() const { return mismatched(airframe, mismatch); }
+  /// Where the trees stand that wind.shelter_factor is about.
+  ForestStand stand() const {
+    if (course != Course::forest) return {};
+    return {forest.clear_m, goal_x_m(), forest.half_width_m, forest.trunk_height_m};
   }
   /// The scene's settings with the course's switches in them.
   WorldConfig world_config() const {
@@ -170,6 +193,7 @@ void visit_fields(Visitor& visit, CameraSection& section) {
 template <typename Visitor>
 void visit_fields(Visitor& visit, SensorSection& section) {
   visit("seed", section.seed, std::uint64_t{0}, std::uint64_t{1} << 32);
+  visit("grade", section.grade, sensor_grade_names);
   visit_fields(visit, section.sensors);
 }
 
@@ -203,14 +227,18 @@ void visit_fields(Visitor& visit, Scenario& scenario) {
   visit("course", scenario.course, course_names);
   visit("time_limit_s", scenario.time_limit_s, 0.1, 600.0);
   visit("wind_world_mps", scenario.wind_world_mps, -20.0, 20.0);
+  visit("wind", scenario.wind);
   visit("band", scenario.band);
   visit("forest", scenario.forest);
   visit("goalposts", scenario.goalposts);
   visit("launch", scenario.launch);
   visit("airframe", scenario.airframe);
+  visit("mismatch", scenario.mismatch);
+  visit("actuators", scenario.actuators);
   visit("world", scenario.world);
   visit("cameras", scenario.cameras);
   visit("sensors", scenario.sensors);
+  visit("faults", scenario.faults);
   visit("perception", scenario.perception);
   visit("estimation", scenario.estimation);
   visit("autopilot", scenario.autopilot);

@@ -39,6 +39,9 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
          "band.least_altitude_m: expected less than band.greatest_altitude_m");
   expect(scenario.goalposts.pass_least_m <= scenario.goalposts.pass_greatest_m,
          "goalposts.pass_least_m: expected at most goalposts.pass_greatest_m");
+  expect(scenario.actuators.pitch_speed_mps == 0 ||
+             scenario.actuators.pitch_speed_mps > scenario.actuators.thrust_speed_mps,
+         "actuators.pitch_speed_mps: expected 0 or more than actuators.thrust_speed_mps");
   expect(divides(scenario.autopilot.replan_rate_hz),
          "autopilot.replan_rate_hz: expected a rate that divides 1200");
   expect(divides(scenario.cameras.rate_hz), "cameras.rate_hz: expected a rate that divides 1200");
@@ -50,6 +53,13 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
          "sensors.barometer_rate_hz: expected a rate that divides 1200");
   expect(divides(scenario.sensors.sensors.magnetometer_rate_hz),
          "sensors.magnetometer_rate_hz: expected a rate that divides 1200");
+  expect(divides(scenario.sensors.sensors.gps_rate_hz),
+         "sensors.gps_rate_hz: expected a rate that divides 1200");
+  for (std::size_t i = 0; i < scenario.faults.size(); ++i) {
+    const FaultConfig& fault = scenario.faults[i];
+    expect(can_have(fault.sensor, fault.kind),
+           fmt::format("faults[{}].kind: expected, for this sensor, {}", i, fault_kinds_of(fault.sensor)));
+  }
 }
 
 /// Where the catapult holds the aircraft: known to whoever sets it up, so the filter may start from it.
@@ -73,6 +83,7 @@ Scenario compose(const Sources& sources, const std::string& name) {
   Scenario first;
   read_all(sources, first);
   Scenario scenario;
+  scenario.sensors.sensors = sensors_of_grade(first.sensors.grade);
   if (first.perception.rule == RulePreset::paper) scenario.perception.pushbroom = paper_rule();
   if (first.estimation.preset == FilterPreset::original) scenario.estimation.filter = original_filter();
   scenario.estimation.filter.start.position_world_m = rail_start_world(first.launch);

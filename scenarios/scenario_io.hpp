@@ -10,7 +10,7 @@
 
 namespace understory {
 
-/// Reads a scenario: defaults, then the rule preset, then the file's keys, then each "key=value" of
+/// Reads a scenario: defaults, then the presets, then the file's keys, then each "key=value" of
 /// `settings` in turn. So a preset never overwrites a key somebody wrote. Throws ScenarioError in one line
 /// "file:line: key: expected
 /// ...": missing file, broken YAML, unknown or doubled key, wrong type, out of range, or values that

@@ -37,12 +37,13 @@ void add(Wrench& sum, const Eigen::Vector3d& position, const Eigen::Vector3d& fo
   sum.moment_body_nm += position.cross(force);
 }
 
-void add_elevon(Wrench& sum, const Airframe& airframe, const RecordsFlow& flow, double y, double deflection) {
+void add_elevon(Wrench& sum, const Airframe& airframe, const RecordsFlow& flow, double y, double deflection,
+                double wash_mps) {
   const double arm =
       0.5 * airframe.elevon_chord_m;  // mid-chord of the deflected surface; trailing edge up is -z
   const Eigen::Vector3d position(airframe.elevon_hinge_x_m - arm * std::cos(deflection), y,
                                  -arm * std::sin(deflection));
-  const Eigen::Vector3d local = flow.at(position);
+  const Eigen::Vector3d local = flow.at(position) + Eigen::Vector3d(wash_mps, 0, 0);
   const PlateForce plate =
       plate_force(local.x(), local.z(), deflection, airframe.elevon_area_m2, airframe.air_density_kgpm3,
                   airframe.elevon_lift_factor, airframe.elevon_drag_factor);
@@ -63,17 +64,19 @@ Wrench aerodynamic_wrench(const Airframe& airframe, const AirState& air) {
   const RecordsFlow flow{flip_yz(air.air_velocity_body_mps), flip_yz(air.angular_rate_body_radps)};
   Wrench sum;
 
-  const PlateForce wing = plate_force(flow.velocity.x(), flow.velocity.z(), 0, airframe.wing_area_m2,
-                                      airframe.air_density_kgpm3, 1, 1);
+  const PlateForce wing =
+      plate_force(flow.velocity.x(), flow.velocity.z(), 0, airframe.wing_area_m2, airframe.air_density_kgpm3,
+                  airframe.wing_lift_factor, airframe.wing_drag_factor);
   sum.force_body_n += Eigen::Vector3d(wing.along, 0, wing.across);  // at the centre of mass: no moment
 
   const double forward_mps = flow.velocity.x();
   sum.force_body_n.x() += air.thrust_n - airframe.body_drag_area_m2 * 0.5 * airframe.air_density_kgpm3 *
                                              forward_mps * std::abs(forward_mps);
   sum.moment_body_nm -= airframe.rate_damping_nmspr.cwiseProduct(flow.rate);
+  sum.moment_body_nm.x() -= air.motor_torque_nm;
 
-  add_elevon(sum, airframe, flow, -airframe.elevon_y_m, air.left_elevon_rad);
-  add_elevon(sum, airframe, flow, airframe.elevon_y_m, air.right_elevon_rad);
+  add_elevon(sum, airframe, flow, -airframe.elevon_y_m, air.left_elevon_rad, air.elevon_wash_mps);
+  add_elevon(sum, airframe, flow, airframe.elevon_y_m, air.right_elevon_rad, air.elevon_wash_mps);
   add_winglet(sum, airframe, flow, -airframe.winglet_y_m);
   add_winglet(sum, airframe, flow, airframe.winglet_y_m);
 

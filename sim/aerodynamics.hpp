@@ -26,12 +26,14 @@ struct AirState {
   double left_elevon_rad = 0;  ///< positive trailing edge up
   double right_elevon_rad = 0;
   double thrust_n = 0;
+  double motor_torque_nm = 0;  ///< on the propeller, positive turning clockwise seen from behind
+  double elevon_wash_mps = 0;  ///< what the propeller adds to the air's speed along body x at the elevons
 };
 
 /// The identified flat-plate model (flight records of the original aircraft, 2014 to 2017): wing, two
-/// elevons, two winglets, body drag, rate damping, thrust. CL = 2 sin a cos a, CD = 2 sin^2 a: it never
-/// stalls, so whoever flies it caps the angle of attack at 25 to 30 deg. Gravity is not in it. Pure; limits
-/// of elevons and thrust are the caller's.
+/// elevons, two winglets, body drag, rate damping, thrust and the motor's reaction. CL = 2 sin a cos a, CD =
+/// 2 sin^2 a: it never stalls, so whoever flies it caps the angle of attack at 25 to 30 deg. Gravity is not
+/// in it. Pure; limits of elevons and thrust are the caller's.
 Wrench aerodynamic_wrench(const Airframe& airframe, const AirState& air);
 
 /// Angle between the chord and the oncoming air, rad, positive nose above the path.

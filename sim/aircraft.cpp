@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
-#include "sim/aerodynamics.hpp"
 #include "sim/trim.hpp"
 
 namespace understory {
 namespace {
-
-constexpr double step_s = 1.0 / physics_rate_hz;
 
 Eigen::Map<Eigen::Vector3d> vector_at(mjtNum* numbers) { return Eigen::Map<Eigen::Vector3d>(numbers); }
 
@@ -40,31 +38,37 @@ Controls within_limits(const Controls& controls, const Airframe& airframe) {
 
 }  // namespace
 
-Aircraft::Aircraft(const mjModel& model, const Airframe& airframe, const LaunchConfig& launch,
-                   const Eigen::Vector3d& wind_world_mps)
+Aircraft::Aircraft(const mjModel& model, const Airframe& airframe, const LaunchConfig& launch, Wind wind,
+                   const ActuatorsConfig& actuators)
     : model_(model),
       data_(mj_makeData(&model)),
       airframe_(airframe),
       launch_(launch),
-      wind_world_mps_(wind_world_mps),
+      wind_(std::move(wind)),
+      actuators_(actuators),
+      rate_hz_(std::llround(1 / model.opt.timestep)),
+      step_s_(1.0 / static_cast<double>(rate_hz_)),
       body_(mj_name2id(&model, mjOBJ_BODY, "aircraft")),
       ground_geom_(mj_name2id(&model, mjOBJ_GEOM, "ground")) {
   const double rail_start_m = launch.altitude_m - launch.rail_length_m * std::sin(launch.climb_angle_rad);
   if (rail_start_m < 0) throw std::runtime_error("launch: the rail begins underground; raise altitude_m");
   const double acceleration_s = 2 * launch.rail_length_m / launch.speed_mps;
-  rest_steps_ = std::llround(launch.rest_s * physics_rate_hz);
-  release_step_ = rest_steps_ + std::max<std::int64_t>(1, std::llround(acceleration_s * physics_rate_hz));
+  const auto steps_in = [this](double time_s) {
+    return std::llround(time_s * static_cast<double>(rate_hz_));
+  };
+  rest_steps_ = steps_in(launch.rest_s);
+  release_step_ = rest_steps_ + std::max<std::int64_t>(1, steps_in(acceleration_s));
   rail_attitude_ =
       pitched_up(launch.climb_angle_rad + release_angle_of_attack_rad(airframe, launch.speed_mps));
   read_outline();
-  delay_line_.resize(1 + static_cast<std::size_t>(std::llround(airframe.input_delay_s * physics_rate_hz)));
+  delay_line_.resize(1 + static_cast<std::size_t>(steps_in(airframe.input_delay_s)));
   follow_rail();
   update_moment();
   read_truth(Eigen::Vector3d::Zero());
 }
 
 void Aircraft::step(const Controls& controls) {
-  surfaces_ = delayed(within_limits(controls, airframe_));
+  actuators_.advance(delayed(within_limits(controls, airframe_)), step_s_);
   const Eigen::Vector3d velocity_before = truth_.velocity_world_mps;
   const bool on_rail = !launched();
   ++step_;
@@ -76,7 +80,8 @@ void Aircraft::step(const Controls& controls) {
   set_elevons();
   update_moment();
   const Eigen::Vector3d velocity_now = vector_at(data_->qvel);
-  read_truth((velocity_now - velocity_before) / step_s);
+  wind_.advance(t_ns(), step_s_, vector_at(data_->qpos), velocity_now);
+  read_truth((velocity_now - velocity_before) / step_s_);
 }
 
 void Aircraft::read_outline() {
@@ -133,26 +138,35 @@ Controls Aircraft::delayed(const Controls& controls) {
 
 /// Even acceleration that ends exactly at the release point, with the release speed, on the release step.
 void Aircraft::follow_rail() {
-  const double duration_s = static_cast<double>(release_step_ - rest_steps_) * step_s;
-  const double elapsed_s = static_cast<double>(std::max<std::int64_t>(0, step_ - rest_steps_)) * step_s;
+  const double duration_s = static_cast<double>(release_step_ - rest_steps_) * step_s_;
+  const double elapsed_s = static_cast<double>(std::max<std::int64_t>(0, step_ - rest_steps_)) * step_s_;
   const double acceleration_mps2 = launch_.speed_mps / duration_s;
   const double from_release_m = 0.5 * acceleration_mps2 * (elapsed_s * elapsed_s - duration_s * duration_s);
   const Eigen::Vector3d rail_world(std::cos(launch_.climb_angle_rad), 0, std::sin(launch_.climb_angle_rad));
   Eigen::Isometry3d pose(rail_attitude_);
   pose.translation() = Eigen::Vector3d(0, 0, launch_.altitude_m) + from_release_m * rail_world;
   set_body(pose, acceleration_mps2 * elapsed_s * rail_world, Eigen::Vector3d::Zero());
-  data_->time = static_cast<double>(step_) * step_s;
+  data_->time = static_cast<double>(step_) * step_s_;
+}
+
+/// Of the moment in truth_, with the actuators where they are now.
+AirState Aircraft::air() const {
+  AirState air;
+  air.air_velocity_body_mps =
+      truth_.T_world_body.linear().transpose() * (truth_.velocity_world_mps - truth_.wind_world_mps);
+  air.angular_rate_body_radps = truth_.angular_rate_body_radps;
+  const double forward_mps = air.air_velocity_body_mps.x();
+  air.left_elevon_rad = actuators_.left_elevon_rad();
+  air.right_elevon_rad = actuators_.right_elevon_rad();
+  air.thrust_n = actuators_.thrust_n(forward_mps);
+  air.motor_torque_nm = actuators_.motor_torque_nm(forward_mps);
+  air.elevon_wash_mps = actuators_.elevon_wash_mps(forward_mps, airframe_.air_density_kgpm3);
+  return air;
 }
 
 void Aircraft::fly() {
   const Eigen::Matrix3d R_world_body = truth_.T_world_body.linear();
-  AirState air;
-  air.air_velocity_body_mps = R_world_body.transpose() * (truth_.velocity_world_mps - wind_world_mps_);
-  air.angular_rate_body_radps = truth_.angular_rate_body_radps;
-  air.left_elevon_rad = surfaces_.left_elevon_rad;
-  air.right_elevon_rad = surfaces_.right_elevon_rad;
-  air.thrust_n = surfaces_.thrust_n;
-  const Wrench wrench = aerodynamic_wrench(airframe_, air);
+  const Wrench wrench = aerodynamic_wrench(airframe_, air());
   mjtNum* applied = data_->xfrc_applied + 6 * body_;  // at the centre of mass, world axes
   vector_at(applied) = R_world_body * wrench.force_body_n;
   vector_at(applied + 3) = R_world_body * wrench.moment_body_nm;
@@ -169,21 +183,21 @@ void Aircraft::set_body(const Eigen::Isometry3d& T_world_body, const Eigen::Vect
   vector_at(data_->qvel + 3) = angular_rate_body_radps;
 }
 
-/// The hinges are moved, not simulated: the surfaces have no dynamics in the identified model.
+/// The hinges are moved, not simulated: whatever dynamics the servos have is in the actuators.
 void Aircraft::set_elevons() {
   const auto set = [this](const char* name, double angle_rad) {
     const int joint = mj_name2id(&model_, mjOBJ_JOINT, name);
     data_->qpos[model_.jnt_qposadr[joint]] = angle_rad;
     data_->qvel[model_.jnt_dofadr[joint]] = 0;
   };
-  set("left_elevon", surfaces_.left_elevon_rad);
-  set("right_elevon", surfaces_.right_elevon_rad);
+  set("left_elevon", actuators_.left_elevon_rad());
+  set("right_elevon", actuators_.right_elevon_rad());
 }
 
 void Aircraft::read_truth(const Eigen::Vector3d& acceleration_world_mps2) {
   const mjtNum* position = data_->qpos;
   const Eigen::Quaterniond attitude(position[3], position[4], position[5], position[6]);
-  truth_.t_ns = time_of_step_ns(step_);
+  truth_.t_ns = t_ns();
   truth_.T_world_body = Eigen::Isometry3d(attitude.normalized());
   truth_.T_world_body.translation() = Eigen::Map<const Eigen::Vector3d>(position);
   truth_.velocity_world_mps = vector_at(data_->qvel);
@@ -191,10 +205,11 @@ void Aircraft::read_truth(const Eigen::Vector3d& acceleration_world_mps2) {
   const Eigen::Vector3d gravity_world(0, 0, -airframe_.gravity_mps2);
   truth_.specific_force_body_mps2 =
       truth_.T_world_body.linear().transpose() * (acceleration_world_mps2 - gravity_world);
-  truth_.wind_world_mps = wind_world_mps_;
-  truth_.left_elevon_rad = surfaces_.left_elevon_rad;
-  truth_.right_elevon_rad = surfaces_.right_elevon_rad;
-  truth_.thrust_n = surfaces_.thrust_n;
+  truth_.wind_world_mps = wind_.at(truth_.T_world_body.translation());
+  const AirState felt = air();
+  truth_.left_elevon_rad = felt.left_elevon_rad;
+  truth_.right_elevon_rad = felt.right_elevon_rad;
+  truth_.thrust_n = felt.thrust_n;
 }
 
 Contact Aircraft::contact() const {
@@ -210,8 +225,9 @@ Contact Aircraft::contact() const {
 
 void Aircraft::place(const Eigen::Isometry3d& T_world_body, const Eigen::Vector3d& velocity_world_mps,
                      const Eigen::Vector3d& angular_rate_body_radps, const Controls& controls) {
-  surfaces_ = within_limits(controls, airframe_);
-  std::fill(delay_line_.begin(), delay_line_.end(), surfaces_);
+  const Controls held = within_limits(controls, airframe_);
+  actuators_.settle(held);
+  std::fill(delay_line_.begin(), delay_line_.end(), held);
   release_step_ = std::min(release_step_, step_);
   rest_steps_ = std::min(rest_steps_, release_step_);
   set_body(T_world_body, velocity_world_mps, angular_rate_body_radps);

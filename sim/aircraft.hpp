@@ -5,7 +5,10 @@
 
 #include "planning/airframe.hpp"
 #include "planning/controls.hpp"
+#include "sim/actuators.hpp"
+#include "sim/aerodynamics.hpp"
 #include "sim/truth.hpp"
+#include "sim/wind.hpp"
 #include "sim/world.hpp"
 
 namespace understory {
@@ -31,20 +34,25 @@ void visit_fields(Visitor& visit, LaunchConfig& config) {
 enum class Contact { none, ground, obstacle };
 
 /// The delta wing in the world: MuJoCo integrates its body at 1200 Hz under the identified flat-plate
-/// aerodynamics.
+/// aerodynamics, in the air that `wind` makes.
 ///
 /// On the rail the body is at rest for rest_s, then accelerates evenly from rail_length_m before the release
 /// point, pitched above the rail by the level trim's angle of attack at the release speed: it leaves with the
-/// lift that carries it and no rotation. Elevons follow their commands after the input delay, with no lag of
-/// their own.
+/// lift that carries it and no rotation. Elevons and motor follow their commands after the input delay, as
+/// `actuators` says: by default at once and in full.
 class Aircraft {
  public:
   /// Keeps a reference to the model. The launch rail points along world x; the release point is the world's
-  /// (0, 0). Throws std::runtime_error where the rail would begin underground.
+  /// (0, 0). Throws std::runtime_error where the rail would begin underground. A step is the model's own
+  /// (1/1200 s from build_world; tests of convergence set others, whole numbers of hertz).
+  Aircraft(const mjModel& model, const Airframe& airframe, const LaunchConfig& launch, Wind wind,
+           const ActuatorsConfig& actuators = {});
+  /// In a steady wind.
   Aircraft(const mjModel& model, const Airframe& airframe, const LaunchConfig& launch,
-           const Eigen::Vector3d& wind_world_mps);
+           const Eigen::Vector3d& wind_world_mps)
+      : Aircraft(model, airframe, launch, Wind(wind_world_mps)) {}
 
-  /// Advances one physics step (1/1200 s). Controls act one input delay later, cut to the airframe's limits.
+  /// Advances one physics step. Controls act one input delay later, cut to the airframe's limits.
   /// While on the rail the body follows the rail whatever the controls. Kinematics and contacts in data()
   /// belong to the new moment afterwards. Throws std::logic_error on controls that are not finite.
   void step(const Controls& controls);
@@ -70,11 +78,13 @@ class Aircraft {
     double radius_m;
   };
 
+  std::int64_t t_ns() const { return step_ * 1'000'000'000 / rate_hz_; }
   void read_outline();
   bool anything_near() const;
   void update_moment();
   Controls delayed(const Controls& controls);
   void follow_rail();
+  AirState air() const;
   void fly();
   void set_body(const Eigen::Isometry3d& T_world_body, const Eigen::Vector3d& velocity_world_mps,
                 const Eigen::Vector3d& angular_rate_body_radps);
@@ -85,10 +95,12 @@ class Aircraft {
   DataPointer data_;
   Airframe airframe_;
   LaunchConfig launch_;
-  Eigen::Vector3d wind_world_mps_;
+  Wind wind_;
+  Actuators actuators_;
+  std::int64_t rate_hz_;
+  double step_s_;
   Eigen::Quaterniond rail_attitude_ = Eigen::Quaterniond::Identity();
   std::vector<Controls> delay_line_;  ///< a ring, one entry a step
-  Controls surfaces_;                 ///< what acts now
   std::int64_t step_ = 0;
   std::int64_t rest_steps_ = 0;
   std::int64_t release_step_ = 0;

@@ -13,10 +13,10 @@ struct Truth {
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();  ///< over ground
   Eigen::Vector3d angular_rate_body_radps = Eigen::Vector3d::Zero();
   Eigen::Vector3d specific_force_body_mps2 = Eigen::Vector3d::Zero();  ///< acceleration less gravity
-  Eigen::Vector3d wind_world_mps = Eigen::Vector3d::Zero();
-  double left_elevon_rad = 0;  ///< where the surfaces are, delay included
+  Eigen::Vector3d wind_world_mps = Eigen::Vector3d::Zero();            ///< where the aircraft is, now
+  double left_elevon_rad = 0;  ///< where the surfaces are: delay, servo lag and rate limit included
   double right_elevon_rad = 0;
-  double thrust_n = 0;
+  double thrust_n = 0;  ///< of the propeller at this airspeed
 };
 
 }  // namespace understory

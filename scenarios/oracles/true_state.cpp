@@ -6,6 +6,7 @@ State state_of(const Truth& truth) {
   State state;
   state.t_ns = truth.t_ns;
   state.T_world_body = truth.T_world_body;
+  state.altitude_m = truth.T_world_body.translation().z();
   state.velocity_body_mps = truth.T_world_body.linear().transpose() * truth.velocity_world_mps;
   state.angular_rate_body_radps = truth.angular_rate_body_radps;
   state.specific_force_body_mps2 = truth.specific_force_body_mps2;

@@ -14,6 +14,7 @@ class TrueState : public StateSource {
   void on(const BarometerSample&) override {}
   void on(const MagnetometerSample&) override {}
   void on(const GpsSample&) override {}
+  void on(const ResightingSample&) override {}
   const State& state() const override { return state_; }
   State state_at(std::int64_t t_ns) const override;
 

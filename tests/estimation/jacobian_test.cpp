@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 
 #include "estimation/airspeed.hpp"
 #include "estimation/altitude.hpp"
 #include "estimation/angle_of_attack.hpp"
+#include "estimation/ground_velocity.hpp"
 #include "estimation/heading.hpp"
 #include "estimation/propagation.hpp"
 #include "estimation/rest.hpp"
@@ -26,12 +28,18 @@ State somewhere() {
   state.velocity_body_mps = Eigen::Vector3d(11, 1.7, -2.3);
   state.angular_rate_body_radps = Eigen::Vector3d(4, -0.8, 1.1);
   state.gyro_bias_radps = Eigen::Vector3d(0.01, -0.02, 0.005);
+  state.accelerometer_bias_mps2 = Eigen::Vector3d(0.1, -0.2, 0.3);
+  state.wind_world_mps = Eigen::Vector2d(2.5, -1.5);
+  state.gust_world_mps = Eigen::Vector2d(-0.5, 0.8);
+  state.pitot_bias_mps = 0.3;
+  state.inertial_velocity_world_mps = Eigen::Vector3d(9, -2, 1);
+  state.inertial_position_world_m = Eigen::Vector3d(2, 1, 3);
   return state;
 }
 
 State nudged(const State& state, int axis, double by, FilterModel model) {
   State moved = state;
-  inject(moved, by * Vector12d::Unit(axis), model);
+  inject(moved, by * ErrorVector::Unit(axis), model);
   return moved;
 }
 
@@ -40,7 +48,7 @@ template <int M>
 void expect_jacobian(const std::function<Measurement<M>(const State&)>& measure, FilterModel model) {
   const State state = somewhere();
   const Measurement<M> here = measure(state);
-  for (int axis = 0; axis < 12; ++axis) {
+  for (int axis = 0; axis < error_states; ++axis) {
     const Eigen::Matrix<double, M, 1> slope = (measure(nudged(state, axis, -h, model)).innovation -
                                                measure(nudged(state, axis, h, model)).innovation) /
                                               (2 * h);
@@ -67,6 +75,12 @@ TEST_P(EitherModel, OfTheMeasurements) {
   zero.model = SideslipModel::zero;
   expect_jacobian<1>([&](const State& s) { return sideslip(s, -1.0, zero, model); }, model);
   expect_jacobian<1>([&](const State& s) { return angle_of_attack(s, 12.0, {}, model); }, model);
+  const State then = somewhere();
+  const GpsSample gps{0, Eigen::Vector3d::Zero(), Eigen::Vector3d(10, 1, 2)};
+  expect_jacobian<3>([&](const State& s) { return ground_velocity(s, then, gps, {}); }, model);
+  ResightingSample resighting;
+  resighting.t_ns = 400'000'000;
+  expect_jacobian<2>([&](const State& s) { return ground_displacement(s, then, then, resighting); }, model);
 }
 
 TEST(Jacobians, OfRest) {
@@ -78,51 +92,118 @@ TEST(Jacobians, OfRest) {
   expect_jacobian<3>([&](const State& s) { return zero_rate(s, vector, 0.1); }, model);
 }
 
-/// Difference of two estimates in error coordinates; the last block as `model` has it.
-Vector12d difference(const State& to, const State& from, FilterModel model) {
+using Motion = Eigen::Matrix<double, motion_rows, 1>;
+
+/// Difference of two motions in error coordinates.
+Motion difference(const State& to, const State& from) {
   const Eigen::AngleAxisd apart(
       Eigen::Matrix3d(from.T_world_body.linear().transpose() * to.T_world_body.linear()));
-  Vector12d error;
+  Motion error;
   error << apart.angle() * apart.axis(), to.velocity_body_mps - from.velocity_body_mps,
-      to.T_world_body.translation() - from.T_world_body.translation(),
-      model == FilterModel::gyro_bias ? to.gyro_bias_radps - from.gyro_bias_radps
-                                      : to.angular_rate_body_radps - from.angular_rate_body_radps;
+      to.T_world_body.translation() - from.T_world_body.translation();
   return error;
 }
 
 TEST_P(EitherModel, OfTheStep) {
   const FilterModel model = GetParam();
   InertialStep step{Eigen::Vector3d(4, -0.8, 1.1), Eigen::Vector3d(2, -1, 18), 0.05};
-  // One step from a nudged estimate; the nudge of the last block is a nudge of the rate that turns the
-  // aircraft.
+  // One step from a nudged estimate; a nudge of a bias is one of the input that it is taken from, a nudge of
+  // the angular rate one of the rate that turns the aircraft.
   const auto after = [&](const State& start, const InertialStep& input) {
     State state = start;
     InertialStep used = input;
     used.angular_rate_body_radps += start.angular_rate_body_radps - somewhere().angular_rate_body_radps;
+    used.specific_force_body_mps2 -= start.accelerometer_bias_mps2 - somewhere().accelerometer_bias_mps2;
     advance(state, used, 9.81, model);
     return state;
   };
   State moved = somewhere();
   const StepDerivatives by = advance(moved, step, 9.81, model);
-  for (int axis = 0; axis < 12; ++axis) {
-    const Vector12d slope = difference(after(nudged(somewhere(), axis, h, model), step),
-                                       after(nudged(somewhere(), axis, -h, model), step), model) /
-                            (2 * h);
+  for (int axis = 0; axis < moving_columns; ++axis) {
+    const Motion slope = difference(after(nudged(somewhere(), axis, h, model), step),
+                                    after(nudged(somewhere(), axis, -h, model), step)) /
+                         (2 * h);
     EXPECT_LT((slope - by.state.col(axis)).norm(), 1e-6) << axis;
   }
   for (int axis = 0; axis < 3; ++axis) {
     InertialStep more = step, less = step;
     more.specific_force_body_mps2[axis] += h / step.dt_s;
     less.specific_force_body_mps2[axis] -= h / step.dt_s;
-    const Vector12d by_force =
-        difference(after(somewhere(), more), after(somewhere(), less), model) / (2 * h);
+    const Motion by_force = difference(after(somewhere(), more), after(somewhere(), less)) / (2 * h);
     EXPECT_LT((by_force - by.velocity_increment.col(axis)).norm(), 1e-6) << axis;
     more = less = step;
     more.angular_rate_body_radps[axis] += h / step.dt_s;
     less.angular_rate_body_radps[axis] -= h / step.dt_s;
-    const Vector12d by_turn = difference(after(somewhere(), more), after(somewhere(), less), model) / (2 * h);
+    const Motion by_turn = difference(after(somewhere(), more), after(somewhere(), less)) / (2 * h);
     EXPECT_LT((by_turn - by.rotation.col(axis)).norm(), 1e-6) << axis;
   }
+}
+
+/// F P F' + Q written out in full, against the step that multiplies only what moves.
+TEST_P(EitherModel, TheCovarianceStepIsTheFullProduct) {
+  const FilterModel model = GetParam();
+  State state = somewhere();
+  const InertialStep step{Eigen::Vector3d(4, -0.8, 1.1), Eigen::Vector3d(2, -1, 18), 0.05};
+  const StepDerivatives by = advance(state, step, 9.81, model);
+  const ErrorCovariance root = ErrorCovariance::Random();
+  const ErrorCovariance before = root * root.transpose();
+  ProcessNoise noise{0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 2.0};
+  const double dt = step.dt_s, kept = std::exp(-dt / noise.gust_time_s);
+
+  ErrorCovariance F = ErrorCovariance::Identity();
+  F.topLeftCorner<motion_rows, moving_columns>() = by.state;
+  F.block<2, 2>(gust_block, gust_block) *= kept;
+  ErrorCovariance expected = F * before * F.transpose();
+  const auto noisy = [&](const Eigen::Matrix<double, motion_rows, 3>& input, double density) {
+    expected.topLeftCorner<motion_rows, motion_rows>() += density * density * dt * input * input.transpose();
+  };
+  if (model == FilterModel::gyro_bias) noisy(by.rotation, noise.gyro_radps_rthz);
+  noisy(by.velocity_increment, noise.accelerometer_mps2_rthz);
+  Eigen::Matrix<double, error_states, 3> walk = Eigen::Matrix<double, error_states, 3>::Zero();
+  walk.topRows<motion_rows>() = 0.5 * dt * rate_sign(model) * by.rotation;
+  walk.middleRows<3>(rate_block).setIdentity();
+  expected += noise.rate_block_rthz * noise.rate_block_rthz * dt * walk * walk.transpose();
+  const double added[] = {0.16 * dt, 0.25 * dt, (1 - kept * kept) * 0.49, 0.36 * dt};
+  const int blocks[] = {accelerometer_bias_block, wind_block, gust_block, pitot_bias_block, error_states};
+  for (int i = 0; i < 4; ++i)
+    expected.diagonal().segment(blocks[i], blocks[i + 1] - blocks[i]).array() += added[i];
+
+  ErrorCovariance stepped = before;
+  propagate(stepped, by, noise, dt, model);
+  EXPECT_LT((stepped - expected).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+/// The multiplied-out update against Joseph's form, with a gain that is withheld in part.
+TEST(Update, IsJosephsFormForWithheldGainsToo) {
+  const ErrorCovariance root = ErrorCovariance::Random();
+  State state = somewhere();
+  state.covariance = root * root.transpose() + ErrorCovariance::Identity();
+  const ErrorCovariance before = state.covariance;
+  Measurement<2> measurement;
+  measurement.jacobian.setRandom();
+  measurement.innovation << 0.3, -0.2;
+  measurement.noise << 0.5, 0.1, 0.1, 0.4;
+  const Eigen::Vector3d up_body = state.T_world_body.linear().row(2);
+  const State untouched = state;
+  correct(state, measurement, FilterModel::gyro_bias, FrameGain::held);
+
+  const Eigen::Matrix2d spread =
+      measurement.jacobian * before * measurement.jacobian.transpose() + measurement.noise;
+  Eigen::Matrix<double, error_states, 2> gain = before * measurement.jacobian.transpose() * spread.inverse();
+  gain.middleRows<3>(position_block).setZero();
+  gain.topRows<3>() = (Eigen::Matrix3d::Identity() - up_body * up_body.transpose()) * gain.topRows<3>();
+  const ErrorCovariance rest = ErrorCovariance::Identity() - gain * measurement.jacobian;
+  const ErrorCovariance expected =
+      rest * before * rest.transpose() + gain * measurement.noise * gain.transpose();
+  EXPECT_LT((state.covariance - expected).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_EQ(state.T_world_body.translation(), untouched.T_world_body.translation());
+  const auto heading = [](const State& s) {
+    const Eigen::Matrix3d R = s.T_world_body.linear();
+    return std::atan2(R(1, 0), R(0, 0));
+  };
+  // Held to first order: the turn about a level axis is not a turn of the heading.
+  EXPECT_NEAR(heading(state), heading(untouched), 0.02);
+  EXPECT_GT((state.T_world_body.linear() - untouched.T_world_body.linear()).norm(), 0.05);
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ Modelled modelled() {
   config.heading.sigma_rad = set.errors.field_noise / (48 * std::cos(67 * M_PI / 180));
   config.sideslip.sigma_mps2 = config.angle_of_attack.sigma_mps2 = set.errors.force_noise;
   config.sideslip.model_error = config.angle_of_attack.model_error = 0;
-  config.gate_probability = 0.999999;
+  config.distrust.gate_probability = 0.999999;
   config.start.horizontal_sigma_m = 0.5;
   config.start.vertical_sigma_m = 0.5;
   return set;
@@ -72,7 +72,7 @@ Nees average_nees(const Modelled& set) {
     Sensors sensors(set.errors, 9000 + seed);
     for (const Moment& moment : flight) sensors.feed(filter, moment);
     const Vector12d error = error_of(filter.state(), flight.back(), sensors.gyro_bias);
-    const Matrix12d& covariance = filter.state().covariance;
+    const Eigen::Matrix<double, 12, 12> covariance = filter.state().covariance.topLeftCorner<12, 12>();
     const auto block = [&](int first) {
       const Eigen::Vector3d part = error.segment<3>(first);
       const Eigen::Matrix3d spread = covariance.block<3, 3>(first, first);
@@ -98,7 +98,7 @@ void expect_block(double block, const char* name) {
 TEST(Nees, OfAllTwelveStatesOverFiftySeedsIsChiSquare) {
   for (const bool smooth : {false, true}) {
     Modelled set = modelled();
-    set.config.smooth_position = smooth;
+    set.config.smooth_frame = smooth;
     set.config.sideslip.model = SideslipModel::off;
     set.config.angle_of_attack.enabled = false;
     const Nees nees = average_nees(set);
@@ -117,7 +117,7 @@ TEST(Nees, OfAllTwelveStatesOverFiftySeedsIsChiSquare) {
 TEST(Nees, WithTheForcesAsMeasurementsOnlyTheVelocityIsCautious) {
   for (const bool smooth : {false, true}) {
     Modelled set = modelled();
-    set.config.smooth_position = smooth;
+    set.config.smooth_frame = smooth;
     const Nees nees = average_nees(set);
     EXPECT_LT(nees.all, all_most);
     EXPECT_LT(nees.velocity, block_most);

@@ -67,6 +67,8 @@ class Sensors {
   int count_ = 0;
 };
 
+using Vector12d = Eigen::Matrix<double, 12, 1>;
+
 /// Error of the estimate in the filter's coordinates (attitude, velocity, position, gyro bias).
 Vector12d error_of(const State& estimate, const Moment& truth, const Eigen::Vector3d& gyro_bias);
 

@@ -54,6 +54,32 @@ TEST(FlightModel, BankTurnsTowardsTheLowWing) {
   EXPECT_NEAR(left.position_world.x(), right.position_world.x(), 1e-9);
 }
 
+// Lift and drag of a plate k times as strong are those of a plate k times as large.
+TEST(FlightModel, WingFactorsAreASizeOfWing) {
+  Airframe stronger, larger;
+  stronger.wing_lift_factor = stronger.wing_drag_factor = 1.25;
+  larger.wing_area_m2 *= 1.25;
+  const FlightState strong = fly_for(FlightModel(stronger, {}), {}, {0.7, 1}, 1);
+  const FlightState large = fly_for(FlightModel(larger, {}), {}, {0.7, 1}, 1);
+  EXPECT_LT((strong.position_world - large.position_world).norm(), 1e-9);
+  EXPECT_NEAR(strong.speed_mps, large.speed_mps, 1e-9);
+}
+
+// The plate's drag is 2 sin^2 a per dynamic pressure and area: the factor's share of it is lost speed.
+TEST(FlightModel, MoreWingDragIsLostSpeed) {
+  Airframe draggy;
+  draggy.wing_drag_factor = 1.5;
+  draggy.max_thrust_n = 0;  // no throttle to make up for it
+  Airframe plain = draggy;
+  plain.wing_drag_factor = 1;
+  const FlightState start;
+  const double drag_n = 0.5 * 2 * std::pow(std::sin(start.angle_of_attack_rad), 2) * 0.5 * 1.204 *
+                        start.speed_mps * start.speed_mps * 0.1811;
+  const double lost_mps = FlightModel(plain, {}).advance(start, {}, step_s).speed_mps -
+                          FlightModel(draggy, {}).advance(start, {}, step_s).speed_mps;
+  EXPECT_NEAR(lost_mps, step_s * drag_n / 0.648412, 1e-9);
+}
+
 // Coordinated level turn: tan(bank) = V^2 / (g r).
 TEST(FlightModel, SustainedTurnHasTheRadiusOfACoordinatedOne) {
   const FlightModel model = model_at(12);

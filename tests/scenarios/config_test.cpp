@@ -17,6 +17,12 @@ struct Inner {
   std::vector<double> gains{1, 2};
 };
 
+struct Entry {
+  Colour colour = Colour::green;
+  int count = 5;
+  Inner inner;
+};
+
 struct Outer {
   bool on = true;
   int count = 3;
@@ -25,7 +31,11 @@ struct Outer {
   Colour colour = Colour::red;
   Eigen::Vector3d wind{0.1, 0, -1e-300};
   Inner inner;
+  std::vector<Entry> entries;
 };
+
+constexpr std::array<std::pair<std::string_view, Colour>, 2> colour_names{
+    {{"red", Colour::red}, {"green", Colour::green}}};
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, Inner& inner) {
@@ -34,15 +44,22 @@ void visit_fields(Visitor& visit, Inner& inner) {
 }
 
 template <typename Visitor>
+void visit_fields(Visitor& visit, Entry& entry) {
+  visit("colour", entry.colour, colour_names);
+  visit("count", entry.count, 0, 9);
+  visit("inner", entry.inner);
+}
+
+template <typename Visitor>
 void visit_fields(Visitor& visit, Outer& outer) {
   visit("on", outer.on);
   visit("count", outer.count, 0, 9);
   visit("seed", outer.seed, std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max());
   visit("name", outer.name);
-  visit("colour", outer.colour,
-        std::array<std::pair<std::string_view, Colour>, 2>{{{"red", Colour::red}, {"green", Colour::green}}});
+  visit("colour", outer.colour, colour_names);
   visit("wind", outer.wind, -5.0, 5.0);
   visit("inner", outer.inner);
+  visit("entries", outer.entries);
 }
 
 Outer read(const std::string& text) {
@@ -150,6 +167,53 @@ TEST(Config, AssignmentsPassTheSameChecks) {
   EXPECT_NE(set_refusal("count=[1"), "accepted");
 }
 
+TEST(Config, ReadsAListOfGroups) {
+  const Outer outer = read("entries:\n  - count: 2\n    inner: {length_m: 7}\n  - {colour: red}\n");
+  ASSERT_EQ(outer.entries.size(), 2u);
+  EXPECT_EQ(outer.entries[0].count, 2);
+  EXPECT_EQ(outer.entries[0].colour, Colour::green);  // the entry's own default
+  EXPECT_EQ(outer.entries[0].inner.length_m, 7);
+  EXPECT_EQ(outer.entries[1].colour, Colour::red);
+  EXPECT_EQ(outer.entries[1].count, 5);
+  EXPECT_TRUE(read("entries: []\n").entries.empty());
+}
+
+TEST(Config, RefusesInAListNameTheEntry) {
+  EXPECT_EQ(refusal("entries:\n  - count: 2\n  - count: 2\n    cuont: 3\n"),
+            "a.yaml:4: entries[1].cuont: expected a known key (did you mean count?)");
+  EXPECT_EQ(refusal("entries:\n  - colour: red\n    inner:\n      length_m: 11\n"),
+            "a.yaml:4: entries[0].inner.length_m: expected a number from 0 to 10, got 11");
+  EXPECT_EQ(refusal("entries:\n  - {count: 1, count: 2}\n"),
+            "a.yaml:2: entries[0].count: expected each key once, this one is given twice");
+  EXPECT_EQ(refusal("entries:\n  - 3\n"), "a.yaml:2: entries[0]: expected a group of keys, got 3");
+  EXPECT_EQ(refusal("entries: 3\n"), "a.yaml:1: entries: expected a list of groups [{...}, ...], got 3");
+  EXPECT_EQ(refusal("entries: {count: 3}\n"),
+            "a.yaml:1: entries: expected a list of groups [{...}, ...], got a group of keys");
+  EXPECT_EQ(refusal("entries:\n"), "a.yaml:1: entries: expected a list of groups [{...}, ...], got nothing");
+}
+
+TEST(Config, AnAssignmentReplacesAListOfGroups) {
+  Outer outer;
+  outer.entries.resize(3);
+  outer.entries[0].count = 1;
+  read_config(parse_assignment("entries=[{colour: red}, {inner: {length_m: 2.5}}]"), outer);
+  ASSERT_EQ(outer.entries.size(), 2u);
+  EXPECT_EQ(outer.entries[0].count, 5);  // nothing of the list before it
+  EXPECT_EQ(outer.entries[1].inner.length_m, 2.5);
+  EXPECT_EQ(set_refusal("entries=[{count: 10}]"),
+            "--set entries=[{count: 10}]: entries[0].count: expected a whole number from 0 to 9, got 10");
+}
+
+TEST(Config, FindsWhereAKeyOfAListWasGiven) {
+  const std::vector<ConfigNode> sources{
+      parse_config_text("on: true\nentries:\n  - count: 1\n  - colour: red\n    count: 2\n", "a.yaml")};
+  EXPECT_EQ(origin_of(sources, "entries[1].count"), "a.yaml:5");
+  EXPECT_EQ(origin_of(sources, "entries[0].count"), "a.yaml:3");
+  EXPECT_EQ(origin_of(sources, "entries[0].colour"), "");
+  EXPECT_EQ(origin_of(sources, "entries[2].count"), "");
+  EXPECT_EQ(origin_of(sources, "on"), "a.yaml:1");
+}
+
 TEST(Config, WritingAndReadingAgainIsExact) {
   Outer outer;
   outer.inner.length_m = 0.1 + 0.2;
@@ -157,6 +221,9 @@ TEST(Config, WritingAndReadingAgainIsExact) {
   outer.seed = (std::uint64_t{1} << 63) + 1;
   outer.colour = Colour::green;
   outer.on = false;
+  outer.entries.resize(2);
+  outer.entries[1].colour = Colour::red;
+  outer.entries[1].inner.gains = {0.25};
   const std::string text = write_config(outer);
   const Outer again = read(text);
   EXPECT_EQ(again.inner.length_m, outer.inner.length_m);
@@ -166,6 +233,12 @@ TEST(Config, WritingAndReadingAgainIsExact) {
   EXPECT_EQ(again.wind, outer.wind);
   EXPECT_EQ(again.colour, outer.colour);
   EXPECT_EQ(again.on, outer.on);
+  ASSERT_EQ(again.entries.size(), 2u);
+  EXPECT_EQ(again.entries[1].colour, Colour::red);
+  EXPECT_EQ(again.entries[1].inner.gains, std::vector<double>{0.25});
+  EXPECT_NE(text.find("entries:\n  - colour: green\n    count: 5\n    inner:\n      length_m: 2.5\n"),
+            std::string::npos);
+  EXPECT_NE(write_config(Outer{}).find("entries: []\n"), std::string::npos);
   EXPECT_EQ(write_config(again), text);
   EXPECT_EQ(text.substr(0, 10), "on: false\n");
 }

@@ -33,6 +33,7 @@ TEST(Scenario, TheLibraryIsWhatTheMissionSays) {
   EXPECT_EQ(load_scenario(library / "paper.yaml").rig, "paper");
   EXPECT_EQ(load_scenario(library / "clear.yaml").course, Course::clear);
   EXPECT_EQ(load_scenario(library / "goalposts.yaml").course, Course::goalposts);
+  EXPECT_EQ(load_scenario(library / "windy.yaml").wind_world_mps, Eigen::Vector3d(0, 3, 0));
 }
 
 TEST(Scenario, EveryDefaultIsWritten) {
@@ -55,8 +56,57 @@ TEST(Scenario, SettingsComeAfterTheFile) {
 
 TEST(Scenario, RefusesContradictions) {
   EXPECT_THROW(scenario_from_text("forest: {radius_min_m: 0.3}\n", "a.yaml"), ScenarioError);
+  EXPECT_THROW(scenario_from_text("actuators: {pitch_speed_mps: 10}\n", "a.yaml"), ScenarioError);
   EXPECT_THROW(scenario_from_text("cameras: {rate_hz: 110}\n", "a.yaml"), ScenarioError);
   EXPECT_THROW(scenario_from_text("world: {obstacles_visible: false}\n", "a.yaml"), ScenarioError);
+}
+
+TEST(Scenario, AGradeIsWhereTheKeysBesideItStart) {
+  const Scenario rough = scenario_from_text("sensors: {grade: rough, imu: {gyro_scale: 0.002}}\n", "a.yaml");
+  EXPECT_EQ(rough.sensors.sensors.imu.gyro_scale, 0.002);
+  EXPECT_EQ(rough.sensors.sensors.imu.accelerometer_scale,
+            sensors_of_grade(SensorGrade::rough).imu.accelerometer_scale);
+  const Scenario plain = scenario_from_text("seed: 5\n", "a.yaml");
+  EXPECT_EQ(plain.sensors.sensors.imu.gyro_scale, 0);
+  EXPECT_EQ(
+      scenario_from_text("seed: 5\n", "a.yaml", {"sensors.grade=ideal"}).sensors.sensors.imu.gyro_noise_radps,
+      0);
+}
+
+TEST(Scenario, FaultsAreReadWrittenAndChecked) {
+  const Scenario scenario = scenario_from_text(
+      "faults:\n  - {sensor: pitot, kind: block, at_s: 2}\n  - {sensor: gyro, kind: bias, at_s: 1, "
+      "duration_s: 0.5, value: 0.1}\n",
+      "a.yaml");
+  ASSERT_EQ(scenario.faults.size(), 2u);
+  EXPECT_EQ(scenario.faults[1].sensor, FaultySensor::gyro);
+  EXPECT_EQ(scenario.faults[1].value, 0.1);
+  const Scenario again = scenario_from_text(scenario_to_text(scenario), "again.yaml");
+  ASSERT_EQ(again.faults.size(), 2u);
+  EXPECT_EQ(again.faults[1].duration_s, 0.5);
+  EXPECT_TRUE(scenario_from_text(scenario_to_text(scenario), "again.yaml", {"faults=[]"}).faults.empty());
+  try {
+    scenario_from_text("seed: 1\nfaults:\n  - sensor: barometer\n    kind: block\n", "a.yaml");
+    FAIL() << "accepted";
+  } catch (const ScenarioError& error) {
+    EXPECT_STREQ(error.what(),
+                 "a.yaml:4: faults[0].kind: expected, for this sensor, freeze | dropout | bias | saturate");
+  }
+}
+
+TEST(Scenario, TheAircraftThatFliesMayDifferFromTheStacks) {
+  const Scenario scenario = scenario_from_text("mismatch: {mass_percent: 10}\n", "a.yaml");
+  EXPECT_DOUBLE_EQ(scenario.flown_airframe().mass_kg, 1.1 * scenario.airframe.mass_kg);
+  EXPECT_EQ(scenario.airframe.mass_kg, Airframe{}.mass_kg);
+}
+
+TEST(Scenario, ShelterIsWhereTheForestIs) {
+  const ForestStand stand = scenario_from_text("forest: {length_m: 40}\n", "a.yaml").stand();
+  EXPECT_EQ(stand.from_x_m, 15);
+  EXPECT_EQ(stand.to_x_m, 55);
+  EXPECT_EQ(stand.half_width_m, 25);
+  EXPECT_EQ(stand.canopy_top_m, 9);
+  EXPECT_EQ(scenario_from_text("course: clear\n", "a.yaml").stand().canopy_top_m, 0);
 }
 
 TEST(Scenario, ProofSwitchesReachTheWorld) {

@@ -131,6 +131,50 @@ TEST(Aerodynamics, BodyDragAndThrustLieAlongX) {
   EXPECT_NEAR(wrench.force_body_n.z(), 0, 1e-12);
 }
 
+// Lift stands on the flow, drag runs against it: each factor scales its own part.
+TEST(Aerodynamics, WingFactorsScaleLiftAndDragApart) {
+  Airframe airframe = bare_wing();
+  airframe.wing_lift_factor = 1.2;
+  airframe.wing_drag_factor = 0.7;
+  const double attack = 0.3;
+  const AirState air = flying(11, attack);
+  const Vector3d force = aerodynamic_wrench(airframe, air).force_body_n;
+  const Vector3d with_flow = air.air_velocity_body_mps.normalized();
+  const Vector3d upward(std::sin(attack), 0, std::cos(attack));
+  const double dynamic = 0.5 * 1.204 * 11 * 11 * 0.1811;
+  EXPECT_NEAR(force.dot(upward), 1.2 * dynamic * std::sin(2 * attack), 1e-9);
+  EXPECT_NEAR(-force.dot(with_flow), 0.7 * dynamic * 2 * std::pow(std::sin(attack), 2), 1e-9);
+}
+
+// Elevons alone, at rest relative to each other: in a wash of w at a speed of v they feel what v + w would
+// give.
+TEST(Aerodynamics, WashIsSpeedOverTheElevonsAlone) {
+  Airframe elevons;
+  elevons.wing_area_m2 = elevons.winglet_area_m2 = elevons.body_drag_area_m2 = 0;
+  AirState air = flying(15, 0);
+  air.left_elevon_rad = air.right_elevon_rad = 0.2;
+  const Wrench faster = aerodynamic_wrench(elevons, air);
+  air.air_velocity_body_mps.x() = 12;
+  air.elevon_wash_mps = 3;
+  const Wrench washed = aerodynamic_wrench(elevons, air);
+  EXPECT_TRUE(washed.force_body_n.isApprox(faster.force_body_n, 1e-12));
+  EXPECT_TRUE(washed.moment_body_nm.isApprox(faster.moment_body_nm, 1e-12));
+  const Airframe wing = bare_wing();
+  AirState still = flying(12, 0.2);
+  const Vector3d without = aerodynamic_wrench(wing, still).force_body_n;
+  still.elevon_wash_mps = 3;
+  EXPECT_EQ(aerodynamic_wrench(wing, still).force_body_n, without);
+}
+
+TEST(Aerodynamics, TheMotorsReactionIsAMomentAboutX) {
+  AirState air = flying(12, 0.19);
+  const Wrench without = aerodynamic_wrench(Airframe{}, air);
+  air.motor_torque_nm = 0.07;
+  const Wrench with = aerodynamic_wrench(Airframe{}, air);
+  EXPECT_EQ(with.force_body_n, without.force_body_n);
+  EXPECT_TRUE((with.moment_body_nm - without.moment_body_nm).isApprox(Vector3d(-0.07, 0, 0), 1e-12));
+}
+
 TEST(Aerodynamics, PowerOfTheAirIsNeverPositive) {
   // Unpowered, the air only takes energy: force . velocity + moment . rate <= 0 over the envelope. Elevons
   // neutral: the identified drag factor of 0.101 is not that of a passive plate.

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "estimation/error_state.hpp"
+#include "estimation/samples.hpp"
+
+namespace understory {
+
+/// Velocity over ground from satellites. It speaks of a moment past: since then the inertial sensors alone
+/// say how the velocity changed, so that corrections made meanwhile are not made twice.
+struct GroundVelocityConfig {
+  bool enabled = true;     ///< whether samples, where there are any, are used
+  double sigma_mps = 0.2;  ///< m/s, 0.01..10, per axis (FACTS section 4: 0.2 m/s, 0.2 s late)
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, GroundVelocityConfig& config) {
+  visit("enabled", config.enabled);
+  visit("sigma_mps", config.sigma_mps, 0.01, 10.0);
+}
+
+/// `then` is the estimate recorded for the sample's moment.
+Measurement<3> ground_velocity(const State& now, const State& then, const GpsSample& sample,
+                               const GroundVelocityConfig& config);
+
+/// How far obstacles seen at two depths say the aircraft moved in between. The same comparison: the velocity
+/// of now, carried back by the inertial sensors, must have covered that way. Level, world axes. The earlier
+/// and the later estimate are those recorded for the sample's two moments.
+Measurement<2> ground_displacement(const State& now, const State& earlier, const State& later,
+                                   const ResightingSample& sample);
+
+}  // namespace understory

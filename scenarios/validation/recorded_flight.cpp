@@ -1,0 +1,28 @@
+#include "scenarios/validation/recorded_flight.hpp"
+
+#include <cmath>
+
+#include "perception/io/rig_file.hpp"
+#include "scenarios/fly.hpp"
+#include "scenarios/scenario_io.hpp"
+
+namespace understory {
+
+RecordedFlight recorded_flight(const Scenario& scenario, const std::filesystem::path& models_folder) {
+  RecordedFlight flight;
+  flight.scenario = scenario;
+  flight.scenario.perception.detector = DetectorKind::true_depth;
+  flight.scenario.estimation.source = StateKind::truth;
+  flight.rig = read_rig(models_folder / "rigs" / (scenario.rig + ".yaml"));
+  flight.obstacles = course_obstacles(flight.scenario);
+  FlyOptions options;
+  options.models_folder = models_folder;
+  options.on_truth = [&](const Truth& truth) { flight.truths.push_back(truth); };
+  fly(flight.scenario, options);
+  const LaunchConfig& launch = scenario.launch;
+  const double stroke_s = 2 * launch.rail_length_m / launch.speed_mps;
+  flight.release_step = std::llround((launch.rest_s + stroke_s) * physics_rate_hz);
+  return flight;
+}
+
+}  // namespace understory
