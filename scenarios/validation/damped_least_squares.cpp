@@ -57,7 +57,8 @@ LeastSquares least_squares(const Residuals& residuals, const Eigen::VectorXd& st
   }
   const Eigen::MatrixXd slopes = jacobian(residuals, best.parameters, step);
   best.variance = best.sum_of_squares / static_cast<double>(now.size() - start.size());
-  best.covariance = best.variance * (slopes.transpose() * slopes).inverse();
+  best.covariance =
+      best.variance * (slopes.transpose() * slopes).completeOrthogonalDecomposition().pseudoInverse();
   return best;
 }
 

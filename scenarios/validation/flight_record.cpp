@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <sstream>
@@ -32,14 +33,14 @@ RecordedMoment moment(const std::array<double, columns>& n) {
 }
 
 /// Trapezoids over the record's own velocities.
-void integrate_heights(std::vector<RecordedMoment>& moments) {
-  moments[0].position_world.z() = 0;
+std::vector<Vector3d> integrated_velocity(const std::vector<RecordedMoment>& moments) {
+  std::vector<Vector3d> positions{Vector3d::Zero()};
   for (std::size_t i = 1; i < moments.size(); ++i) {
-    const double before = (moments[i - 1].R_world_body * moments[i - 1].velocity_body_mps).z();
-    const double after = (moments[i].R_world_body * moments[i].velocity_body_mps).z();
-    moments[i].position_world.z() =
-        moments[i - 1].position_world.z() + 0.5 * (before + after) * (moments[i].t_s - moments[i - 1].t_s);
+    const Vector3d before = moments[i - 1].R_world_body * moments[i - 1].velocity_body_mps;
+    const Vector3d after = moments[i].R_world_body * moments[i].velocity_body_mps;
+    positions.push_back(positions.back() + 0.5 * (moments[i].t_s - moments[i - 1].t_s) * (before + after));
   }
+  return positions;
 }
 
 }  // namespace
@@ -72,8 +73,18 @@ FlightRecord read_flight_record(const std::filesystem::path& file) {
   constexpr std::size_t least_moments = 2;
   if (record.moments.size() < least_moments)
     throw ScenarioError(fmt::format("{}: expected at least {} moments", file.string(), least_moments));
-  integrate_heights(record.moments);
+  const std::vector<Vector3d> integrated = integrated_velocity(record.moments);
+  for (std::size_t i = 0; i < integrated.size(); ++i)
+    record.moments[i].position_world.z() = integrated[i].z();
   return record;
+}
+
+double greatest_contradiction_m(const FlightRecord& record) {
+  const std::vector<Vector3d> integrated = integrated_velocity(record.moments);
+  double greatest = 0;
+  for (std::size_t i = 0; i < integrated.size(); ++i)
+    greatest = std::max(greatest, (record.moments[i].position_world - integrated[i]).head<2>().norm());
+  return greatest;
 }
 
 }  // namespace understory

@@ -34,4 +34,7 @@ struct FlightRecord {
 /// Throws ScenarioError, naming the file, where it is not such a record.
 FlightRecord read_flight_record(const std::filesystem::path& file);
 
+/// How far the recorded position strays horizontally from the integral of the recorded velocity.
+double greatest_contradiction_m(const FlightRecord& record);
+
 }  // namespace understory

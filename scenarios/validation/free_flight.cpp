@@ -1,6 +1,22 @@
 #include "scenarios/validation/free_flight.hpp"
 
+#include <cmath>
+#include <stdexcept>
+
+#include "sim/trim.hpp"
+
 namespace understory {
+AirborneStart trimmed_start(const Airframe& airframe, double airspeed_mps) {
+  const std::optional<Trim> trim = straight_trim(airframe, airspeed_mps);
+  if (!trim) throw std::logic_error("trimmed_start: no level flight at this speed");
+  const double attack = trim->angle_of_attack_rad;
+  AirborneStart start;
+  start.R_world_body = Eigen::AngleAxisd(-attack, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  start.velocity_body_mps = airspeed_mps * Eigen::Vector3d(std::cos(attack), 0, -std::sin(attack));
+  start.controls = {trim->elevon_rad, trim->elevon_rad, trim->thrust_n};
+  return start;
+}
+
 FreeFlight::FreeFlight(const std::filesystem::path& models_folder, const Airframe& airframe)
     : world_(build_world(models_folder, airframe, {}, WorldConfig{})) {}
 

@@ -16,6 +16,9 @@ struct AirborneStart {
   Controls controls;  ///< and all that is still on its way to the surfaces
 };
 
+/// Straight and level at this speed. Throws std::logic_error where the airframe cannot fly so.
+AirborneStart trimmed_start(const Airframe& airframe, double airspeed_mps);
+
 constexpr double start_altitude_m = 500;  ///< nothing is met on the way down
 
 /// An empty world of still air, for flights that begin `start_altitude_m` above the origin and meet nothing.

@@ -41,19 +41,6 @@ double text_width(const std::string& text) {
   return character_width * static_cast<double>(letters);
 }
 
-void include(AxisRange& range, double value) {
-  if (!std::isfinite(value)) return;
-  range.least = std::min(range.least, value);
-  range.greatest = std::max(range.greatest, value);
-}
-
-AxisRange padded(AxisRange range) {
-  if (range.least > range.greatest) return {0, 1};  // nothing to show
-  const double room = range.greatest > range.least ? 0.05 * (range.greatest - range.least)
-                                                   : std::max(0.5 * std::abs(range.least), 0.5);
-  return {range.least - room, range.greatest + room};
-}
-
 AxisRange covering(const LinePlot& plot, bool vertical_axis) {
   AxisRange range{HUGE_VAL, -HUGE_VAL};
   for (const Series& series : plot.series) {
@@ -65,13 +52,6 @@ AxisRange covering(const LinePlot& plot, bool vertical_axis) {
   for (const ReferenceLine& line : plot.references)
     if (line.vertical != vertical_axis) include(range, line.at);
   return padded(range);
-}
-
-double tick_step(AxisRange range, int wanted) {
-  const double rough = (range.greatest - range.least) / std::max(1, wanted);
-  const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  const double share = rough / power;
-  return power * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
 }
 
 /// One panel: where numbers lie on the paper.
@@ -121,10 +101,6 @@ class Panel {
   const char* colour(std::size_t i) const {
     const int own = plot_.series[i].colour;
     return palette[(own >= 0 ? static_cast<std::size_t>(own) : i) % palette.size()];
-  }
-
-  static int decimals(double step) {
-    return std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
   }
 
   void draw_axes(std::string& text) const {
@@ -263,14 +239,6 @@ void require_well_formed(const LinePlot& plot) {
 }
 
 }  // namespace
-
-std::vector<double> tick_positions(AxisRange range, int wanted) {
-  const double step = tick_step(range, wanted);
-  std::vector<double> ticks;
-  for (double n = std::ceil(range.least / step - 1e-9); n * step <= range.greatest + 1e-9 * step; ++n)
-    ticks.push_back(n == 0 ? 0.0 : n * step);  // no "-0"
-  return ticks;
-}
 
 std::string to_svg(const std::vector<LinePlot>& panels, int columns) {
   std::string drawn;

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/validation/plot_axis.hpp"
+
 namespace understory {
 
 enum class Mark { line, dashes, dots, line_and_dots };
@@ -27,11 +29,6 @@ struct ReferenceLine {
   bool vertical = false;
 };
 
-struct AxisRange {
-  double least = 0;
-  double greatest = 1;
-};
-
 /// Axes with ticks, series and a legend beneath. Labels carry their units. Without a range an axis covers
 /// what is drawn, and a little more.
 struct LinePlot {
@@ -44,9 +41,6 @@ struct LinePlot {
   std::optional<AxisRange> y_range = {};
   bool equal_scale = false;  ///< a metre is as long upwards as sideways: for paths
 };
-
-/// Where ticks stand on an axis: multiples of 1, 2 or 5 times a power of ten, about `wanted` of them.
-std::vector<double> tick_positions(AxisRange range, int wanted);
 
 /// The panels side by side, `columns` to a row, as one SVG document. Text is escaped; no script, no links, no
 /// fonts of its own.

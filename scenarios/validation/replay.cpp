@@ -18,7 +18,9 @@ double yaw_of(const Eigen::Matrix3d& R_world_body) {
 /// To within half a turn of zero.
 double wrapped(double angle_rad) { return std::remainder(angle_rad, 2 * std::numbers::pi); }
 
-ReplayedMoment moment_of(const Truth& truth, double t_s) {
+}  // namespace
+
+ReplayedMoment replayed_moment(const Truth& truth, double t_s) {
   ReplayedMoment moment;
   moment.t_s = t_s;
   moment.position_world = truth.T_world_body.translation() - Eigen::Vector3d(0, 0, start_altitude_m);
@@ -27,16 +29,14 @@ ReplayedMoment moment_of(const Truth& truth, double t_s) {
   return moment;
 }
 
-}  // namespace
-
 Replay replay(const FreeFlight& air, const Airframe& airframe, const FlightRecord& record) {
   Aircraft aircraft = air.begin(airframe, record.start());
-  Replay flown{moment_of(aircraft.truth(), 0)};
+  Replay flown{replayed_moment(aircraft.truth(), 0)};
   std::int64_t step = 0;
   for (std::size_t i = 0; i + 1 < record.moments.size(); ++i) {
     const double until_s = record.moments[i + 1].t_s - record.moments[0].t_s;
     for (; step < std::llround(until_s * physics_rate_hz); ++step) aircraft.step(record.moments[i].controls);
-    flown.push_back(moment_of(aircraft.truth(), record.moments[i + 1].t_s));
+    flown.push_back(replayed_moment(aircraft.truth(), record.moments[i + 1].t_s));
   }
   return flown;
 }
@@ -57,6 +57,12 @@ double rms_roll_rad(const std::vector<ReplayError>& all) {
   double sum = 0;
   for (const ReplayError& error : all) sum += error.roll_rad * error.roll_rad;
   return std::sqrt(sum / static_cast<double>(all.size()));
+}
+
+double greatest_horizontal_m(const std::vector<ReplayError>& all) {
+  double greatest = 0;
+  for (const ReplayError& error : all) greatest = std::max(greatest, error.horizontal_m);
+  return greatest;
 }
 
 double greatest_height_m(const std::vector<ReplayError>& all) {

@@ -14,6 +14,7 @@ struct ReplayedMoment {
   Eigen::Matrix3d R_world_body = Eigen::Matrix3d::Identity();
   Eigen::Vector3d velocity_body_mps = Eigen::Vector3d::Zero();
 };
+ReplayedMoment replayed_moment(const Truth& truth, double t_s);
 using Replay = std::vector<ReplayedMoment>;
 
 /// The recorded inputs flown open loop from the recorded start: one moment for each of the record's.
@@ -31,6 +32,7 @@ struct ReplayError {
 std::vector<ReplayError> errors(const Replay& flown, const FlightRecord& record);
 
 double rms_roll_rad(const std::vector<ReplayError>& all);
+double greatest_horizontal_m(const std::vector<ReplayError>& all);
 double greatest_height_m(const std::vector<ReplayError>& all);
 /// The error at the moment nearest to `t_s`.
 const ReplayError& error_at(const std::vector<ReplayError>& all, double t_s);

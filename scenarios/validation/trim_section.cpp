@@ -111,9 +111,8 @@ Section trim_section(const Airframe& airframe) {
   section.markdown =
       fmt::format(
           "Newton's method on the three longitudinal equations (`sim/trim`). Level flight reaches from "
-          "{:.2f} "
-          "m/s, where the angle of attack comes to 25 deg, to {:.2f} m/s, where the motor gives all it has; "
-          "faster only descending.\n\n",
+          "{:.2f} m/s, where the angle of attack comes to 25 deg, to {:.2f} m/s, where the motor gives all "
+          "it has; faster only descending.\n\n",
           slowest, fastest) +
       markdown_table({"airspeed (m/s)", "angle of attack (deg)", "elevons (rad)", "thrust (N)", "path"},
                      rows);
