@@ -73,7 +73,7 @@ bool equal(const cv::Mat& a, const cv::Mat& b) { return cv::norm(a, b, cv::NORM_
 
 TEST(StereoCameras, DepthOfAWallIsItsDistanceAlongTheAxisEverywhere) {
   const World world = bare_world("<geom type='box' size='.5 50 50' pos='5.5 0 0'/>");
-  StereoCameras cameras(world, paper_rig(), noiseless(), 1);
+  StereoCameras cameras(world, paper_rig(), noiseless(), {1, 1});
   const cv::Mat depth = cameras.depth(*data_at(world, {0, 0, 0}, level));
   double least = 0, most = 0;
   cv::minMaxLoc(depth, &least, &most);
@@ -84,7 +84,7 @@ TEST(StereoCameras, DepthOfAWallIsItsDistanceAlongTheAxisEverywhere) {
 TEST(StereoCameras, DepthOfTheGroundIsTheRaysOwn) {
   const World world = forest_world(false);
   const StereoRig rig = paper_rig();
-  StereoCameras cameras(world, rig, noiseless(), 1);
+  StereoCameras cameras(world, rig, noiseless(), {1, 1});
   const double height_m = 2.0, pitch_rad = 0.3;  // nose down
   const Eigen::Quaterniond attitude(Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()));
   const cv::Mat depth = cameras.depth(*data_at(world, {10, 0, height_m}, attitude));
@@ -118,7 +118,7 @@ TEST(StereoCameras, ABallAppearsWhereTheRigSays) {
     const World world =
         bare_world("<geom type='sphere' size='.12' rgba='0 0 0 1' pos='" + std::to_string(at.x()) + " " +
                    std::to_string(at.y()) + " " + std::to_string(at.z()) + "'/>");
-    StereoCameras cameras(world, rig, noiseless(), 1);
+    StereoCameras cameras(world, rig, noiseless(), {1, 1});
     const StereoFrame frame = cameras.capture(*data_at(world, {0, 0, 0}, level), 0);
     const double x = -at.y(), y = -at.z(), z = at.x();
     const Eigen::Vector2d left = dark_centroid(frame.left), right = dark_centroid(frame.right);
@@ -132,7 +132,7 @@ TEST(StereoCameras, ABallAppearsWhereTheRigSays) {
 TEST(StereoCameras, APlaneAtTheDetectionDistanceMatchesAtTheRigsDisparity) {
   const World world = forest_world(false);
   const StereoRig rig = paper_rig();
-  StereoCameras cameras(world, rig, {.noise_gray = 2}, 1);
+  StereoCameras cameras(world, rig, {.noise_gray = 2}, {1, 1});
   const StereoFrame frame = cameras.capture(*data_at(world, {10, 0, 4.81}, straight_down), 0);
   int best = 0;
   double least = std::numeric_limits<double>::max();
@@ -149,7 +149,7 @@ TEST(StereoCameras, SameSeedSameImagesOtherSeedOtherNoiseOnTheSamePicture) {
   const World world = forest_world();
   const DataPointer data = data_at(world, {0, 0, 3}, level);
   const auto pair = [&](std::uint64_t seed, double noise, int frames) {
-    StereoCameras cameras(world, paper_rig(), {.noise_gray = noise}, seed);
+    StereoCameras cameras(world, paper_rig(), {.noise_gray = noise}, {seed, seed});
     StereoFrame frame;
     for (int i = 0; i < frames; ++i) frame = cameras.capture(*data, i);
     return frame;
@@ -173,14 +173,15 @@ TEST(StereoCameras, SameSeedSameImagesOtherSeedOtherNoiseOnTheSamePicture) {
 
 TEST(StereoCameras, LensCapAndInvisibleObstaclesHideThem) {
   const World forest = forest_world(), invisible = forest_world(false);
-  StereoCameras capped(forest, paper_rig(), {.lens_cap = true, .noise_gray = 2}, 1);
+  StereoCameras capped(forest, paper_rig(), {.lens_cap = true, .noise_gray = 2}, {1, 1});
   const StereoFrame dark = capped.capture(*data_at(forest, {0, 0, 3}, level), 0);
   double most = 0;
   cv::minMaxLoc(dark.left, nullptr, &most);
   EXPECT_LT(most, 15);
   EXPECT_GT(cv::norm(dark.left, cv::NORM_L1), 0) << "noise still applies";
 
-  StereoCameras seeing(forest, paper_rig(), noiseless(), 1), blind(invisible, paper_rig(), noiseless(), 1);
+  StereoCameras seeing(forest, paper_rig(), noiseless(), {1, 1}),
+      blind(invisible, paper_rig(), noiseless(), {1, 1});
   const cv::Mat near_trees = seeing.depth(*data_at(forest, {0, 0, 3}, level))(cv::Rect(0, 0, 376, 100));
   const cv::Mat sky_only = blind.depth(*data_at(invisible, {0, 0, 3}, level))(cv::Rect(0, 0, 376, 100));
   double nearest = 0, nearest_blind = 0;
@@ -193,7 +194,7 @@ TEST(StereoCameras, LensCapAndInvisibleObstaclesHideThem) {
 TEST(StereoCameras, ChaseViewLeavesTheStereoPairAsItWas) {
   const World world = forest_world();
   const DataPointer data = data_at(world, {0, 0, 3}, level);
-  StereoCameras cameras(world, paper_rig(), noiseless(), 1);
+  StereoCameras cameras(world, paper_rig(), noiseless(), {1, 1});
   const StereoFrame before = cameras.capture(*data, 0);
   const cv::Mat view = cameras.chase_view(*data, 500, 300);
   EXPECT_EQ(view.size(), cv::Size(500, 300));
@@ -205,9 +206,9 @@ TEST(StereoCameras, ChaseViewLeavesTheStereoPairAsItWas) {
 TEST(StereoCameras, TwoPairsTakeTurnsOnOneThread) {
   const World forest = forest_world(), invisible = forest_world(false);
   const DataPointer data = data_at(forest, {0, 0, 3}, level), empty = data_at(invisible, {0, 0, 3}, level);
-  StereoCameras first(forest, paper_rig(), noiseless(), 1);
+  StereoCameras first(forest, paper_rig(), noiseless(), {1, 1});
   const StereoFrame alone = first.capture(*data, 0);
-  StereoCameras second(invisible, paper_rig(), noiseless(), 1);
+  StereoCameras second(invisible, paper_rig(), noiseless(), {1, 1});
   EXPECT_FALSE(equal(alone.left, second.capture(*empty, 0).left));
   EXPECT_TRUE(equal(alone.left, first.capture(*data, 1).left));
 }
@@ -217,7 +218,7 @@ TEST(StereoCameras, MissingLibraryIsOneLineThatNamesThePackage) {
   setenv("UNDERSTORY_OSMESA", "/nonexistent/libOSMesa.so", 1);
   std::string message;
   try {
-    StereoCameras cameras(world, paper_rig(), noiseless(), 1);
+    StereoCameras cameras(world, paper_rig(), noiseless(), {1, 1});
   } catch (const std::runtime_error& error) {
     message = error.what();
   }
