@@ -1,75 +1,15 @@
-#include "sim/stereo_cameras.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <limits>
-#include <numbers>
 #include <opencv2/core.hpp>
 #include <stdexcept>
 
+#include "tests/sim/camera_scenes.hpp"
+
 namespace understory {
 namespace {
-
-/// The paper's rig (Barry & Tedrake 2015): its principal points lie far apart. Looks along body x.
-StereoRig paper_rig() {
-  StereoRig rig;
-  rig.focal_px = 180.4;
-  rig.baseline_m = 0.353;
-  rig.center_left_x_px = 197.5;
-  rig.center_right_x_px = 105.7;
-  rig.center_y_px = 101.0;
-  rig.T_body_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  return rig;
-}
-
-/// A world of the test's own: an aircraft that can be put anywhere, and `geoms` in the drawn group.
-World bare_world(const std::string& geoms) {
-  const std::string xml =
-      "<mujoco><worldbody>" + geoms +
-      "<body name='aircraft'><freejoint name='aircraft_free'/><geom size='.1' mass='1' group='3'/></body>"
-      "</worldbody></mujoco>";
-  mjVFS files;
-  mj_defaultVFS(&files);
-  mj_makeEmptyFileVFS(&files, "bare.xml", static_cast<int>(xml.size()));
-  std::copy(xml.begin(), xml.end(), static_cast<char*>(files.filedata[0]));
-  char message[500] = "";
-  World world{ModelPointer(mj_loadXML("bare.xml", &files, message, sizeof message)), {}};
-  mj_deleteVFS(&files);
-  if (!world.model) throw std::runtime_error(message);
-  return world;
-}
-
-DataPointer data_at(const World& world, const Eigen::Vector3d& position, const Eigen::Quaterniond& attitude) {
-  DataPointer data(mj_makeData(world.model.get()));
-  const double pose[] = {position.x(), position.y(), position.z(), attitude.w(),
-                         attitude.x(), attitude.y(), attitude.z()};
-  std::copy(std::begin(pose), std::end(pose), data->qpos);
-  mj_kinematics(world.model.get(), data.get());
-  return data;
-}
-
-const Eigen::Quaterniond level = Eigen::Quaterniond::Identity();
-const Eigen::Quaterniond straight_down(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitY()));
-CameraConfig noiseless() { return {.noise_gray = 0}; }
-
-World forest_world(bool visible = true) {
-  std::vector<Obstacle> obstacles;
-  for (int i = 0; i < 12; ++i) {
-    Obstacle trunk;
-    trunk.from_world = Eigen::Vector3d(4 + 2 * i, (i % 5 - 2) * 1.7, 0);
-    trunk.to_world = trunk.from_world + Eigen::Vector3d(0, 0, 9);
-    trunk.texture_shift = 0.08 * i;
-    obstacles.push_back(trunk);
-  }
-  WorldConfig config;
-  config.obstacles_visible = visible;
-  return build_world(std::filesystem::path(UNDERSTORY_SOURCE_DIR) / "models", Airframe{}, obstacles, config);
-}
-
-bool equal(const cv::Mat& a, const cv::Mat& b) { return cv::norm(a, b, cv::NORM_INF) == 0; }
 
 TEST(StereoCameras, DepthOfAWallIsItsDistanceAlongTheAxisEverywhere) {
   const World world = bare_world("<geom type='box' size='.5 50 50' pos='5.5 0 0'/>");
@@ -95,19 +35,6 @@ TEST(StereoCameras, DepthOfTheGroundIsTheRaysOwn) {
       const double falls = -(attitude * rig.T_body_camera.linear() * ray_camera).z();
       EXPECT_NEAR(depth.at<float>(row, column), height_m / falls, 0.001) << row << ", " << column;
     }
-}
-
-/// Where a dark ball stands in a bright sky: the centroid of what it takes away.
-Eigen::Vector2d dark_centroid(const cv::Mat& image) {
-  double weight = 0, u = 0, v = 0;
-  for (int row = 0; row < image.rows; ++row)
-    for (int column = 0; column < image.cols; ++column)
-      if (const int dark = image.at<std::uint8_t>(row, column) < 120; dark != 0) {
-        weight += dark;
-        u += column;
-        v += row;
-      }
-  return weight > 0 ? Eigen::Vector2d(u / weight, v / weight) : Eigen::Vector2d(-1, -1);
 }
 
 TEST(StereoCameras, ABallAppearsWhereTheRigSays) {
