@@ -15,8 +15,24 @@ constexpr double oversampling = 1.25;
 /// Rays flatter than 63 degrees off the axis are left out: a pinhole view would need endless pixels for them.
 constexpr double steepest = 2.0;
 
-/// Inverts the distortion by iteration and keeps what distorts back to the same pixel: polynomials fold over
-/// outside the region they were fitted in, and no ray belongs to a pixel there.
+/// How far off the axis (tangent of the angle) the radial distortion still grows outward. Beyond, its
+/// polynomials fold back onto pixels that others have already: outside what they were fitted to, no ray
+/// belongs to a pixel.
+double fold_of(const std::vector<double>& distortion) {
+  std::vector<double> k = distortion;  // k1 k2 p1 p2 k3 k4 k5 k6
+  k.resize(8, 0.0);
+  double before = 0;
+  for (double r = 0.001; r < steepest; r += 0.001) {
+    const double q = r * r;
+    const double here =
+        r * (1 + q * (k[0] + q * (k[1] + q * k[4]))) / (1 + q * (k[5] + q * (k[6] + q * k[7])));
+    if (here <= before) return r;
+    before = here;
+  }
+  return steepest;
+}
+
+/// Inverts the distortion by iteration and keeps what distorts back to the same pixel.
 cv::Mat rays_of(const CameraCalibration& camera, const cv::Size& size) {
   std::vector<cv::Point2d> pixels, rays, again;
   for (int row = 0; row < size.height; ++row)
@@ -26,10 +42,9 @@ cv::Mat rays_of(const CameraCalibration& camera, const cv::Size& size) {
   std::vector<cv::Point3d> points;
   for (const cv::Point2d& ray : rays) points.emplace_back(ray.x, ray.y, 1);
   cv::projectPoints(points, cv::Vec3d(), cv::Vec3d(), camera.camera_matrix, camera.distortion, again);
-  const double none = std::numeric_limits<double>::quiet_NaN();
+  const double fold = fold_of(camera.distortion), none = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const bool holds = cv::norm(again[i] - pixels[i]) < 0.01 &&
-                       std::max(std::abs(rays[i].x), std::abs(rays[i].y)) < steepest;
+    const bool holds = cv::norm(again[i] - pixels[i]) < 0.01 && cv::norm(rays[i]) < fold;
     if (!holds) rays[i] = {none, none};
   }
   return cv::Mat(rays, true).reshape(2, size.height);
