@@ -25,7 +25,7 @@ struct CameraConfig {
   double light = 1;
   double gain = 1;  ///< of the amplifier after the pixel, 0.1 .. 64: gray levels read over gray levels seen
   /// Electrons in a pixel at gray 255 and gain 1; their number varies by its root (shot noise). 0: no such
-  /// noise. A 6 um pixel such as the original's holds some 10,000 (our assumption). 0 .. 1e6
+  /// noise. Some 10,000 in a 6 um pixel (our assumption). 0 .. 1e6
   double full_well_e = 0;
   /// n of the falloff cos^n of the angle to the optical axis, 0 .. 16: 4 for a plain lens (the cosine-fourth
   /// law), 0 for none.

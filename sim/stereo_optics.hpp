@@ -36,7 +36,7 @@ class StereoOptics {
   struct RawCamera {
     Eigen::Matrix3d R_rectified_raw;
     cv::Mat rays;                     ///< CV_64FC2: x/z, y/z of each raw pixel; NaN where there is none
-    double center_x_px, center_y_px;  /// < of the view
+    double center_x_px, center_y_px;  ///< of the view
     cv::Mat places, fractions;        ///< of the view for each raw pixel: cv::convertMaps' form
   };
   void make_views();
