@@ -8,8 +8,8 @@
 
 #include "estimation/filter.hpp"
 #include "perception/block_matching.hpp"
-#include "perception/io/rig_file.hpp"
 #include "perception/pushbroom_stereo.hpp"
+#include "perception/rectifying_detector.hpp"
 #include "planning/autopilot.hpp"
 #include "scenarios/detection_depths.hpp"
 #include "scenarios/due.hpp"
@@ -23,35 +23,30 @@
 #include "scenarios/referee.hpp"
 #include "scenarios/run_record.hpp"
 #include "scenarios/scenario_io.hpp"
+#include "scenarios/scenario_rig.hpp"
 #include "scenarios/stopwatch.hpp"
+#include "sim/frame_drops.hpp"
 #include "sim/stereo_cameras.hpp"
 
 namespace understory {
 namespace {
 
-StereoRig rig_of(const Scenario& scenario, const std::filesystem::path& models_folder) {
-  const std::filesystem::path named = models_folder / "rigs" / (scenario.rig + ".yaml");
-  const bool is_named = std::filesystem::exists(named);
-  if (!is_named && !std::filesystem::exists(scenario.rig)) {
-    throw ScenarioError(fmt::format("rig: expected a name in {} or a rig file, got {}",
-                                    named.parent_path().string(), scenario.rig));
-  }
-  try {
-    return read_rig(is_named ? named : std::filesystem::path(scenario.rig));
-  } catch (const std::runtime_error& error) {
-    throw ScenarioError(error.what());
-  }
-}
-
-std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const StereoRig& rig,
+std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const CalibratedRig& cameras,
                                               const std::vector<Obstacle>& obstacles,
                                               const TruthHistory& history) {
+  const StereoRig& rig = cameras.rig;
   switch (scenario.perception.detector) {
     case DetectorKind::pushbroom:
       check_depths(scenario.perception.pushbroom, rig, "perception.depths_m", "perception.pushbroom");
+      if (cameras.calibration)
+        return std::make_unique<PushbroomStereo>(*cameras.calibration, rig.detection_depth_m,
+                                                 scenario.perception.pushbroom);
       return std::make_unique<PushbroomStereo>(rig, scenario.perception.pushbroom);
-    case DetectorKind::block_matching:
-      return std::make_unique<BlockMatching>(rig, scenario.perception.block_matching);
+    case DetectorKind::block_matching: {
+      auto matching = std::make_unique<BlockMatching>(rig, scenario.perception.block_matching);
+      if (!cameras.calibration) return matching;
+      return std::make_unique<RectifyingDetector>(*cameras.calibration, std::move(matching));
+    }
     case DetectorKind::true_depth:
       return std::make_unique<TrueDepth>(rig, obstacles, history);
     case DetectorKind::none:
@@ -75,10 +70,11 @@ World world_of(const Scenario& scenario, const std::filesystem::path& models_fol
 }
 
 std::unique_ptr<StereoCameras> cameras_of(const Scenario& scenario, const World& world,
-                                          const StereoRig& rig) {
+                                          const CalibratedRig& rig) {
+  const CameraSeeds seeds{seed_for(scenario.sensor_seed(), "cameras"),
+                          seed_for(scenario.sensor_seed(), "camera_shot_noise")};
   try {
-    return std::make_unique<StereoCameras>(world, rig, scenario.cameras.cameras,
-                                           seed_for(scenario.sensor_seed(), "cameras"));
+    return std::make_unique<StereoCameras>(world, rig.rig, scenario.cameras.cameras, seeds, rig.calibration);
   } catch (const std::runtime_error& error) {
     throw MachineError(error.what());
   }
@@ -122,7 +118,8 @@ void prepare_run_folder(const Scenario& scenario, const std::filesystem::path& f
 
 FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   Stopwatch stopwatch;
-  const StereoRig rig = rig_of(scenario, options.models_folder);
+  const CalibratedRig calibrated = rig_of(scenario, options.models_folder);
+  const StereoRig& rig = calibrated.rig;
   if (!options.output_folder.empty()) prepare_run_folder(scenario, options.output_folder);
 
   const std::vector<Obstacle> obstacles = course_obstacles(scenario);
@@ -131,11 +128,11 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   // Oracles and the blind aircraft look at no image: rendering one would be most of their flight's cost.
   const bool looks = scenario.perception.detector == DetectorKind::pushbroom ||
                      scenario.perception.detector == DetectorKind::block_matching;
-  const auto cameras = looks || options.video ? cameras_of(scenario, world, rig) : nullptr;
+  const auto cameras = looks || options.video ? cameras_of(scenario, world, calibrated) : nullptr;
   OnboardSensors sensors(scenario);
 
   TruthHistory history;
-  const auto detector = detector_of(scenario, rig, obstacles, history);
+  const auto detector = detector_of(scenario, calibrated, obstacles, history);
   const auto state_source = state_source_of(scenario, history);
   AutopilotConfig autopilot_config = scenario.autopilot.autopilot;
   autopilot_config.resightings.depths_m = scenario.perception.pushbroom.depths_m;
@@ -143,13 +140,18 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
                       seed_for(scenario.seed, "planner"));
 
   const Due due(scenario);
-  const auto latency_ns = static_cast<std::int64_t>(scenario.cameras.latency_s * 1e9);
+  FrameDrops drops(scenario.cameras.drop_probability, seed_for(scenario.sensor_seed(), "camera_drops"));
+  const std::int64_t lag_ns = scenario.cameras.cameras.exposure_lag_ns();
+  const auto latency_ns = static_cast<std::int64_t>(scenario.cameras.latency_s * 1e9) + lag_ns;
   std::deque<StereoFrame> pending;
   Controls controls;
   Referee referee(scenario);
   RunRecord record(scenario, obstacles);
   if (cameras) record.result().renderer = cameras->renderer();
   std::optional<FlightFilm> film;
+  std::optional<Rectifier> rectifier;  // for the film only: the detector rectifies what it looks at
+  if (options.video && calibrated.calibration)
+    rectifier.emplace(*calibrated.calibration, Interpolation::nearest);
   if (options.video) film.emplace(options.output_folder, rig, *cameras, scenario.cameras.rate_hz);
 
   std::optional<Ending> ending;
@@ -158,10 +160,11 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
     history.observe(truth);
     if (options.on_truth) options.on_truth(truth);
     stopwatch.time("estimate", [&] { sensors.deliver(due, step, truth, autopilot); });
-    if (due.camera(step)) {
+    if (cameras) cameras->observe(aircraft.data(), truth.t_ns);
+    if (due.camera(step) && !drops.next()) {
       pending.push_back(
           cameras ? stopwatch.time("render", [&] { return cameras->capture(aircraft.data(), truth.t_ns); })
-                  : StereoFrame{truth.t_ns, {}, {}});
+                  : StereoFrame{truth.t_ns - lag_ns, {}, {}});
       if (!sensors.faults().pass(pending.back())) pending.pop_back();
     }
     while (!pending.empty() && truth.t_ns >= pending.front().t_ns + latency_ns) {
@@ -173,7 +176,10 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
           autopilot.map().points(), frame.t_ns,
           history.at(frame.t_ns).T_world_body * state_source->state_at(frame.t_ns).T_world_body.inverse());
       if (film)
-        stopwatch.time("film", [&] { film->observe(frame, autopilot, *state_source, aircraft.data()); });
+        stopwatch.time("film", [&] {
+          film->observe(rectifier ? rectifier->rectify(frame) : frame, autopilot, *state_source,
+                        aircraft.data());
+        });
     }
     if (due.replan(step)) stopwatch.time("replan", [&] { autopilot.replan(truth.t_ns); });
     if (due.imu(step)) controls = stopwatch.time("control", [&] { return autopilot.controls(truth.t_ns); });

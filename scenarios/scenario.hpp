@@ -92,8 +92,15 @@ struct WorldSection {
 
 struct CameraSection {
   CameraConfig cameras;
-  int rate_hz = 120;         ///< divides 1200 (Barry & Tedrake 2015: 120 Hz)
-  double latency_s = 0.008;  ///< from exposure to the stack; a parameter, never a measurement
+  int rate_hz = 120;  ///< divides 1200 (Barry & Tedrake 2015: 120 Hz)
+  /// From the end of the exposure to the stack, a parameter and never a measurement. A frame bears the middle
+  /// of its left image's exposure, cameras.exposure_s / 2 + right_delay_s earlier.
+  double latency_s = 0.008;
+  double drop_probability = 0;  ///< of a frame never to arrive, each by itself, 0 .. 1
+  /// Images come as the rig's raw cameras give them, distorted and turned, and the stack rectifies them; the
+  /// calibration is raw/NAME.xml beside the rig's file (models/rigs/raw).
+  bool raw = false;
+  double raw_unit_m = 1;  ///< of that file's translations, 0.0001 .. 1000; 0.01 for the paper's rig: cm
 };
 
 struct SensorSection {
@@ -188,6 +195,9 @@ void visit_fields(Visitor& visit, CameraSection& section) {
   visit_fields(visit, section.cameras);
   visit("rate_hz", section.rate_hz, 1, 1200);
   visit("latency_s", section.latency_s, 0.0, 0.4);
+  visit("drop_probability", section.drop_probability, 0.0, 1.0);
+  visit("raw", section.raw);
+  visit("raw_unit_m", section.raw_unit_m, 0.0001, 1000.0);
 }
 
 template <typename Visitor>

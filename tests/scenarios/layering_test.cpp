@@ -50,17 +50,11 @@ std::string folder_of(const std::string& header) {
 }
 
 /// Headers of plain types and interfaces: the _types targets.
-const std::set<std::string> types{"perception/stereo_frame.hpp",
-                                  "perception/stereo_rig.hpp",
-                                  "perception/stereo_hit.hpp",
-                                  "perception/obstacle_point.hpp",
-                                  "perception/obstacle_detector.hpp",
-                                  "estimation/samples.hpp",
-                                  "estimation/state.hpp",
-                                  "estimation/state_source.hpp",
-                                  "planning/airframe.hpp",
-                                  "planning/controls.hpp",
-                                  "planning/plan.hpp"};
+const std::set<std::string> types{
+    "perception/stereo_frame.hpp", "perception/stereo_rig.hpp",     "perception/stereo_calibration.hpp",
+    "perception/stereo_hit.hpp",   "perception/obstacle_point.hpp", "perception/obstacle_detector.hpp",
+    "estimation/samples.hpp",      "estimation/state.hpp",          "estimation/state_source.hpp",
+    "planning/airframe.hpp",       "planning/controls.hpp",         "planning/plan.hpp"};
 
 bool may_include(const Include& include) {
   const std::string& from = include.folder;

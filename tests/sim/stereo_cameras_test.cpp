@@ -1,79 +1,19 @@
-#include "sim/stereo_cameras.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <limits>
-#include <numbers>
 #include <opencv2/core.hpp>
 #include <stdexcept>
+
+#include "tests/sim/camera_scenes.hpp"
 
 namespace understory {
 namespace {
 
-/// The paper's rig (Barry & Tedrake 2015): its principal points lie far apart. Looks along body x.
-StereoRig paper_rig() {
-  StereoRig rig;
-  rig.focal_px = 180.4;
-  rig.baseline_m = 0.353;
-  rig.center_left_x_px = 197.5;
-  rig.center_right_x_px = 105.7;
-  rig.center_y_px = 101.0;
-  rig.T_body_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  return rig;
-}
-
-/// A world of the test's own: an aircraft that can be put anywhere, and `geoms` in the drawn group.
-World bare_world(const std::string& geoms) {
-  const std::string xml =
-      "<mujoco><worldbody>" + geoms +
-      "<body name='aircraft'><freejoint name='aircraft_free'/><geom size='.1' mass='1' group='3'/></body>"
-      "</worldbody></mujoco>";
-  mjVFS files;
-  mj_defaultVFS(&files);
-  mj_makeEmptyFileVFS(&files, "bare.xml", static_cast<int>(xml.size()));
-  std::copy(xml.begin(), xml.end(), static_cast<char*>(files.filedata[0]));
-  char message[500] = "";
-  World world{ModelPointer(mj_loadXML("bare.xml", &files, message, sizeof message)), {}};
-  mj_deleteVFS(&files);
-  if (!world.model) throw std::runtime_error(message);
-  return world;
-}
-
-DataPointer data_at(const World& world, const Eigen::Vector3d& position, const Eigen::Quaterniond& attitude) {
-  DataPointer data(mj_makeData(world.model.get()));
-  const double pose[] = {position.x(), position.y(), position.z(), attitude.w(),
-                         attitude.x(), attitude.y(), attitude.z()};
-  std::copy(std::begin(pose), std::end(pose), data->qpos);
-  mj_kinematics(world.model.get(), data.get());
-  return data;
-}
-
-const Eigen::Quaterniond level = Eigen::Quaterniond::Identity();
-const Eigen::Quaterniond straight_down(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitY()));
-CameraConfig noiseless() { return {.noise_gray = 0}; }
-
-World forest_world(bool visible = true) {
-  std::vector<Obstacle> obstacles;
-  for (int i = 0; i < 12; ++i) {
-    Obstacle trunk;
-    trunk.from_world = Eigen::Vector3d(4 + 2 * i, (i % 5 - 2) * 1.7, 0);
-    trunk.to_world = trunk.from_world + Eigen::Vector3d(0, 0, 9);
-    trunk.texture_shift = 0.08 * i;
-    obstacles.push_back(trunk);
-  }
-  WorldConfig config;
-  config.obstacles_visible = visible;
-  return build_world(std::filesystem::path(UNDERSTORY_SOURCE_DIR) / "models", Airframe{}, obstacles, config);
-}
-
-bool equal(const cv::Mat& a, const cv::Mat& b) { return cv::norm(a, b, cv::NORM_INF) == 0; }
-
 TEST(StereoCameras, DepthOfAWallIsItsDistanceAlongTheAxisEverywhere) {
   const World world = bare_world("<geom type='box' size='.5 50 50' pos='5.5 0 0'/>");
-  StereoCameras cameras(world, paper_rig(), noiseless(), 1);
+  StereoCameras cameras(world, paper_rig(), noiseless(), {1, 1});
   const cv::Mat depth = cameras.depth(*data_at(world, {0, 0, 0}, level));
   double least = 0, most = 0;
   cv::minMaxLoc(depth, &least, &most);
@@ -84,7 +24,7 @@ TEST(StereoCameras, DepthOfAWallIsItsDistanceAlongTheAxisEverywhere) {
 TEST(StereoCameras, DepthOfTheGroundIsTheRaysOwn) {
   const World world = forest_world(false);
   const StereoRig rig = paper_rig();
-  StereoCameras cameras(world, rig, noiseless(), 1);
+  StereoCameras cameras(world, rig, noiseless(), {1, 1});
   const double height_m = 2.0, pitch_rad = 0.3;  // nose down
   const Eigen::Quaterniond attitude(Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()));
   const cv::Mat depth = cameras.depth(*data_at(world, {10, 0, height_m}, attitude));
@@ -97,19 +37,6 @@ TEST(StereoCameras, DepthOfTheGroundIsTheRaysOwn) {
     }
 }
 
-/// Where a dark ball stands in a bright sky: the centroid of what it takes away.
-Eigen::Vector2d dark_centroid(const cv::Mat& image) {
-  double weight = 0, u = 0, v = 0;
-  for (int row = 0; row < image.rows; ++row)
-    for (int column = 0; column < image.cols; ++column)
-      if (const int dark = image.at<std::uint8_t>(row, column) < 120; dark != 0) {
-        weight += dark;
-        u += column;
-        v += row;
-      }
-  return weight > 0 ? Eigen::Vector2d(u / weight, v / weight) : Eigen::Vector2d(-1, -1);
-}
-
 TEST(StereoCameras, ABallAppearsWhereTheRigSays) {
   const StereoRig rig = paper_rig();
   // Forward, left and up of the left eye, in both eyes' fields of view.
@@ -118,7 +45,7 @@ TEST(StereoCameras, ABallAppearsWhereTheRigSays) {
     const World world =
         bare_world("<geom type='sphere' size='.12' rgba='0 0 0 1' pos='" + std::to_string(at.x()) + " " +
                    std::to_string(at.y()) + " " + std::to_string(at.z()) + "'/>");
-    StereoCameras cameras(world, rig, noiseless(), 1);
+    StereoCameras cameras(world, rig, noiseless(), {1, 1});
     const StereoFrame frame = cameras.capture(*data_at(world, {0, 0, 0}, level), 0);
     const double x = -at.y(), y = -at.z(), z = at.x();
     const Eigen::Vector2d left = dark_centroid(frame.left), right = dark_centroid(frame.right);
@@ -132,7 +59,7 @@ TEST(StereoCameras, ABallAppearsWhereTheRigSays) {
 TEST(StereoCameras, APlaneAtTheDetectionDistanceMatchesAtTheRigsDisparity) {
   const World world = forest_world(false);
   const StereoRig rig = paper_rig();
-  StereoCameras cameras(world, rig, {.noise_gray = 2}, 1);
+  StereoCameras cameras(world, rig, {.noise_gray = 2}, {1, 1});
   const StereoFrame frame = cameras.capture(*data_at(world, {10, 0, 4.81}, straight_down), 0);
   int best = 0;
   double least = std::numeric_limits<double>::max();
@@ -149,7 +76,7 @@ TEST(StereoCameras, SameSeedSameImagesOtherSeedOtherNoiseOnTheSamePicture) {
   const World world = forest_world();
   const DataPointer data = data_at(world, {0, 0, 3}, level);
   const auto pair = [&](std::uint64_t seed, double noise, int frames) {
-    StereoCameras cameras(world, paper_rig(), {.noise_gray = noise}, seed);
+    StereoCameras cameras(world, paper_rig(), {.noise_gray = noise}, {seed, seed});
     StereoFrame frame;
     for (int i = 0; i < frames; ++i) frame = cameras.capture(*data, i);
     return frame;
@@ -173,14 +100,15 @@ TEST(StereoCameras, SameSeedSameImagesOtherSeedOtherNoiseOnTheSamePicture) {
 
 TEST(StereoCameras, LensCapAndInvisibleObstaclesHideThem) {
   const World forest = forest_world(), invisible = forest_world(false);
-  StereoCameras capped(forest, paper_rig(), {.lens_cap = true, .noise_gray = 2}, 1);
+  StereoCameras capped(forest, paper_rig(), {.lens_cap = true, .noise_gray = 2}, {1, 1});
   const StereoFrame dark = capped.capture(*data_at(forest, {0, 0, 3}, level), 0);
   double most = 0;
   cv::minMaxLoc(dark.left, nullptr, &most);
   EXPECT_LT(most, 15);
   EXPECT_GT(cv::norm(dark.left, cv::NORM_L1), 0) << "noise still applies";
 
-  StereoCameras seeing(forest, paper_rig(), noiseless(), 1), blind(invisible, paper_rig(), noiseless(), 1);
+  StereoCameras seeing(forest, paper_rig(), noiseless(), {1, 1}),
+      blind(invisible, paper_rig(), noiseless(), {1, 1});
   const cv::Mat near_trees = seeing.depth(*data_at(forest, {0, 0, 3}, level))(cv::Rect(0, 0, 376, 100));
   const cv::Mat sky_only = blind.depth(*data_at(invisible, {0, 0, 3}, level))(cv::Rect(0, 0, 376, 100));
   double nearest = 0, nearest_blind = 0;
@@ -193,7 +121,7 @@ TEST(StereoCameras, LensCapAndInvisibleObstaclesHideThem) {
 TEST(StereoCameras, ChaseViewLeavesTheStereoPairAsItWas) {
   const World world = forest_world();
   const DataPointer data = data_at(world, {0, 0, 3}, level);
-  StereoCameras cameras(world, paper_rig(), noiseless(), 1);
+  StereoCameras cameras(world, paper_rig(), noiseless(), {1, 1});
   const StereoFrame before = cameras.capture(*data, 0);
   const cv::Mat view = cameras.chase_view(*data, 500, 300);
   EXPECT_EQ(view.size(), cv::Size(500, 300));
@@ -205,9 +133,9 @@ TEST(StereoCameras, ChaseViewLeavesTheStereoPairAsItWas) {
 TEST(StereoCameras, TwoPairsTakeTurnsOnOneThread) {
   const World forest = forest_world(), invisible = forest_world(false);
   const DataPointer data = data_at(forest, {0, 0, 3}, level), empty = data_at(invisible, {0, 0, 3}, level);
-  StereoCameras first(forest, paper_rig(), noiseless(), 1);
+  StereoCameras first(forest, paper_rig(), noiseless(), {1, 1});
   const StereoFrame alone = first.capture(*data, 0);
-  StereoCameras second(invisible, paper_rig(), noiseless(), 1);
+  StereoCameras second(invisible, paper_rig(), noiseless(), {1, 1});
   EXPECT_FALSE(equal(alone.left, second.capture(*empty, 0).left));
   EXPECT_TRUE(equal(alone.left, first.capture(*data, 1).left));
 }
@@ -217,7 +145,7 @@ TEST(StereoCameras, MissingLibraryIsOneLineThatNamesThePackage) {
   setenv("UNDERSTORY_OSMESA", "/nonexistent/libOSMesa.so", 1);
   std::string message;
   try {
-    StereoCameras cameras(world, paper_rig(), noiseless(), 1);
+    StereoCameras cameras(world, paper_rig(), noiseless(), {1, 1});
   } catch (const std::runtime_error& error) {
     message = error.what();
   }

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <random>
+
+namespace understory {
+
+/// Frames lost on the way, each by itself with the same probability; at 0 nothing is drawn.
+class FrameDrops {
+ public:
+  FrameDrops(double probability, std::uint64_t seed) : probability_(probability), generator_(seed) {}
+  /// Whether the next frame is lost.
+  bool next() { return probability_ > 0 && std::bernoulli_distribution(probability_)(generator_); }
+
+ private:
+  double probability_;
+  std::mt19937_64 generator_;
+};
+
+}  // namespace understory
