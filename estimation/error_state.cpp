@@ -17,6 +17,7 @@ void inject(State& state, const ErrorVector& error, FilterModel model) {
   state.wind_world_mps += error.segment<2>(wind_block);
   state.gust_world_mps += error.segment<2>(gust_block);
   state.pitot_bias_mps += error[pitot_bias_block];
+  state.barometer_offset_m += error[barometer_offset_block];
 }
 
 }  // namespace understory

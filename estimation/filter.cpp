@@ -32,7 +32,7 @@ State starting_state(const FilterConfig& config) {
       Eigen::Vector3d::Constant(prior(extra.accelerometer_bias, extra.accelerometer_bias_sigma_mps2)),
       Eigen::Vector2d::Constant(prior(extra.wind, extra.wind_sigma_mps)),
       Eigen::Vector2d::Constant(prior(extra.gust, extra.gust_sigma_mps)),
-      prior(extra.pitot_bias, extra.pitot_bias_sigma_mps);
+      prior(extra.pitot_bias, extra.pitot_bias_sigma_mps), config.altitude.offset_sigma_m;
   state.covariance = sigma.cwiseAbs2().asDiagonal();
   return state;
 }
@@ -62,7 +62,6 @@ Filter::Filter(const FilterConfig& config)
       state_(starting_state(config)),
       history_(history_length_ns),
       launch_detector_(config.rest.launch_threshold_mps2),
-      barometer_offset_(config.altitude.offset_sigma_m, config.altitude.noise_m),
       altitude_drift_(config.altitude) {
   const DistrustConfig& distrust = config.distrust;
   const auto gate = [&](int degrees) {
@@ -146,6 +145,7 @@ ProcessNoise Filter::process_noise(double dt_s) const {
   if (extra.accelerometer_bias) noise.accelerometer_bias_walk_rthz = extra.accelerometer_bias_walk_rthz;
   if (extra.wind) noise.wind_walk_rthz = extra.wind_walk_rthz;
   if (extra.pitot_bias) noise.pitot_bias_walk_rthz = extra.pitot_bias_walk_rthz;
+  noise.barometer_offset_walk_m_rts = config_.altitude.offset_walk_m_rts;
   if (extra.gust) noise.gust_sigma_mps = extra.gust_sigma_mps;
   noise.gust_time_s = extra.gust_length_m / std::max(state_.velocity_body_mps.norm(), 1.0);
   if (dt_s > config_.distrust.imu_gap_s) {
@@ -197,11 +197,11 @@ void Filter::launch(std::int64_t t_ns) {
   launch_t_ns_ = t_ns;
   at_rest_ = false;
   const RestConfig& rest = config_.rest;
-  // What no length of rest reveals: an accelerometer bias, which passed for tilt, and the moment of firing.
-  const double tilt = rest.accelerometer_bias_mps2 / config_.gravity_mps2;
+  // What no length of rest reveals: an accelerometer bias, which passed for tilt (where it is a state, the
+  // two are known to go together), and the moment of firing.
+  const double tilt =
+      config_.states.accelerometer_bias ? 0 : rest.accelerometer_bias_mps2 / config_.gravity_mps2;
   state_.covariance.diagonal().segment<2>(attitude_block).array() += tilt * tilt;
-  // Heights count from the barometer's zero from now on: what is not known of its offset is not known of z.
-  state_.covariance(position_block + 2, position_block + 2) += barometer_offset_.variance_m2();
   state_.covariance(velocity_block, velocity_block) +=
       rest.launch_speed_sigma_mps * rest.launch_speed_sigma_mps;
 }
@@ -230,15 +230,12 @@ void Filter::on(const PitotSample& sample) {
 
 void Filter::on(const BarometerSample& sample) {
   if (!std::isfinite(sample.altitude_m)) return;
-  if (!launched()) {
-    if (at_rest_) barometer_offset_.observe(sample.altitude_m - config_.start.position_world_m.z());
-    return;
-  }
-  if (!fuse(Aid::altitude, altitude(state_, sample, barometer_offset_.value_m(), config_.altitude),
-            sample.t_ns))
-    return;
-  altitude_drift_.observe(sample.altitude_m - barometer_offset_.value_m() -
-                          state_.T_world_body.translation().z());
+  if (!launched() && !at_rest_) return;
+  if (!fuse(Aid::altitude, altitude(state_, sample, config_.altitude), sample.t_ns)) return;
+  // The offset that was found at rest; what the filter makes of it in flight is entangled with the drift.
+  if (!launched()) resting_offset_m_ = state_.barometer_offset_m;
+  if (launched())
+    altitude_drift_.observe(sample.altitude_m - resting_offset_m_ - state_.T_world_body.translation().z());
   state_.altitude_m = state_.T_world_body.translation().z() + altitude_drift_.value_m();
   history_.record(state_);
 }

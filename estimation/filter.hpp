@@ -69,7 +69,7 @@ class Filter : public StateSource {
   std::optional<std::int64_t> launch_t_ns_;
   std::int64_t imu_gaps_ = 0;
   LaunchDetector launch_detector_;
-  BarometerOffset barometer_offset_;
+  double resting_offset_m_ = 0;
   AltitudeDrift altitude_drift_;
   std::vector<Gate> gates_;  ///< one for each Aid
 };

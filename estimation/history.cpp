@@ -65,6 +65,8 @@ State interpolated(const State& from, const State& to, double fraction) {
   state.wind_world_mps = between(from.wind_world_mps, to.wind_world_mps);
   state.gust_world_mps = between(from.gust_world_mps, to.gust_world_mps);
   state.pitot_bias_mps = from.pitot_bias_mps + fraction * (to.pitot_bias_mps - from.pitot_bias_mps);
+  state.barometer_offset_m =
+      from.barometer_offset_m + fraction * (to.barometer_offset_m - from.barometer_offset_m);
   state.altitude_m = from.altitude_m + fraction * (to.altitude_m - from.altitude_m);
   state.inertial_velocity_world_mps =
       between(from.inertial_velocity_world_mps, to.inertial_velocity_world_mps);

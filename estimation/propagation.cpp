@@ -83,6 +83,7 @@ void propagate(ErrorCovariance& covariance, const StepDerivatives& by, const Pro
   add(wind_block, 2, variance(noise.wind_walk_rthz));
   add(gust_block, 2, (1 - kept * kept) * noise.gust_sigma_mps * noise.gust_sigma_mps);
   add(pitot_bias_block, 1, variance(noise.pitot_bias_walk_rthz));
+  add(barometer_offset_block, 1, variance(noise.barometer_offset_walk_m_rts));
 }
 
 }  // namespace understory

@@ -24,6 +24,7 @@ struct ProcessNoise {
   double accelerometer_bias_walk_rthz = 0;  ///< m/s^3/sqrt(Hz)
   double wind_walk_rthz = 0;                ///< m/s^2/sqrt(Hz)
   double pitot_bias_walk_rthz = 0;          ///< m/s^2/sqrt(Hz)
+  double barometer_offset_walk_m_rts = 0;   ///< m/sqrt(s)
   double gust_sigma_mps = 0;                ///< that a gust tends to, per axis
   double gust_time_s = 1;                   ///< its time constant
 };

@@ -33,8 +33,9 @@ Measurement<3> gravity_direction(const State& state, const Eigen::Vector3d& spec
   const Eigen::Vector3d up_body =
       state.T_world_body.linear().transpose() * Eigen::Vector3d(0, 0, gravity_mps2);
   Measurement<3> measurement;
-  measurement.innovation = specific_force_body_mps2 - up_body;
+  measurement.innovation = specific_force_body_mps2 - state.accelerometer_bias_mps2 - up_body;
   measurement.jacobian.middleCols<3>(attitude_block) = so3::skew(up_body);
+  measurement.jacobian.middleCols<3>(accelerometer_bias_block).setIdentity();
   measurement.noise *= config.force_sigma_mps2 * config.force_sigma_mps2;
   return measurement;
 }

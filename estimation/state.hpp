@@ -5,8 +5,9 @@
 
 namespace understory {
 
-/// The filter's error states: twelve of motion and gyro, eight more of which each kind is a switch (its rows
-/// and columns are exactly zero where it is off). First row of each block, in the order of State::covariance.
+/// The filter's error states: twelve of motion and gyro, then the barometer's offset and eight of which each
+/// kind is a switch (its rows and columns are exactly zero where it is off). First row of each block, in the
+/// order of State::covariance.
 enum ErrorBlock {
   attitude_block = 0,             ///< body-frame rotation vector, rad
   velocity_block = 3,             ///< over ground, body axes, m/s
@@ -16,7 +17,8 @@ enum ErrorBlock {
   wind_block = 15,                ///< world x and y, m/s: what lasts
   gust_block = 17,                ///< world x and y, m/s: what passes within some tens of metres
   pitot_bias_block = 19,          ///< m/s
-  error_states = 20
+  barometer_offset_block = 20,    ///< m
+  error_states = 21
 };
 
 using ErrorVector = Eigen::Matrix<double, error_states, 1>;
@@ -37,6 +39,7 @@ struct State {
   Eigen::Vector2d wind_world_mps = Eigen::Vector2d::Zero();  ///< the air's velocity, the gust not included
   Eigen::Vector2d gust_world_mps = Eigen::Vector2d::Zero();
   double pitot_bias_mps = 0;
+  double barometer_offset_m = 0;  ///< what the barometer reads too much
   double altitude_m = 0;  ///< above the launch point's ground: the odometry's z with its drift taken out
   ErrorCovariance covariance = ErrorCovariance::Zero();  ///< order of ErrorBlock
   /// Dead reckoning by inertial sensors alone, world axes: its increments compare what a late measurement

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "perception/io/rig_file.hpp"
 #include "scenarios/fly.hpp"
 #include "scenarios/scenario_io.hpp"
+#include "scenarios/scenario_rig.hpp"
 
 namespace understory {
 
@@ -13,7 +13,7 @@ RecordedFlight recorded_flight(const Scenario& scenario, const std::filesystem::
   flight.scenario = scenario;
   flight.scenario.perception.detector = DetectorKind::true_depth;
   flight.scenario.estimation.source = StateKind::truth;
-  flight.rig = read_rig(models_folder / "rigs" / (scenario.rig + ".yaml"));
+  flight.rig = rig_of(flight.scenario, models_folder).rig;
   flight.obstacles = course_obstacles(flight.scenario);
   FlyOptions options;
   options.models_folder = models_folder;

@@ -32,6 +32,7 @@ State somewhere() {
   state.wind_world_mps = Eigen::Vector2d(2.5, -1.5);
   state.gust_world_mps = Eigen::Vector2d(-0.5, 0.8);
   state.pitot_bias_mps = 0.3;
+  state.barometer_offset_m = -0.2;
   state.inertial_velocity_world_mps = Eigen::Vector3d(9, -2, 1);
   state.inertial_position_world_m = Eigen::Vector3d(2, 1, 3);
   return state;
@@ -68,7 +69,7 @@ TEST_P(EitherModel, OfTheMeasurements) {
   const MagnetometerSample magnetometer{
       0, somewhere().T_world_body.linear().transpose() * Eigen::Vector3d(0, 19, -44)};
   expect_jacobian<1>([&](const State& s) { return airspeed(s, pitot, {}); }, model);
-  expect_jacobian<1>([&](const State& s) { return altitude(s, barometer, 0.1, {}); }, model);
+  expect_jacobian<1>([&](const State& s) { return altitude(s, barometer, {}); }, model);
   expect_jacobian<1>([&](const State& s) { return heading(s, magnetometer, {}); }, model);
   expect_jacobian<1>([&](const State& s) { return sideslip(s, -1.0, {}, model); }, model);
   SideslipConfig zero;
@@ -147,7 +148,7 @@ TEST_P(EitherModel, TheCovarianceStepIsTheFullProduct) {
   const StepDerivatives by = advance(state, step, 9.81, model);
   const ErrorCovariance root = ErrorCovariance::Random();
   const ErrorCovariance before = root * root.transpose();
-  ProcessNoise noise{0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 2.0};
+  ProcessNoise noise{0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 0.7, 2.0};
   const double dt = step.dt_s, kept = std::exp(-dt / noise.gust_time_s);
 
   ErrorCovariance F = ErrorCovariance::Identity();
@@ -163,9 +164,10 @@ TEST_P(EitherModel, TheCovarianceStepIsTheFullProduct) {
   walk.topRows<motion_rows>() = 0.5 * dt * rate_sign(model) * by.rotation;
   walk.middleRows<3>(rate_block).setIdentity();
   expected += noise.rate_block_rthz * noise.rate_block_rthz * dt * walk * walk.transpose();
-  const double added[] = {0.16 * dt, 0.25 * dt, (1 - kept * kept) * 0.49, 0.36 * dt};
-  const int blocks[] = {accelerometer_bias_block, wind_block, gust_block, pitot_bias_block, error_states};
-  for (int i = 0; i < 4; ++i)
+  const double added[] = {0.16 * dt, 0.25 * dt, (1 - kept * kept) * 0.49, 0.36 * dt, 0.64 * dt};
+  const int blocks[] = {accelerometer_bias_block, wind_block,   gust_block, pitot_bias_block,
+                        barometer_offset_block,   error_states};
+  for (int i = 0; i < 5; ++i)
     expected.diagonal().segment(blocks[i], blocks[i + 1] - blocks[i]).array() += added[i];
 
   ErrorCovariance stepped = before;

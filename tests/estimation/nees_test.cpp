@@ -30,6 +30,7 @@ Modelled modelled() {
   config.gyro_noise_radps_rthz = set.errors.gyro_noise * std::sqrt(0.005);
   config.accelerometer_noise_mps2_rthz = set.errors.force_noise * std::sqrt(0.005);
   config.gyro_bias_walk_rthz = 0;
+  config.altitude.offset_sigma_m = config.altitude.offset_walk_m_rts = 0;
   config.airspeed.sigma_mps = set.errors.pitot_noise;
   config.altitude.sigma_m = set.errors.barometer_noise;
   config.heading.sigma_rad = set.errors.field_noise / (48 * std::cos(67 * M_PI / 180));
@@ -125,6 +126,28 @@ TEST(Nees, WithTheForcesAsMeasurementsOnlyTheVelocityIsCautious) {
     expect_block(nees.position, "position");
     expect_block(nees.bias, "gyro bias");
   }
+}
+
+/// The same with biases of accelerometer and pitot, each a state.
+TEST(Nees, WithBiasesAsStatesIsChiSquareToo) {
+  Modelled set = modelled();
+  set.errors.force_bias = 0.05;
+  set.errors.pitot_bias = 0.1;
+  set.config.states.accelerometer_bias = true;
+  set.config.states.accelerometer_bias_sigma_mps2 = 0.05;
+  set.config.states.accelerometer_bias_walk_rthz = 0;
+  set.config.states.pitot_bias = true;
+  set.config.states.pitot_bias_sigma_mps = 0.1;
+  set.config.states.pitot_bias_walk_rthz = 0;
+  set.config.sideslip.model = SideslipModel::off;
+  set.config.angle_of_attack.enabled = false;
+  const Nees nees = average_nees(set);
+  EXPECT_GT(nees.all, all_least);
+  EXPECT_LT(nees.all, all_most);
+  expect_block(nees.attitude, "attitude");
+  expect_block(nees.velocity, "velocity");
+  expect_block(nees.position, "position");
+  expect_block(nees.bias, "gyro bias");
 }
 
 }  // namespace
