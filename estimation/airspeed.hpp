@@ -9,9 +9,8 @@ namespace understory {
 struct AirspeedConfig {
   double usable_mps =
       6.0;  ///< m/s, 0..20: slower readings are ignored (FACTS section 4: poor below flight speed)
-  /// m/s, 0.01..10. A 1 psi sensor's 1 to 2 Pa are 0.1 m/s at 12 m/s, half of it a bias that lasts the
-  /// flight, so that each of the 50 readings a second counts for less than its noise says.
-  double sigma_mps = 0.35;
+  /// m/s, 0.01..10: of one reading. 1.5 Pa of noise at 12 m/s are 0.11 m/s; the bias is a state.
+  double sigma_mps = 0.15;
 };
 
 template <typename Visitor>

@@ -8,9 +8,7 @@ namespace understory {
 /// The barometer measures world z and an offset, a state, which it shows on the catapult, where the altitude
 /// is known.
 struct AltitudeConfig {
-  /// m, 0.01..100. Noise is 0.3 m; a slow error of 0.2 m comes on top and does not average out, and the gains
-  /// must stay small for the map's sake.
-  double sigma_m = 2.0;
+  double sigma_m = 0.4;             ///< m, 0.01..100: of one reading; a consumer barometer's noise is 0.3 m
   double offset_sigma_m = 0.3;      ///< m, 0..10: spread of the offset before the readings at rest
   double offset_walk_m_rts = 0.09;  ///< m/sqrt(s), 0..10: weather, heat and wash: 0.5 m in a minute
   double noise_m = 0.3;           ///< m, 0.01..100: of one reading about its slow error (consumer barometer)

@@ -270,10 +270,25 @@ bool Filter::fuse(Aid aid, const Measurement<M>& measurement, std::int64_t t_ns)
   return true;
 }
 
+FilterConfig windy_filter() {
+  FilterConfig config;
+  config.states.wind = config.states.gust = true;
+  config.accelerometer_noise_mps2_rthz = 0.007;
+  config.airspeed.sigma_mps = 0.12;
+  config.altitude.sigma_m = 0.35;
+  config.sideslip.sigma_mps2 = 0.07;
+  config.sideslip.model_error = 0.1;
+  config.angle_of_attack.sigma_mps2 = 20;  // vertical gusts, no state, reach the wing's force too
+  return config;
+}
+
 FilterConfig original_filter() {
   constexpr double degree = M_PI / 180;
   FilterConfig config;
   config.model = FilterModel::angular_rate;
+  config.states = {};
+  config.states.accelerometer_bias = config.states.pitot_bias = false;
+  config.rest.launch_speed_sigma_mps = 0.2;
   config.start.tilt_sigma_rad = config.start.yaw_sigma_rad = 3 * degree;
   config.start.velocity_sigma_mps = 0.15;
   config.start.horizontal_sigma_m = 0.5;

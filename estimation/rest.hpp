@@ -22,8 +22,9 @@ struct RestConfig {
   double launch_threshold_mps2 =
       30.0;  ///< m/s^2, 5..150: a_x of two samples running. The original waited for 45
              ///< (FACTS section 3); a 1.5 m rail to 12 m/s gives 48 and a share of gravity
-  double launch_speed_sigma_mps =
-      0.2;  ///< m/s, 0..5: when in the sample interval the catapult fired is unknown
+  /// m/s, 0..5: when in the sample interval the catapult fired, and when it let go, is unknown: each 48 m/s^2
+  /// over 5 ms, evenly spread.
+  double launch_speed_sigma_mps = 0.1;
 };
 
 template <typename Visitor>

@@ -26,8 +26,7 @@ struct SideslipConfig {
   double mass_kg = 0.648412;           ///< kg, 0.05..20
   Eigen::Vector3d winglets_body_m{-0.08, 0.0,
                                   0.081954};  ///< m, -5..5: mean position (y cancels between the two)
-  double sigma_mps2 =
-      0.5;  ///< m/s^2, 0.01..50: noise 0.05 and bias 0.05, many samples of which share one error
+  double sigma_mps2 = 0.2;                    ///< m/s^2, 0.01..50: noise 0.05, and what the plates leave out
   double model_error =
       0.15;  ///< fraction of the force, 0..1 (FACTS section 4: 15 % wrong costs about 0.16 m)
   double zero_sigma_mps =

@@ -34,7 +34,7 @@ enum class Course { forest, goalposts, clear };
 enum class DetectorKind { pushbroom, block_matching, true_depth, none };
 enum class StateKind { filter, truth };
 enum class RulePreset { robust, paper };      ///< which numbers perception.pushbroom starts from
-enum class FilterPreset { tuned, original };  ///< which numbers estimation.filter starts from
+enum class FilterPreset { tuned, original, windy };  ///< which numbers estimation.filter starts from
 
 inline constexpr std::array<std::pair<std::string_view, Course>, 3> course_names{
     {{"forest", Course::forest}, {"goalposts", Course::goalposts}, {"clear", Course::clear}}};
@@ -47,8 +47,8 @@ inline constexpr std::array<std::pair<std::string_view, StateKind>, 2> state_nam
     {{"filter", StateKind::filter}, {"truth", StateKind::truth}}};
 inline constexpr std::array<std::pair<std::string_view, RulePreset>, 2> rule_names{
     {{"robust", RulePreset::robust}, {"paper", RulePreset::paper}}};
-inline constexpr std::array<std::pair<std::string_view, FilterPreset>, 2> filter_preset_names{
-    {{"tuned", FilterPreset::tuned}, {"original", FilterPreset::original}}};
+inline constexpr std::array<std::pair<std::string_view, FilterPreset>, 3> filter_preset_names{
+    {{"tuned", FilterPreset::tuned}, {"original", FilterPreset::original}, {"windy", FilterPreset::windy}}};
 inline constexpr std::array<std::pair<std::string_view, SensorGrade>, 4> sensor_grade_names{
     {{"ideal", SensorGrade::ideal},
      {"plain", SensorGrade::plain},

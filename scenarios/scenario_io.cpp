@@ -86,6 +86,8 @@ Scenario compose(const Sources& sources, const std::string& name) {
   scenario.sensors.sensors = sensors_of_grade(first.sensors.grade);
   if (first.perception.rule == RulePreset::paper) scenario.perception.pushbroom = paper_rule();
   if (first.estimation.preset == FilterPreset::original) scenario.estimation.filter = original_filter();
+  if (first.estimation.preset == FilterPreset::windy) scenario.estimation.filter = windy_filter();
+  scenario.estimation.filter.distrust.imu_gap_s = 1.5 / first.sensors.sensors.imu_rate_hz;
   scenario.estimation.filter.start.position_world_m = rail_start_world(first.launch);
   scenario.estimation.filter.start.pitch_rad = first.launch.climb_angle_rad;
   read_all(sources, scenario);

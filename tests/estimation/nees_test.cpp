@@ -27,6 +27,7 @@ Modelled modelled() {
   set.errors.field_noise = 0.5;
   FilterConfig& config = set.config;
   config.start.in_flight = true;
+  config.states.accelerometer_bias = config.states.pitot_bias = false;
   config.gyro_noise_radps_rthz = set.errors.gyro_noise * std::sqrt(0.005);
   config.accelerometer_noise_mps2_rthz = set.errors.force_noise * std::sqrt(0.005);
   config.gyro_bias_walk_rthz = 0;
