@@ -1,5 +1,7 @@
 #include "estimation/airspeed.hpp"
 
+#include <algorithm>
+
 #include "estimation/air_velocity.hpp"
 
 namespace understory {
@@ -10,7 +12,9 @@ Measurement<1> airspeed(const State& state, const PitotSample& sample, const Air
   measurement.innovation[0] = sample.airspeed_mps - state.pitot_bias_mps - air.body_mps.x();
   measurement.jacobian = air.jacobian.row(0);
   measurement.jacobian(0, pitot_bias_block) = 1;
-  measurement.noise(0, 0) = config.sigma_mps * config.sigma_mps;
+  constexpr double reference_mps = 12;
+  const double sigma_mps = config.sigma_mps * reference_mps / std::max(air.body_mps.x(), config.usable_mps);
+  measurement.noise(0, 0) = sigma_mps * sigma_mps;
   return measurement;
 }
 

@@ -9,7 +9,8 @@ namespace understory {
 struct AirspeedConfig {
   double usable_mps =
       6.0;  ///< m/s, 0..20: slower readings are ignored (FACTS section 4: poor below flight speed)
-  /// m/s, 0.01..10: of one reading. 1.5 Pa of noise at 12 m/s are 0.11 m/s; the bias is a state.
+  /// m/s, 0.01..10: of one reading at 12 m/s; pressure grows with the square of the speed, so that slower
+  /// readings are worse by as much. 1.5 Pa of noise are 0.11 m/s; the bias is a state.
   double sigma_mps = 0.15;
 };
 

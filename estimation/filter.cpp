@@ -273,12 +273,12 @@ bool Filter::fuse(Aid aid, const Measurement<M>& measurement, std::int64_t t_ns)
 FilterConfig windy_filter() {
   FilterConfig config;
   config.states.wind = config.states.gust = true;
-  config.accelerometer_noise_mps2_rthz = 0.007;
+  config.accelerometer_noise_mps2_rthz = 0.005;
   config.airspeed.sigma_mps = 0.12;
-  config.altitude.sigma_m = 0.35;
-  config.sideslip.sigma_mps2 = 0.07;
-  config.sideslip.model_error = 0.1;
-  config.angle_of_attack.sigma_mps2 = 20;  // vertical gusts, no state, reach the wing's force too
+  config.altitude.sigma_m = 0.31;
+  config.sideslip.sigma_mps2 = 0.05;
+  config.sideslip.model_error = 0.05;
+  config.angle_of_attack.sigma_mps2 = 8;  // vertical gusts, no state, reach the wing's force too
   return config;
 }
 

@@ -36,26 +36,20 @@ class Sight {
   double depth_m_ = 0;
 };
 
-/// Sees at every depth, one latency late, and tells the filter what it saw again.
+/// Tells the filter of what was seen again, one latency late.
 class SightingAgain {
  public:
-  SightingAgain(const RecordedFlight& flight, const TrialConfig& config, const TruthHistory& history)
-      : rig_(flight.rig),
+  SightingAgain(const RecordedFlight& flight, const TrialConfig& config)
+      : seen_(config.sightings),
+        T_body_camera_(flight.rig.T_body_camera),
         latency_ns_(std::llround(flight.scenario.cameras.latency_s * 1e9)),
-        resightings_(known(config)) {
-    for (const double depth_m : config.depths_m)
-      sights_.emplace_back(flight.rig, depth_m, flight.obstacles, history);
-    period_steps_ = physics_rate_hz / flight.scenario.cameras.rate_hz;
-  }
-  void step(std::int64_t step, std::int64_t t_ns, Filter& filter) {
-    if (sights_.size() < 2) return;
-    if (step % period_steps_ == 0) exposed_.push_back(t_ns);
-    while (!exposed_.empty() && t_ns >= exposed_.front() + latency_ns_) {
-      const std::int64_t image_ns = exposed_.front();
-      exposed_.pop_front();
-      hits_.clear();
-      for (Sight& sight : sights_) sight.see(image_ns, hits_);
-      resightings_.insert(hits_, filter.state_at(image_ns).T_world_body * rig_.T_body_camera, image_ns);
+        resightings_(known(config)) {}
+  void step(std::int64_t t_ns, Filter& filter) {
+    if (seen_ == nullptr) return;
+    for (; next_ < seen_->t_ns.size() && t_ns >= seen_->t_ns[next_] + latency_ns_; ++next_) {
+      const std::int64_t image_ns = seen_->t_ns[next_];
+      resightings_.insert(seen_->hits[next_], filter.state_at(image_ns).T_world_body * T_body_camera_,
+                          image_ns);
       for (const Resighting& again : resightings_.completed())
         filter.on(
             ResightingSample{again.t_ns, again.earlier_ns, again.discrepancy_world_m, again.covariance_m2});
@@ -65,19 +59,50 @@ class SightingAgain {
  private:
   static ResightingsConfig known(const TrialConfig& config) {
     ResightingsConfig resightings = config.resightings;
-    resightings.depths_m = config.depths_m;
+    if (config.sightings != nullptr) resightings.depths_m = config.sightings->depths_m;
     return resightings;
   }
-  StereoRig rig_;
+  const Sightings* seen_;
+  Eigen::Isometry3d T_body_camera_;
   std::int64_t latency_ns_;
-  std::int64_t period_steps_ = 10;
-  std::deque<Sight> sights_;
-  std::deque<std::int64_t> exposed_;
-  std::vector<StereoHit> hits_;
+  std::size_t next_ = 0;
   Resightings resightings_;
 };
 
+/// See TrialConfig::ground_velocity_unknown.
+FilterConfig woken_at(const Truth& truth, FilterConfig filter) {
+  const Eigen::Matrix3d R = truth.T_world_body.linear();
+  StartConfig& start = filter.start;
+  start.in_flight = true;
+  start.position_world_m = truth.T_world_body.translation();
+  start.yaw_rad = std::atan2(R(1, 0), R(0, 0));
+  start.pitch_rad = std::asin(R(2, 0));
+  start.roll_rad = std::atan2(R(2, 1), R(2, 2));
+  start.velocity_body_mps = R.transpose() * (truth.velocity_world_mps - truth.wind_world_mps);
+  start.velocity_sigma_mps = 3.0;
+  return filter;
+}
+
 }  // namespace
+
+Sightings sightings(const RecordedFlight& flight, const std::vector<double>& depths_m) {
+  Sightings seen;
+  TruthHistory history;
+  std::deque<Sight> sights;
+  for (const double depth_m : depths_m) {
+    sights.emplace_back(flight.rig, depth_m, flight.obstacles, history);
+    seen.depths_m.push_back(sights.back().depth_m());
+  }
+  const auto period = static_cast<std::size_t>(physics_rate_hz / flight.scenario.cameras.rate_hz);
+  for (std::size_t step = 0; step < flight.truths.size(); ++step) {
+    history.observe(flight.truths[step]);
+    if (step % period != 0) continue;
+    seen.t_ns.push_back(flight.truths[step].t_ns);
+    seen.hits.emplace_back();
+    for (Sight& sight : sights) sight.see(seen.t_ns.back(), seen.hits.back());
+  }
+  return seen;
+}
 
 std::vector<TrialMoment> run_trial(const RecordedFlight& flight, const TrialConfig& config) {
   Scenario scenario = flight.scenario;
@@ -86,18 +111,19 @@ std::vector<TrialMoment> run_trial(const RecordedFlight& flight, const TrialConf
   scenario.faults = config.faults;
   OnboardSensors sensors(scenario);
   const Due due(scenario);
-  TruthHistory history;
-  Filter filter(config.filter);
-  SightingAgain sighting(flight, config, history);
+  const std::size_t first =
+      config.ground_velocity_unknown ? static_cast<std::size_t>(flight.release_step) : std::size_t{0};
+  Filter filter(config.ground_velocity_unknown ? woken_at(flight.truths.at(first), config.filter)
+                                               : config.filter);
+  SightingAgain sighting(flight, config);
   std::vector<TrialMoment> moments;
   std::array<double, aid_count> seen{};
   seen.fill(std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < flight.truths.size(); ++i) {
+  for (std::size_t i = first; i < flight.truths.size(); ++i) {
     const auto step = static_cast<std::int64_t>(i);
     const Truth& truth = flight.truths[i];
-    history.observe(truth);
     sensors.deliver(due, step, truth, filter);
-    sighting.step(step, truth.t_ns, filter);
+    sighting.step(truth.t_ns, filter);
     if (!due.imu(step)) continue;
     TrialMoment& moment = moments.emplace_back();
     moment.truth = truth;

@@ -9,16 +9,28 @@
 
 namespace understory {
 
+/// What a pushbroom with several depths sees along a flight, frame by frame: every block of a trunk that
+/// truly lies at a depth, put at the whole disparity's. Only the truth decides it, so one serves many trials.
+struct Sightings {
+  std::vector<double> depths_m;
+  std::vector<std::int64_t> t_ns;  ///< of the frames
+  std::vector<std::vector<StereoHit>> hits;
+};
+
+Sightings sightings(const RecordedFlight& flight, const std::vector<double>& depths_m);
+
 /// What an estimator is given, beside the flight.
 struct TrialConfig {
   FilterConfig filter;
   SensorsConfig sensors;
   std::vector<FaultConfig> faults;
   std::uint64_t sensor_seed = 1;
-  /// Depths of a pushbroom that sees every trunk in front of it, each at the whole disparity's depth; with
-  /// two or more and `resightings` on, the filter is told of obstacles seen again.
-  std::vector<double> depths_m;
+  /// Where given, and `resightings` on, the filter is told of obstacles seen again, one latency late.
+  const Sightings* sightings = nullptr;
   ResightingsConfig resightings;
+  /// The filter wakes up at the release, knowing pose and airspeed and nothing of the ground's: it takes the
+  /// wind for zero, to within 3 m/s.
+  bool ground_velocity_unknown = false;
 };
 
 /// One moment of a trial, at the IMU's rate.
