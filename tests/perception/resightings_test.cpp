@@ -69,7 +69,7 @@ TEST(Resightings, WithPerfectOdometryMissByNothing) {
 
 TEST(Resightings, MissByTheVelocityErrorTimesTheInterval) {
   const Eigen::Vector2d still = fly({}, two_depths()).at(0).discrepancy_world_m;
-  for (const Eigen::Vector2d error :
+  for (const Eigen::Vector2d& error :
        {Eigen::Vector2d(1.2, 0), Eigen::Vector2d(-1.2, 0), Eigen::Vector2d(0.4, -0.9)}) {
     Course course;
     course.velocity_error_mps = error;
