@@ -37,22 +37,39 @@ enum class FrameGain {
 /// vector.
 void inject(State& state, const ErrorVector& error, FilterModel model);
 
-/// Squared innovation in units of its predicted spread: chi-square with M degrees of freedom where all is
-/// well.
+/// A measurement weighed against the estimate: what both its gate and its gain need.
 template <int M>
-double normalized_innovation_squared(const State& state, const Measurement<M>& measurement) {
-  const Eigen::Matrix<double, M, M> spread =
-      measurement.jacobian * state.covariance * measurement.jacobian.transpose() + measurement.noise;
-  return measurement.innovation.dot(spread.inverse() * measurement.innovation);
+struct Weighed {
+  Eigen::Matrix<double, error_states, M> cross;  ///< covariance of error and innovation, P H'
+  Eigen::Matrix<double, M, M> spread;            ///< predicted covariance of the innovation, H P H' + noise
+  Eigen::Matrix<double, M, M> inverse_spread;
+  /// Squared innovation in units of its spread: chi-square with M degrees of freedom where all is well.
+  double innovation_squared = 0;
+};
+
+template <int M>
+Weighed<M> weigh(const State& state, const Measurement<M>& measurement) {
+  Weighed<M> weighed;
+  weighed.cross.setZero();
+  weighed.spread = measurement.noise;
+  // No measurement speaks of more than a few states: only their columns are visited.
+  for (int error = 0; error < error_states; ++error) {
+    const auto by_error = measurement.jacobian.col(error);
+    if ((by_error.array() != 0).any())
+      weighed.cross += state.covariance.col(error).lazyProduct(by_error.transpose());
+  }
+  weighed.spread += measurement.jacobian.lazyProduct(weighed.cross);
+  weighed.inverse_spread = weighed.spread.inverse();  // closed form up to four rows
+  weighed.innovation_squared = measurement.innovation.dot(weighed.inverse_spread * measurement.innovation);
+  return weighed;
 }
 
 /// Kalman update. The covariance's is Joseph's form (I - K H) P (I - K H)' + K R K', true for any gain K, the
 /// withheld ones included, multiplied out: P - D - D' with D = K (P H' - K S / 2)'.
 template <int M>
-void correct(State& state, const Measurement<M>& measurement, FilterModel model, FrameGain frame) {
-  const Eigen::Matrix<double, error_states, M> cross = state.covariance * measurement.jacobian.transpose();
-  const Eigen::Matrix<double, M, M> spread = measurement.jacobian * cross + measurement.noise;
-  Eigen::Matrix<double, error_states, M> gain = cross * spread.inverse();  // closed form up to four rows
+void correct(State& state, const Measurement<M>& measurement, const Weighed<M>& weighed, FilterModel model,
+             FrameGain frame) {
+  Eigen::Matrix<double, error_states, M> gain = weighed.cross.lazyProduct(weighed.inverse_spread);
   if (frame == FrameGain::held) {
     gain.template middleRows<3>(position_block).setZero();
     const Eigen::Vector3d up_body = state.T_world_body.linear().row(2);
@@ -60,9 +77,16 @@ void correct(State& state, const Measurement<M>& measurement, FilterModel model,
         up_body * (up_body.transpose() * gain.template middleRows<3>(attitude_block)).eval();
   }
   inject(state, gain * measurement.innovation, model);
-  const Eigen::Matrix<double, error_states, M> half = cross - 0.5 * gain * spread;
-  const ErrorCovariance less = gain * half.transpose();
-  state.covariance -= less + less.transpose();
+  const Eigen::Matrix<double, error_states, M> half = weighed.cross - 0.5 * gain.lazyProduct(weighed.spread);
+  for (int column = 0; column < error_states; ++column)
+    for (int row = 0; row < M; ++row)
+      state.covariance.col(column) -=
+          half(column, row) * gain.col(row) + gain(column, row) * half.col(row);
+}
+
+template <int M>
+void correct(State& state, const Measurement<M>& measurement, FilterModel model, FrameGain frame) {
+  correct(state, measurement, weigh(state, measurement), model, frame);
 }
 
 }  // namespace understory

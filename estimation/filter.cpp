@@ -264,9 +264,10 @@ void Filter::on(const ResightingSample& sample) {
 template <int M>
 bool Filter::fuse(Aid aid, const Measurement<M>& measurement, std::int64_t t_ns) {
   Gate& gate = gates_[static_cast<std::size_t>(aid)];
-  if (!gate.admits(normalized_innovation_squared(state_, measurement), t_ns)) return false;
+  const Weighed<M> weighed = weigh(state_, measurement);
+  if (!gate.admits(weighed.innovation_squared, t_ns)) return false;
   const bool held = config_.smooth_frame && launched();
-  correct(state_, measurement, config_.model, held ? FrameGain::held : FrameGain::free);
+  correct(state_, measurement, weighed, config_.model, held ? FrameGain::held : FrameGain::free);
   return true;
 }
 

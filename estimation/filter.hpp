@@ -21,7 +21,7 @@ inline constexpr int aid_count = 7;
 /// rest; in flight pitot, lateral and normal specific force, barometer, magnetometer, satellites and
 /// obstacles seen twice correct it through gates. Samples with a value that is not finite are ignored, values
 /// beyond full scale clamped, IMU samples that are not newer than the last ignored, long gaps integrated as
-/// DistrustConfig::longest_gap_s. Nothing here throws, and nothing allocates once half a second was recorded.
+/// DistrustConfig::longest_gap_s. Nothing here throws, and nothing allocates once a second was recorded.
 /// The error-state form and the angular_rate variant follow Bry, Bachrach and Roy 2012 and Sola 2017 (arXiv
 /// 1711.02508).
 class Filter : public StateSource {

@@ -52,28 +52,62 @@ StepDerivatives advance(State& state, const InertialStep& step, double gravity_m
 
 void propagate(ErrorCovariance& covariance, const StepDerivatives& by, const ProcessNoise& noise, double dt_s,
                FilterModel model) {
-  constexpr int resting_rows = error_states - motion_rows;
   const auto variance = [dt_s](double density) { return density * density * dt_s; };
-  const Eigen::Matrix<double, motion_rows, error_states> moved =
-      by.state * covariance.topRows<moving_columns>();
-  Eigen::Matrix<double, motion_rows, motion_rows> motion =
-      moved.leftCols<moving_columns>() * by.state.transpose();
-  if (model == FilterModel::gyro_bias)
-    motion.noalias() += variance(noise.gyro_radps_rthz) * by.rotation * by.rotation.transpose();
-  motion.noalias() +=
-      variance(noise.accelerometer_mps2_rthz) * by.velocity_increment * by.velocity_increment.transpose();
+  // Block by block, as half of by.state is zero; and transposed, as the columns of the symmetric covariance
+  // lie together in memory. 3 us become 1 (tests/bench/estimation_bench.cpp).
+  constexpr int attitude = attitude_block, velocity = velocity_block, position = position_block;
+  constexpr int rate = rate_block, bias = accelerometer_bias_block;
+  const auto from = [&](int columns) { return covariance.middleCols<3>(columns); };
+  const auto part = [&](int rows, int columns) { return by.state.block<3, 3>(rows, columns).transpose(); };
+  Eigen::Matrix<double, error_states, motion_rows> moved;  // (by.state * covariance)'
+  moved.middleCols<3>(attitude) =
+      from(attitude).lazyProduct(part(attitude, attitude)) + from(rate).lazyProduct(part(attitude, rate));
+  moved.middleCols<3>(velocity) = from(attitude).lazyProduct(part(velocity, attitude)) +
+                                  from(velocity).lazyProduct(part(velocity, velocity)) +
+                                  from(rate).lazyProduct(part(velocity, rate)) +
+                                  from(bias).lazyProduct(part(velocity, bias));
+  moved.middleCols<3>(position) = from(position) + from(attitude).lazyProduct(part(position, attitude)) +
+                                  from(velocity).lazyProduct(part(position, velocity)) +
+                                  from(rate).lazyProduct(part(position, rate)) +
+                                  from(bias).lazyProduct(part(position, bias));
+
   // The rate block walks during the step, not after it: half of the walk has turned the aircraft already.
-  const Eigen::Matrix<double, motion_rows, 3> walked = 0.5 * dt_s * rate_sign(model) * by.rotation;
-  motion.noalias() += variance(noise.rate_block_rthz) * walked * walked.transpose();
-  covariance.topLeftCorner<motion_rows, motion_rows>() = 0.5 * (motion + motion.transpose());
-  covariance.topRightCorner<motion_rows, resting_rows>() = moved.rightCols<resting_rows>();
-  covariance.block<motion_rows, 3>(0, rate_block) += variance(noise.rate_block_rthz) * walked;
+  const double walked = 0.5 * dt_s * rate_sign(model), walk = variance(noise.rate_block_rthz);
+  const double turned =
+      walk * walked * walked + (model == FilterModel::gyro_bias ? variance(noise.gyro_radps_rthz) : 0.0);
+  const double pushed = variance(noise.accelerometer_mps2_rthz);
+  // Rows and columns of the motion's covariance: the lower blocks, then mirrored.
+  const auto motion = [&](int rows, int columns) -> Eigen::Matrix3d {
+    const auto product = [&](int through) {
+      return moved.block<3, 3>(through, rows).transpose().lazyProduct(part(columns, through));
+    };
+    Eigen::Matrix3d block = product(attitude) + product(rate);
+    if (columns != attitude)
+      block += product(velocity) + product(bias) +
+               pushed * by.velocity_increment.middleRows<3>(rows).lazyProduct(
+                            by.velocity_increment.middleRows<3>(columns).transpose());
+    if (columns == position) block += moved.block<3, 3>(position, rows).transpose();
+    return block + turned * by.rotation.middleRows<3>(rows).lazyProduct(
+                                by.rotation.middleRows<3>(columns).transpose());
+  };
+  for (const int rows : {attitude, velocity, position}) {
+    for (int columns = attitude; columns < rows; columns += 3) {
+      const Eigen::Matrix3d block = motion(rows, columns);
+      covariance.block<3, 3>(rows, columns) = block;
+      covariance.block<3, 3>(columns, rows) = block.transpose();
+    }
+    const Eigen::Matrix3d block = motion(rows, rows);
+    covariance.block<3, 3>(rows, rows) = 0.5 * (block + block.transpose());
+  }
+  moved.middleRows<3>(rate) += walk * walked * by.rotation.transpose();
 
   const double kept = std::exp(-dt_s / noise.gust_time_s);
-  covariance.middleCols<2>(gust_block) *= kept;
-  covariance.block<2, error_states - motion_rows>(gust_block, motion_rows) *= kept;
-  covariance.bottomLeftCorner<resting_rows, motion_rows>() =
-      covariance.topRightCorner<motion_rows, resting_rows>().transpose();
+  constexpr int resting_rows = error_states - motion_rows;
+  moved.middleRows<2>(gust_block) *= kept;
+  covariance.bottomLeftCorner<resting_rows, motion_rows>() = moved.bottomRows<resting_rows>();
+  covariance.topRightCorner<motion_rows, resting_rows>() = moved.bottomRows<resting_rows>().transpose();
+  covariance.block<resting_rows, 2>(motion_rows, gust_block) *= kept;
+  covariance.block<2, resting_rows>(gust_block, motion_rows) *= kept;
 
   const auto add = [&](int block, int count, double by_m2) {
     covariance.diagonal().segment(block, count).array() += by_m2;
