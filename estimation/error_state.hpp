@@ -80,8 +80,7 @@ void correct(State& state, const Measurement<M>& measurement, const Weighed<M>& 
   const Eigen::Matrix<double, error_states, M> half = weighed.cross - 0.5 * gain.lazyProduct(weighed.spread);
   for (int column = 0; column < error_states; ++column)
     for (int row = 0; row < M; ++row)
-      state.covariance.col(column) -=
-          half(column, row) * gain.col(row) + gain(column, row) * half.col(row);
+      state.covariance.col(column) -= half(column, row) * gain.col(row) + gain(column, row) * half.col(row);
 }
 
 template <int M>

@@ -54,7 +54,7 @@ void propagate(ErrorCovariance& covariance, const StepDerivatives& by, const Pro
                FilterModel model) {
   const auto variance = [dt_s](double density) { return density * density * dt_s; };
   // Block by block, as half of by.state is zero; and transposed, as the columns of the symmetric covariance
-  // lie together in memory. 3 us become 1 (tests/bench/estimation_bench.cpp).
+  // lie together in memory.
   constexpr int attitude = attitude_block, velocity = velocity_block, position = position_block;
   constexpr int rate = rate_block, bias = accelerometer_bias_block;
   const auto from = [&](int columns) { return covariance.middleCols<3>(columns); };
