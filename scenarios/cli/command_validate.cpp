@@ -10,6 +10,7 @@
 #include "scenarios/config_tree.hpp"
 #include "scenarios/file_output.hpp"
 #include "scenarios/validation/aircraft_page.hpp"
+#include "scenarios/validation/mismatch_page.hpp"
 #include "scenarios/validation/page.hpp"
 
 namespace understory {
@@ -22,7 +23,8 @@ struct ValidatedPart {
   ValidationPage (*page)(const fs::path& root);  ///< measures and draws; `root`: the source tree
 };
 
-constexpr std::array parts{ValidatedPart{"aircraft", aircraft_page}};
+constexpr std::array parts{ValidatedPart{"aircraft", aircraft_page},
+                           ValidatedPart{"mismatch", mismatch_page}};
 
 struct ValidateArguments {
   std::string out = "validation";
