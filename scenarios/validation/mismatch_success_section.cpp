@@ -53,7 +53,7 @@ Section mismatch_success_section(const std::vector<FlownCondition>& all) {
           "motor decides. Level flight at 12.3 m/s takes 95 % of its thrust (docs/flight_model.md), so that "
           "what makes the aircraft heavier or blunter first makes it slower, and one with no level flight "
           "left sinks out of the altitude band, wherever the trees stand. What could make the control loop "
-          "swing, less damping or twice the delay (another 20 ms), changes neither success nor speed.\n",
+          "swing, less damping or twice the delay (another 20 ms), costs no goal and hardly any speed.\n",
           model.flights());
   LinePlot goals = curves(all, "Flights that reach the goal", "goals (%)",
                           [](const FlightTally& tally) { return 100.0 * tally.goals() / tally.flights(); });
