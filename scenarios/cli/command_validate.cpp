@@ -11,6 +11,7 @@
 #include "scenarios/file_output.hpp"
 #include "scenarios/validation/aircraft_page.hpp"
 #include "scenarios/validation/estimator_page.hpp"
+#include "scenarios/validation/mismatch_page.hpp"
 #include "scenarios/validation/page.hpp"
 
 namespace understory {
@@ -24,7 +25,8 @@ struct ValidatedPart {
 };
 
 constexpr std::array parts{ValidatedPart{"aircraft", aircraft_page},
-                           ValidatedPart{"estimator", estimator_page}};
+                           ValidatedPart{"estimator", estimator_page},
+                           ValidatedPart{"mismatch", mismatch_page}};
 
 struct ValidateArguments {
   std::string out = "validation";

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "perception/stereo_rig.hpp"
+#include "scenarios/flight_result.hpp"
 #include "scenarios/scenario.hpp"
 #include "sim/obstacle.hpp"
 #include "sim/truth.hpp"
@@ -19,10 +20,13 @@ struct RecordedFlight {
   std::vector<Obstacle> obstacles;
   std::vector<Truth> truths;  ///< by step
   std::int64_t release_step = 0;
+  FlightResult result;
 };
 
-/// Flies `scenario` on true depth and true state (no image is rendered, no estimate decides anything) and
-/// keeps the truth. Leaves no file. Throws as fly() does.
-RecordedFlight recorded_flight(const Scenario& scenario, const std::filesystem::path& models_folder);
+/// Flies `scenario` on true depth (no image is rendered) and keeps the truth. By default on the true state
+/// too, so that no estimate decides anything; on the filter, the flight is what its errors made of it. Leaves
+/// no file. Throws as fly() does.
+RecordedFlight recorded_flight(const Scenario& scenario, const std::filesystem::path& models_folder,
+                               StateKind flown_on = StateKind::truth);
 
 }  // namespace understory

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "scenarios/evaluation/wilson.hpp"
+#include "scenarios/flight_result.hpp"
+#include "scenarios/scenario.hpp"
+#include "scenarios/validation/estimator_trial.hpp"
+
+namespace understory {
+
+/// Drifts of remembered obstacles, 10 m ahead to passing, all flights together.
+struct DriftTally {
+  std::vector<double> total_m;
+  double squared_sum_m2 = 0, stated_squared_sum_m2 = 0;  ///< true, and as the filter's covariance says
+
+  void add(const std::vector<Drift>& drifts);
+  /// The drift that `share` of the obstacles stay below; NaN without any.
+  double quantile_m(double share) const;
+  /// True RMS over the stated RMS: 1 is honest, more overconfident.
+  double over_stated() const;
+};
+
+/// What flights over several seeds came to.
+struct FlightTally {
+  std::vector<Ending> endings;     ///< one a flight
+  std::vector<double> speed_mps;   ///< mean of each flight, over ground
+  DriftTally drift;                ///< of the estimate that flew
+  std::vector<DriftTally> others;  ///< of other filters along the same flights
+
+  int flights() const { return static_cast<int>(endings.size()); }
+  int count(Ending ending) const;
+  int goals() const { return count(Ending::goal); }
+  Interval success() const { return wilson_interval(goals(), flights()); }
+  double mean_speed_mps() const;
+};
+
+/// Seeds `first` .. `first + count - 1`.
+struct Seeds {
+  std::uint64_t first = 1000;
+  int count = 10;
+};
+
+/// Flies `scenario` on true depth and its own filter, and follows how the errors of obstacles seen 10 m ahead
+/// grow until they are passed, by the very estimate that flew, and by what `others` would have made of the
+/// same flights' samples.
+FlightTally fly_seeds(const Scenario& scenario, const std::vector<FilterConfig>& others, const Seeds& seeds,
+                      const std::filesystem::path& models_folder);
+
+}  // namespace understory
