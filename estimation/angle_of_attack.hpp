@@ -10,7 +10,9 @@ namespace understory {
 /// elevons carry just what balances the pitch damping: D q / (arm m) (FACTS section 3: identified model; trim
 /// checks within 0.1 %).
 struct AngleOfAttackConfig {
-  bool enabled = true;
+  /// Off: with the right wing it takes 0.01 m off the drift over 10 m, with one 20 % wrong in lift or mass it
+  /// adds up to 0.2 m (docs/model_mismatch.md).
+  bool enabled = false;
   double air_density_kgpm3 = 1.204;    ///< kg/m^3, 0.1..2
   double wing_area_m2 = 0.1811;        ///< m^2, 0.01..5
   double mass_kg = 0.648412;           ///< kg, 0.05..20

@@ -279,7 +279,7 @@ FilterConfig windy_filter() {
   config.altitude.sigma_m = 0.31;
   config.sideslip.sigma_mps2 = 0.05;
   config.sideslip.model_error = 0.05;
-  config.angle_of_attack.sigma_mps2 = 8;  // vertical gusts, no state, reach the wing's force too
+  config.angle_of_attack.enabled = true;  // nothing else shows a vertical gust, which is no state
   return config;
 }
 
