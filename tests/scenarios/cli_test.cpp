@@ -138,7 +138,7 @@ TEST(Cli, AnUnwritableFolderIsBadInputAndAFullDiskTheMachines) {
 
 TEST(Cli, ValidateRefusesWhatItDoesNotKnow) {
   const Folder folder;
-  expect_refusal("validate --only soaring", "--only soaring: expected one of: aircraft, mismatch");
+  expect_refusal("validate --only soaring", "--only soaring: expected one of: aircraft, estimator, mismatch");
   expect_refusal("validate --only", "--only");
   expect_refusal("validate everything", "everything");
   expect_refusal("validate --out " + folder.file("file", "") + "/pages", "expected a writable output");
