@@ -14,8 +14,8 @@ namespace {
 constexpr Seeds seeds{1000, 10};  // of development: settings may have been chosen on them
 
 std::vector<OtherFilter> other_filters(const std::filesystem::path& forest, const FilterConfig& flown) {
-  std::vector<OtherFilter> others{{"no angle of attack", flown}, {"nor sideslip", flown}};
-  for (OtherFilter& other : others) other.filter.angle_of_attack.enabled = false;
+  std::vector<OtherFilter> others{{"and angle of attack", flown}, {"no sideslip", flown}};
+  others.front().filter.angle_of_attack.enabled = true;
   others.back().filter.sideslip.model = SideslipModel::off;
   others.push_back({"preset windy", load_scenario(forest, {"estimation.preset=windy"}).estimation.filter});
   return others;
