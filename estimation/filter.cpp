@@ -233,9 +233,10 @@ void Filter::on(const BarometerSample& sample) {
   if (!launched() && !at_rest_) return;
   if (!fuse(Aid::altitude, altitude(state_, sample, config_.altitude), sample.t_ns)) return;
   // The offset that was found at rest; what the filter makes of it in flight is entangled with the drift.
-  if (!launched()) resting_offset_m_ = state_.barometer_offset_m;
   if (launched())
     altitude_drift_.observe(sample.altitude_m - resting_offset_m_ - state_.T_world_body.translation().z());
+  else
+    resting_offset_m_ = state_.barometer_offset_m;
   state_.altitude_m = state_.T_world_body.translation().z() + altitude_drift_.value_m();
   history_.record(state_);
 }
@@ -287,7 +288,6 @@ FilterConfig original_filter() {
   constexpr double degree = M_PI / 180;
   FilterConfig config;
   config.model = FilterModel::angular_rate;
-  config.states = {};
   config.states.accelerometer_bias = config.states.pitot_bias = false;
   config.rest.launch_speed_sigma_mps = 0.2;
   config.start.tilt_sigma_rad = config.start.yaw_sigma_rad = 3 * degree;

@@ -97,19 +97,22 @@ void expect_block(double block, const char* name) {
   EXPECT_LT(block, block_most) << name;
 }
 
+void expect_chi_square(const Nees& nees) {
+  EXPECT_GT(nees.all, all_least);
+  EXPECT_LT(nees.all, all_most);
+  expect_block(nees.attitude, "attitude");
+  expect_block(nees.velocity, "velocity");
+  expect_block(nees.position, "position");
+  expect_block(nees.bias, "gyro bias");
+}
+
 TEST(Nees, OfAllTwelveStatesOverFiftySeedsIsChiSquare) {
   for (const bool smooth : {false, true}) {
     Modelled set = modelled();
     set.config.smooth_frame = smooth;
     set.config.sideslip.model = SideslipModel::off;
     set.config.angle_of_attack.enabled = false;
-    const Nees nees = average_nees(set);
-    EXPECT_GT(nees.all, all_least);
-    EXPECT_LT(nees.all, all_most);
-    expect_block(nees.attitude, "attitude");
-    expect_block(nees.velocity, "velocity");
-    expect_block(nees.position, "position");
-    expect_block(nees.bias, "gyro bias");
+    expect_chi_square(average_nees(set));
   }
 }
 
@@ -142,13 +145,7 @@ TEST(Nees, WithBiasesAsStatesIsChiSquareToo) {
   set.config.states.pitot_bias_walk_rthz = 0;
   set.config.sideslip.model = SideslipModel::off;
   set.config.angle_of_attack.enabled = false;
-  const Nees nees = average_nees(set);
-  EXPECT_GT(nees.all, all_least);
-  EXPECT_LT(nees.all, all_most);
-  expect_block(nees.attitude, "attitude");
-  expect_block(nees.velocity, "velocity");
-  expect_block(nees.position, "position");
-  expect_block(nees.bias, "gyro bias");
+  expect_chi_square(average_nees(set));
 }
 
 }  // namespace
