@@ -1,8 +1,6 @@
 #include "scenarios/validation/mismatch_flights.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "scenarios/validation/recorded_flight.hpp"
@@ -23,26 +21,6 @@ std::vector<Drift> drifts_with(const FilterConfig& filter, const RecordedFlight&
 }
 
 }  // namespace
-
-void DriftTally::add(const std::vector<Drift>& drifts) {
-  for (const Drift& drift : drifts) {
-    total_m.push_back(drift.total_m());
-    squared_sum_m2 += drift.total_m() * drift.total_m();
-    stated_squared_sum_m2 += drift.stated_sigma_m * drift.stated_sigma_m;
-  }
-}
-
-double DriftTally::quantile_m(double share) const {
-  if (total_m.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> sorted = total_m;
-  std::sort(sorted.begin(), sorted.end());
-  const double place = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const double above = sorted[std::min(below + 1, sorted.size() - 1)];
-  return std::lerp(sorted[below], above, place - std::floor(place));
-}
-
-double DriftTally::over_stated() const { return std::sqrt(squared_sum_m2 / stated_squared_sum_m2); }
 
 int FlightTally::count(Ending ending) const {
   return static_cast<int>(std::count(endings.begin(), endings.end(), ending));

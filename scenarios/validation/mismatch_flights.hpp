@@ -7,21 +7,9 @@
 #include "scenarios/evaluation/wilson.hpp"
 #include "scenarios/flight_result.hpp"
 #include "scenarios/scenario.hpp"
-#include "scenarios/validation/estimator_trial.hpp"
+#include "scenarios/validation/drift_tally.hpp"
 
 namespace understory {
-
-/// Drifts of remembered obstacles, 10 m ahead to passing, all flights together.
-struct DriftTally {
-  std::vector<double> total_m;
-  double squared_sum_m2 = 0, stated_squared_sum_m2 = 0;  ///< true, and as the filter's covariance says
-
-  void add(const std::vector<Drift>& drifts);
-  /// The drift that `share` of the obstacles stay below; NaN without any.
-  double quantile_m(double share) const;
-  /// True RMS over the stated RMS: 1 is honest, more overconfident.
-  double over_stated() const;
-};
 
 /// What flights over several seeds came to.
 struct FlightTally {
