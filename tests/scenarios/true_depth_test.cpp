@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -100,22 +99,6 @@ TEST(TrueDepth, NothingAtOtherDepths) {
                     .empty())
         << x;
   }
-}
-
-TEST(TrueDepth, IsFast) {
-  TruthHistory history;
-  Truth truth;
-  truth.T_world_body.translation() = Vector3d(30, 0, 3);
-  history.observe(truth);
-  ForestConfig config;
-  config.square_metres_per_tree = 25;
-  TrueDepth detector(paper_rig(), poisson_forest(config, 1), history);
-  const auto begin = std::chrono::steady_clock::now();
-  for (int i = 0; i < 200; ++i) detector.detect({});
-  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
-  EXPECT_LT(elapsed.count() / 200,
-            3.0);  // 0.1 ms alone on a core; room for a loaded machine and for sanitizers
-  RecordProperty("ms_per_frame", std::to_string(elapsed.count() / 200));
 }
 
 }  // namespace
