@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace understory {
+
+/// What became of one flight of a campaign.
+enum class RunStatus {
+  flown,    ///< to an ending, good or bad
+  crashed,  ///< the program broke: a signal of its own, or status 3
+  hung,     ///< took longer than the campaign allows, and was stopped
+  killed,   ///< by somebody else (SIGKILL, SIGTERM)
+  refused   ///< the program refused its input
+};
+
+/// One flight of a campaign: a row of flights.csv, a line of flights.jsonl. Nothing in it depends on the
+/// machine's speed, so that a campaign flown again gives the same rows. `id` is unique within a campaign.
+struct FlightRow {
+  std::string id;         ///< "<condition>-<seed>"
+  std::string condition;  ///< scenario and overrides, by name
+  std::uint64_t seed = 0;
+  RunStatus status = RunStatus::refused;
+  std::string reason;   ///< why it was not flown, one line; empty for a flown one
+  std::string outcome;  ///< flight_result.hpp's word for its ending; empty unless flown
+  double cruise_speed_mps = 0;        ///< asked
+  double square_metres_per_tree = 0;  ///< of the forest
+  double distance_m = 0;              ///< flown: true path length since release
+  double progress_m = 0;              ///< greatest true x reached
+  double goal_m = 0;                  ///< x of the goal plane
+  double mean_speed_mps = 0;          ///< true, over ground
+  double min_clearance_m = 0;         ///< true; +infinity (empty in CSV, null in JSON) without obstacles
+  double position_error_mean_m = 0;
+  double position_error_max_m = 0;
+  std::int64_t detections = 0;
+  std::int64_t remembered_points = 0;
+  std::int64_t least_points_on_a_bar = -1;  ///< -1 (empty, null): not counted on this course
+  std::int64_t replans = 0, straight = 0, solved = 0, kept = 0, kept_ompl = 0, fallback = 0;
+  std::int64_t obstacle_ahead = 0;       ///< replans in which straight on would touch what the map holds
+  std::int64_t obstacle_ahead_ompl = 0;  ///< of those: flown on OMPL's answer
+  std::int64_t searches = 0, found = 0;
+  double simulated_s = 0;
+  std::string digest;  ///< of the flight, bit for bit (run_digest.hpp)
+
+  bool flown() const { return status == RunStatus::flown; }
+  bool reached_goal() const { return flown() && outcome == "goal"; }
+};
+
+}  // namespace understory
