@@ -24,6 +24,8 @@ using Command = std::function<int()>;
 /// run.
 void add_fly_command(CLI::App& app, Command& chosen);
 void add_evaluate_command(CLI::App& app, Command& chosen);
+void add_campaign_command(CLI::App& app, Command& chosen);
+void add_collect_command(CLI::App& app, Command& chosen);
 void add_validate_command(CLI::App& app, Command& chosen);
 void add_rig_command(CLI::App& app, Command& chosen);
 void add_detect_command(CLI::App& app, Command& chosen);
