@@ -195,18 +195,17 @@ std::optional<FlightFile> flight_file_from_json(const std::string& text) {
 std::string to_csv(const std::vector<FlightRow>& rows) {
   std::string csv = header() + "\n";
   for (const FlightRow& row : rows) {
-    std::string line;
+    std::vector<std::string> cells;
     const Json json = json_of(row);
-    for (const auto& [name, value] : json.items()) {
-      if (!line.empty()) line += ',';
+    for (const Json& value : json) {
       if (value.is_string())
-        line += one_cell(value.get<std::string>());
+        cells.push_back(one_cell(value.get<std::string>()));
       else if (value.is_number_float())
-        line += fmt::format("{:.6g}", value.get<double>());
-      else if (!value.is_null())
-        line += value.dump();
+        cells.push_back(fmt::format("{:.6g}", value.get<double>()));
+      else
+        cells.push_back(value.is_null() ? "" : value.dump());
     }
-    csv += line + "\n";
+    csv += fmt::format("{}\n", fmt::join(cells, ","));
   }
   return csv;
 }
