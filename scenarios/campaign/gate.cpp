@@ -133,7 +133,9 @@ std::string to_report(const Comparison& comparison, const GateVerdict& verdict, 
       "test\n\n";
   const PrintedTable metrics = metric_table(comparison);
   if (!metrics.rows.empty())
-    text += to_text(metrics) + "  difference of paired flights, 95 % interval by BCa bootstrap\n\n";
+    text +=
+        to_text(metrics) +
+        "  difference of paired flights, 95 % interval by BCa bootstrap (too narrow below some 15 pairs)\n\n";
   for (const bool worse : {true, false})
     for (const ConditionComparison& condition : comparison.conditions)
       text += changed_seeds(condition, worse);
