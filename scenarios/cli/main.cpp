@@ -32,6 +32,7 @@ int run(int argc, char** argv) {
   add_evaluate_command(app, chosen);
   add_campaign_command(app, chosen);
   add_collect_command(app, chosen);
+  add_gate_command(app, chosen);
   add_validate_command(app, chosen);
   add_rig_command(app, chosen);
   add_detect_command(app, chosen);
