@@ -234,8 +234,9 @@ std::vector<std::string> flight_arguments(const CampaignFolder& folder, const Ca
   return arguments;
 }
 
-bool fly_locally(const CampaignFolder& folder, const Campaign& campaign, const std::vector<CampaignTask>& tasks,
-                 const LocalEngineConfig& config, const OnCampaignProgress& on_progress) {
+bool fly_locally(const CampaignFolder& folder, const Campaign& campaign,
+                 const std::vector<CampaignTask>& tasks, const LocalEngineConfig& config,
+                 const OnCampaignProgress& on_progress) {
   const StopSignals stop_signals;
   CampaignProgress progress;
   progress.flights = tasks.size();

@@ -7,6 +7,7 @@
 #include <memory>
 #include <thread>
 
+#include "scenarios/campaign/campaign_file.hpp"
 #include "scenarios/campaign/campaign_folder.hpp"
 #include "scenarios/campaign/local_engine.hpp"
 #include "scenarios/cli/campaign_report.hpp"
@@ -24,9 +25,9 @@ namespace fs = std::filesystem;
 
 struct CampaignArguments {
   std::string file;
-  std::string out;  // empty: results/<name>
-  std::string engine = "local";
-  int jobs = 0;  // 0: a flight a core
+  std::string out;    // empty: results/<name>
+  std::string junit;  // empty: none
+  int jobs = 0;       // 0: a flight a core
   bool resume = false;
   bool print_tasks = false;
   bool keeps_runs = false;
@@ -41,17 +42,6 @@ void require_rigs(const Campaign& campaign, const std::string& file) {
       throw ScenarioError(fmt::format("{}: condition {}: {}", file, condition.name, error.what()));
     }
   }
-}
-
-/// Every condition advances with every seed, so that an unfinished campaign compares the same forests.
-std::vector<CampaignTask> in_flying_order(const Campaign& campaign) {
-  const std::vector<CampaignTask> tasks = tasks_of(campaign);
-  const std::size_t seeds = campaign.seeds.size();
-  std::vector<CampaignTask> order;
-  for (std::size_t seed = 0; seed < seeds; ++seed)
-    for (std::size_t condition = 0; condition < campaign.conditions.size(); ++condition)
-      order.push_back(tasks[condition * seeds + seed]);
-  return order;
 }
 
 std::string in_words(double seconds) {
@@ -89,6 +79,7 @@ class ProgressLine {
 int print_tasks(const CampaignFolder& folder, const Campaign& campaign) {
   const fs::path program = fs::read_symlink("/proc/self/exe");
   for (const CampaignTask& task : tasks_of(campaign)) {
+    if (const auto file = read_flight(folder, task); file && file->row.flown()) continue;
     std::string line = "'" + program.string() + "'";
     for (const std::string& argument : flight_arguments(folder, campaign, task, false))
       line += " '" + argument + "'";
@@ -119,7 +110,7 @@ int run_campaign(const CampaignArguments& arguments) {
     throw MachineError(fmt::format("{}: stopped with {} of {} flights over; --resume goes on",
                                    folder.path.string(), collected.rows.size(),
                                    collected.rows.size() + collected.missing));
-  return report(folder, collected);
+  return report(folder, collected, arguments.junit);
 }
 
 }  // namespace
@@ -134,6 +125,7 @@ void add_campaign_command(CLI::App& app, Command& chosen) {
   command->add_flag("--resume", arguments->resume, "go on with what the folder holds");
   command->add_flag("--print-tasks", arguments->print_tasks,
                     "fly nothing: print a command for each flight; collect gathers what they leave");
+  command->add_option("--junit", arguments->junit, "write a test case per flight as JUnit XML");
   command->add_flag("--keep-runs", arguments->keeps_runs, "keep each flight's run folder in runs/");
   command->callback([arguments, &chosen] { chosen = [arguments] { return run_campaign(*arguments); }; });
 }

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "scenarios/campaign/flight_row_io.hpp"
+#include "scenarios/campaign/flown_row.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/file_output.hpp"
 #include "scenarios/fly.hpp"

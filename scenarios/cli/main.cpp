@@ -29,7 +29,6 @@ int run(int argc, char** argv) {
 
   Command chosen;
   add_fly_command(app, chosen);
-  add_evaluate_command(app, chosen);
   add_campaign_command(app, chosen);
   add_collect_command(app, chosen);
   add_gate_command(app, chosen);
