@@ -20,6 +20,7 @@ struct CampaignProgress {
   std::size_t goals = 0, not_flown = 0;
   std::size_t before = 0;  ///< over before this run began
 };
+void count(const FlightRow& row, CampaignProgress& progress);
 using OnCampaignProgress = std::function<void(const CampaignProgress&)>;
 
 /// Keeps a second program from flying the same folder on this machine; dropped however this one ends. Clears

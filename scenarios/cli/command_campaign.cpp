@@ -10,6 +10,7 @@
 #include "scenarios/campaign/campaign_file.hpp"
 #include "scenarios/campaign/campaign_folder.hpp"
 #include "scenarios/campaign/local_engine.hpp"
+#include "scenarios/campaign/slurm_engine.hpp"
 #include "scenarios/cli/campaign_report.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config_tree.hpp"
@@ -27,7 +28,10 @@ struct CampaignArguments {
   std::string file;
   std::string out;    // empty: results/<name>
   std::string junit;  // empty: none
-  int jobs = 0;       // 0: a flight a core
+  std::string engine = "local";
+  SlurmConfig slurm;
+  int jobs = 0;  // 0: a flight a core
+  bool waits = true;
   bool resume = false;
   bool print_tasks = false;
   bool keeps_runs = false;
@@ -88,6 +92,34 @@ int print_tasks(const CampaignFolder& folder, const Campaign& campaign) {
   return 0;
 }
 
+/// How a campaign ends: every flight over, or stopped by a signal.
+enum class Finish { all_over, stopped };
+
+Finish fly_here(const CampaignFolder& folder, const Campaign& campaign, const CampaignArguments& arguments) {
+  LocalEngineConfig config;
+  config.jobs = arguments.jobs > 0 ? arguments.jobs
+                                   : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  config.keeps_runs = arguments.keeps_runs;
+  ProgressLine line;
+  const bool finished = fly_locally(folder, campaign, in_flying_order(campaign), config,
+                                    [&](const CampaignProgress& progress) { line.show(progress); });
+  line.clear();
+  return finished ? Finish::all_over : Finish::stopped;
+}
+
+Finish fly_on_slurm(const CampaignFolder& folder, const Campaign& campaign,
+                    const CampaignArguments& arguments) {
+  const std::string job = submit_to_slurm(folder, campaign, arguments.slurm);
+  fmt::print("Slurm job {}: {} shards\n", job, arguments.slurm.shards);
+  std::fflush(stdout);
+  if (!arguments.waits) return Finish::stopped;
+  ProgressLine line;
+  const bool finished =
+      wait_for_slurm(folder, campaign, job, [&](const CampaignProgress& progress) { line.show(progress); });
+  line.clear();
+  return finished ? Finish::all_over : Finish::stopped;
+}
+
 int run_campaign(const CampaignArguments& arguments) {
   const Campaign campaign = load_campaign(arguments.file, scenario_file);
   require_rigs(campaign, arguments.file);
@@ -97,20 +129,18 @@ int run_campaign(const CampaignArguments& arguments) {
   if (arguments.print_tasks) return print_tasks(folder, campaign);
 
   const FolderLock lock(folder);
-  LocalEngineConfig config;
-  config.jobs = arguments.jobs > 0 ? arguments.jobs
-                                   : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  config.keeps_runs = arguments.keeps_runs;
-  ProgressLine line;
-  const bool finished = fly_locally(folder, campaign, in_flying_order(campaign), config,
-                                    [&](const CampaignProgress& progress) { line.show(progress); });
-  line.clear();
+  const bool on_slurm = arguments.engine == "slurm";
+  const Finish finish =
+      on_slurm ? fly_on_slurm(folder, campaign, arguments) : fly_here(folder, campaign, arguments);
   const Collected collected = collect(folder, campaign);
-  if (!finished)
-    throw MachineError(fmt::format("{}: stopped with {} of {} flights over; --resume goes on",
-                                   folder.path.string(), collected.rows.size(),
-                                   collected.rows.size() + collected.missing));
-  return report(folder, collected, arguments.junit);
+  if (finish == Finish::all_over) return report(folder, collected, arguments.junit);
+  if (on_slurm) {
+    fmt::print("the job goes on; understory collect {} gathers what it leaves\n", folder.path.string());
+    return exit_goal;
+  }
+  throw MachineError(fmt::format("{}: stopped with {} of {} flights over; --resume goes on",
+                                 folder.path.string(), collected.rows.size(),
+                                 collected.rows.size() + collected.missing));
 }
 
 }  // namespace
@@ -122,6 +152,17 @@ void add_campaign_command(CLI::App& app, Command& chosen) {
   command->add_option("--out", arguments->out, "results folder (default: results/<name>)");
   command->add_option("--jobs", arguments->jobs, "flights at a time (default: one a core)")
       ->check(CLI::Range(1, 1024));
+  command->add_option("--engine", arguments->engine, "local, or slurm: a job array")
+      ->check(CLI::IsMember({"local", "slurm"}))
+      ->capture_default_str();
+  command->add_option("--shards", arguments->slurm.shards, "slurm: tasks of the job array")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  command
+      ->add_option("--sbatch", arguments->slurm.options,
+                   "slurm: an option of sbatch, --sbatch=--partition=short")
+      ->allow_extra_args(false);
+  command->add_flag("!--no-wait", arguments->waits, "slurm: submit and leave");
   command->add_flag("--resume", arguments->resume, "go on with what the folder holds");
   command->add_flag("--print-tasks", arguments->print_tasks,
                     "fly nothing: print a command for each flight; collect gathers what they leave");

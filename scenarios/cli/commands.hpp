@@ -25,6 +25,7 @@ using Command = std::function<int()>;
 /// run.
 void add_fly_command(CLI::App& app, Command& chosen);
 void add_campaign_command(CLI::App& app, Command& chosen);
+void add_shard_command(CLI::App& app, Command& chosen);
 void add_collect_command(CLI::App& app, Command& chosen);
 void add_validate_command(CLI::App& app, Command& chosen);
 void add_gate_command(CLI::App& app, Command& chosen);

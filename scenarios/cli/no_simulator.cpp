@@ -22,6 +22,7 @@ void add_refusal(CLI::App& app, Command& chosen, const std::string& name) {
 
 void add_fly_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "fly"); }
 void add_campaign_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "campaign"); }
+void add_shard_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "shard"); }
 void add_validate_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "validate"); }
 
 }  // namespace understory
