@@ -68,6 +68,13 @@ std::string table_of(const std::vector<Consistency>& all) {
                         rows);
 }
 
+/// The catapult's aim is as uncertain as the filter is told; only the relation matters, so the filter errs.
+void draw_aim(TrialConfig& config) {
+  std::mt19937_64 generator(config.sensor_seed);
+  StartConfig& start = config.filter.start;
+  start.yaw_rad = std::normal_distribution<double>(0, start.yaw_sigma_rad)(generator);
+}
+
 }  // namespace
 
 Scenario matched_scenario(std::uint64_t seed, const std::filesystem::path& root) {
@@ -101,9 +108,7 @@ TrialConfig matched_trial(const Scenario& scenario, std::uint64_t sensor_seed) {
   // Fired midway between two samples, always: the speed after the rail is wrong by 0.018 +- 0.007 m/s. The
   // filter carries it from the firing on, over a quarter of a second more than it lasts.
   filter.rest.launch_speed_sigma_mps = 0.016;
-  // The catapult's aim is as uncertain as the filter is told; only the relation matters, so the filter errs.
-  std::mt19937_64 generator(sensor_seed);
-  filter.start.yaw_rad = std::normal_distribution<double>(0, filter.start.yaw_sigma_rad)(generator);
+  draw_aim(config);
   return config;
 }
 
@@ -146,13 +151,11 @@ Section turbulent_consistency_section(const std::filesystem::path& root, int fli
       },
       [](int i, const Scenario& scenario) {
         TrialConfig config;
-        const StartConfig start = scenario.estimation.filter.start;
-        config.filter = windy_filter();
-        config.filter.start = start;
+        config.filter = scenario.estimation.filter;
+        take_preset(config, windy_filter());
         config.sensors = scenario.sensors.sensors;
         config.sensor_seed = sensor_seed_base + static_cast<std::uint64_t>(i);
-        std::mt19937_64 generator(config.sensor_seed);
-        config.filter.start.yaw_rad = std::normal_distribution<double>(0, start.yaw_sigma_rad)(generator);
+        draw_aim(config);
         return config;
       },
       root, left_out);

@@ -28,15 +28,11 @@ struct Variant {
   std::function<void(TrialConfig&)> change;
 };
 
-void windy(TrialConfig& config) {
-  const StartConfig start = config.filter.start;
-  config.filter = windy_filter();
-  config.filter.start = start;
-}
-
 void second_depth(TrialConfig& config) { config.resightings.enabled = true; }
 
 void satellites(TrialConfig& config) { config.sensors.gps.enabled = true; }
+
+void windy(TrialConfig& config) { take_preset(config, windy_filter()); }
 
 void original(TrialConfig& config) {
   const StartConfig start = config.filter.start;

@@ -85,6 +85,12 @@ FilterConfig woken_at(const Truth& truth, FilterConfig filter) {
 
 }  // namespace
 
+void take_preset(TrialConfig& config, const FilterConfig& preset) {
+  const StartConfig start = config.filter.start;
+  config.filter = preset;
+  config.filter.start = start;
+}
+
 Sightings sightings(const RecordedFlight& flight, const std::vector<double>& depths_m) {
   Sightings seen;
   TruthHistory history;

@@ -33,6 +33,9 @@ struct TrialConfig {
   bool ground_velocity_unknown = false;
 };
 
+/// Another filter from the same start.
+void take_preset(TrialConfig& config, const FilterConfig& preset);
+
 /// One moment of a trial, at the IMU's rate.
 struct TrialMoment {
   Truth truth;
