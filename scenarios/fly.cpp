@@ -70,11 +70,12 @@ World world_of(const Scenario& scenario, const std::filesystem::path& models_fol
 }
 
 std::unique_ptr<StereoCameras> cameras_of(const Scenario& scenario, const World& world,
-                                          const CalibratedRig& rig) {
+                                          const CalibratedRig& rig, RendererKind renderer) {
   const CameraSeeds seeds{seed_for(scenario.sensor_seed(), "cameras"),
                           seed_for(scenario.sensor_seed(), "camera_shot_noise")};
   try {
-    return std::make_unique<StereoCameras>(world, rig.rig, scenario.cameras.cameras, seeds, rig.calibration);
+    return std::make_unique<StereoCameras>(world, rig.rig, scenario.cameras.cameras, seeds, rig.calibration,
+                                           renderer);
   } catch (const std::runtime_error& error) {
     throw MachineError(error.what());
   }
@@ -128,7 +129,8 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   // Oracles and the blind aircraft look at no image: rendering one would be most of their flight's cost.
   const bool looks = scenario.perception.detector == DetectorKind::pushbroom ||
                      scenario.perception.detector == DetectorKind::block_matching;
-  const auto cameras = looks || options.video ? cameras_of(scenario, world, calibrated) : nullptr;
+  const auto cameras =
+      looks || options.video ? cameras_of(scenario, world, calibrated, options.renderer) : nullptr;
   OnboardSensors sensors(scenario);
 
   TruthHistory history;

@@ -16,6 +16,7 @@ namespace {
 struct FlyArguments : ScenarioArguments {
   std::string seed;
   std::string out;  // empty: runs/<name>-<seed>
+  RendererKind renderer = RendererKind::osmesa;
   bool video = false;
   bool quiet = false;
 };
@@ -49,6 +50,7 @@ int run_fly(const FlyArguments& arguments) {
   options.output_folder =
       arguments.out.empty() ? fmt::format("runs/{}-{}", scenario.name, scenario.seed) : arguments.out;
   options.video = arguments.video;
+  options.renderer = arguments.renderer;
   const bool shows_progress = !arguments.quiet && isatty(STDOUT_FILENO) == 1;
   if (shows_progress) options.on_progress = print_progress;
   const FlightResult result = fly(scenario, options);
@@ -69,6 +71,7 @@ void add_fly_command(CLI::App& app, Command& chosen) {
   add_scenario_options(*command, *arguments);
   command->add_option("--seed", arguments->seed, "of course and sensors; goes before the scenario's own");
   command->add_option("--out", arguments->out, "run folder (default: runs/<name>-<seed>)");
+  add_renderer_option(*command, arguments->renderer);
   command->add_flag("--video", arguments->video, "also make flight.mp4 and still.png");
   command->add_flag("--quiet", arguments->quiet, "print nothing");
   command->callback([arguments, &chosen] {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "perception/io/calibration_file.hpp"
+#include "sim/renderer_kind.hpp"
 
 namespace CLI {
 class App;
@@ -35,6 +36,9 @@ struct ScenarioArguments {
   std::vector<std::string> settings;  ///< key=value
 };
 void add_scenario_options(CLI::App& command, ScenarioArguments& arguments);
+
+/// --renderer, as every command that draws has it; must outlive the parsing.
+void add_renderer_option(CLI::App& command, RendererKind& renderer);
 
 /// --unit, --size and --depth, as every command that reads a calibration has them.
 struct CalibrationArguments {

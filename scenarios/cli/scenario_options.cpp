@@ -12,4 +12,19 @@ void add_scenario_options(CLI::App& command, ScenarioArguments& arguments) {
       ->trigger_on_parse(false);
 }
 
+void add_renderer_option(CLI::App& command, RendererKind& renderer) {
+  std::vector<std::string> words;
+  for (const auto& [word, kind] : renderer_names) words.emplace_back(word);
+  command
+      .add_option_function<std::string>(
+          "--renderer",
+          [&renderer](const std::string& given) {
+            for (const auto& [word, kind] : renderer_names)
+              if (word == given) renderer = kind;
+          },
+          "who draws: osmesa (software, the default), egl (a GPU where there is one), auto (a GPU, else "
+          "osmesa)")
+      ->check(CLI::IsMember(words));
+}
+
 }  // namespace understory

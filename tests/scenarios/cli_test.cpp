@@ -166,6 +166,13 @@ TEST(Cli, ValidateWritesTheFlightModelsPageAndHoldsItsTolerances) {
     EXPECT_TRUE(fs::exists(fs::path(UNDERSTORY_SOURCE_DIR "/docs/flight_model") / figure.path().filename()));
 }
 
+TEST(Cli, ARendererIsOneOfThree) {
+  expect_refusal("fly clear --renderer crayon", "osmesa,egl,auto");
+  const Folder folder;
+  expect_refusal("fly clear --renderer egl --out " + folder.path.string(), "libegl1", 3,
+                 "UNDERSTORY_EGL=/nonexistent/libEGL.so");
+}
+
 TEST(Cli, AMissingLibraryOrModelIsTheMachines) {
   const Folder folder;
   const std::string out = " --out " + (folder.path / "run").string();
