@@ -157,7 +157,11 @@ class FreeCourse : public ob::Goal {
     const double to_go_m = task_.config.horizon_m - progress_m(task_, node.flight.position_world);
     if (distance != nullptr) *distance = std::max(0.0, to_go_m);
     if (node.cost >= best_cost) return false;
-    const Rollout rest = fly_out(task_, node.flight, {}, task_.config.least_clearance_m, false);
+    // What cannot become the cheapest is not flown to its end: SST makes nothing of it either. A little more
+    // is allowed than what is left to spend, so that rounding decides nothing.
+    const double to_spend = (best_cost - node.cost) * (1 + 1e-9) + 1e-9;
+    const Rollout rest =
+        fly_out(task_, node.flight, {}, task_.config.least_clearance_m, false, true, to_spend);
     if (!rest.reached_horizon) return false;
     if (node.cost + rest.cost < best_cost) {
       best_cost = node.cost + rest.cost;
@@ -193,7 +197,8 @@ void propagate(const FlightTask& task, const ManoeuvreSearchConfig& config, cons
   if (!continues) to.parts[to.part_count++] = {command, 0};
   to.parts[to.part_count - 1].duration_s += step_s;
   to.flight = task.model.advance(from.flight, command, step_s);
-  const double clearance = task.field.clearance_m(to.flight, 3.0);
+  const double clearance =
+      task.field.clearance_m(to.flight, greatest_clearance_m(task.config, task.config.least_clearance_m));
   to.cost += step_s * cost_rate(task, to.flight, clearance);
   to.free = std::min(clearance, band_clearance_m(task, to.flight)) >= task.config.least_clearance_m &&
             progress_m(task, to.flight.position_world) < task.config.horizon_m;

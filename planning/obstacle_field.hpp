@@ -35,7 +35,8 @@ void visit_fields(Visitor& visit, ObstacleFieldConfig& config) {
 }
 
 /// The remembered points as a planner wants them: upright columns in a horizontal grid, asked for the free
-/// distance to a wing in a given attitude. Rebuilt for each replan, asked some ten thousand times.
+/// distance to a wing in a given attitude. Rebuilt for each replan, asked some ten thousand times where that
+/// searches.
 class ObstacleField {
  public:
   struct Column {
@@ -44,17 +45,19 @@ class ObstacleField {
     double radius_m;  ///< half a cell and the points' uncertainty
   };
 
+  /// `greatest_asked_m`: the greatest clearance that it will be asked about; the nearer, the cheaper.
   ObstacleField(const ObstacleFieldConfig& config, const std::vector<ObstaclePoint>& points,
-                double distance_flown_m);
+                double distance_flown_m, double greatest_asked_m = 3.0);
 
   /// Free distance from the wing (a capsule from tip to tip, banked as in `state`) to the nearest column, m;
-  /// negative in a collision; `greatest_m` at most, which is what free space answers (at most 3 m).
+  /// negative in a collision; `greatest_m` at most, which is what free space answers (at most what the
+  /// constructor was told).
   double clearance_m(const FlightState& state, double greatest_m) const;
 
   const std::vector<Column>& columns() const { return columns_; }
 
  private:
-  void build_grid();
+  void build_grid(double reach_m);
 
   ObstacleFieldConfig config_;
   std::vector<Column> columns_;
