@@ -6,13 +6,14 @@
 #include <ompl/control/SpaceInformation.h>
 #include <ompl/control/planners/sst/SST.h>
 #include <ompl/control/spaces/RealVectorControlSpace.h>
-#include <ompl/datastructures/NearestNeighborsLinear.h>
 #include <ompl/util/Console.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include "planning/nearest_flight_states.hpp"
 
 namespace understory {
 namespace {
@@ -68,8 +69,7 @@ class CorridorSampler : public ob::StateSampler {
   const FlightState& start_;
 };
 
-// The space of flight states. OMPL needs a distance for nearest neighbours; units are chosen so that one unit
-// of each matters about equally over the horizon: 1 m, 0.3 rad of heading, 0.8 rad of bank.
+// The space of flight states.
 class FlightStateSpace : public ob::StateSpace {
  public:
   FlightStateSpace(const FlightTask& task, const FlightState& start, std::uint32_t seed)
@@ -78,12 +78,7 @@ class FlightStateSpace : public ob::StateSpace {
   }
 
   double distance(const ob::State* a, const ob::State* b) const override {
-    const FlightState& one = node_of(a).flight;
-    const FlightState& other = node_of(b).flight;
-    const double heading = (one.heading_rad - other.heading_rad) / 0.3;
-    const double bank = (one.bank_rad - other.bank_rad) / 0.8;
-    return std::sqrt((one.position_world - other.position_world).squaredNorm() + heading * heading +
-                     bank * bank);
+    return std::sqrt(squared_distance(place_of(node_of(a).flight), place_of(node_of(b).flight)));
   }
   ob::StateSamplerPtr allocDefaultStateSampler() const override {
     return std::make_shared<CorridorSampler>(this, task_, start_, seed_);
@@ -206,6 +201,8 @@ void propagate(const FlightTask& task, const ManoeuvreSearchConfig& config, cons
 
 }  // namespace
 
+const FlightState& flight_state_of(const ob::State* state) { return node_of(state).flight; }
+
 std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightState& start,
                                           const Manoeuvre& hint, const ManoeuvreSearchConfig& config,
                                           std::uint64_t seed) {
@@ -248,7 +245,7 @@ std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightSt
   planner->setProblemDefinition(problem);
   planner->setSelectionRadius(config.selection_radius);
   planner->setPruningRadius(config.pruning_radius);
-  planner->setNearestNeighbors<ompl::NearestNeighborsLinear>();
+  planner->setNearestNeighbors<NearestFlightStates>();
   int asked = 0;
   planner->solve(ob::PlannerTerminationCondition([&] { return ++asked > config.iterations; }));
   if (std::isinf(goal->best_cost)) return std::nullopt;
