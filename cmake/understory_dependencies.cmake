@@ -4,6 +4,8 @@ find_package(yaml-cpp REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)
+find_package(Boost REQUIRED)                  # headers only: Boost.Math's distributions
+find_package(pugixml REQUIRED)
 
 find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs calib3d videoio)
 add_library(opencv_core_parts INTERFACE)      # what the flight stack may use

@@ -13,13 +13,16 @@ struct ResightingsConfig {
   bool enabled = false;
   std::vector<double> depths_m;  ///< that the detector looks at; the composition knows them, no key says them
   /// Level distance from a cluster's centre within which hits of one depth join it. While a trunk crosses the
-  /// depth interval of a pixel (1.6 m at 10 m), its places smear over as much in the odometry frame.
-  double cluster_m = 1.2;
+  /// depth interval of a pixel (1.6 m at 10 m), its places smear over as much in the odometry frame, and by
+  /// what a wind that is not yet known carries meanwhile.
+  double cluster_m = 2.0;
   int least_hits = 8;      ///< a cluster of fewer is left alone
   double settle_s = 0.04;  ///< a nearer cluster without a hit for as long is complete
-  double match_m = 1.5;    ///< level distance between the two places of one obstacle, at most
-  double rival = 2.0;      ///< any other far cluster must be this many times as distant
-  double oldest_s = 0.9;   ///< between the two sightings, at most
+  /// Level distance between the two places of one obstacle, at most: an unknown wind of 5 m/s over the half
+  /// second between 10 and 5 m.
+  double match_m = 2.5;
+  double rival = 1.5;     ///< any other far cluster must be this many times as distant
+  double oldest_s = 0.9;  ///< between the two sightings, at most
   /// Of the discrepancy, along the line of sight: what remains of a pixel's depth interval once its crossing
   /// is averaged, and of where a trunk's face lies.
   double along_sigma_m = 0.25;

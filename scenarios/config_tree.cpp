@@ -113,6 +113,20 @@ ConfigNode parse_config_file(const std::filesystem::path& file) {
   return parse_config_text(text, file.string());
 }
 
+ConfigNode under_keys(ConfigNode value, std::string keys) {
+  while (true) {  // from the innermost key outwards
+    const std::size_t dot = keys.rfind('.');
+    value.key = dot == std::string::npos ? keys : keys.substr(dot + 1);
+    ConfigNode map;
+    map.kind = ConfigNode::Kind::map;
+    map.origin = value.origin;
+    map.children.push_back(std::move(value));
+    value = std::move(map);
+    if (dot == std::string::npos) return value;
+    keys.resize(dot);
+  }
+}
+
 ConfigNode parse_assignment(const std::string& assignment) {
   const std::string origin = "--set " + assignment;
   const std::size_t equals = assignment.find('=');
@@ -125,18 +139,7 @@ ConfigNode parse_assignment(const std::string& assignment) {
   } catch (const YAML::Exception& error) {
     throw ScenarioError(fmt::format("{}: expected a YAML value: {}", origin, one_line(error.msg)));
   }
-  std::string keys = assignment.substr(0, equals);
-  while (true) {  // wrap the value from the innermost key outwards
-    const std::size_t dot = keys.rfind('.');
-    value.key = dot == std::string::npos ? keys : keys.substr(dot + 1);
-    ConfigNode map;
-    map.kind = ConfigNode::Kind::map;
-    map.origin = origin;
-    map.children.push_back(std::move(value));
-    value = std::move(map);
-    if (dot == std::string::npos) return value;
-    keys.resize(dot);
-  }
+  return under_keys(std::move(value), assignment.substr(0, equals));
 }
 
 namespace {

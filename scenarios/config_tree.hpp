@@ -36,6 +36,9 @@ ConfigNode parse_config_text(const std::string& text, const std::string& name);
 /// "a.b.c=value" as a tree holding that one key. The value is YAML: a number, a word, a [list].
 ConfigNode parse_assignment(const std::string& assignment);
 
+/// `value` under the dotted key "a.b.c", as a tree holding that one key.
+ConfigNode under_keys(ConfigNode value, std::string keys);
+
 /// Where the key "a.b.c" (or "a.list[2].c") was given: in the last of `sources` that holds it; empty where
 /// none does.
 std::string origin_of(const std::vector<ConfigNode>& sources, std::string_view path);

@@ -1,6 +1,8 @@
 #include "scenarios/file_output.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -18,6 +20,20 @@ namespace {
   throw ScenarioError(fmt::format("{}: expected a writable output: {}", file.string(), std::strerror(error)));
 }
 
+void write_through(const std::filesystem::path& file, const std::string& part, std::string_view content,
+                   bool lasting) {
+  std::FILE* stream = std::fopen(part.c_str(), "wb");
+  if (stream == nullptr) fail(file, errno);
+  int error = 0;
+  if (std::fwrite(content.data(), 1, content.size(), stream) != content.size()) error = errno;
+  if (error == 0 && lasting && (std::fflush(stream) != 0 || fsync(fileno(stream)) != 0)) error = errno;
+  if (std::fclose(stream) != 0 && error == 0) error = errno;
+  if (error == 0 && std::rename(part.c_str(), file.c_str()) != 0) error = errno;
+  if (error == 0) return;
+  std::remove(part.c_str());
+  fail(file, error);
+}
+
 }  // namespace
 
 void prepare_output_folder(const std::filesystem::path& folder) {
@@ -33,16 +49,19 @@ void prepare_output_folder(const std::filesystem::path& folder) {
 }
 
 void write_whole_file(const std::filesystem::path& file, std::string_view content) {
-  const std::string part = file.string() + ".part";
-  std::FILE* stream = std::fopen(part.c_str(), "wb");
-  if (stream == nullptr) fail(file, errno);
-  int error = 0;
-  if (std::fwrite(content.data(), 1, content.size(), stream) != content.size()) error = errno;
-  if (std::fclose(stream) != 0 && error == 0) error = errno;
-  if (error == 0 && std::rename(part.c_str(), file.c_str()) != 0) error = errno;
-  if (error == 0) return;
-  std::remove(part.c_str());
-  fail(file, error);
+  write_through(file, file.string() + ".part", content, false);
+}
+
+void write_lasting_file(const std::filesystem::path& file, std::string_view content) {
+  char host[64] = "";
+  gethostname(host, sizeof host - 1);
+  write_through(file, fmt::format("{}.{}-{}.part", file.string(), host, getpid()), content, true);
+  // The new name is the folder's, and lasts once that has reached the disk.
+  const int folder = open(file.parent_path().c_str(), O_RDONLY | O_DIRECTORY);
+  if (folder >= 0) {
+    fsync(folder);
+    close(folder);
+  }
 }
 
 void require_free_space(const std::filesystem::path& file, std::uintmax_t bytes) {

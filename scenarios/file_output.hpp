@@ -20,6 +20,10 @@ void prepare_output_folder(const std::filesystem::path& folder);
 /// cannot be written.
 void write_whole_file(const std::filesystem::path& file, std::string_view content);
 
+/// The same, and back only when it would outlive a power cut. Two programs may write one file at a time, even
+/// from two machines: each has a .part of its own.
+void write_lasting_file(const std::filesystem::path& file, std::string_view content);
+
 /// Throws MachineError where fewer than `bytes` are free beside `file`: for writers that cannot tell (video).
 void require_free_space(const std::filesystem::path& file, std::uintmax_t bytes);
 

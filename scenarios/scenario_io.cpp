@@ -101,6 +101,12 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<std:
   return compose(sources_of(parse_config_file(file), settings), file.string());
 }
 
+Scenario load_changed_scenario(const std::filesystem::path& file, const std::vector<ConfigNode>& changes) {
+  Sources sources{parse_config_file(file)};
+  sources.insert(sources.end(), changes.begin(), changes.end());
+  return compose(sources, file.string());
+}
+
 Scenario scenario_from_text(const std::string& text, const std::string& name,
                             const std::vector<std::string>& settings) {
   return compose(sources_of(parse_config_text(text, name), settings), name);

@@ -17,6 +17,9 @@ namespace understory {
 /// contradict each other.
 Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& settings = {});
 
+/// The same with trees of keys instead of settings; messages name their origins.
+Scenario load_changed_scenario(const std::filesystem::path& file, const std::vector<ConfigNode>& changes);
+
 /// The same from text; `name` stands for the file in messages.
 Scenario scenario_from_text(const std::string& text, const std::string& name,
                             const std::vector<std::string>& settings = {});

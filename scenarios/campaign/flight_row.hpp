@@ -22,8 +22,8 @@ struct FlightRow {
   std::string condition;  ///< scenario and overrides, by name
   std::uint64_t seed = 0;
   RunStatus status = RunStatus::refused;
-  std::string reason;   ///< why it was not flown, one line; empty for a flown one
-  std::string outcome;  ///< flight_result.hpp's word for its ending; empty unless flown
+  std::string reason;                 ///< why it was not flown, one line; empty for a flown one
+  std::string outcome;                ///< flight_result.hpp's word for its ending; empty unless flown
   double cruise_speed_mps = 0;        ///< asked
   double square_metres_per_tree = 0;  ///< of the forest
   double distance_m = 0;              ///< flown: true path length since release

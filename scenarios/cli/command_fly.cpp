@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -6,7 +7,9 @@
 #include <cstdio>
 #include <memory>
 
+#include "scenarios/campaign/flight_row_io.hpp"
 #include "scenarios/cli/commands.hpp"
+#include "scenarios/file_output.hpp"
 #include "scenarios/fly.hpp"
 #include "scenarios/scenario_io.hpp"
 
@@ -15,7 +18,8 @@ namespace {
 
 struct FlyArguments : ScenarioArguments {
   std::string seed;
-  std::string out;  // empty: runs/<name>-<seed>
+  std::string out;  // empty: runs/<name>-<seed>, or with a row no run folder at all
+  std::string row;  // empty: none
   RendererKind renderer = RendererKind::osmesa;
   bool video = false;
   bool quiet = false;
@@ -42,22 +46,38 @@ void require_rig(const Scenario& scenario, const FlyArguments& arguments,
                                   rigs.string(), scenario.rig));
 }
 
+/// As a campaign reads it. The file's name is the flight's id, the scenario's that of its condition.
+void write_row(const FlyArguments& arguments, const Scenario& scenario, const FlightResult& result) {
+  struct rusage usage {};
+  getrusage(RUSAGE_SELF, &usage);
+  const std::filesystem::path file = arguments.row;
+  FlightFile flight{flown_row(scenario, result),
+                    {result.wall_s, static_cast<double>(usage.ru_maxrss) * 1.024e-3}};
+  flight.row.id = file.stem().string();
+  flight.row.condition = std::filesystem::path(arguments.scenario).stem().string();
+  write_lasting_file(file, to_json(flight));
+}
+
 int run_fly(const FlyArguments& arguments) {
   const Scenario scenario = load_scenario(scenario_file(arguments.scenario), arguments.settings);
   FlyOptions options;
   options.models_folder = project_root() / "models";
   require_rig(scenario, arguments, options.models_folder);
-  options.output_folder =
-      arguments.out.empty() ? fmt::format("runs/{}-{}", scenario.name, scenario.seed) : arguments.out;
   options.video = arguments.video;
   options.renderer = arguments.renderer;
+  options.output_folder = arguments.out;
+  if (arguments.out.empty() && arguments.row.empty())
+    options.output_folder = fmt::format("runs/{}-{}", scenario.name, scenario.seed);
+  if (options.video && options.output_folder.empty())
+    throw ScenarioError("--video: expected --out beside --row");
   const bool shows_progress = !arguments.quiet && isatty(STDOUT_FILENO) == 1;
   if (shows_progress) options.on_progress = print_progress;
   const FlightResult result = fly(scenario, options);
   if (shows_progress) fmt::print("\r\033[K");
+  if (!arguments.row.empty()) write_row(arguments, scenario, result);
   if (!arguments.quiet) {
     fmt::print("{}", to_report(result));
-    fmt::print("  {:<18}{}\n", "files", options.output_folder.string());
+    if (!options.output_folder.empty()) fmt::print("  {:<18}{}\n", "files", options.output_folder.string());
     if (options.video) fmt::print("  {:<18}{}\n", "video", (options.output_folder / "flight.mp4").string());
   }
   return result.ending == Ending::goal ? exit_goal : exit_not_goal;
@@ -72,6 +92,8 @@ void add_fly_command(CLI::App& app, Command& chosen) {
   command->add_option("--seed", arguments->seed, "of course and sensors; goes before the scenario's own");
   command->add_option("--out", arguments->out, "run folder (default: runs/<name>-<seed>)");
   add_renderer_option(*command, arguments->renderer);
+  command->add_option("--row", arguments->row,
+                      "write the flight's row here, as campaign and collect read it; no run folder");
   command->add_flag("--video", arguments->video, "also make flight.mp4 and still.png");
   command->add_flag("--quiet", arguments->quiet, "print nothing");
   command->callback([arguments, &chosen] {

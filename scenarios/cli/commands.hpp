@@ -15,7 +15,8 @@ class App;
 
 namespace understory {
 
-/// Exit statuses of every command (README). `validate` ends with exit_not_goal where a tolerance is broken.
+/// Exit statuses of every command (README). `validate` ends with exit_not_goal where a tolerance is broken,
+/// `gate` where a change may not pass.
 enum ExitStatus { exit_goal = 0, exit_not_goal = 1, exit_bad_input = 2, exit_machine_failed = 3 };
 
 /// What the command line asked for, parsed; returns the exit status.
@@ -25,7 +26,10 @@ using Command = std::function<int()>;
 /// run.
 void add_fly_command(CLI::App& app, Command& chosen);
 void add_evaluate_command(CLI::App& app, Command& chosen);
+void add_campaign_command(CLI::App& app, Command& chosen);
+void add_collect_command(CLI::App& app, Command& chosen);
 void add_validate_command(CLI::App& app, Command& chosen);
+void add_gate_command(CLI::App& app, Command& chosen);
 void add_rig_command(CLI::App& app, Command& chosen);
 void add_detect_command(CLI::App& app, Command& chosen);
 void add_bench_command(CLI::App& app, Command& chosen);

@@ -22,6 +22,7 @@ void add_refusal(CLI::App& app, Command& chosen, const std::string& name) {
 
 void add_fly_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "fly"); }
 void add_evaluate_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "evaluate"); }
+void add_gate_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "gate"); }
 void add_validate_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "validate"); }
 
 }  // namespace understory

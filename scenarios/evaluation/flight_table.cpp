@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "scenarios/evaluation/wilson.hpp"
 #include "scenarios/file_output.hpp"
+#include "scenarios/statistics/wilson.hpp"
 
 namespace understory {
 namespace {

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <vector>
 
-#include "scenarios/evaluation/wilson.hpp"
 #include "scenarios/flight_result.hpp"
 #include "scenarios/scenario.hpp"
+#include "scenarios/statistics/wilson.hpp"
 #include "scenarios/validation/drift_tally.hpp"
 
 namespace understory {

@@ -1,4 +1,4 @@
-#include "scenarios/evaluation/wilson.hpp"
+#include "scenarios/statistics/wilson.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,16 +2,13 @@
 
 #include <cmath>
 
-namespace understory {
+#include "scenarios/statistics/interval.hpp"
 
-struct Interval {
-  double least = 0;
-  double greatest = 1;
-};
+namespace understory {
 
 /// Wilson's score interval for a proportion (Wilson 1927, J. Am. Stat. Assoc. 22), without continuity
 /// correction. `z` is the normal quantile: 1.959964 for 95 %. No trials: 0 .. 1.
-inline Interval wilson_interval(int successes, int trials, double z = 1.959963984540054) {
+inline Interval wilson_interval(int successes, int trials, double z = z_95) {
   if (trials == 0) return {0, 1};
   const double n = trials;
   const double share = successes / n;

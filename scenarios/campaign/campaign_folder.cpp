@@ -1,0 +1,166 @@
+#include "scenarios/campaign/campaign_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "scenarios/config_tree.hpp"
+#include "scenarios/file_output.hpp"
+#include "scenarios/run_digest.hpp"
+#include "scenarios/versions.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* manifest_name = "campaign.json";
+
+/// Nothing where it cannot be read.
+std::optional<std::string> text_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return {};
+  return std::string(std::istreambuf_iterator<char>(stream), {});
+}
+
+/// Equal programs fly equal flights.
+std::string program_digest() {
+  RunDigest digest;
+  const std::string binary = text_of("/proc/self/exe").value_or("");
+  digest.add(std::as_bytes(std::span(binary)));
+  return digest.hex();
+}
+
+std::string manifest_of(const Campaign& campaign) {
+  Json json;
+  json["format"] = results_format;
+  json["program"] = {{"understory", understory_version}, {"digest", program_digest()}};
+  json["name"] = campaign.name;
+  json["timeout_s"] = campaign.timeout_s;
+  json["conditions"] = Json::array();
+  for (const Condition& condition : campaign.conditions) json["conditions"].push_back(condition.name);
+  json["seeds"] = campaign.seeds;
+  return json.dump(1) + "\n";
+}
+
+Json manifest_in(const CampaignFolder& folder) {
+  const fs::path file = folder.path / manifest_name;
+  const auto text = text_of(file);
+  if (!text)
+    throw ScenarioError(
+        fmt::format("{}: expected a campaign's results, with {}", folder.path.string(), manifest_name));
+  const Json json = Json::parse(*text, nullptr, false);
+  if (!json.is_object() || !json.contains("format"))
+    throw ScenarioError(fmt::format("{}: expected a campaign's description, whole", file.string()));
+  if (json["format"] != results_format)
+    throw ScenarioError(fmt::format("{}: format: expected {}, the results are of another version: {}",
+                                    file.string(), results_format, json["format"].dump()));
+  return json;
+}
+
+/// Says in one line what keeps `folder` from going on with `campaign`.
+void require_same(const CampaignFolder& folder, const Campaign& campaign) {
+  const Campaign held = read_campaign(folder);
+  const auto refuse = [&](const std::string& what) {
+    throw ScenarioError(fmt::format("{}: {}: expected as it was begun; --out names another folder",
+                                    (folder.path / manifest_name).string(), what));
+  };
+  const Json json = manifest_in(folder);
+  if (json["program"].value("digest", "") != program_digest())
+    refuse("this understory is another build than the campaign's");
+  if (held.seeds != campaign.seeds) refuse("seeds changed");
+  if (held.timeout_s != campaign.timeout_s) refuse("timeout_s changed");
+  for (const Condition& condition : campaign.conditions) {
+    const auto same = [&](const Condition& other) {
+      return other.name == condition.name && other.scenario_text == condition.scenario_text;
+    };
+    if (std::ranges::none_of(held.conditions, same)) refuse("condition " + condition.name + " changed");
+  }
+  if (held.conditions.size() != campaign.conditions.size()) refuse("a condition is gone");
+}
+
+}  // namespace
+
+void prepare_campaign_folder(const CampaignFolder& folder, const Campaign& campaign, bool resume) {
+  if (fs::exists(folder.path / manifest_name)) {
+    if (!resume)
+      throw ScenarioError(
+          fmt::format("{}: holds a campaign already: --resume goes on with it, --out names another folder",
+                      folder.path.string()));
+    require_same(folder, campaign);
+  }
+  for (const char* part : {"conditions", "flights", "logs"}) prepare_output_folder(folder.path / part);
+  for (const Condition& condition : campaign.conditions)
+    write_lasting_file(folder.condition_file(condition), condition.scenario_text);
+  write_lasting_file(folder.path / manifest_name, manifest_of(campaign));  // last: now it is a campaign
+}
+
+Campaign read_campaign(const CampaignFolder& folder) {
+  const Json json = manifest_in(folder);
+  Campaign campaign;
+  try {
+    campaign.name = json.at("name");
+    campaign.timeout_s = json.at("timeout_s");
+    campaign.seeds = json.at("seeds").get<std::vector<std::uint64_t>>();
+    for (const Json& name : json.at("conditions")) campaign.conditions.push_back({name, ""});
+  } catch (const Json::exception&) {
+    throw ScenarioError(
+        fmt::format("{}: expected a campaign's description, whole", (folder.path / manifest_name).string()));
+  }
+  for (Condition& condition : campaign.conditions) {
+    const auto text = text_of(folder.condition_file(condition));
+    if (!text)
+      throw ScenarioError(
+          fmt::format("{}: expected the condition's scenario", folder.condition_file(condition).string()));
+    condition.scenario_text = *text;
+  }
+  return campaign;
+}
+
+std::optional<FlightFile> read_flight(const CampaignFolder& folder, const CampaignTask& task) {
+  const auto text = text_of(folder.flight_file(task));
+  auto file = text ? flight_file_from_json(*text) : std::nullopt;
+  if (file && (file->row.id != task.id || file->row.seed != task.seed)) return {};
+  return file;
+}
+
+void write_flight(const CampaignFolder& folder, const Campaign& campaign, const CampaignTask& task,
+                  FlightFile file) {
+  file.row.id = task.id;
+  file.row.condition = campaign.conditions[task.condition].name;
+  file.row.seed = task.seed;
+  write_lasting_file(folder.flight_file(task), to_json(file));
+}
+
+Collected collect(const CampaignFolder& folder, const Campaign& campaign) {
+  Collected collected;
+  std::string lines, costs = "id,wall_s,peak_memory_mb\n";
+  for (const CampaignTask& task : tasks_of(campaign)) {
+    const auto file = read_flight(folder, task);
+    if (!file) {
+      collected.missing += 1;
+      continue;
+    }
+    lines += to_json_line(file->row) + "\n";
+    costs += fmt::format("{},{:.3f},{:.1f}\n", task.id, file->cost.wall_s, file->cost.peak_memory_mb);
+    collected.rows.push_back(file->row);
+  }
+  write_whole_file(folder.path / "flights.csv", to_csv(collected.rows));
+  write_whole_file(folder.path / "flights.jsonl", lines);
+  write_whole_file(folder.path / "costs.csv", costs);
+  return collected;
+}
+
+std::vector<FlightRow> read_campaign_rows(const fs::path& folder) {
+  const fs::path file = folder / "flights.csv";
+  const auto text = text_of(file);
+  if (!text)
+    throw ScenarioError(fmt::format("{}: expected a campaign's results (flights.csv)", folder.string()));
+  return rows_from_csv(*text, file.string());
+}
+
+}  // namespace understory

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/campaign/campaign.hpp"
+#include "scenarios/campaign/flight_row_io.hpp"
+
+namespace understory {
+
+/// A campaign's results on disk:
+///
+///     campaign.json          what is flown, by which program
+///     conditions/NAME.yaml   each condition's effective scenario
+///     flights/ID.json        a flight's file, there once it is over; written whole or not at all
+///     logs/ID.txt            what a flight that was not flown said on standard error
+///     flights.csv .jsonl     every row, in the campaign's order; costs.csv: wall time and memory
+///
+/// A flight's file is all that says that it is over, so nothing has to be undone after a kill or a power cut,
+/// and two programs that fly the same flight write the same.
+struct CampaignFolder {
+  std::filesystem::path path;
+  std::filesystem::path condition_file(const Condition& condition) const {
+    return path / "conditions" / (condition.name + ".yaml");
+  }
+  std::filesystem::path flight_file(const CampaignTask& task) const {
+    return path / "flights" / (task.id + ".json");
+  }
+  std::filesystem::path log_file(const CampaignTask& task) const { return path / "logs" / (task.id + ".txt"); }
+};
+
+/// Makes the folder, or, with `resume`, makes sure that it holds this very campaign, begun by this program.
+/// Throws ScenarioError in one line where it holds a campaign already (without `resume`), another one, or one
+/// of another program or format, or where it cannot be written.
+void prepare_campaign_folder(const CampaignFolder& folder, const Campaign& campaign, bool resume);
+
+/// The campaign that a folder holds. Throws ScenarioError where it holds none or one of another format.
+Campaign read_campaign(const CampaignFolder& folder);
+
+/// One flight's file; nothing where it is missing or not whole.
+std::optional<FlightFile> read_flight(const CampaignFolder& folder, const CampaignTask& task);
+/// Writes it so that it outlives a power cut. Sets the row's id and condition.
+void write_flight(const CampaignFolder& folder, const Campaign& campaign, const CampaignTask& task,
+                  FlightFile file);
+
+/// What is there.
+struct Collected {
+  std::vector<FlightRow> rows;  ///< in the campaign's order
+  std::size_t missing = 0;      ///< flights without a file
+};
+/// Gathers the flights' files and writes flights.csv, flights.jsonl and costs.csv.
+Collected collect(const CampaignFolder& folder, const Campaign& campaign);
+
+/// The rows of a folder's flights.csv, wherever they were flown. Throws ScenarioError where there is none, or
+/// one of another format.
+std::vector<FlightRow> read_campaign_rows(const std::filesystem::path& folder);
+
+}  // namespace understory

@@ -1,0 +1,182 @@
+#include "scenarios/campaign/campaign_plots.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "scenarios/campaign/campaign_summary.hpp"
+#include "scenarios/statistics/wilson.hpp"
+
+namespace understory {
+namespace {
+
+struct Count {
+  int flights = 0;
+  int goals = 0;
+};
+
+/// A series before it is drawn: flights and goals over x.
+struct CountedSeries {
+  std::string name;
+  std::map<double, Count> at;
+};
+
+/// What conditions may differ in: the field, and the key that a campaign's grid puts into their names.
+struct PlotAxis {
+  double (*value)(const FlightRow&);
+  const char* key;
+};
+
+double speed_of(const FlightRow& row) { return row.cruise_speed_mps; }
+double density_of(const FlightRow& row) {
+  return row.square_metres_per_tree > 0 ? 100 / row.square_metres_per_tree : 0;
+}
+constexpr PlotAxis speed_axis{speed_of, "cruise_speed_mps="};
+constexpr PlotAxis density_axis{density_of, "square_metres_per_tree="};
+
+constexpr AxisRange percent_range{-2, 102};  // dots at 0 and at 100 are whole
+
+std::vector<FlightRow> flown_ones(const std::vector<FlightRow>& rows) {
+  std::vector<FlightRow> flown;
+  std::ranges::copy_if(rows, std::back_inserter(flown), &FlightRow::flown);
+  return flown;
+}
+
+/// "forest-blind-cruise_speed_mps=10" without its key: "forest-blind". A value may be negative: "=-1".
+std::string name_without(const std::string& name, const std::string& key) {
+  const std::size_t begin = name.find(key);
+  if (begin == std::string::npos || (begin > 0 && name[begin - 1] != '-')) return name;
+  const std::size_t end = name.find('-', begin + key.size() + 1);
+  if (begin == 0) return end == std::string::npos ? "" : name.substr(end + 1);
+  return name.substr(0, begin - 1) + (end == std::string::npos ? "" : name.substr(end));
+}
+
+std::vector<CountedSeries> counted(const std::vector<FlightRow>& rows, const PlotAxis& axis) {
+  std::vector<CountedSeries> all;
+  for (const FlightRow& row : rows) {
+    const std::string name = name_without(row.condition, axis.key);
+    auto series = std::ranges::find(all, name, &CountedSeries::name);
+    if (series == all.end()) series = all.insert(all.end(), {name, {}});
+    Count& count = series->at[axis.value(row)];
+    count.flights += 1;
+    count.goals += row.reached_goal() ? 1 : 0;
+  }
+  return all;
+}
+
+void add_point(Series& series, double x, const Count& count) {
+  const Interval interval = wilson_interval(count.goals, count.flights);
+  series.x.push_back(x);
+  series.y.push_back(100.0 * count.goals / count.flights);
+  series.low.push_back(100 * interval.least);
+  series.high.push_back(100 * interval.greatest);
+}
+
+LinePlot success_plot(const std::string& over, const std::string& x_label) {
+  LinePlot plot;
+  plot.title = "Success over " + over;
+  plot.x_label = x_label;
+  plot.y_label = "goal reached (%), 95 % Wilson";
+  plot.y_range = percent_range;
+  return plot;
+}
+
+double span_of(const std::vector<FlightRow>& rows, const PlotAxis& axis) {
+  if (rows.empty()) return 0;
+  const auto by_value = [&](const FlightRow& a, const FlightRow& b) { return axis.value(a) < axis.value(b); };
+  const auto [least, greatest] = std::ranges::minmax_element(rows, by_value);
+  return axis.value(*greatest) - axis.value(*least);
+}
+
+LinePlot success_over(const std::vector<FlightRow>& all_rows, const PlotAxis& axis, LinePlot plot) {
+  const std::vector<FlightRow> rows = flown_ones(all_rows);
+  const std::vector<CountedSeries> all = counted(rows, axis);
+  const double apart = 0.008 * span_of(rows, axis);
+  double aside = -0.5 * apart * (static_cast<double>(all.size()) - 1);
+  for (const CountedSeries& one : all) {
+    Series series;
+    series.name = one.name;
+    series.mark = one.at.size() > 1 ? Mark::line_and_dots : Mark::dots;
+    for (const auto& [x, count] : one.at) add_point(series, x + aside, count);
+    plot.series.push_back(std::move(series));
+    aside += apart;
+  }
+  return plot;
+}
+
+/// A curve's corners: along each step, then down to the next.
+Series steps_of(const ConditionSummary& summary) {
+  Series series;
+  series.name = summary.condition;
+  series.band = true;
+  const std::vector<SurvivalStep>& steps = summary.survival.steps;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const double until = i + 1 < steps.size() ? steps[i + 1].at : summary.survival.last_at;
+    for (const double at : {steps[i].at, until}) {
+      series.x.push_back(at);
+      series.y.push_back(100 * steps[i].share);
+      series.low.push_back(100 * steps[i].interval.least);
+      series.high.push_back(100 * steps[i].interval.greatest);
+    }
+  }
+  return series;
+}
+
+}  // namespace
+
+LinePlot success_over_speed(const std::vector<FlightRow>& rows) {
+  return success_over(rows, speed_axis, success_plot("speed", "cruise speed asked (m/s)"));
+}
+
+LinePlot success_over_density(const std::vector<FlightRow>& rows) {
+  return success_over(rows, density_axis, success_plot("density", "trees per 100 m²"));
+}
+
+LinePlot success_by_condition(const std::vector<FlightRow>& rows) {
+  LinePlot plot = success_plot("conditions", "condition, by its number below");
+  for (const ConditionSummary& summary : summarise(flown_ones(rows))) {
+    const std::size_t place = plot.series.size() + 1;
+    Series series;
+    series.name = fmt::format("{} {}", place, summary.condition);
+    series.mark = Mark::dots;
+    add_point(series, static_cast<double>(place), {summary.flown, summary.goals});
+    plot.series.push_back(std::move(series));
+  }
+  // Seven places or more: ticks fall on whole numbers.
+  plot.x_range = AxisRange{0, std::max(static_cast<double>(plot.series.size()) + 1, 7.0)};
+  return plot;
+}
+
+std::vector<LinePlot> survival_curves(const std::vector<FlightRow>& rows) {
+  constexpr std::size_t to_a_panel = 4;
+  std::vector<LinePlot> panels;
+  double furthest_m = 0;
+  for (const ConditionSummary& summary : summarise(flown_ones(rows))) {
+    if (panels.empty() || panels.back().series.size() == to_a_panel) {
+      panels.emplace_back();
+      panels.back().title = "Survival over distance";
+      panels.back().x_label = "progress (m)";
+      panels.back().y_label = "still flying (%), 95 %";
+      panels.back().y_range = percent_range;
+    }
+    panels.back().series.push_back(steps_of(summary));
+    furthest_m = std::max(furthest_m, summary.survival.last_at);
+  }
+  for (LinePlot& panel : panels) panel.x_range = AxisRange{0, std::max(furthest_m, 1.0)};
+  return panels;
+}
+
+std::string campaign_svg(const std::vector<FlightRow>& all_rows) {
+  const std::vector<FlightRow> rows = flown_ones(all_rows);
+  if (rows.empty()) return "";
+  std::vector<LinePlot> panels;
+  if (span_of(rows, speed_axis) > 0) panels.push_back(success_over_speed(rows));
+  if (span_of(rows, density_axis) > 0) panels.push_back(success_over_density(rows));
+  if (panels.empty()) panels.push_back(success_by_condition(rows));
+  for (LinePlot& panel : survival_curves(rows)) panels.push_back(std::move(panel));
+  return to_svg(panels, 2);
+}
+
+}  // namespace understory

@@ -1,0 +1,108 @@
+#include "scenarios/campaign/campaign_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenarios/statistics/bootstrap.hpp"
+#include "scenarios/statistics/wilson.hpp"
+
+namespace understory {
+namespace {
+
+ConditionSummary summary_of(const std::vector<FlightRow>& rows) {
+  ConditionSummary summary;
+  summary.condition = rows.front().condition;
+  std::vector<double> speeds_mps, errors_m;
+  std::vector<Lifetime> lifetimes;
+  const auto count = [&](const char* outcome) {
+    return static_cast<int>(std::ranges::count_if(
+        rows, [&](const FlightRow& row) { return row.flown() && row.outcome == outcome; }));
+  };
+  for (const FlightRow& row : rows) {
+    if (!row.flown()) continue;
+    speeds_mps.push_back(row.mean_speed_mps);
+    errors_m.push_back(row.position_error_mean_m);
+    lifetimes.push_back(lifetime_of(row));
+    summary.obstacle_ahead += row.obstacle_ahead;
+    summary.obstacle_ahead_ompl += row.obstacle_ahead_ompl;
+  }
+  summary.flown = static_cast<int>(lifetimes.size());
+  summary.failed_to_run = static_cast<int>(rows.size()) - summary.flown;
+  summary.goals = count("goal");
+  summary.collision = count("collision");
+  summary.ground = count("ground");
+  summary.out_of_bounds = count("out_of_bounds");
+  summary.time = count("time");
+  summary.success = wilson_interval(summary.goals, summary.flown);
+  summary.mean_speed_mps = mean_of(speeds_mps);
+  summary.position_error_mean_m = mean_of(errors_m);
+  summary.survival = kaplan_meier(lifetimes);
+  return summary;
+}
+
+std::string number(double value, int decimals) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
+}
+
+std::string success_text(const ConditionSummary& summary) {
+  if (summary.flown == 0) return "-";
+  return fmt::format("{:.1f} ({:.1f} to {:.1f})", 100.0 * summary.goals / summary.flown,
+                     100 * summary.success.least, 100 * summary.success.greatest);
+}
+
+std::string median_text(const ConditionSummary& summary) {
+  if (summary.flown == 0) return "-";
+  const std::optional<double> median = median_survival(summary.survival);
+  return median ? fmt::format("{:.1f}", *median) : fmt::format("> {:.0f}", summary.survival.last_at);
+}
+
+std::string ompl_text(const ConditionSummary& summary) {
+  if (summary.obstacle_ahead == 0) return "-";
+  return fmt::format("{:.1f}", 100.0 * static_cast<double>(summary.obstacle_ahead_ompl) /
+                                   static_cast<double>(summary.obstacle_ahead));
+}
+
+}  // namespace
+
+Lifetime lifetime_of(const FlightRow& row) {
+  if (row.reached_goal()) return {row.goal_m, false};
+  return {std::max(row.progress_m, 0.0), true};
+}
+
+std::vector<std::vector<FlightRow>> rows_by_condition(const std::vector<FlightRow>& rows) {
+  std::vector<std::vector<FlightRow>> groups;
+  for (const FlightRow& row : rows) {
+    const auto same = std::ranges::find_if(groups, [&](const std::vector<FlightRow>& group) {
+      return group.front().condition == row.condition;
+    });
+    if (same == groups.end())
+      groups.push_back({row});
+    else
+      same->push_back(row);
+  }
+  return groups;
+}
+
+std::vector<ConditionSummary> summarise(const std::vector<FlightRow>& rows) {
+  std::vector<ConditionSummary> summaries;
+  for (const std::vector<FlightRow>& group : rows_by_condition(rows)) summaries.push_back(summary_of(group));
+  return summaries;
+}
+
+PrintedTable summary_table(const std::vector<ConditionSummary>& summaries) {
+  PrintedTable table{{"condition", "flown", "goal", "success % (95 %)", "collision", "ground", "bounds",
+                      "time", "m/s", "median m", "error m", "OMPL %", "not flown"},
+                     {}};
+  const auto text = [](int count) { return fmt::format("{}", count); };
+  for (const ConditionSummary& summary : summaries)
+    table.rows.push_back({summary.condition, text(summary.flown), text(summary.goals), success_text(summary),
+                          text(summary.collision), text(summary.ground), text(summary.out_of_bounds),
+                          text(summary.time), number(summary.mean_speed_mps, 2), median_text(summary),
+                          number(summary.position_error_mean_m, 2), ompl_text(summary),
+                          text(summary.failed_to_run)});
+  return table;
+}
+
+}  // namespace understory

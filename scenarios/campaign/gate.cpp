@@ -1,0 +1,159 @@
+#include "scenarios/campaign/gate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenarios/campaign/printed_table.hpp"
+#include "scenarios/statistics/wilson.hpp"
+
+namespace understory {
+namespace {
+
+constexpr std::size_t named_at_most = 20;  // a log is read: the JUnit file has all of them
+
+/// "3 (goal to collision), 7, ... and 12 more"
+template <typename Item, typename Word>
+std::string some_of(const std::vector<Item>& items, Word&& word) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(items.size(), named_at_most); ++i)
+    text += (i == 0 ? "" : ", ") + word(items[i]);
+  if (items.size() > named_at_most) text += fmt::format(" and {} more", items.size() - named_at_most);
+  return text;
+}
+
+std::string percent(double share) { return fmt::format("{:.1f}", 100 * share); }
+std::string signed_percent(double share) { return fmt::format("{:+.1f}", 100 * share); }
+
+std::string success_text(int goals, int flights) {
+  const Interval interval = wilson_interval(goals, flights);
+  return fmt::format("{} ({} to {})", goals, percent(interval.least), percent(interval.greatest));
+}
+
+std::vector<std::string> success_row(const ConditionComparison& condition) {
+  const PairedOutcomes& goals = condition.goals;
+  return {
+      condition.condition,
+      fmt::format("{}", goals.pairs()),
+      success_text(goals.first(), goals.pairs()),
+      success_text(goals.second(), goals.pairs()),
+      fmt::format("{} ({} to {})", signed_percent(goals.difference()),
+                  signed_percent(condition.difference.least), signed_percent(condition.difference.greatest)),
+      fmt::format("{}", goals.only_first),
+      fmt::format("{}", goals.only_second),
+      fmt::format("{:.3g}", condition.p),
+      fmt::format("{}", condition.bit_for_bit)};
+}
+
+PrintedTable success_table(const Comparison& comparison) {
+  PrintedTable table{{"success, %", "pairs", "baseline goals", "candidate goals", "difference", "worse",
+                      "better", "p", "bit for bit"},
+                     {}};
+  for (const ConditionComparison& condition : comparison.conditions)
+    table.rows.push_back(success_row(condition));
+  if (comparison.conditions.size() > 1) table.rows.push_back(success_row(comparison.all));
+  return table;
+}
+
+PrintedTable metric_table(const Comparison& comparison) {
+  PrintedTable table{{"means", "figure", "pairs", "baseline", "candidate", "difference"}, {}};
+  for (const ConditionComparison& condition : comparison.conditions) {
+    if (condition.bit_for_bit == condition.goals.pairs()) continue;  // nothing has changed
+    for (const MetricComparison& metric : condition.metrics) {
+      if (metric.pairs == 0) continue;
+      const BootstrapEstimate& difference = metric.difference;
+      std::string change = fmt::format("{:+.4f}", difference.value);
+      if (std::isfinite(difference.interval.least))
+        change +=
+            fmt::format(" ({:+.4f} to {:+.4f})", difference.interval.least, difference.interval.greatest);
+      table.rows.push_back({condition.condition, metric.name, fmt::format("{}", metric.pairs),
+                            fmt::format("{:.4f}", metric.baseline_mean),
+                            fmt::format("{:.4f}", metric.candidate_mean), change});
+    }
+  }
+  return table;
+}
+
+std::string changed_seeds(const ConditionComparison& condition, bool worse) {
+  std::vector<FlightPair> changed;
+  std::ranges::copy_if(condition.pairs, std::back_inserter(changed), [worse](const FlightPair& pair) {
+    return worse ? pair.got_worse() : pair.got_better();
+  });
+  if (changed.empty()) return "";
+  return fmt::format("{}: {}: seed {}\n", worse ? "worse" : "better", condition.condition,
+                     some_of(changed, [worse](const FlightPair& pair) {
+                       const FlightRow& bad = worse ? pair.candidate : pair.baseline;
+                       return fmt::format("{} ({} at {:.1f} m)", bad.seed, bad.outcome, bad.progress_m);
+                     }));
+}
+
+std::string ids_of(const std::vector<FlightRow>& rows) {
+  return some_of(rows, [](const FlightRow& row) { return row.id; });
+}
+
+std::string failures_of(const std::vector<FlightRow>& rows) {
+  return some_of(rows, [](const FlightRow& row) { return fmt::format("{} ({})", row.id, row.reason); });
+}
+
+std::string flights(std::size_t count) { return count == 1 ? "1 flight" : fmt::format("{} flights", count); }
+
+}  // namespace
+
+bool dropped_too_far(const ConditionComparison& condition, const GateRule& rule) {
+  const double lost = condition.goals.only_first - condition.goals.only_second;
+  return lost > rule.max_drop * condition.goals.pairs() + 1e-9;  // the product is not exact, the count is
+}
+
+GateVerdict judge(const Comparison& comparison, const GateRule& rule) {
+  GateVerdict verdict;
+  for (const ConditionComparison& condition : comparison.conditions)
+    if (dropped_too_far(condition, rule))
+      verdict.reasons.push_back(fmt::format(
+          "{}: success fell by {} percentage points, from {} to {} of {}; at most {} are allowed (p = "
+          "{:.3g})",
+          condition.condition, percent(-condition.goals.difference()), condition.goals.first(),
+          condition.goals.second(), condition.goals.pairs(), percent(rule.max_drop), condition.p));
+  if (!comparison.candidate_failed.empty())
+    verdict.reasons.push_back(fmt::format("{} of the candidate failed to run: {}",
+                                          flights(comparison.candidate_failed.size()),
+                                          failures_of(comparison.candidate_failed)));
+  if (!comparison.missing.empty())
+    verdict.reasons.push_back(fmt::format("{} of the baseline missing in the candidate: {}",
+                                          flights(comparison.missing.size()), ids_of(comparison.missing)));
+  if (comparison.all.goals.pairs() == 0)
+    verdict.reasons.push_back("no flight of the two campaigns can be compared");
+  return verdict;
+}
+
+std::string to_report(const Comparison& comparison, const GateVerdict& verdict, const GateRule& rule) {
+  std::string text = to_text(success_table(comparison));
+  text +=
+      "  intervals 95 %: goals by Wilson, difference by Newcombe's paired method; p: McNemar's exact "
+      "test\n\n";
+  const PrintedTable metrics = metric_table(comparison);
+  if (!metrics.rows.empty())
+    text +=
+        to_text(metrics) +
+        "  difference of paired flights, 95 % interval by BCa bootstrap (too narrow below some 15 pairs)\n\n";
+  for (const bool worse : {true, false})
+    for (const ConditionComparison& condition : comparison.conditions)
+      text += changed_seeds(condition, worse);
+  for (const std::string& condition : comparison.altered)
+    text +=
+        fmt::format("note: {}: asked for another speed, density or goal than in the baseline\n", condition);
+  if (!comparison.added.empty())
+    text += fmt::format("note: {} of the candidate not in the baseline: {}\n",
+                        flights(comparison.added.size()), ids_of(comparison.added));
+  if (!comparison.baseline_failed.empty())
+    text += fmt::format("note: {} of the baseline failed to run: {}\n",
+                        flights(comparison.baseline_failed.size()), failures_of(comparison.baseline_failed));
+  for (const std::string& reason : verdict.reasons) text += fmt::format("FAILED: {}\n", reason);
+  if (verdict.passes())
+    text +=
+        fmt::format("passed: {} compared, no condition lost more than {} percentage points\n",
+                    flights(static_cast<std::size_t>(comparison.all.goals.pairs())), percent(rule.max_drop));
+  return text;
+}
+
+}  // namespace understory

@@ -1,0 +1,169 @@
+#include "scenarios/campaign/junit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <pugixml.hpp>
+#include <sstream>
+
+#include "scenarios/versions.hpp"
+
+namespace understory {
+namespace {
+
+enum class Result { passed, failure, error };
+
+struct TestCase {
+  std::string suite;
+  std::string name;
+  double time_s = 0;
+  Result result = Result::passed;
+  std::string message;  ///< of a failure or an error
+};
+
+/// Bytes of the UTF-8 letter at `at` that XML 1.0 can hold; 0 where there is none. Beyond its control
+/// characters XML leaves out surrogates, which UTF-8 leaves out too, and U+FFFE and U+FFFF.
+std::size_t letter_length(const std::string& text, std::size_t at) {
+  const auto byte = [&](std::size_t i) {
+    return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0u;
+  };
+  const unsigned first = byte(0);
+  if (first < 0x80) return first >= 0x20 || first == '\t' || first == '\n' || first == '\r' ? 1 : 0;
+  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  if (first < 0xc2 || first > 0xf4) return 0;
+  unsigned code = first & (0xffu >> (length + 1));
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+    code = code << 6 | (byte(i) & 0x3f);
+  }
+  constexpr unsigned least[]{0, 0, 0x80, 0x800, 0x10000};
+  const bool surrogate = code >= 0xd800 && code <= 0xdfff;
+  return code < least[length] || code > 0x10ffff || surrogate || code == 0xfffe || code == 0xffff ? 0
+                                                                                                  : length;
+}
+
+std::string without_odd_characters(const std::string& text) {
+  std::string clean;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = letter_length(text, at);
+    clean += length == 0 ? "?" : text.substr(at, length);
+    at += std::max<std::size_t>(length, 1);
+  }
+  return clean;
+}
+
+void set(pugi::xml_node node, const char* name, const std::string& value) {
+  node.append_attribute(name).set_value(without_odd_characters(value).c_str());
+}
+
+void append_counts(pugi::xml_node node, const std::vector<TestCase>& cases) {
+  double time_s = 0;
+  for (const TestCase& test : cases) time_s += test.time_s;
+  const auto count = [&](Result result) {
+    return fmt::format("{}", std::ranges::count(cases, result, &TestCase::result));
+  };
+  set(node, "tests", fmt::format("{}", cases.size()));
+  set(node, "failures", count(Result::failure));
+  set(node, "errors", count(Result::error));
+  set(node, "time", fmt::format("{:.3f}", time_s));
+}
+
+void append_case(pugi::xml_node suite, const TestCase& test) {
+  pugi::xml_node node = suite.append_child("testcase");
+  set(node, "classname", test.suite);
+  set(node, "name", test.name);
+  set(node, "time", fmt::format("{:.3f}", test.time_s));
+  if (test.result == Result::passed) return;
+  set(node.append_child(test.result == Result::failure ? "failure" : "error"), "message", test.message);
+}
+
+std::string to_junit(const std::string& name, const std::vector<TestCase>& cases) {
+  std::vector<std::string> suites;
+  for (const TestCase& test : cases)
+    if (std::ranges::find(suites, test.suite) == suites.end()) suites.push_back(test.suite);
+
+  pugi::xml_document document;
+  pugi::xml_node declaration = document.append_child(pugi::node_declaration);
+  set(declaration, "version", "1.0");
+  set(declaration, "encoding", "UTF-8");
+  pugi::xml_node top = document.append_child("testsuites");
+  set(top, "name", name);
+  append_counts(top, cases);
+  for (const std::string& suite : suites) {
+    std::vector<TestCase> own;
+    std::ranges::copy_if(cases, std::back_inserter(own),
+                         [&](const TestCase& test) { return test.suite == suite; });
+    pugi::xml_node node = top.append_child("testsuite");
+    set(node, "name", suite);
+    append_counts(node, own);
+    pugi::xml_node version = node.append_child("properties").append_child("property");
+    set(version, "name", "understory");
+    set(version, "value", understory_version);
+    for (const TestCase& test : own) append_case(node, test);
+  }
+  std::ostringstream text;
+  document.save(text, "  ");
+  return text.str();
+}
+
+std::string ending_of(const FlightRow& row) {
+  return fmt::format("{} at {:.1f} m of {:.1f} m", row.outcome, row.progress_m, row.goal_m);
+}
+
+TestCase case_of(const FlightRow& row) {
+  TestCase test{row.condition, fmt::format("{}", row.seed), row.simulated_s, Result::passed, ""};
+  if (!row.flown()) {
+    test.result = Result::error;
+    test.message = row.reason.empty() ? "failed to run" : row.reason;
+  }
+  return test;
+}
+
+TestCase case_of(const ConditionComparison& condition, const GateRule& rule) {
+  const PairedOutcomes& goals = condition.goals;
+  TestCase test{"gate", condition.condition, 0, Result::passed, ""};
+  if (!dropped_too_far(condition, rule)) return test;
+  test.result = Result::failure;
+  test.message = fmt::format(
+      "success fell from {} to {} of {}, by {:.1f} percentage points ({:.1f} allowed), p = {:.3g}",
+      goals.first(), goals.second(), goals.pairs(), -100 * goals.difference(), 100 * rule.max_drop,
+      condition.p);
+  return test;
+}
+
+}  // namespace
+
+std::string campaign_junit(const std::vector<FlightRow>& rows) {
+  std::vector<TestCase> cases;
+  for (const FlightRow& row : rows) {
+    TestCase test = case_of(row);
+    if (row.flown() && !row.reached_goal()) {
+      test.result = Result::failure;
+      test.message = ending_of(row);
+    }
+    cases.push_back(test);
+  }
+  return to_junit("campaign", cases);
+}
+
+std::string gate_junit(const Comparison& comparison, const GateRule& rule) {
+  std::vector<TestCase> cases;
+  for (const ConditionComparison& condition : comparison.conditions)
+    cases.push_back(case_of(condition, rule));
+  for (const ConditionComparison& condition : comparison.conditions)
+    for (const FlightPair& pair : condition.pairs) {
+      TestCase test = case_of(pair.candidate);
+      if (pair.got_worse()) {
+        test.result = Result::failure;
+        test.message = ending_of(pair.candidate) + "; reached its goal in the baseline";
+      }
+      cases.push_back(test);
+    }
+  for (const FlightRow& row : comparison.missing)
+    cases.push_back({row.condition, fmt::format("{}", row.seed), 0, Result::error,
+                     "in the baseline, missing in the candidate"});
+  for (const FlightRow& row : comparison.added) cases.push_back(case_of(row));
+  return to_junit("gate", cases);
+}
+
+}  // namespace understory

@@ -1,0 +1,265 @@
+#include "scenarios/campaign/local_engine.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <thread>
+
+#include "scenarios/config_tree.hpp"
+#include "scenarios/file_output.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds look_every{10};  ///< a flight takes seconds
+/// exit_bad_input and exit_machine_failed of the command line.
+constexpr int status_refused = 2, status_machine_failed = 3;
+
+volatile std::sig_atomic_t stop_asked = 0;
+
+/// While it lives, the signals that mean "stop" only set a flag.
+class StopSignals {
+ public:
+  StopSignals() {
+    stop_asked = 0;
+    struct sigaction action {};
+    action.sa_handler = [](int) { stop_asked = 1; };
+    for (std::size_t i = 0; i < signals.size(); ++i) sigaction(signals[i], &action, &before_[i]);
+  }
+  ~StopSignals() {
+    for (std::size_t i = 0; i < signals.size(); ++i) sigaction(signals[i], &before_[i], nullptr);
+  }
+  StopSignals(const StopSignals&) = delete;
+  StopSignals& operator=(const StopSignals&) = delete;
+
+ private:
+  static constexpr std::array signals{SIGINT, SIGTERM, SIGHUP};
+  std::array<struct sigaction, signals.size()> before_{};
+};
+
+struct InTheAir {
+  const CampaignTask* task = nullptr;
+  Clock::time_point since;
+  bool hung = false;
+};
+
+std::string last_line_of(const fs::path& file) {
+  std::ifstream stream(file);
+  std::string last;
+  for (std::string line; std::getline(stream, line);)
+    if (!line.empty()) last = line;
+  return last;
+}
+
+[[noreturn]] void become_flight(const std::vector<std::string>& arguments, const fs::path& log,
+                                pid_t parent) {
+  // A group of its own: Ctrl-C is the campaign's to answer. And no flight outlives it.
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(127);
+  std::vector<char*> argv{const_cast<char*>("understory")};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  const int nothing = open("/dev/null", O_RDWR);
+  const int log_file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  if (nothing < 0 || log_file < 0) _exit(127);
+  dup2(nothing, STDIN_FILENO);
+  dup2(nothing, STDOUT_FILENO);
+  dup2(log_file, STDERR_FILENO);
+  execv("/proc/self/exe", argv.data());
+  _exit(127);
+}
+
+pid_t start(const std::vector<std::string>& arguments, const fs::path& log) {
+  const pid_t parent = getpid();
+  const pid_t child = fork();
+  if (child < 0) throw MachineError(fmt::format("cannot start a flight: {}", std::strerror(errno)));
+  if (child == 0) become_flight(arguments, log, parent);
+  return child;
+}
+
+/// What a flight without a file of its own is written down as.
+FlightRow row_of_failure(int wait_status, bool hung, double timeout_s, const std::string& last_words) {
+  FlightRow row;
+  const std::string words = last_words.empty() ? "" : ": " + last_words;
+  if (hung) {
+    row.status = RunStatus::hung;
+    row.reason = fmt::format("took longer than timeout_s = {:g} s", timeout_s);
+  } else if (WIFSIGNALED(wait_status)) {
+    const int signal = WTERMSIG(wait_status);
+    const bool from_outside = signal == SIGKILL || signal == SIGTERM || signal == SIGINT || signal == SIGHUP;
+    row.status = from_outside ? RunStatus::killed : RunStatus::crashed;
+    row.reason = fmt::format("signal {} ({}){}", signal, strsignal(signal), words);
+  } else if (WEXITSTATUS(wait_status) == status_refused) {
+    row.status = RunStatus::refused;
+    row.reason = last_words;
+  } else {
+    row.status = RunStatus::crashed;
+    row.reason = WEXITSTATUS(wait_status) == status_machine_failed
+                     ? last_words
+                     : fmt::format("status {}, no result{}", WEXITSTATUS(wait_status), words);
+  }
+  return row;
+}
+
+/// The flights in the air, and what becomes of them.
+class Flights {
+ public:
+  Flights(const CampaignFolder& folder, const Campaign& campaign, const LocalEngineConfig& config)
+      : folder_(folder), campaign_(campaign), config_(config) {}
+  ~Flights() { stop(); }
+  Flights(const Flights&) = delete;
+  Flights& operator=(const Flights&) = delete;
+
+  bool full() const { return air_.size() >= static_cast<std::size_t>(config_.jobs); }
+  bool empty() const { return air_.empty(); }
+
+  void launch(const CampaignTask& task) {
+    fs::remove(folder_.flight_file(task));  // how it failed the last time is no answer any more
+    const pid_t child =
+        start(flight_arguments(folder_, campaign_, task, config_.keeps_runs), folder_.log_file(task));
+    air_[child] = {&task, Clock::now()};
+  }
+
+  /// Each flight that is over, with what it left.
+  template <typename OnOver>
+  void land(OnOver&& on_over) {
+    for (auto flight = air_.begin(); flight != air_.end();) {
+      int wait_status = 0;
+      struct rusage usage {};
+      const pid_t over = wait4(flight->first, &wait_status, WNOHANG, &usage);
+      const std::chrono::duration<double> taken = Clock::now() - flight->second.since;
+      if (over == 0) {
+        if (!flight->second.hung && taken.count() > campaign_.timeout_s) {
+          flight->second.hung = true;
+          kill(flight->first, SIGKILL);
+        }
+        ++flight;
+        continue;
+      }
+      const CampaignTask& task = *flight->second.task;
+      const bool hung = flight->second.hung;
+      flight = air_.erase(flight);
+      auto file = read_flight(folder_, task);
+      if (!file) {
+        const FlightCost cost{taken.count(), static_cast<double>(usage.ru_maxrss) * 1.024e-3};
+        file = FlightFile{
+            row_of_failure(wait_status, hung, campaign_.timeout_s, last_line_of(folder_.log_file(task))),
+            cost};
+        write_flight(folder_, campaign_, task, *file);
+      } else {
+        fs::remove(folder_.log_file(task));
+      }
+      on_over(file->row);
+    }
+  }
+
+  void stop() {
+    for (const auto& [child, flight] : air_) kill(child, SIGKILL);
+    for (const auto& [child, flight] : air_) {
+      waitpid(child, nullptr, 0);
+      std::error_code ignored;
+      if (!read_flight(folder_, *flight.task)) fs::remove(folder_.log_file(*flight.task), ignored);
+    }
+    air_.clear();
+  }
+
+ private:
+  const CampaignFolder& folder_;
+  const Campaign& campaign_;
+  const LocalEngineConfig& config_;
+  std::map<pid_t, InTheAir> air_;
+};
+
+void count(const FlightRow& row, CampaignProgress& progress) {
+  progress.over += 1;
+  progress.goals += row.reached_goal() ? 1 : 0;
+  progress.not_flown += row.flown() ? 0 : 1;
+}
+
+/// Of writers that were killed in the middle.
+void remove_parts(const fs::path& folder) {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored))
+    if (entry.path().extension() == ".part") fs::remove(entry.path(), ignored);
+}
+
+}  // namespace
+
+FolderLock::FolderLock(const CampaignFolder& folder) {
+  const fs::path file = folder.path / "lock";
+  file_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (file_ < 0)
+    throw ScenarioError(
+        fmt::format("{}: expected a writable folder: {}", folder.path.string(), std::strerror(errno)));
+  if (flock(file_, LOCK_EX | LOCK_NB) == 0) {
+    remove_parts(folder.path / "flights");
+    return;
+  }
+  close(file_);
+  throw ScenarioError(
+      fmt::format("{}: another understory flies this campaign at this moment", folder.path.string()));
+}
+
+FolderLock::~FolderLock() { close(file_); }
+
+std::vector<std::string> flight_arguments(const CampaignFolder& folder, const Campaign& campaign,
+                                          const CampaignTask& task, bool keeps_run) {
+  const fs::path path = fs::absolute(folder.path).lexically_normal();
+  const CampaignFolder whole{path};
+  std::vector<std::string> arguments{"fly",
+                                     whole.condition_file(campaign.conditions[task.condition]).string(),
+                                     "--seed",
+                                     fmt::format("{}", task.seed),
+                                     "--quiet",
+                                     "--row",
+                                     whole.flight_file(task).string()};
+  if (keeps_run) arguments.insert(arguments.end(), {"--out", (path / "runs" / task.id).string()});
+  return arguments;
+}
+
+bool fly_locally(const CampaignFolder& folder, const Campaign& campaign, const std::vector<CampaignTask>& tasks,
+                 const LocalEngineConfig& config, const OnCampaignProgress& on_progress) {
+  const StopSignals stop_signals;
+  CampaignProgress progress;
+  progress.flights = tasks.size();
+  std::vector<const CampaignTask*> left;
+  for (const CampaignTask& task : tasks) {
+    const auto file = read_flight(folder, task);
+    if (file && file->row.flown())
+      count(file->row, progress);
+    else
+      left.push_back(&task);
+  }
+  progress.before = progress.over;
+  Flights flights(folder, campaign, config);
+  std::size_t next = 0;
+  while (next < left.size() || !flights.empty()) {
+    if (stop_asked != 0) return false;
+    while (next < left.size() && !flights.full()) flights.launch(*left[next++]);
+    std::this_thread::sleep_for(look_every);
+    flights.land([&](const FlightRow& row) {
+      count(row, progress);
+      if (on_progress) on_progress(progress);
+    });
+  }
+  return true;
+}
+
+}  // namespace understory

@@ -1,0 +1,141 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+#include "scenarios/campaign/campaign_folder.hpp"
+#include "scenarios/campaign/local_engine.hpp"
+#include "scenarios/cli/campaign_report.hpp"
+#include "scenarios/cli/commands.hpp"
+#include "scenarios/config_tree.hpp"
+#include "scenarios/file_output.hpp"
+#include "scenarios/scenario_io.hpp"
+#include "scenarios/scenario_rig.hpp"
+#include "scenarios/stopwatch.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CampaignArguments {
+  std::string file;
+  std::string out;  // empty: results/<name>
+  std::string engine = "local";
+  int jobs = 0;  // 0: a flight a core
+  bool resume = false;
+  bool print_tasks = false;
+  bool keeps_runs = false;
+};
+
+/// Before anything is flown: a rig that is not there would fail every flight.
+void require_rigs(const Campaign& campaign, const std::string& file) {
+  for (const Condition& condition : campaign.conditions) {
+    try {
+      rig_of(scenario_from_text(condition.scenario_text, condition.name), project_root() / "models");
+    } catch (const ScenarioError& error) {
+      throw ScenarioError(fmt::format("{}: condition {}: {}", file, condition.name, error.what()));
+    }
+  }
+}
+
+/// Every condition advances with every seed, so that an unfinished campaign compares the same forests.
+std::vector<CampaignTask> in_flying_order(const Campaign& campaign) {
+  const std::vector<CampaignTask> tasks = tasks_of(campaign);
+  const std::size_t seeds = campaign.seeds.size();
+  std::vector<CampaignTask> order;
+  for (std::size_t seed = 0; seed < seeds; ++seed)
+    for (std::size_t condition = 0; condition < campaign.conditions.size(); ++condition)
+      order.push_back(tasks[condition * seeds + seed]);
+  return order;
+}
+
+std::string in_words(double seconds) {
+  if (seconds < 90) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 5400) return fmt::format("{:.0f} min", seconds / 60);
+  return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+/// One line, again and again on a terminal; elsewhere a line each half minute.
+class ProgressLine {
+ public:
+  void show(const CampaignProgress& progress) {
+    const double elapsed_s = stopwatch_.elapsed_s();
+    const bool is_last = progress.over == progress.flights;
+    if (!is_terminal_ && !is_last && elapsed_s < next_line_s_) return;
+    next_line_s_ = elapsed_s + 30;
+    const double flown = static_cast<double>(progress.over - progress.before);
+    const double left_s = elapsed_s / flown * static_cast<double>(progress.flights - progress.over);
+    fmt::print("{}{} of {} flights, {} at the goal{}, {} left{}", is_terminal_ ? "\r\033[K" : "",
+               progress.over, progress.flights, progress.goals,
+               progress.not_flown > 0 ? fmt::format(", {} not flown", progress.not_flown) : "",
+               in_words(left_s), is_terminal_ ? "" : "\n");
+    std::fflush(stdout);
+  }
+  void clear() const {
+    if (is_terminal_) fmt::print("\r\033[K");
+  }
+
+ private:
+  bool is_terminal_ = isatty(STDOUT_FILENO) == 1;
+  double next_line_s_ = 0;
+  Stopwatch stopwatch_;
+};
+
+int print_tasks(const CampaignFolder& folder, const Campaign& campaign) {
+  const fs::path program = fs::read_symlink("/proc/self/exe");
+  for (const CampaignTask& task : tasks_of(campaign)) {
+    std::string line = "'" + program.string() + "'";
+    for (const std::string& argument : flight_arguments(folder, campaign, task, false))
+      line += " '" + argument + "'";
+    fmt::print("{}\n", line);
+  }
+  return 0;
+}
+
+int run_campaign(const CampaignArguments& arguments) {
+  const Campaign campaign = load_campaign(arguments.file, scenario_file);
+  require_rigs(campaign, arguments.file);
+  const CampaignFolder folder{arguments.out.empty() ? fs::path("results") / campaign.name
+                                                    : fs::path(arguments.out)};
+  prepare_campaign_folder(folder, campaign, arguments.resume);
+  if (arguments.print_tasks) return print_tasks(folder, campaign);
+
+  const FolderLock lock(folder);
+  LocalEngineConfig config;
+  config.jobs = arguments.jobs > 0 ? arguments.jobs
+                                   : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  config.keeps_runs = arguments.keeps_runs;
+  ProgressLine line;
+  const bool finished = fly_locally(folder, campaign, in_flying_order(campaign), config,
+                                    [&](const CampaignProgress& progress) { line.show(progress); });
+  line.clear();
+  const Collected collected = collect(folder, campaign);
+  if (!finished)
+    throw MachineError(fmt::format("{}: stopped with {} of {} flights over; --resume goes on",
+                                   folder.path.string(), collected.rows.size(),
+                                   collected.rows.size() + collected.missing));
+  return report(folder, collected);
+}
+
+}  // namespace
+
+void add_campaign_command(CLI::App& app, Command& chosen) {
+  const auto arguments = std::make_shared<CampaignArguments>();
+  CLI::App* command = app.add_subcommand("campaign", "fly many seeds in many conditions, a process each");
+  command->add_option("file", arguments->file, "what to fly: see docs/campaigns.md")->required();
+  command->add_option("--out", arguments->out, "results folder (default: results/<name>)");
+  command->add_option("--jobs", arguments->jobs, "flights at a time (default: one a core)")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--resume", arguments->resume, "go on with what the folder holds");
+  command->add_flag("--print-tasks", arguments->print_tasks,
+                    "fly nothing: print a command for each flight; collect gathers what they leave");
+  command->add_flag("--keep-runs", arguments->keeps_runs, "keep each flight's run folder in runs/");
+  command->callback([arguments, &chosen] { chosen = [arguments] { return run_campaign(*arguments); }; });
+}
+
+}  // namespace understory

@@ -1,0 +1,169 @@
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <thread>
+
+#include "tests/support/program.hpp"
+
+/// Campaigns as they are run and as they break: flights of a clear field by the blind, a fraction of a second
+/// each.
+namespace {
+
+namespace fs = std::filesystem;
+using understory::support::expect_refusal;
+using understory::support::Outcome;
+using understory::support::understory;
+
+class CampaignRun : public testing::Test {
+ protected:
+  fs::path path =
+      fs::path(testing::TempDir()) /
+      ("understory_campaign_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  void SetUp() override {
+    fs::remove_all(path);
+    fs::create_directories(path);
+  }
+  void TearDown() override { fs::remove_all(path); }
+
+  std::string file(const std::string& name, const std::string& text) const {
+    std::ofstream(path / name) << text;
+    return (path / name).string();
+  }
+  std::string blind(const std::string& more) const {
+    return file("blind.yaml",
+                "scenario: clear\noverrides: [{name: blind, set: {perception.detector: none}}]\n" + more);
+  }
+  std::string text(const fs::path& name) const {
+    std::ifstream stream(path / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  std::string out(const std::string& name) const { return " --out " + (path / name).string(); }
+
+  /// The campaign in the background.
+  pid_t start(const std::string& campaign, const std::string& folder) const {
+    const std::string results = (path / folder).string();
+    const pid_t child = fork();
+    if (child != 0) return child;
+    const int nothing = open("/dev/null", O_RDWR);
+    dup2(nothing, STDOUT_FILENO);
+    dup2(nothing, STDERR_FILENO);
+    execl(UNDERSTORY_BINARY, "understory", "campaign", campaign.c_str(), "--out", results.c_str(), "--jobs",
+          "2", "--resume", nullptr);
+    _exit(127);
+  }
+  /// The process that flies `id`, once it does.
+  static pid_t process_of(const std::string& id) {
+    for (int look = 0; look < 2000; ++look) {
+      for (const auto& process : fs::directory_iterator("/proc")) {
+        std::ifstream stream(process.path() / "cmdline", std::ios::binary);
+        const std::string line{std::istreambuf_iterator<char>(stream), {}};
+        if (line.find("/" + id + ".json") != std::string::npos)
+          return std::stoi(process.path().filename().string());
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return -1;
+  }
+};
+
+constexpr int killed_by_nobody = 0;
+
+int wait_for(pid_t child) {
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+TEST_F(CampaignRun, KilledAgainAndAgainItEndsWithTheRowsOfAnUndisturbedOne) {
+  const std::string campaign = blind("seeds: 1..24\n");
+  ASSERT_EQ(understory("campaign " + campaign + out("undisturbed")).status, 0);
+  for (int kills = 0; kills < 8; ++kills) {
+    const pid_t child = start(campaign, "disturbed");
+    std::this_thread::sleep_for(std::chrono::milliseconds(150 + 130 * (kills % 4)));
+    kill(child, kills % 3 == 2 ? SIGINT : SIGKILL);
+    wait_for(child);
+  }
+  EXPECT_EQ(understory("campaign " + campaign + out("disturbed") + " --resume").status, killed_by_nobody);
+  EXPECT_EQ(text("disturbed/flights.csv"), text("undisturbed/flights.csv"));
+  EXPECT_EQ(text("disturbed/flights.jsonl"), text("undisturbed/flights.jsonl"));
+  const std::string rows = text("disturbed/flights.csv");
+  EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 25);
+  for (const auto& entry : fs::directory_iterator(path / "disturbed" / "flights"))
+    EXPECT_EQ(entry.path().extension(), ".json") << entry.path();
+}
+
+TEST_F(CampaignRun, ACrashAHangAndAKillCostOneFlightEach) {
+  const std::string campaign = blind("seeds: 1..6\ntimeout_s: 2\n");
+  const pid_t child = start(campaign, "results");
+  kill(process_of("clear-blind-1"), SIGSEGV);
+  kill(process_of("clear-blind-3"), SIGKILL);
+  kill(process_of("clear-blind-5"), SIGSTOP);
+  EXPECT_EQ(wait_for(child), 1);
+  const std::string rows = text("results/flights.csv");
+  EXPECT_NE(rows.find("clear-blind-1,clear-blind,1,crashed,signal 11 (Segmentation fault),"),
+            std::string::npos)
+      << rows;
+  EXPECT_NE(rows.find("clear-blind-3,clear-blind,3,killed,signal 9 (Killed),"), std::string::npos) << rows;
+  EXPECT_NE(rows.find("clear-blind-5,clear-blind,5,hung,took longer than timeout_s = 2 s,"),
+            std::string::npos)
+      << rows;
+  for (const char* seed : {"2", "4", "6"})
+    EXPECT_NE(rows.find(std::string("clear-blind-") + seed + ",clear-blind," + seed + ",flown,,goal,"),
+              std::string::npos)
+        << rows;
+  // And flown again they are as if nothing had been.
+  EXPECT_EQ(understory("campaign " + campaign + out("results") + " --resume").status, 0);
+  EXPECT_EQ(understory("campaign " + campaign + out("undisturbed")).status, 0);
+  EXPECT_EQ(text("results/flights.csv"), text("undisturbed/flights.csv"));
+}
+
+TEST_F(CampaignRun, FlightsDieWithTheirCampaign) {
+  const pid_t child = start(blind("seeds: 1..4\ntimeout_s: 60\n"), "results");
+  const pid_t flight = process_of("clear-blind-1");
+  ASSERT_GT(flight, 0);
+  kill(flight, SIGSTOP);
+  kill(child, SIGKILL);
+  wait_for(child);
+  for (int look = 0; look < 1000 && fs::exists("/proc/" + std::to_string(flight)); ++look)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_FALSE(fs::exists("/proc/" + std::to_string(flight)));
+}
+
+TEST_F(CampaignRun, PrintedTasksGiveTheSameRows) {
+  const std::string campaign = blind("seeds: 1..3\n");
+  ASSERT_EQ(understory("campaign " + campaign + out("here")).status, 0);
+  const Outcome tasks = understory("campaign " + campaign + out("there") + " --print-tasks");
+  EXPECT_EQ(tasks.status, 0);
+  EXPECT_EQ(std::count(tasks.text.begin(), tasks.text.end(), '\n'), 3);
+  EXPECT_EQ(understory("collect " + (path / "there").string()).status, 1);  // nothing flown yet
+  // Twice, and from another folder: a task is idempotent and says all it needs.
+  const std::string script = file("tasks.sh", tasks.text + tasks.text);
+  ASSERT_EQ(std::system(("cd / && sh " + script).c_str()), 0);
+  EXPECT_EQ(understory("collect " + (path / "there").string()).status, 0);
+  EXPECT_EQ(text("there/flights.csv"), text("here/flights.csv"));
+}
+
+TEST_F(CampaignRun, RefusesFoldersThatAreNotItsOwn) {
+  const std::string campaign = blind("seeds: 1\n");
+  ASSERT_EQ(understory("campaign " + campaign + out("results")).status, 0);
+  expect_refusal("campaign " + campaign + out("results"),
+                 "holds a campaign already: --resume goes on with it");
+  expect_refusal("campaign " + blind("seeds: 1..2\n") + out("results") + " --resume", "seeds changed");
+  expect_refusal("campaign " + campaign + " --out /proc/nowhere", "expected a writable output");
+  expect_refusal("campaign /nowhere.yaml", "expected a readable");
+  expect_refusal("collect " + path.string(), "expected a campaign's results");
+  expect_refusal(
+      "campaign " + file("rig.yaml", "scenario: clear\nseeds: 1\ngrid: {rig: [monocle]}\n") + out("rig"),
+      "condition clear-rig=monocle");
+}
+
+}  // namespace

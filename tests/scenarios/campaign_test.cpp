@@ -1,0 +1,206 @@
+#include "scenarios/campaign/campaign.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "scenarios/campaign/campaign_folder.hpp"
+#include "scenarios/config_tree.hpp"
+#include "scenarios/scenario_io.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path in_library(const std::string& name) {
+  const fs::path file = fs::path(UNDERSTORY_SOURCE_DIR) / "scenarios" / "library" / (name + ".yaml");
+  if (!fs::exists(file)) throw ScenarioError(name + ": expected one of the library");
+  return file;
+}
+
+/// CTest runs the cases side by side, each in a process of its own.
+struct Folder {
+  fs::path path =
+      fs::path(testing::TempDir()) /
+      ("understory_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  explicit Folder(const std::string& more = "") {
+    path += more;
+    fs::remove_all(path);
+    fs::create_directories(path);
+  }
+  ~Folder() { fs::remove_all(path); }
+};
+
+Campaign campaign_of(const std::string& text) {
+  const Folder folder("_file");
+  const fs::path file = folder.path / "speed.yaml";
+  std::ofstream(file) << text;
+  return load_campaign(file, in_library);
+}
+
+/// What the one line says where the text is refused; empty where it is not.
+std::string refusal_of(const std::string& text) {
+  try {
+    campaign_of(text);
+  } catch (const ScenarioError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Campaign, FliesEverySeedInEveryConditionOfOverridesAndGrid) {
+  const Campaign campaign = campaign_of(
+      "scenarios: [forest, dense]\n"
+      "seeds: [3, 10..12]\n"
+      "overrides:\n"
+      "  - name: ours\n"
+      "  - {name: blind, set: {perception.detector: none}}\n"
+      "grid:\n"
+      "  autopilot.flight_model.cruise_speed_mps: [10, 12]\n"
+      "timeout_s: 60\n");
+  EXPECT_EQ(campaign.name, "speed");
+  EXPECT_EQ(campaign.timeout_s, 60);
+  EXPECT_EQ(campaign.seeds, (std::vector<std::uint64_t>{3, 10, 11, 12}));
+  ASSERT_EQ(campaign.conditions.size(), 8u);
+  EXPECT_EQ(campaign.conditions[0].name, "forest-ours-cruise_speed_mps=10");
+  EXPECT_EQ(campaign.conditions[3].name, "forest-blind-cruise_speed_mps=12");
+  EXPECT_EQ(campaign.conditions[4].name, "dense-ours-cruise_speed_mps=10");
+  const Scenario blind = scenario_from_text(campaign.conditions[3].scenario_text, "blind");
+  EXPECT_EQ(blind.perception.detector, DetectorKind::none);
+  EXPECT_EQ(blind.autopilot.autopilot.flight_model.cruise_speed_mps, 12);
+  const std::vector<CampaignTask> tasks = tasks_of(campaign);
+  ASSERT_EQ(tasks.size(), 32u);
+  EXPECT_EQ(tasks[1].id, "forest-ours-cruise_speed_mps=10-10");
+  EXPECT_EQ(tasks[1].seed, 10u);
+  EXPECT_EQ(tasks[31].condition, 7u);
+}
+
+TEST(Campaign, RefusesBadFilesInOneLineWithFileLineAndKey) {
+  const struct {
+    const char* text;
+    const char* part;
+  } cases[] = {
+      {"scenario: forest\nseeds: 1..3\nsead: 4\n",
+       "speed.yaml:3: sead: expected a known key (did you mean seeds?)"},
+      {"scenario: forest\nseeds: []\n", "speed.yaml:2: seeds: expected the seeds to fly"},
+      {"scenario: forest\nseeds:\n", "speed.yaml:2: seeds: expected the seeds to fly"},
+      {"scenario: forest\n", "seeds: expected the seeds to fly"},
+      {"scenario: forest\nseeds: 3..1\n", "speed.yaml:2: seeds: expected first <= last, got '3..1'"},
+      {"scenario: forest\nseeds: 1:3\n", "speed.yaml:2: seeds: expected first..last"},
+      {"scenario: forest\nseeds: [1..5, 4]\n",
+       "speed.yaml:2: seeds: expected each seed once, 4 is given twice"},
+      {"scenario: forest\nseeds: 0..4000000000\n", "speed.yaml:2: seeds: expected at most"},
+      {"seeds: 1..3\n", "scenarios: expected the scenarios to fly"},
+      {"scenarios: [forest, forest]\nseeds: 1\n",
+       "speed.yaml:1: scenarios: expected each condition once, 'forest'"},
+      {"scenario: wood\nseeds: 1\n", "speed.yaml:1: scenarios: wood: expected one of the library"},
+      {"scenario: forest\nseeds: 1\noverrides:\n  - {name: a}\n  - {name: a}\n",
+       "'forest-a' comes out twice"},
+      {"scenario: forest\nseeds: 1\noverrides:\n  - {name: a/b}\n",
+       "speed.yaml:4: overrides.name: expected a name"},
+      {"scenario: forest\nseeds: 1\noverrides: fast\n", "speed.yaml:3: overrides: expected a list"},
+      {"scenario: forest\nseeds: 1\noverrides:\n  - {name: a, sets: {}}\n",
+       "overrides.sets: expected a known key"},
+      {"scenario: forest\nseeds: 1\ngrid:\n  forest.length_m: 30\n",
+       "speed.yaml:4: grid.forest.length_m: expected a list"},
+      {"scenario: forest\nseeds: 1\ngrid:\n  forest.lenght_m: [30]\n",
+       "speed.yaml:4: forest.lenght_m: expected a known key (did you mean length_m?)"},
+      {"scenario: forest\nseeds: 1\ngrid:\n  forest.length_m: [30, -1]\n", "speed.yaml:4: forest.length_m"},
+      {"scenario: forest\nseeds: 1\ntimeout_s: soon\n", "speed.yaml:3: timeout_s: expected seconds"},
+      {"scenario: forest\nseeds: 1\nseeds: 2\n", "speed.yaml:3: seeds: expected each key once"},
+  };
+  for (const auto& one : cases) {
+    const std::string refusal = refusal_of(one.text);
+    EXPECT_NE(refusal.find(one.part), std::string::npos) << one.text << "\n" << refusal;
+    EXPECT_EQ(refusal.find('\n'), std::string::npos) << refusal;
+  }
+}
+
+const char* const small_campaign = "scenario: clear\nseeds: 1..2\n";
+
+TEST(CampaignFolder, HoldsOneCampaignAndGoesOnWithNoOther) {
+  const Folder folder;
+  const CampaignFolder results{folder.path / "results"};
+  const Campaign campaign = campaign_of(small_campaign);
+  prepare_campaign_folder(results, campaign, false);
+  EXPECT_THROW(prepare_campaign_folder(results, campaign, false), ScenarioError);
+  EXPECT_NO_THROW(prepare_campaign_folder(results, campaign, true));
+  const Campaign held = read_campaign(results);
+  EXPECT_EQ(held.seeds, campaign.seeds);
+  EXPECT_EQ(held.conditions[0].scenario_text, campaign.conditions[0].scenario_text);
+  for (const char* other : {"scenario: clear\nseeds: 1..3\n", "scenario: forest\nseeds: 1..2\n",
+                            "scenario: clear\nseeds: 1..2\ntimeout_s: 3\n",
+                            "scenario: clear\nseeds: 1..2\ngrid: {time_limit_s: [20]}\n"})
+    EXPECT_THROW(prepare_campaign_folder(results, campaign_of(other), true), ScenarioError) << other;
+}
+
+TEST(CampaignFolder, OfAnotherFormatIsRefused) {
+  const Folder folder;
+  const CampaignFolder results{folder.path};
+  std::ofstream(folder.path / "campaign.json") << "{\"format\": 0, \"name\": \"old\"}";
+  EXPECT_THROW(read_campaign(results), ScenarioError);
+  EXPECT_THROW(prepare_campaign_folder(results, campaign_of(small_campaign), true), ScenarioError);
+  std::ofstream(folder.path / "campaign.json") << "{\"form";
+  EXPECT_THROW(read_campaign(results), ScenarioError);
+  std::ofstream(folder.path / "flights.csv") << "seed,outcome\n1,goal\n";
+  EXPECT_THROW(read_campaign_rows(folder.path), ScenarioError);
+  EXPECT_THROW(read_campaign_rows(folder.path / "nowhere"), ScenarioError);
+}
+
+FlightRow flown(double clearance_m) {
+  FlightRow row;
+  row.status = RunStatus::flown;
+  row.outcome = "goal";
+  row.progress_m = 75.125;
+  row.min_clearance_m = clearance_m;
+  row.detections = 12345678;
+  row.digest = "00ff";
+  return row;
+}
+
+TEST(CampaignFolder, CollectsWholeFlightsInTheCampaignsOrder) {
+  const Folder folder;
+  const CampaignFolder results{folder.path / "results"};
+  const Campaign campaign = campaign_of("scenario: clear\nseeds: [9, 1, 5]\n");
+  prepare_campaign_folder(results, campaign, false);
+  const std::vector<CampaignTask> tasks = tasks_of(campaign);
+  write_flight(results, campaign, tasks[1], {flown(0.5), {1.5, 100}});
+  EXPECT_EQ(collect(results, campaign).missing, 2u);
+  FlightRow hung;
+  hung.status = RunStatus::hung;
+  hung.reason = "took longer, or \"hung\"\nreally";
+  write_flight(results, campaign, tasks[0], {hung, {60, 0}});
+  std::ofstream(results.flight_file(tasks[2])) << "{\"format\": 1, \"row\": {\"id\": \"clear-5\", \"see";
+  const Collected collected = collect(results, campaign);
+  EXPECT_EQ(collected.missing, 1u);  // half a file is none
+  ASSERT_EQ(collected.rows.size(), 2u);
+  const std::vector<FlightRow> rows = read_campaign_rows(results.path);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].id, "clear-9");
+  EXPECT_EQ(rows[0].status, RunStatus::hung);
+  EXPECT_EQ(rows[0].reason, "took longer; or 'hung' really");
+  EXPECT_EQ(rows[1].id, "clear-1");
+  EXPECT_EQ(rows[1].condition, "clear");
+  EXPECT_TRUE(rows[1].reached_goal());
+  EXPECT_EQ(rows[1].progress_m, 75.125);
+  EXPECT_EQ(rows[1].min_clearance_m, 0.5);
+  EXPECT_EQ(rows[1].detections, 12345678);
+  EXPECT_EQ(rows[1].least_points_on_a_bar, -1);
+  EXPECT_EQ(rows[1].digest, "00ff");
+}
+
+TEST(FlightRow, SaysNothingOfWhatWasNotMeasured) {
+  const double infinite = std::numeric_limits<double>::infinity();
+  const std::string csv = to_csv({flown(infinite)});
+  EXPECT_EQ(rows_from_csv(csv, "flights.csv")[0].min_clearance_m, infinite);
+  EXPECT_NE(to_json_line(flown(infinite)).find("\"min_clearance_m\":null"), std::string::npos);
+  FlightRow crashed;
+  crashed.status = RunStatus::crashed;
+  EXPECT_NE(to_json_line(crashed).find("\"outcome\":null"), std::string::npos);
+  EXPECT_THROW(rows_from_csv(csv + "half,a,row\n", "flights.csv"), ScenarioError);
+}
+
+}  // namespace
+}  // namespace understory
