@@ -70,6 +70,10 @@ class NearestFlightStates : public ompl::NearestNeighbors<Motion> {
   }
 
   void nearestK(const Motion& motion, std::size_t k, std::vector<Motion>& nearest) const override {
+    if (k == 1 && !motions_.empty()) {  // what SST asks for
+      nearest.assign(1, this->nearest(motion));
+      return;
+    }
     const FlightPlace place = place_of(flight_state_of(motion->state_));
     ranked_.clear();
     for (std::size_t i = 0; i < places_.size(); ++i)

@@ -92,11 +92,14 @@ void ObstacleField::build_grid(double reach_m) {
   for (const Column& column : columns_)
     for_each_cell_near(column, [&](int cell) { ++cell_start_[cell + 1]; });
   for (std::size_t cell = 1; cell < cell_start_.size(); ++cell) cell_start_[cell] += cell_start_[cell - 1];
-  cell_columns_.resize(cell_start_.back());
+  near_.resize(static_cast<std::size_t>(cell_start_.back()));
   std::vector<std::int32_t> next(cell_start_.begin(), cell_start_.end() - 1);
   for (std::size_t index = 0; index < columns_.size(); ++index)
-    for_each_cell_near(columns_[index],
-                       [&](int cell) { cell_columns_[next[cell]++] = static_cast<std::int32_t>(index); });
+    for_each_cell_near(columns_[index], [&](int cell) {
+      near_[static_cast<std::size_t>(next[cell]++)] = {columns_[index].centre_world,
+                                                       columns_[index].radius_m + config_.wing_radius_m,
+                                                       static_cast<std::int32_t>(index)};
+    });
 }
 
 double ObstacleField::clearance_m(const FlightState& state, double greatest_m) const {
@@ -111,20 +114,20 @@ double ObstacleField::clearance_m(const FlightState& state, double greatest_m) c
   const Eigen::Vector3d left_tip = state.position_world + half_wing,
                         right_tip = state.position_world - half_wing;
   const Eigen::Vector2d across = half_wing.head<2>();
-  const double across_m2 = std::max(across.squaredNorm(), 1e-12);
+  const double per_across_m2 = 1 / std::max(across.squaredNorm(), 1e-12);
   double least = greatest_m;
   for (int k = cell_start_[cell]; k < cell_start_[cell + 1]; ++k) {
-    const Column& column = columns_[cell_columns_[k]];
-    const double around_m = column.radius_m + config_.wing_radius_m;
+    const Near& near = near_[static_cast<std::size_t>(k)];
     // A column is nowhere nearer than its axis prolonged, seen from above: a point beside the wing's shadow.
-    const double matters_m = least + around_m + rounding_m;
+    const double matters_m = least + near.around_m + rounding_m;
     if (matters_m <= 0) continue;
-    const Eigen::Vector2d beside = column.centre_world - state.position_world.head<2>();
-    const double along = std::clamp(beside.dot(across) / across_m2, -1.0, 1.0);
+    const Eigen::Vector2d beside = near.centre_world - state.position_world.head<2>();
+    const double along = std::clamp(beside.dot(across) * per_across_m2, -1.0, 1.0);
     if ((beside - along * across).squaredNorm() > matters_m * matters_m) continue;
+    const Column& column = columns_[static_cast<std::size_t>(near.column)];
     const Eigen::Vector3d bottom(column.centre_world.x(), column.centre_world.y(), column.bottom_m);
     const Eigen::Vector3d top(column.centre_world.x(), column.centre_world.y(), column.top_m);
-    least = std::min(least, segment_distance_m(left_tip, right_tip, bottom, top) - around_m);
+    least = std::min(least, segment_distance_m(left_tip, right_tip, bottom, top) - near.around_m);
   }
   return least;
 }

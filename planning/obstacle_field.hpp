@@ -63,8 +63,14 @@ class ObstacleField {
   std::vector<Column> columns_;
   Eigen::Vector2d grid_origin_ = Eigen::Vector2d::Zero();
   int grid_width_ = 0, grid_height_ = 0;
-  std::vector<std::int32_t> cell_start_;    ///< per cell, into cell_columns_; one more than there are cells
-  std::vector<std::int32_t> cell_columns_;  ///< columns within reach of each cell
+  std::vector<std::int32_t> cell_start_;  ///< per cell, into near_; one more than there are cells
+  /// Columns within reach of each cell, with what tells most of them from the nearest.
+  struct Near {
+    Eigen::Vector2d centre_world;
+    double around_m;  ///< the column's radius and the wing's
+    std::int32_t column;
+  };
+  std::vector<Near> near_;
 };
 
 }  // namespace understory
