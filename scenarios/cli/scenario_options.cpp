@@ -7,7 +7,11 @@ namespace understory {
 void add_scenario_options(CLI::App& command, ScenarioArguments& arguments) {
   command.add_option("scenario", arguments.scenario, "a scenario file, or a name from scenarios/library")
       ->required();
-  command.add_option("--set", arguments.settings, "key=value, as in the scenario file: forest.length_m=30")
+  add_settings_option(command, arguments.settings);
+}
+
+void add_settings_option(CLI::App& command, std::vector<std::string>& settings) {
+  command.add_option("--set", settings, "key=value, as in the scenario file: forest.length_m=30")
       ->allow_extra_args(false)
       ->trigger_on_parse(false);
 }

@@ -1,6 +1,7 @@
 #include "scenarios/evaluation/processes.hpp"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -30,13 +31,15 @@ void Processes::start(std::uint64_t tag, const std::vector<std::string>& argumen
 
 void Processes::wait_for_one() {
   int status = 0;
-  const pid_t child = waitpid(-1, &status, 0);
+  struct rusage usage {};
+  const pid_t child = wait4(-1, &status, 0, &usage);
   if (child < 0 && errno == EINTR) return;
   if (child < 0) throw MachineError(fmt::format("cannot wait for a flight: {}", std::strerror(errno)));
   const auto ended = running_.find(child);
   if (ended == running_.end()) return;
   const std::uint64_t tag = ended->second;
   running_.erase(ended);
+  peak_memory_bytes_ = std::int64_t{1024} * usage.ru_maxrss;
   on_end_(tag, WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status));
 }
 

@@ -24,12 +24,16 @@ class Processes {
   void start(std::uint64_t tag, const std::vector<std::string>& arguments);
   void wait_for_all();
 
+  /// Greatest memory that the process had resident whose end is being told, bytes.
+  std::int64_t peak_memory_bytes() const { return peak_memory_bytes_; }
+
  private:
   void wait_for_one();
 
   int greatest_count_;
   OnEnd on_end_;
   std::map<pid_t, std::uint64_t> running_;
+  std::int64_t peak_memory_bytes_ = 0;
 };
 
 }  // namespace understory
