@@ -12,17 +12,19 @@ namespace understory {
 
 ClosedLoopRow closed_loop_row(const std::string& name, int processes, const std::vector<TimedFlight>& flights,
                               double elapsed_s, const ClosedLoopRow* yardstick) {
-  ClosedLoopRow row{name, processes, static_cast<int>(flights.size()), 0, 0, {}, 0, "", 0};
+  ClosedLoopRow row{name, processes, static_cast<int>(flights.size()), 0, 0, 0, {}, 0, "", 0};
   double simulated_s = 0, wall_s = 0, frames = 0;
   std::map<std::string, double> stage_s;
   for (const TimedFlight& flight : flights) {
     simulated_s += flight.simulated_s;
     wall_s += flight.wall_s;
     frames += flight.frames;
+    row.cpu_per_simulated_s += flight.cpu_s;
     row.peak_memory_mb = std::max(row.peak_memory_mb, flight.peak_memory_mb);
     for (const auto& [stage, seconds] : flight.stage_s) stage_s[stage] += seconds;
   }
   row.pairs_per_s = frames / elapsed_s;
+  row.cpu_per_simulated_s /= simulated_s;
   row.simulated_per_s = simulated_s / elapsed_s;
   double other = 1;
   for (const std::string& stage : told_stages) {
@@ -54,12 +56,13 @@ TimedFlight timed_flight(const std::filesystem::path& result_file) {
 }
 
 std::string to_table(const std::vector<ClosedLoopRow>& rows) {
-  std::string text = fmt::format("{:<42}{:>8}{:>9}{:>12}", "", "flights", "pairs/s", "x real time");
+  std::string text =
+      fmt::format("{:<42}{:>8}{:>9}{:>7}{:>13}", "", "flights", "pairs/s", "cpu", "x real time");
   for (const std::string& stage : told_stages) text += fmt::format("{:>9}", stage);
   text += fmt::format("{:>8}{:>7}  {}\n", "other", "MB", "time against");
   for (const ClosedLoopRow& row : rows) {
-    text += fmt::format("{:<42}{:>8}{:>9.1f}{:>12.2f}", row.name, row.flights, row.pairs_per_s,
-                        row.simulated_per_s);
+    text += fmt::format("{:<42}{:>8}{:>9.1f}{:>7.3f}{:>13.2f}", row.name, row.flights, row.pairs_per_s,
+                        row.cpu_per_simulated_s, row.simulated_per_s);
     for (const auto& [stage, share] : row.shares)
       text += fmt::format("{:>{}.1f} %", 100 * share, stage == "other" ? 6 : 7);
     text += fmt::format("{:>7.0f}", row.peak_memory_mb);
@@ -76,6 +79,7 @@ std::string to_json(const std::vector<ClosedLoopRow>& rows) {
                                {"processes", row.processes},
                                {"flights", row.flights},
                                {"pairs_per_s", row.pairs_per_s},
+                               {"cpu_per_simulated_s", row.cpu_per_simulated_s},
                                {"simulated_per_s", row.simulated_per_s}};
     for (const auto& [stage, share] : row.shares) one["shares"][stage] = share;
     one["peak_memory_mb"] = row.peak_memory_mb;

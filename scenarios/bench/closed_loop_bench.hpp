@@ -14,6 +14,7 @@ struct TimedFlight {
   double frames = 0;                      ///< stereo pairs
   std::map<std::string, double> stage_s;  ///< wall time per stage of the loop (scenarios/stopwatch.hpp)
   double peak_memory_mb = 0;              ///< greatest resident set
+  double cpu_s = 0;                       ///< the process's own
 };
 
 /// The stages whose shares are told; what is left of the wall time is "other".
@@ -25,12 +26,13 @@ struct ClosedLoopRow {
   std::string name;
   int processes = 1;  ///< side by side
   int flights = 0;
-  double pairs_per_s = 0;      ///< stereo pairs, of all processes together, per second
+  double pairs_per_s = 0;          ///< stereo pairs, of all processes together, per second
+  double cpu_per_simulated_s = 0;  ///< seconds of a core per simulated second: hardly minds other load
   double simulated_per_s = 0;  ///< simulated seconds, of all processes together, per second: real time is 1
   std::vector<std::pair<std::string, double>> shares;  ///< of the flights' own wall time; they add up to 1
   double peak_memory_mb = 0;                           ///< of the greediest flight
   std::string yardstick;  ///< name of the row it is measured against; empty for a yardstick itself
-  double ratio = 0;       ///< time per simulated second over the yardstick's; 0 for a yardstick
+  double ratio = 0;       ///< elapsed time per simulated second over the yardstick's; 0 for a yardstick
 };
 
 /// `elapsed_s`: from the first flight's start to the last one's end. `yardstick`: nullptr, or the row to

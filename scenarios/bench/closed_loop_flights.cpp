@@ -41,7 +41,8 @@ Batch fly_batch(const ClosedLoopBenchOptions& options, const fs::path& scenario,
     }
     TimedFlight flight = timed_flight(run_folder(seed) / "result.json");
     flight.wall_s = seconds_since(started.at(seed));
-    flight.peak_memory_mb = static_cast<double>(flights.peak_memory_bytes()) * 1e-6;
+    flight.peak_memory_mb = static_cast<double>(flights.use().peak_memory_bytes) * 1e-6;
+    flight.cpu_s = flights.use().cpu_s;
     batch.flights.push_back(flight);
   });
   const Clock::time_point begin = Clock::now();

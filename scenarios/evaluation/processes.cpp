@@ -21,8 +21,6 @@ void Processes::start(std::uint64_t tag, const std::vector<std::string>& argumen
   const pid_t child = fork();
   if (child < 0) throw MachineError(fmt::format("cannot start a flight: {}", std::strerror(errno)));
   if (child == 0) {
-    // Several flights at a time: the renderer's own threads would only get in each other's way.
-    if (greatest_count_ > 1) setenv("LP_NUM_THREADS", "1", 0);
     execv("/proc/self/exe", argv.data());
     _exit(127);
   }
@@ -39,7 +37,10 @@ void Processes::wait_for_one() {
   if (ended == running_.end()) return;
   const std::uint64_t tag = ended->second;
   running_.erase(ended);
-  peak_memory_bytes_ = std::int64_t{1024} * usage.ru_maxrss;
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  use_ = {seconds(usage.ru_utime) + seconds(usage.ru_stime), std::int64_t{1024} * usage.ru_maxrss};
   on_end_(tag, WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status));
 }
 

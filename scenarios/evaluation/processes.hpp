@@ -24,8 +24,12 @@ class Processes {
   void start(std::uint64_t tag, const std::vector<std::string>& arguments);
   void wait_for_all();
 
-  /// Greatest memory that the process had resident whose end is being told, bytes.
-  std::int64_t peak_memory_bytes() const { return peak_memory_bytes_; }
+  /// What the process used whose end is being told.
+  struct Use {
+    double cpu_s = 0;                    ///< of all its threads, in the kernel too
+    std::int64_t peak_memory_bytes = 0;  ///< greatest resident set
+  };
+  const Use& use() const { return use_; }
 
  private:
   void wait_for_one();
@@ -33,7 +37,7 @@ class Processes {
   int greatest_count_;
   OnEnd on_end_;
   std::map<pid_t, std::uint64_t> running_;
-  std::int64_t peak_memory_bytes_ = 0;
+  Use use_;
 };
 
 }  // namespace understory

@@ -50,13 +50,14 @@ TEST(Bench, HasARowForEachClaimWithItsYardstick) {
 }
 
 TEST(ClosedLoopBench, ARowAddsUpItsFlights) {
-  const std::vector<TimedFlight> alone{{6, 2, 720, {{"render", 1.0}, {"replan", 0.5}, {"film", 0.1}}, 200},
-                                       {4, 3, 480, {{"render", 2.0}, {"detect", 0.25}}, 210}};
+  const std::vector<TimedFlight> alone{{6, 2, 720, {{"render", 1.0}, {"replan", 0.5}, {"film", 0.1}}, 200, 2},
+                                       {4, 3, 480, {{"render", 2.0}, {"detect", 0.25}}, 210, 2.5}};
   const ClosedLoopRow one = closed_loop_row("one", 1, alone, 5, nullptr);
   EXPECT_EQ(one.flights, 2);
   EXPECT_DOUBLE_EQ(one.pairs_per_s, 240);
   EXPECT_DOUBLE_EQ(one.simulated_per_s, 2);
   EXPECT_DOUBLE_EQ(one.peak_memory_mb, 210);
+  EXPECT_DOUBLE_EQ(one.cpu_per_simulated_s, 0.45);
   double sum = 0;
   for (const auto& [stage, share] : one.shares) {
     const double expected = stage == "render"   ? 3.0
