@@ -18,7 +18,8 @@ FlightModel::FlightModel(const Airframe& airframe, const FlightModelConfig& conf
     : airframe_(airframe),
       config_(config),
       lifting_area_m2_(airframe.wing_area_m2 * airframe.wing_lift_factor),
-      elevon_arm_m_(-airframe.elevon_hinge_x_m + 0.5 * airframe.elevon_chord_m) {
+      elevon_arm_m_(-airframe.elevon_hinge_x_m + 0.5 * airframe.elevon_chord_m),
+      sin_twice_differential_(std::sin(2 * config.greatest_differential_rad)) {
   // Level flight at cruise speed: lift carries the weight, thrust carries what drag the plate and the body
   // make.
   const double q = dynamic_pressure_pa(airframe_, config_.cruise_speed_mps);
@@ -88,7 +89,7 @@ double FlightModel::reachable_roll_acceleration_radps2(const FlightState& state,
   const double slope_nm = elevon_roll_moment_nm_per_rad(state.speed_mps);
   const double damping_nms =
       airframe_.rate_damping_nmspr.x() + slope_nm * airframe_.elevon_y_m / std::max(state.speed_mps, 4.0);
-  const double greatest_nm = slope_nm * 0.5 * std::sin(2 * config_.greatest_differential_rad);
+  const double greatest_nm = slope_nm * 0.5 * sin_twice_differential_;
   const double damped_nm = damping_nms * state.roll_rate_radps;
   return std::clamp(wanted_radps2, (-greatest_nm - damped_nm) / airframe_.inertia_kgm2.x(),
                     (greatest_nm - damped_nm) / airframe_.inertia_kgm2.x());

@@ -105,6 +105,7 @@ class FlightModel {
   FlightModelConfig config_;
   double lifting_area_m2_;  ///< the wing's, times its lift factor
   double elevon_arm_m_;
+  double sin_twice_differential_;  ///< of the greatest differential deflection
   double level_thrust_n_;
 };
 
