@@ -6,14 +6,16 @@
 #include <ompl/control/SpaceInformation.h>
 #include <ompl/control/planners/sst/SST.h>
 #include <ompl/control/spaces/RealVectorControlSpace.h>
+#include <ompl/datastructures/NearestNeighbors.h>
 #include <ompl/util/Console.h>
+#include <ompl/util/Exception.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "planning/nearest_flight_states.hpp"
+#include "planning/flight_places.hpp"
 
 namespace understory {
 namespace {
@@ -172,6 +174,47 @@ class FreeCourse : public ob::Goal {
   const FlightTask& task_;
 };
 
+// SST's motions by their places. OMPL's own structures ask for each distance through a pointer to a function.
+template <typename Motion>
+class NearestMotions : public ompl::NearestNeighbors<Motion> {
+ public:
+  bool reportsSortedResults() const override { return true; }
+  void clear() override { motions_.clear(), places_.clear(); }
+  void add(const Motion& motion) override {
+    motions_.push_back(motion);
+    places_.add(place(motion));
+  }
+  bool remove(const Motion& motion) override {
+    const auto last = std::find(motions_.rbegin(), motions_.rend(), motion);
+    if (last == motions_.rend()) return false;
+    places_.remove(static_cast<std::size_t>(motions_.rend() - last - 1));
+    motions_.erase(std::next(last).base());
+    return true;
+  }
+  Motion nearest(const Motion& motion) const override {
+    if (motions_.empty()) throw ompl::Exception("no motions to be near to");
+    return motions_[places_.nearest(place(motion))];
+  }
+  void nearestK(const Motion& motion, std::size_t k, std::vector<Motion>& nearest) const override {
+    give(places_.nearest(place(motion), k), nearest);
+  }
+  void nearestR(const Motion& motion, double radius, std::vector<Motion>& nearest) const override {
+    give(places_.within(place(motion), radius), nearest);
+  }
+  std::size_t size() const override { return motions_.size(); }
+  void list(std::vector<Motion>& motions) const override { motions = motions_; }
+
+ private:
+  static FlightPlace place(const Motion& motion) { return place_of(node_of(motion->state_).flight); }
+  void give(const std::vector<std::size_t>& numbers, std::vector<Motion>& motions) const {
+    motions.clear();
+    for (const std::size_t number : numbers) motions.push_back(motions_[number]);
+  }
+
+  std::vector<Motion> motions_;
+  FlightPlaces places_;
+};
+
 // SST with a seed of its own for each search; OMPL seeds one generator per process, which would tie a replan
 // to all that came before it.
 class SeededSst : public oc::SST {
@@ -200,8 +243,6 @@ void propagate(const FlightTask& task, const ManoeuvreSearchConfig& config, cons
 }
 
 }  // namespace
-
-const FlightState& flight_state_of(const ob::State* state) { return node_of(state).flight; }
 
 std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightState& start,
                                           const Manoeuvre& hint, const ManoeuvreSearchConfig& config,
@@ -245,7 +286,7 @@ std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightSt
   planner->setProblemDefinition(problem);
   planner->setSelectionRadius(config.selection_radius);
   planner->setPruningRadius(config.pruning_radius);
-  planner->setNearestNeighbors<NearestFlightStates>();
+  planner->setNearestNeighbors<NearestMotions>();
   int asked = 0;
   planner->solve(ob::PlannerTerminationCondition([&] { return ++asked > config.iterations; }));
   if (std::isinf(goal->best_cost)) return std::nullopt;
