@@ -6,8 +6,8 @@
 #include <chrono>
 #include <map>
 
+#include "scenarios/bench/flight_processes.hpp"
 #include "scenarios/config_tree.hpp"
-#include "scenarios/evaluation/processes.hpp"
 #include "scenarios/file_output.hpp"
 
 namespace understory {
@@ -34,7 +34,7 @@ Batch fly_batch(const ClosedLoopBenchOptions& options, const fs::path& scenario,
   std::map<std::uint64_t, Clock::time_point> started;
   Batch batch;
   int failed_status = 0;
-  Processes flights(processes, [&](std::uint64_t seed, int status) {
+  FlightProcesses flights(processes, [&](std::uint64_t seed, int status) {
     if (status != 0 && status != 1) {  // the goal reached or not: timed alike
       failed_status = status;
       return;

@@ -2,224 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
-#include <set>
-
-#include "scenarios/config_tree.hpp"
-#include "scenarios/scenario_io.hpp"
-
 namespace understory {
-namespace {
-
-namespace fs = std::filesystem;
-
-constexpr std::uint64_t greatest_seed = std::uint64_t{1} << 32;
-constexpr std::size_t greatest_flights = 1'000'000;
-
-using Changes = std::vector<ConfigNode>;  ///< a tree per key
-
-/// What is added to a scenario's name and keys.
-struct Variant {
-  std::string name;  ///< empty: the scenario as it is
-  Changes changes;
-};
-
-[[noreturn]] void refuse(const ConfigNode& node, const std::string& key, const std::string& expected) {
-  throw ScenarioError(fmt::format("{}: {}: expected {}", node.origin, key, expected));
-}
-
-const ConfigNode* child(const ConfigNode& map, std::string_view key) {
-  const auto found = std::ranges::find(map.children, key, &ConfigNode::key);
-  return found == map.children.end() ? nullptr : &*found;
-}
-
-void require_known(const ConfigNode& map, const std::vector<std::string>& known, const std::string& within) {
-  for (const ConfigNode& node : map.children) {
-    if (std::ranges::find(known, node.key) != known.end()) continue;
-    const std::string near = nearest_name(node.key, known);
-    refuse(node, within + node.key,
-           near.empty() ? fmt::format("one of {}", fmt::join(known, ", "))
-                        : fmt::format("a known key (did you mean {}?)", near));
-  }
-}
-
-/// A scalar, or each scalar of a list.
-std::vector<std::string> words_of(const ConfigNode& node, const std::string& key, const char* expected) {
-  std::vector<std::string> words;
-  if (node.kind == ConfigNode::Kind::scalar && !node.text.empty()) words.push_back(node.text);
-  if (node.kind == ConfigNode::Kind::list)
-    for (const ConfigNode& entry : node.children) {
-      if (entry.kind != ConfigNode::Kind::scalar) refuse(entry, key, expected);
-      words.push_back(entry.text);
-    }
-  if (words.empty()) refuse(node, key, expected);
-  return words;
-}
-
-/// "forest.length_m" and its value, or groups of them.
-void add_changes(const ConfigNode& map, const std::string& prefix, Changes& changes) {
-  for (const ConfigNode& node : map.children) {
-    if (node.kind == ConfigNode::Kind::map)
-      add_changes(node, prefix + node.key + ".", changes);
-    else
-      changes.push_back(under_keys(node, prefix + node.key));
-  }
-}
-
-/// A name for files: whatever a value is made of becomes letters, digits and . _ = -
-std::string plain(std::string text) {
-  for (char& c : text)
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0 &&
-        std::string_view("._=-").find(c) == std::string::npos)
-      c = '_';
-  return text;
-}
-
-std::string joined(const std::string& name, const std::string& more) {
-  return name.empty() || more.empty() ? name + more : name + "-" + more;
-}
-
-std::string text_of(const ConfigNode& value) {
-  if (value.kind == ConfigNode::Kind::scalar) return value.text;
-  std::vector<std::string> parts;
-  for (const ConfigNode& part : value.children) parts.push_back(text_of(part));
-  return fmt::format("{}", fmt::join(parts, "_"));
-}
-
-std::vector<Variant> overrides_of(const ConfigNode* list) {
-  if (list == nullptr) return {{}};
-  if (list->kind != ConfigNode::Kind::list || list->children.empty())
-    refuse(*list, "overrides", "a list [{name: ..., set: {key: value}}, ...]");
-  std::vector<Variant> variants;
-  for (const ConfigNode& entry : list->children) {
-    if (entry.kind != ConfigNode::Kind::map) refuse(entry, "overrides", "{name: ..., set: {key: value}}");
-    require_known(entry, {"name", "set"}, "overrides.");
-    const ConfigNode* name = child(entry, "name");
-    if (name == nullptr || name->kind != ConfigNode::Kind::scalar || name->text.empty() ||
-        plain(name->text) != name->text)
-      refuse(name == nullptr ? entry : *name, "overrides.name", "a name of letters, digits and . _ = -");
-    Variant variant{name->text, {}};
-    if (const ConfigNode* set = child(entry, "set")) {
-      if (set->kind != ConfigNode::Kind::map) refuse(*set, "overrides.set", "a group {key: value, ...}");
-      add_changes(*set, "", variant.changes);
-    }
-    variants.push_back(std::move(variant));
-  }
-  return variants;
-}
-
-/// Every combination of the grid's values over each of `variants`.
-std::vector<Variant> with_grid(std::vector<Variant> variants, const ConfigNode* grid) {
-  if (grid == nullptr) return variants;
-  if (grid->kind != ConfigNode::Kind::map || grid->children.empty())
-    refuse(*grid, "grid", "a group {key: [values], ...}");
-  for (const ConfigNode& axis : grid->children) {
-    if (axis.kind != ConfigNode::Kind::list || axis.children.empty())
-      refuse(axis, "grid." + axis.key, "a list of values");
-    const std::string short_key = axis.key.substr(axis.key.rfind('.') + 1);
-    std::vector<Variant> more;
-    for (const Variant& variant : variants)
-      for (const ConfigNode& value : axis.children) {
-        Variant next = variant;
-        next.name = joined(variant.name, plain(short_key + "=" + text_of(value)));
-        next.changes.push_back(under_keys(value, axis.key));
-        more.push_back(std::move(next));
-      }
-    variants = std::move(more);
-  }
-  return variants;
-}
-
-std::uint64_t seed_of(std::string_view word, const std::string& where, const std::string& whole) {
-  std::uint64_t seed = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), seed);
-  if (word.empty() || error != std::errc() || end != word.data() + word.size() || seed > greatest_seed)
-    throw ScenarioError(
-        fmt::format("{}: expected first..last (1..200), a seed from 0 to 2^32, or a list of such, got '{}'",
-                    where, whole));
-  return seed;
-}
-
-/// Beside the campaign's file, or whatever the command line would find.
-fs::path scenario_of(const std::string& word, const fs::path& campaign_file, const ConfigNode& node,
-                     const FindScenario& find_scenario) {
-  std::error_code ignored;
-  const fs::path beside = campaign_file.parent_path() / word;
-  if (fs::is_regular_file(beside, ignored)) return beside;
-  try {
-    return find_scenario(word);
-  } catch (const ScenarioError& error) {
-    throw ScenarioError(fmt::format("{}: scenarios: {}", node.origin, error.what()));
-  }
-}
-
-}  // namespace
-
-std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, const std::string& where) {
-  std::vector<std::uint64_t> seeds;
-  std::set<std::uint64_t> seen;
-  for (const std::string& range : ranges) {
-    const std::size_t dots = range.find("..");
-    const std::uint64_t first = seed_of(std::string_view(range).substr(0, dots), where, range);
-    const std::uint64_t last =
-        dots == std::string::npos ? first : seed_of(std::string_view(range).substr(dots + 2), where, range);
-    if (last < first) throw ScenarioError(fmt::format("{}: expected first <= last, got '{}'", where, range));
-    if (last - first >= greatest_flights)
-      throw ScenarioError(fmt::format("{}: expected at most {} flights", where, greatest_flights));
-    for (std::uint64_t seed = first; seed <= last; ++seed) {
-      if (!seen.insert(seed).second)
-        throw ScenarioError(fmt::format("{}: expected each seed once, {} is given twice", where, seed));
-      seeds.push_back(seed);
-    }
-  }
-  return seeds;
-}
-
-Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario) {
-  const ConfigNode top = parse_config_file(file);
-  require_known(top, {"name", "scenario", "scenarios", "seeds", "overrides", "grid", "timeout_s"}, "");
-  Campaign campaign;
-  campaign.name = plain(file.stem().string());
-  if (const ConfigNode* name = child(top, "name")) {
-    if (name->text.empty() || plain(name->text) != name->text)
-      refuse(*name, "name", "letters, digits and . _ = -");
-    campaign.name = name->text;
-  }
-  if (const ConfigNode* timeout = child(top, "timeout_s")) {
-    const char* const end = timeout->text.data() + timeout->text.size();
-    const auto parsed = std::from_chars(timeout->text.data(), end, campaign.timeout_s);
-    if (parsed.ec != std::errc() || parsed.ptr != end ||
-        !(campaign.timeout_s >= 1 && campaign.timeout_s <= 86400))
-      refuse(*timeout, "timeout_s", "seconds, 1 .. 86400");
-  }
-
-  const ConfigNode* one = child(top, "scenario");
-  const ConfigNode* scenarios = one != nullptr ? one : child(top, "scenarios");
-  if (scenarios == nullptr || (one != nullptr && child(top, "scenarios") != nullptr))
-    refuse(scenarios == nullptr ? top : *scenarios, "scenarios",
-           "the scenarios to fly, once: [forest, dense]");
-  const ConfigNode* seeds = child(top, "seeds");
-  if (seeds == nullptr) refuse(top, "seeds", "the seeds to fly, for instance 1..200");
-  campaign.seeds =
-      seeds_of(words_of(*seeds, "seeds", "the seeds to fly, for instance 1..200"), seeds->origin + ": seeds");
-
-  const std::vector<Variant> variants = with_grid(overrides_of(child(top, "overrides")), child(top, "grid"));
-  std::set<std::string> seen;
-  for (const std::string& word : words_of(*scenarios, "scenarios", "names or files of scenarios")) {
-    const fs::path path = scenario_of(word, file, *scenarios, find_scenario);
-    for (const Variant& variant : variants) {
-      const Scenario scenario = load_changed_scenario(path, variant.changes);
-      const std::string name = joined(plain(path.stem().string()), variant.name);
-      if (!seen.insert(name).second)
-        refuse(*scenarios, "scenarios", fmt::format("each condition once, '{}' comes out twice", name));
-      campaign.conditions.push_back({name, scenario_to_text(scenario)});
-    }
-  }
-  if (campaign.conditions.size() * campaign.seeds.size() > greatest_flights)
-    refuse(*seeds, "seeds", fmt::format("at most {} flights in all", greatest_flights));
-  return campaign;
-}
 
 std::vector<CampaignTask> tasks_of(const Campaign& campaign) {
   std::vector<CampaignTask> tasks;
@@ -227,6 +10,16 @@ std::vector<CampaignTask> tasks_of(const Campaign& campaign) {
     for (const std::uint64_t seed : campaign.seeds)
       tasks.push_back({fmt::format("{}-{}", campaign.conditions[condition].name, seed), condition, seed});
   return tasks;
+}
+
+std::vector<CampaignTask> in_flying_order(const Campaign& campaign) {
+  const std::vector<CampaignTask> tasks = tasks_of(campaign);
+  const std::size_t seeds = campaign.seeds.size();
+  std::vector<CampaignTask> order;
+  for (std::size_t seed = 0; seed < seeds; ++seed)
+    for (std::size_t condition = 0; condition < campaign.conditions.size(); ++condition)
+      order.push_back(tasks[condition * seeds + seed]);
+  return order;
 }
 
 }  // namespace understory

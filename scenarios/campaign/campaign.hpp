@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,29 +28,9 @@ struct CampaignTask {
   std::uint64_t seed = 0;
 };
 
-/// Finds the file that a scenario's name means, as on the command line.
-using FindScenario = std::function<std::filesystem::path(const std::string&)>;
-
-/// Reads a campaign file:
-///
-///     scenarios: [forest, dense]        # or scenario: forest; names of the library, or files beside this
-///     one seeds: 1..200                     # or a list: [1, 7, 1000..1019] overrides: # optional, each
-///     flown on its own
-///       - {name: ours}
-///       - {name: blind, set: {perception.detector: none}}
-///     grid:                             # optional: every combination, over each override
-///       autopilot.flight_model.cruise_speed_mps: [10, 12]
-///     timeout_s: 300                    # optional, 1 .. 86400
-///     name: speed                       # optional; otherwise the file's
-///
-/// Throws ScenarioError in one line, "file:line: key: expected ...": an unknown key, no seeds, a seed or a
-/// condition twice, whatever a scenario refuses.
-Campaign load_campaign(const std::filesystem::path& file, const FindScenario& find_scenario);
-
-/// "1..200", "7" or a list of such things, as seeds. Throws ScenarioError, beginning with `where`.
-std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, const std::string& where);
-
 /// All flights, condition by condition: the order of the rows.
 std::vector<CampaignTask> tasks_of(const Campaign& campaign);
+/// The same seed by seed, as they are flown: an unfinished campaign compares the same forests.
+std::vector<CampaignTask> in_flying_order(const Campaign& campaign);
 
 }  // namespace understory

@@ -28,7 +28,9 @@ struct CampaignFolder {
   std::filesystem::path flight_file(const CampaignTask& task) const {
     return path / "flights" / (task.id + ".json");
   }
-  std::filesystem::path log_file(const CampaignTask& task) const { return path / "logs" / (task.id + ".txt"); }
+  std::filesystem::path log_file(const CampaignTask& task) const {
+    return path / "logs" / (task.id + ".txt");
+  }
 };
 
 /// Makes the folder, or, with `resume`, makes sure that it holds this very campaign, begun by this program.

@@ -122,51 +122,17 @@ bool take_row(FlightRow& row, TextOf&& text_of) {
   return is_whole;
 }
 
-std::string header() {
-  std::string names;
-  const auto name_it = [&](std::string_view name, const auto&) {
-    names += (names.empty() ? "" : ",") + std::string(name);
-  };
+std::vector<std::string> column_names() {
+  std::vector<std::string> names;
+  const auto name_it = [&](std::string_view name, const auto&) { names.emplace_back(name); };
   const FlightRow any;
   visit_columns(any, name_it, name_it);
   return names;
 }
 
-}  // namespace
+std::string header() { return fmt::format("{}", fmt::join(column_names(), ",")); }
 
-FlightRow flown_row(const Scenario& scenario, const FlightResult& result) {
-  FlightRow row;
-  row.seed = result.seed;
-  row.status = RunStatus::flown;
-  row.outcome = word_for(result.ending);
-  row.cruise_speed_mps = scenario.autopilot.autopilot.flight_model.cruise_speed_mps;
-  row.square_metres_per_tree = scenario.forest.square_metres_per_tree;
-  row.goal_m = scenario.goal_x_m();
-  row.distance_m = result.distance_m;
-  row.progress_m = result.progress_m;
-  row.mean_speed_mps = result.mean_speed_mps;
-  row.min_clearance_m = result.min_clearance_m;
-  row.position_error_mean_m = result.position_error_mean_m;
-  row.position_error_max_m = result.position_error_max_m;
-  row.detections = result.detections;
-  row.remembered_points = result.remembered_points;
-  for (const auto& [bar, points] : result.points_on_obstacles)
-    if (row.least_points_on_a_bar < 0 || points < row.least_points_on_a_bar)
-      row.least_points_on_a_bar = points;
-  row.replans = result.replans;
-  row.straight = result.replans_straight;
-  row.solved = result.replans_solved;
-  row.kept = result.replans_kept;
-  row.kept_ompl = result.replans_kept_ompl;
-  row.fallback = result.replans_fallback;
-  row.obstacle_ahead = result.replans_blocked;
-  row.obstacle_ahead_ompl = result.replans_blocked_ompl;
-  row.searches = result.searches;
-  row.found = result.searches_found;
-  row.simulated_s = result.simulated_s;
-  row.digest = result.digest;
-  return row;
-}
+}  // namespace
 
 std::string to_json_line(const FlightRow& row) { return json_of(row).dump(); }
 
@@ -203,7 +169,7 @@ std::string to_csv(const std::vector<FlightRow>& rows) {
       else if (value.is_number_float())
         cells.push_back(fmt::format("{:.6g}", value.get<double>()));
       else
-        cells.push_back(value.is_null() ? "" : value.dump());
+        cells.push_back(value.is_null() ? std::string() : value.dump());
     }
     csv += fmt::format("{}\n", fmt::join(cells, ","));
   }
@@ -217,9 +183,7 @@ std::vector<FlightRow> rows_from_csv(const std::string& text, const std::string&
   if (line != header())
     throw ScenarioError(
         fmt::format("{}:1: expected the columns of results format {}: {}", name, results_format, header()));
-  std::vector<std::string> names;
-  std::istringstream words(line);
-  for (std::string word; std::getline(words, word, ',');) names.push_back(word);
+  const std::vector<std::string> names = column_names();
   std::vector<FlightRow> rows;
   for (int number = 2; std::getline(stream, line); ++number) {
     std::vector<std::string> cells(1);

@@ -5,8 +5,6 @@
 #include <vector>
 
 #include "scenarios/campaign/flight_row.hpp"
-#include "scenarios/flight_result.hpp"
-#include "scenarios/scenario.hpp"
 
 namespace understory {
 
@@ -24,9 +22,6 @@ struct FlightFile {
   FlightRow row;
   FlightCost cost;
 };
-
-/// The row of a flight that came to an ending. Sets everything but id and condition.
-FlightRow flown_row(const Scenario& scenario, const FlightResult& result);
 
 /// One line of JSON without its newline; numbers in full precision, null where there is nothing to say.
 std::string to_json_line(const FlightRow& row);

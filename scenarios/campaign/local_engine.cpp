@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -18,6 +17,7 @@
 #include <map>
 #include <thread>
 
+#include "scenarios/campaign/stop_signals.hpp"
 #include "scenarios/config_tree.hpp"
 #include "scenarios/file_output.hpp"
 
@@ -30,28 +30,6 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds look_every{10};  ///< a flight takes seconds
 /// exit_bad_input and exit_machine_failed of the command line.
 constexpr int status_refused = 2, status_machine_failed = 3;
-
-volatile std::sig_atomic_t stop_asked = 0;
-
-/// While it lives, the signals that mean "stop" only set a flag.
-class StopSignals {
- public:
-  StopSignals() {
-    stop_asked = 0;
-    struct sigaction action {};
-    action.sa_handler = [](int) { stop_asked = 1; };
-    for (std::size_t i = 0; i < signals.size(); ++i) sigaction(signals[i], &action, &before_[i]);
-  }
-  ~StopSignals() {
-    for (std::size_t i = 0; i < signals.size(); ++i) sigaction(signals[i], &before_[i], nullptr);
-  }
-  StopSignals(const StopSignals&) = delete;
-  StopSignals& operator=(const StopSignals&) = delete;
-
- private:
-  static constexpr std::array signals{SIGINT, SIGTERM, SIGHUP};
-  std::array<struct sigaction, signals.size()> before_{};
-};
 
 struct InTheAir {
   const CampaignTask* task = nullptr;
@@ -121,8 +99,9 @@ FlightRow row_of_failure(int wait_status, bool hung, double timeout_s, const std
 /// The flights in the air, and what becomes of them.
 class Flights {
  public:
-  Flights(const CampaignFolder& folder, const Campaign& campaign, const LocalEngineConfig& config)
-      : folder_(folder), campaign_(campaign), config_(config) {}
+  Flights(const CampaignFolder& folder, const Campaign& campaign, const LocalEngineConfig& config,
+          const StopSignals& stop_signals)
+      : folder_(folder), campaign_(campaign), config_(config), stop_signals_(stop_signals) {}
   ~Flights() { stop(); }
   Flights(const Flights&) = delete;
   Flights& operator=(const Flights&) = delete;
@@ -158,6 +137,7 @@ class Flights {
       flight = air_.erase(flight);
       auto file = read_flight(folder_, task);
       if (!file) {
+        if (everything_stops(wait_status, hung)) return;
         const FlightCost cost{taken.count(), static_cast<double>(usage.ru_maxrss) * 1.024e-3};
         file = FlightFile{
             row_of_failure(wait_status, hung, campaign_.timeout_s, last_line_of(folder_.log_file(task))),
@@ -168,6 +148,14 @@ class Flights {
       }
       on_over(file->row);
     }
+  }
+
+  /// A batch system stops all processes of a job, and a flight may go before we do: it was not that flight's
+  /// fate to be killed, and it is left for the next time.
+  bool everything_stops(int wait_status, bool hung) const {
+    if (hung || !WIFSIGNALED(wait_status)) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    return stop_signals_.asked();
   }
 
   void stop() {
@@ -184,14 +172,9 @@ class Flights {
   const CampaignFolder& folder_;
   const Campaign& campaign_;
   const LocalEngineConfig& config_;
+  const StopSignals& stop_signals_;
   std::map<pid_t, InTheAir> air_;
 };
-
-void count(const FlightRow& row, CampaignProgress& progress) {
-  progress.over += 1;
-  progress.goals += row.reached_goal() ? 1 : 0;
-  progress.not_flown += row.flown() ? 0 : 1;
-}
 
 /// Of writers that were killed in the middle.
 void remove_parts(const fs::path& folder) {
@@ -201,6 +184,12 @@ void remove_parts(const fs::path& folder) {
 }
 
 }  // namespace
+
+void count(const FlightRow& row, CampaignProgress& progress) {
+  progress.over += 1;
+  progress.goals += row.reached_goal() ? 1 : 0;
+  progress.not_flown += row.flown() ? 0 : 1;
+}
 
 FolderLock::FolderLock(const CampaignFolder& folder) {
   const fs::path file = folder.path / "lock";
@@ -234,8 +223,9 @@ std::vector<std::string> flight_arguments(const CampaignFolder& folder, const Ca
   return arguments;
 }
 
-bool fly_locally(const CampaignFolder& folder, const Campaign& campaign, const std::vector<CampaignTask>& tasks,
-                 const LocalEngineConfig& config, const OnCampaignProgress& on_progress) {
+bool fly_locally(const CampaignFolder& folder, const Campaign& campaign,
+                 const std::vector<CampaignTask>& tasks, const LocalEngineConfig& config,
+                 const OnCampaignProgress& on_progress) {
   const StopSignals stop_signals;
   CampaignProgress progress;
   progress.flights = tasks.size();
@@ -248,10 +238,10 @@ bool fly_locally(const CampaignFolder& folder, const Campaign& campaign, const s
       left.push_back(&task);
   }
   progress.before = progress.over;
-  Flights flights(folder, campaign, config);
+  Flights flights(folder, campaign, config, stop_signals);
   std::size_t next = 0;
   while (next < left.size() || !flights.empty()) {
-    if (stop_asked != 0) return false;
+    if (stop_signals.asked()) return false;
     while (next < left.size() && !flights.full()) flights.launch(*left[next++]);
     std::this_thread::sleep_for(look_every);
     flights.land([&](const FlightRow& row) {

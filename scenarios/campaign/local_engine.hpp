@@ -20,6 +20,7 @@ struct CampaignProgress {
   std::size_t goals = 0, not_flown = 0;
   std::size_t before = 0;  ///< over before this run began
 };
+void count(const FlightRow& row, CampaignProgress& progress);
 using OnCampaignProgress = std::function<void(const CampaignProgress&)>;
 
 /// Keeps a second program from flying the same folder on this machine; dropped however this one ends. Clears
@@ -43,7 +44,8 @@ std::vector<std::string> flight_arguments(const CampaignFolder& folder, const Ca
 /// Flies the tasks that are not flown yet, a process each, so that a crash, a hang or a kill costs one flight
 /// and is written down as such. A flight dies with this program. False where SIGINT, SIGTERM or SIGHUP
 /// stopped it; flights in the air then leave nothing. Throws MachineError where processes or files fail.
-bool fly_locally(const CampaignFolder& folder, const Campaign& campaign, const std::vector<CampaignTask>& tasks,
-                 const LocalEngineConfig& config, const OnCampaignProgress& on_progress);
+bool fly_locally(const CampaignFolder& folder, const Campaign& campaign,
+                 const std::vector<CampaignTask>& tasks, const LocalEngineConfig& config,
+                 const OnCampaignProgress& on_progress);
 
 }  // namespace understory

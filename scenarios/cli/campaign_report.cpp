@@ -2,18 +2,30 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
+#include "scenarios/campaign/campaign_plots.hpp"
+#include "scenarios/campaign/campaign_summary.hpp"
+#include "scenarios/campaign/junit.hpp"
 #include "scenarios/cli/commands.hpp"
+#include "scenarios/file_output.hpp"
 
 namespace understory {
 
-int report(const CampaignFolder& folder, const Collected& collected) {
-  const auto not_flown =
-      std::ranges::count_if(collected.rows, [](const FlightRow& row) { return !row.flown(); });
-  const auto goals = std::ranges::count_if(collected.rows, &FlightRow::reached_goal);
-  fmt::print("{} flights, {} at the goal; {} not flown, {} missing: {}\n", collected.rows.size(), goals,
-             not_flown, collected.missing, folder.path.string());
+int report(const CampaignFolder& folder, const Collected& collected, const std::filesystem::path& junit) {
+  const PrintedTable table = summary_table(summarise(collected.rows));
+  write_whole_file(folder.path / "summary.md", to_markdown(table));
+  const std::string plots = campaign_svg(collected.rows);
+  if (!plots.empty()) write_whole_file(folder.path / "campaign.svg", plots);
+  if (!junit.empty()) write_whole_file(junit, campaign_junit(collected.rows));
+
+  fmt::print("{}", to_text(table));
+  std::size_t not_flown = 0;
+  for (const FlightRow& row : collected.rows) {
+    if (row.flown()) continue;
+    if (++not_flown <= 10) fmt::print("not flown: {}: {}\n", row.id, row.reason);
+  }
+  if (not_flown > 10) fmt::print("not flown: {} more, see flights.csv\n", not_flown - 10);
+  if (collected.missing > 0) fmt::print("missing: {} flights\n", collected.missing);
+  fmt::print("rows and plots: {}\n", folder.path.string());
   return not_flown == 0 && collected.missing == 0 ? exit_goal : exit_not_goal;
 }
 

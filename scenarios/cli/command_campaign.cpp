@@ -7,8 +7,10 @@
 #include <memory>
 #include <thread>
 
+#include "scenarios/campaign/campaign_file.hpp"
 #include "scenarios/campaign/campaign_folder.hpp"
 #include "scenarios/campaign/local_engine.hpp"
+#include "scenarios/campaign/slurm_engine.hpp"
 #include "scenarios/cli/campaign_report.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config_tree.hpp"
@@ -24,9 +26,12 @@ namespace fs = std::filesystem;
 
 struct CampaignArguments {
   std::string file;
-  std::string out;  // empty: results/<name>
+  std::string out;    // empty: results/<name>
+  std::string junit;  // empty: none
   std::string engine = "local";
+  SlurmConfig slurm;
   int jobs = 0;  // 0: a flight a core
+  bool waits = true;
   bool resume = false;
   bool print_tasks = false;
   bool keeps_runs = false;
@@ -41,17 +46,6 @@ void require_rigs(const Campaign& campaign, const std::string& file) {
       throw ScenarioError(fmt::format("{}: condition {}: {}", file, condition.name, error.what()));
     }
   }
-}
-
-/// Every condition advances with every seed, so that an unfinished campaign compares the same forests.
-std::vector<CampaignTask> in_flying_order(const Campaign& campaign) {
-  const std::vector<CampaignTask> tasks = tasks_of(campaign);
-  const std::size_t seeds = campaign.seeds.size();
-  std::vector<CampaignTask> order;
-  for (std::size_t seed = 0; seed < seeds; ++seed)
-    for (std::size_t condition = 0; condition < campaign.conditions.size(); ++condition)
-      order.push_back(tasks[condition * seeds + seed]);
-  return order;
 }
 
 std::string in_words(double seconds) {
@@ -89,12 +83,41 @@ class ProgressLine {
 int print_tasks(const CampaignFolder& folder, const Campaign& campaign) {
   const fs::path program = fs::read_symlink("/proc/self/exe");
   for (const CampaignTask& task : tasks_of(campaign)) {
+    if (const auto file = read_flight(folder, task); file && file->row.flown()) continue;
     std::string line = "'" + program.string() + "'";
     for (const std::string& argument : flight_arguments(folder, campaign, task, false))
       line += " '" + argument + "'";
     fmt::print("{}\n", line);
   }
   return 0;
+}
+
+/// How a campaign ends: every flight over, or stopped by a signal.
+enum class Finish { all_over, stopped };
+
+Finish fly_here(const CampaignFolder& folder, const Campaign& campaign, const CampaignArguments& arguments) {
+  LocalEngineConfig config;
+  config.jobs = arguments.jobs > 0 ? arguments.jobs
+                                   : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  config.keeps_runs = arguments.keeps_runs;
+  ProgressLine line;
+  const bool finished = fly_locally(folder, campaign, in_flying_order(campaign), config,
+                                    [&](const CampaignProgress& progress) { line.show(progress); });
+  line.clear();
+  return finished ? Finish::all_over : Finish::stopped;
+}
+
+Finish fly_on_slurm(const CampaignFolder& folder, const Campaign& campaign,
+                    const CampaignArguments& arguments) {
+  const std::string job = submit_to_slurm(folder, campaign, arguments.slurm);
+  fmt::print("Slurm job {}: {} shards\n", job, arguments.slurm.shards);
+  std::fflush(stdout);
+  if (!arguments.waits) return Finish::stopped;
+  ProgressLine line;
+  const bool finished =
+      wait_for_slurm(folder, campaign, job, [&](const CampaignProgress& progress) { line.show(progress); });
+  line.clear();
+  return finished ? Finish::all_over : Finish::stopped;
 }
 
 int run_campaign(const CampaignArguments& arguments) {
@@ -106,20 +129,18 @@ int run_campaign(const CampaignArguments& arguments) {
   if (arguments.print_tasks) return print_tasks(folder, campaign);
 
   const FolderLock lock(folder);
-  LocalEngineConfig config;
-  config.jobs = arguments.jobs > 0 ? arguments.jobs
-                                   : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  config.keeps_runs = arguments.keeps_runs;
-  ProgressLine line;
-  const bool finished = fly_locally(folder, campaign, in_flying_order(campaign), config,
-                                    [&](const CampaignProgress& progress) { line.show(progress); });
-  line.clear();
+  const bool on_slurm = arguments.engine == "slurm";
+  const Finish finish =
+      on_slurm ? fly_on_slurm(folder, campaign, arguments) : fly_here(folder, campaign, arguments);
   const Collected collected = collect(folder, campaign);
-  if (!finished)
-    throw MachineError(fmt::format("{}: stopped with {} of {} flights over; --resume goes on",
-                                   folder.path.string(), collected.rows.size(),
-                                   collected.rows.size() + collected.missing));
-  return report(folder, collected);
+  if (finish == Finish::all_over) return report(folder, collected, arguments.junit);
+  if (on_slurm) {
+    fmt::print("the job goes on; understory collect {} gathers what it leaves\n", folder.path.string());
+    return exit_goal;
+  }
+  throw MachineError(fmt::format("{}: stopped with {} of {} flights over; --resume goes on",
+                                 folder.path.string(), collected.rows.size(),
+                                 collected.rows.size() + collected.missing));
 }
 
 }  // namespace
@@ -131,9 +152,21 @@ void add_campaign_command(CLI::App& app, Command& chosen) {
   command->add_option("--out", arguments->out, "results folder (default: results/<name>)");
   command->add_option("--jobs", arguments->jobs, "flights at a time (default: one a core)")
       ->check(CLI::Range(1, 1024));
+  command->add_option("--engine", arguments->engine, "local, or slurm: a job array")
+      ->check(CLI::IsMember({"local", "slurm"}))
+      ->capture_default_str();
+  command->add_option("--shards", arguments->slurm.shards, "slurm: tasks of the job array")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  command
+      ->add_option("--sbatch", arguments->slurm.options,
+                   "slurm: an option of sbatch, --sbatch=--partition=short")
+      ->allow_extra_args(false);
+  command->add_flag("!--no-wait", arguments->waits, "slurm: submit and leave");
   command->add_flag("--resume", arguments->resume, "go on with what the folder holds");
   command->add_flag("--print-tasks", arguments->print_tasks,
                     "fly nothing: print a command for each flight; collect gathers what they leave");
+  command->add_option("--junit", arguments->junit, "write a test case per flight as JUnit XML");
   command->add_flag("--keep-runs", arguments->keeps_runs, "keep each flight's run folder in runs/");
   command->callback([arguments, &chosen] { chosen = [arguments] { return run_campaign(*arguments); }; });
 }

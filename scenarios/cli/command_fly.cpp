@@ -8,6 +8,8 @@
 #include <memory>
 
 #include "scenarios/campaign/flight_row_io.hpp"
+#include "scenarios/campaign/flown_row.hpp"
+#include "scenarios/campaign/junit.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/file_output.hpp"
 #include "scenarios/fly.hpp"
@@ -19,7 +21,8 @@ namespace {
 struct FlyArguments : ScenarioArguments {
   std::string seed;
   std::string out;  // empty: runs/<name>-<seed>, or with a row no run folder at all
-  std::string row;  // empty: none
+  std::string row;  // empty: none, as the next
+  std::string junit;
   RendererKind renderer = RendererKind::osmesa;
   bool video = false;
   bool quiet = false;
@@ -46,16 +49,19 @@ void require_rig(const Scenario& scenario, const FlyArguments& arguments,
                                   rigs.string(), scenario.rig));
 }
 
-/// As a campaign reads it. The file's name is the flight's id, the scenario's that of its condition.
-void write_row(const FlyArguments& arguments, const Scenario& scenario, const FlightResult& result) {
+/// As a campaign reads it. The row file's name is the flight's id, the scenario's file that of its condition.
+FlightRow row_of(const FlyArguments& arguments, const Scenario& scenario, const FlightResult& result) {
+  FlightRow row = flown_row(scenario, result);
+  row.condition = std::filesystem::path(arguments.scenario).stem().string();
+  row.id = arguments.row.empty() ? fmt::format("{}-{}", row.condition, row.seed)
+                                 : std::filesystem::path(arguments.row).stem().string();
+  return row;
+}
+
+FlightCost cost_of(const FlightResult& result) {
   struct rusage usage {};
   getrusage(RUSAGE_SELF, &usage);
-  const std::filesystem::path file = arguments.row;
-  FlightFile flight{flown_row(scenario, result),
-                    {result.wall_s, static_cast<double>(usage.ru_maxrss) * 1.024e-3}};
-  flight.row.id = file.stem().string();
-  flight.row.condition = std::filesystem::path(arguments.scenario).stem().string();
-  write_lasting_file(file, to_json(flight));
+  return {result.wall_s, static_cast<double>(usage.ru_maxrss) * 1.024e-3};
 }
 
 int run_fly(const FlyArguments& arguments) {
@@ -74,7 +80,9 @@ int run_fly(const FlyArguments& arguments) {
   if (shows_progress) options.on_progress = print_progress;
   const FlightResult result = fly(scenario, options);
   if (shows_progress) fmt::print("\r\033[K");
-  if (!arguments.row.empty()) write_row(arguments, scenario, result);
+  const FlightRow row = row_of(arguments, scenario, result);
+  if (!arguments.row.empty()) write_lasting_file(arguments.row, to_json(FlightFile{row, cost_of(result)}));
+  if (!arguments.junit.empty()) write_whole_file(arguments.junit, campaign_junit({row}));
   if (!arguments.quiet) {
     fmt::print("{}", to_report(result));
     if (!options.output_folder.empty()) fmt::print("  {:<18}{}\n", "files", options.output_folder.string());
@@ -94,6 +102,7 @@ void add_fly_command(CLI::App& app, Command& chosen) {
   add_renderer_option(*command, arguments->renderer);
   command->add_option("--row", arguments->row,
                       "write the flight's row here, as campaign and collect read it; no run folder");
+  command->add_option("--junit", arguments->junit, "write the flight as a JUnit test case");
   command->add_flag("--video", arguments->video, "also make flight.mp4 and still.png");
   command->add_flag("--quiet", arguments->quiet, "print nothing");
   command->callback([arguments, &chosen] {

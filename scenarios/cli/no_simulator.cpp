@@ -26,8 +26,8 @@ int run_closed_loop_bench(const ClosedLoopBenchArguments&) {
 }
 
 void add_fly_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "fly"); }
-void add_evaluate_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "evaluate"); }
-void add_gate_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "gate"); }
+void add_campaign_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "campaign"); }
+void add_shard_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "shard"); }
 void add_validate_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "validate"); }
 
 }  // namespace understory

@@ -152,6 +152,20 @@ TEST_F(CampaignRun, PrintedTasksGiveTheSameRows) {
   EXPECT_EQ(text("there/flights.csv"), text("here/flights.csv"));
 }
 
+TEST_F(CampaignRun, WritesJunitOfFlightsAndCampaigns) {
+  const std::string of_campaign = (path / "campaign.xml").string(),
+                    of_flight = (path / "flight.xml").string();
+  ASSERT_EQ(
+      understory("campaign " + blind("seeds: 1..2\n") + out("results") + " --junit " + of_campaign).status,
+      0);
+  EXPECT_NE(text("campaign.xml").find("tests=\"2\" failures=\"0\" errors=\"0\""), std::string::npos);
+  const std::string short_lived = "fly clear --seed 7 --set time_limit_s=1 --out " + (path / "run").string();
+  ASSERT_EQ(understory(short_lived + " --junit " + of_flight).status, 1);
+  EXPECT_NE(text("flight.xml").find("tests=\"1\" failures=\"1\" errors=\"0\""), std::string::npos);
+  EXPECT_NE(text("flight.xml").find("classname=\"clear\" name=\"7\""), std::string::npos)
+      << text("flight.xml");
+}
+
 TEST_F(CampaignRun, RefusesFoldersThatAreNotItsOwn) {
   const std::string campaign = blind("seeds: 1\n");
   ASSERT_EQ(understory("campaign " + campaign + out("results")).status, 0);

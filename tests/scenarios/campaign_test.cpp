@@ -1,4 +1,4 @@
-#include "scenarios/campaign/campaign.hpp"
+#include "scenarios/campaign/campaign_file.hpp"
 
 #include <gtest/gtest.h>
 

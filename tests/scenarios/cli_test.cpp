@@ -123,7 +123,6 @@ TEST(Cli, BadScenariosAreNamedByFileLineAndKey) {
   expect_refusal("fly clear --seed x", "seed: expected a whole number");
   expect_refusal("fly clear --set 'perception.depths_m=[10, 900]' --out " + folder.path.string(),
                  "perception.depths_m: expected depths the rig long can look at, got 900 m");
-  expect_refusal("evaluate clear --seeds 9:1", "--seeds 9:1");
 }
 
 TEST(Cli, AnUnwritableFolderIsBadInputAndAFullDiskTheMachines) {

@@ -1,4 +1,4 @@
-#include "scenarios/evaluation/processes.hpp"
+#include "scenarios/bench/flight_processes.hpp"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -13,7 +13,7 @@
 
 namespace understory {
 
-void Processes::start(std::uint64_t tag, const std::vector<std::string>& arguments) {
+void FlightProcesses::start(std::uint64_t tag, const std::vector<std::string>& arguments) {
   while (running_.size() >= static_cast<std::size_t>(greatest_count_)) wait_for_one();
   std::vector<char*> argv{const_cast<char*>("understory")};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
@@ -27,7 +27,7 @@ void Processes::start(std::uint64_t tag, const std::vector<std::string>& argumen
   running_[child] = tag;
 }
 
-void Processes::wait_for_one() {
+void FlightProcesses::wait_for_one() {
   int status = 0;
   struct rusage usage {};
   const pid_t child = wait4(-1, &status, 0, &usage);
@@ -44,7 +44,7 @@ void Processes::wait_for_one() {
   on_end_(tag, WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status));
 }
 
-void Processes::wait_for_all() {
+void FlightProcesses::wait_for_all() {
   while (!running_.empty()) wait_for_one();
 }
 

@@ -12,12 +12,13 @@ namespace understory {
 
 /// Runs copies of this very program, a few at a time: one process flies one flight, since OMPL's random
 /// generator is one per process.
-class Processes {
+class FlightProcesses {
  public:
   /// Called with the tag of a process and its exit status (128 + signal where it was killed).
   using OnEnd = std::function<void(std::uint64_t tag, int status)>;
 
-  Processes(int greatest_count, OnEnd on_end) : greatest_count_(greatest_count), on_end_(std::move(on_end)) {}
+  FlightProcesses(int greatest_count, OnEnd on_end)
+      : greatest_count_(greatest_count), on_end_(std::move(on_end)) {}
 
   /// Starts this program with `arguments` (without the program's name); first waits where all places are
   /// taken.

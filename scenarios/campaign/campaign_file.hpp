@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "scenarios/campaign/campaign.hpp"
+
+namespace understory {
+
+/// Finds the file that a scenario's name means, as on the command line.
+using FindScenario = std::function<std::filesystem::path(const std::string&)>;
+
+/// Reads a campaign file:
+///
+///     scenarios: [forest, dense]        # or scenario: forest; names of the library, or files beside this
+///     one seeds: 1..200                     # or a list: [1, 7, 1000..1019] overrides: # optional, each
+///     flown on its own
+///       - {name: ours}
+///       - {name: blind, set: {perception.detector: none}}
+///     grid:                             # optional: every combination, over each override
+///       autopilot.flight_model.cruise_speed_mps: [10, 12]
+///     timeout_s: 300                    # optional, 1 .. 86400
+///     name: speed                       # optional; otherwise the file's
+///
+/// Throws ScenarioError in one line, "file:line: key: expected ...": an unknown key, no seeds, a seed or a
+/// condition twice, whatever a scenario refuses.
+Campaign load_campaign(const std::filesystem::path& file, const FindScenario& find_scenario);
+
+/// "1..200", "7" or a list of such things, as seeds. Throws ScenarioError, beginning with `where`.
+std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, const std::string& where);
+
+}  // namespace understory

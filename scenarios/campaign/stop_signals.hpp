@@ -1,0 +1,17 @@
+#pragma once
+
+namespace understory {
+
+/// While it lives, SIGINT, SIGTERM and SIGHUP end nothing: they are remembered. One at a time.
+class StopSignals {
+ public:
+  StopSignals();
+  ~StopSignals();
+  StopSignals(const StopSignals&) = delete;
+  StopSignals& operator=(const StopSignals&) = delete;
+
+  /// Whether one has come.
+  bool asked() const;
+};
+
+}  // namespace understory

@@ -1,0 +1,185 @@
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
+#include <thread>
+
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+/// `campaign --engine slurm` on a real Slurm of two nodes, both on this machine, started here for the test.
+namespace {
+
+namespace fs = std::filesystem;
+using understory::support::Outcome;
+using understory::support::understory;
+
+bool installed() {
+  for (const char* program : {"slurmctld", "slurmd", "sbatch", "squeue", "munged"})
+    if (std::system(("command -v " + std::string(program) + " >/dev/null 2>&1").c_str()) != 0) return false;
+  return true;
+}
+
+std::string content_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// munged, slurmctld and two slurmd with keys, ports and folders of their own.
+class Cluster {
+ public:
+  explicit Cluster(const fs::path& folder) : folder_(folder) {
+    for (const char* part : {"munge", "state", "spool-n1", "spool-n2"}) fs::create_directories(folder / part);
+    fs::permissions(folder / "munge", fs::perms::owner_all);
+    run("dd if=/dev/urandom of=munge/key bs=128 count=1 2>/dev/null && chmod 400 munge/key");
+    run("munged --force --key-file=$PWD/munge/key --socket=$PWD/munge/socket --pid-file=$PWD/munge/pid "
+        "--log-file=$PWD/munge/log --seed-file=$PWD/munge/seed");
+    std::ofstream(folder / "slurm.conf") << configuration();
+    setenv("SLURM_CONF", (folder / "slurm.conf").c_str(), 1);
+    run("slurmctld -i");
+    for (const char* node : {"n1", "n2"}) run("slurmd -N " + std::string(node));
+  }
+  ~Cluster() {
+    for (const char* node : {"n1", "n2"}) kill_node(node);
+    run("kill $(cat slurmctld.pid) $(cat munge/pid)");
+    unsetenv("SLURM_CONF");
+  }
+  Cluster(const Cluster&) = delete;
+  Cluster& operator=(const Cluster&) = delete;
+
+  bool is_idle() const {
+    for (int look = 0; look < 100; ++look) {
+      if (std::system("sinfo --noheader --format=%T 2>/dev/null | grep -qx idle") == 0) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    }
+    return false;
+  }
+
+  /// As a power cut does it: the daemon, its steps and all that they started, at once; a step that saw its
+  /// task die first would still report it.
+  void kill_node(const std::string& node) const {
+    std::set<pid_t> processes;
+    for (const auto& process : fs::directory_iterator("/proc")) {
+      const std::string name = process.path().filename().string();
+      if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+      const std::string variables = content_of(process.path() / "environ");
+      if (variables.find(folder_.string()) == std::string::npos) continue;  // another cluster's, or none's
+      std::string arguments = content_of(process.path() / "cmdline");
+      std::erase(arguments, '\0');
+      const bool is_daemon = arguments.find("slurmd-N" + node) != std::string::npos;
+      const bool is_task = variables.find("SLURMD_NODENAME=" + node) != std::string::npos;
+      if (is_daemon || is_task) processes.insert(std::stoi(name));
+      if (is_task) processes.insert(parent_of(process.path()));  // the step, or a task again
+    }
+    processes.erase(1);
+    processes.erase(getpid());
+    for (const pid_t process : processes) kill(process, SIGSTOP);
+    for (const pid_t process : processes) kill(process, SIGKILL);
+  }
+
+ private:
+  static pid_t parent_of(const fs::path& process) {
+    std::ifstream stream(process / "status");
+    for (std::string line; std::getline(stream, line);)
+      if (line.starts_with("PPid:")) return std::stoi(line.substr(5));
+    return 1;
+  }
+
+  void run(const std::string& command) const {
+    EXPECT_EQ(std::system(("cd '" + folder_.string() + "' && " + command).c_str()), 0) << command;
+  }
+
+  std::string configuration() const {
+    const std::string folder = folder_.string();
+    const int port = 20000 + getpid() % 20000;
+    const auto node = [&](int number) {
+      return "NodeName=n" + std::to_string(number) +
+             " NodeHostname=localhost NodeAddr=127.0.0.1 Port=" + std::to_string(port + number) +
+             " CPUs=1 State=UNKNOWN\n";
+    };
+    const char* user = geteuid() == 0 ? "root" : std::getenv("USER");
+    return "ClusterName=understory\nSlurmctldHost=localhost\nAuthType=auth/munge\n"
+           // A requeued job waits for its old credential to expire: two minutes, were it not said.
+           "AuthInfo=socket=" +
+           folder +
+           "/munge/socket,cred_expire=5\n"
+           "SlurmUser=" +
+           user + "\nSlurmdUser=" + user +
+           "\n"
+           "StateSaveLocation=" +
+           folder + "/state\nSlurmdSpoolDir=" + folder +
+           "/spool-%n\n"
+           "SlurmctldPidFile=" +
+           folder + "/slurmctld.pid\nSlurmdPidFile=" + folder +
+           "/slurmd-%n.pid\n"
+           "SlurmctldLogFile=" +
+           folder + "/slurmctld.log\nSlurmdLogFile=" + folder +
+           "/slurmd-%n.log\n"
+           "SlurmctldPort=" +
+           std::to_string(port) +
+           "\n"
+           "ProctrackType=proctrack/linuxproc\nTaskPlugin=task/none\nSwitchType=switch/"
+           "none\nMpiDefault=none\n"
+           "SchedulerType=sched/builtin\nSelectType=select/cons_tres\nSelectTypeParameters=CR_CPU\n"
+           "SchedulerParameters=batch_sched_delay=0\nSlurmdParameters=config_overrides\n"
+           "SlurmdTimeout=5\nSlurmctldTimeout=10\nKillWait=2\nReturnToService=2\nJobRequeue=1\nMinJobAge="
+           "300\n" +
+           node(1) + node(2) + "PartitionName=main Nodes=n1,n2 Default=YES MaxTime=INFINITE State=UP\n";
+  }
+
+  fs::path folder_;
+};
+
+/// Flights that are over.
+long count_flights(const fs::path& results) {
+  std::error_code ignored;
+  long count = 0;
+  for (const auto& entry : fs::directory_iterator(results / "flights", ignored))
+    count += entry.path().extension() == ".json" ? 1 : 0;
+  return count;
+}
+
+TEST(Slurm, ACampaignOutlivesOneOfItsNodes) {
+  if (!installed()) GTEST_SKIP() << "Slurm is not installed (Debian: slurm-wlm, munge)";
+  const understory::support::TemporaryFolder folder;
+  const std::string campaign = (folder.path() / "blind.yaml").string();
+  std::ofstream(campaign)
+      << "scenario: clear\nseeds: 1..60\noverrides: [{name: blind, set: {perception.detector: none}}]\n";
+  const fs::path here = folder.path() / "here", there = folder.path() / "there";
+  ASSERT_EQ(understory("campaign " + campaign + " --out " + here.string()).status, 0);
+
+  const Cluster cluster(folder.path() / "cluster");
+  ASSERT_TRUE(cluster.is_idle());
+  const Outcome submitted = understory("campaign " + campaign + " --out " + there.string() +
+                                       " --engine slurm --shards 4 --no-wait");
+  ASSERT_EQ(submitted.status, 0) << submitted.text;
+  for (int look = 0; look < 600 && count_flights(there) < 10; ++look)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  ASSERT_GE(count_flights(there), 10);
+  cluster.kill_node("n2");
+  EXPECT_LT(count_flights(there), 60) << "too late to mean anything";
+  for (int look = 0; look < 900 && count_flights(there) < 60; ++look)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  const Outcome collected = understory("collect " + there.string());
+  EXPECT_EQ(collected.status, 0) << collected.text;
+  EXPECT_EQ(content_of(there / "flights.csv"), content_of(here / "flights.csv"));
+}
+
+TEST(Slurm, WithoutItOneLineSaysSo) {
+  const understory::support::TemporaryFolder folder;
+  const std::string campaign = folder.write("blind.yaml", "scenario: clear\nseeds: 1\n").string();
+  understory::support::expect_refusal(
+      "campaign " + campaign + " --out " + (folder.path() / "results").string() + " --engine slurm",
+      "--engine slurm: sbatch is missing", 3, "PATH=/nowhere");
+}
+
+}  // namespace
