@@ -1,8 +1,18 @@
 #include "planning/avoidance_planner.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace understory {
+namespace {
+
+/// Every point of it, whatever is in the way.
+Rollout flown_through(const FlightTask& task, const FlightState& start, const Manoeuvre& manoeuvre) {
+  return fly_out(task, start, manoeuvre, task.config.least_clearance_m, true, false);
+}
+
+}  // namespace
 
 AvoidancePlanner::AvoidancePlanner(const PlannerConfig& config, const FlightModel& model,
                                    const Mission& mission, std::uint64_t seed)
@@ -15,14 +25,17 @@ AvoidancePlanner::AvoidancePlanner(const PlannerConfig& config, const FlightMode
 Plan AvoidancePlanner::plan(const FlightState& start, std::int64_t t_ns,
                             const std::vector<ObstaclePoint>& points, double distance_flown_m) {
   ++replan_index_;
-  const ObstacleField field(config_.field, points, distance_flown_m);
+  const double asked_m = greatest_clearance_m(
+      config_.trajectory,
+      std::max(config_.trajectory.least_clearance_m, config_.trajectory.least_kept_clearance_m));
+  const ObstacleField field(config_.field, points, distance_flown_m, asked_m);
   const FlightTask task{model_, config_.trajectory, mission_, field, start.position_world};
   const TrajectoryConfig& limits = config_.trajectory;
 
-  const Rollout straight = fly_out(task, start, {}, limits.least_clearance_m, false);
+  Rollout straight = fly_out(task, start, {}, limits.least_clearance_m, true);
   if (straight.reached_horizon && straight.least_clearance_m >= limits.comfortable_clearance_m) {
     ++counts_.straight;
-    return adopt(task, start, t_ns, {}, PlanOrigin::straight);
+    return adopt(t_ns, {}, PlanOrigin::straight, std::move(straight));
   }
 
   const int flown_on_ompl = counts_.solved + counts_.kept_ompl;
@@ -37,23 +50,22 @@ Plan AvoidancePlanner::plan(const FlightState& start, std::int64_t t_ns,
 Plan AvoidancePlanner::avoid(const FlightTask& task, const FlightState& start, std::int64_t t_ns) {
   const Manoeuvre left = remaining(t_ns);
   const TrajectoryConfig& limits = config_.trajectory;
-  const Rollout kept = fly_out(task, start, left, limits.least_kept_clearance_m, false);
+  Rollout kept = fly_out(task, start, left, limits.least_kept_clearance_m, true);
   const bool may_keep = kept.reached_horizon && manoeuvre_origin_ != PlanOrigin::fallback;
   const bool kept_good = may_keep && kept.cost <= config_.kept_cost_ratio * manoeuvre_cost_ + 1.0;
   if (kept_good && !left.empty() && replans_kept_ < config_.refresh_replans) {
     ++replans_kept_;
-    return keep(task, start, t_ns, left);
+    return keep(t_ns, left, std::move(kept));
   }
   std::optional<Plan> searched;
   if (config_.use_ompl) searched = search(task, start, t_ns, left, may_keep);
   return searched ? std::move(*searched) : fall_back(task, start, t_ns);
 }
 
-Plan AvoidancePlanner::keep(const FlightTask& task, const FlightState& start, std::int64_t t_ns,
-                            const Manoeuvre& manoeuvre) {
+Plan AvoidancePlanner::keep(std::int64_t t_ns, const Manoeuvre& manoeuvre, Rollout rollout) {
   ++counts_.kept;
   if (manoeuvre_origin_ == PlanOrigin::solved && !manoeuvre.empty()) ++counts_.kept_ompl;
-  return adopt(task, start, t_ns, manoeuvre, PlanOrigin::kept);
+  return adopt(t_ns, manoeuvre, PlanOrigin::kept, std::move(rollout));
 }
 
 std::optional<Plan> AvoidancePlanner::search(const FlightTask& task, const FlightState& start,
@@ -73,11 +85,11 @@ std::optional<Plan> AvoidancePlanner::search(const FlightTask& task, const Fligh
   if (may_keep) kept = improved(left, limits.least_kept_clearance_m);
   if (may_keep && kept.cost <= config_.change_cost_ratio * found.cost) {
     replans_kept_ = 0;
-    return keep(task, start, t_ns, kept.manoeuvre);
+    return keep(t_ns, kept.manoeuvre, flown_through(task, start, kept.manoeuvre));
   }
   if (!answer) return std::nullopt;
   ++counts_.solved;
-  return adopt(task, start, t_ns, found.manoeuvre, PlanOrigin::solved);
+  return adopt(t_ns, found.manoeuvre, PlanOrigin::solved, flown_through(task, start, found.manoeuvre));
 }
 
 Plan AvoidancePlanner::fall_back(const FlightTask& task, const FlightState& start, std::int64_t t_ns) {
@@ -94,7 +106,7 @@ Plan AvoidancePlanner::fall_back(const FlightTask& task, const FlightState& star
     least_cost = rollout.cost;
     widest = primitive;
   }
-  return adopt(task, start, t_ns, widest, PlanOrigin::fallback);
+  return adopt(t_ns, widest, PlanOrigin::fallback, flown_through(task, start, widest));
 }
 
 Manoeuvre AvoidancePlanner::remaining(std::int64_t t_ns) const {
@@ -109,9 +121,8 @@ Manoeuvre AvoidancePlanner::remaining(std::int64_t t_ns) const {
   return left;
 }
 
-Plan AvoidancePlanner::adopt(const FlightTask& task, const FlightState& start, std::int64_t t_ns,
-                             const Manoeuvre& manoeuvre, PlanOrigin origin) {
-  Rollout rollout = fly_out(task, start, manoeuvre, config_.trajectory.least_clearance_m, true, false);
+Plan AvoidancePlanner::adopt(std::int64_t t_ns, const Manoeuvre& manoeuvre, PlanOrigin origin,
+                             Rollout rollout) {
   if (origin != PlanOrigin::kept) {
     manoeuvre_origin_ = origin;
     manoeuvre_cost_ = rollout.cost;

@@ -66,7 +66,7 @@ class AvoidancePlanner {
  private:
   /// What is left of the manoeuvre in force at `t_ns`.
   Manoeuvre remaining(std::int64_t t_ns) const;
-  Plan keep(const FlightTask& task, const FlightState& start, std::int64_t t_ns, const Manoeuvre& manoeuvre);
+  Plan keep(std::int64_t t_ns, const Manoeuvre& manoeuvre, Rollout rollout);
   /// OMPL's answer, or `left` where that `may_keep` and OMPL's is not clearly cheaper; nothing where neither
   /// is.
   std::optional<Plan> search(const FlightTask& task, const FlightState& start, std::int64_t t_ns,
@@ -74,8 +74,8 @@ class AvoidancePlanner {
   Plan fall_back(const FlightTask& task, const FlightState& start, std::int64_t t_ns);
   /// The plan where the straight way is not comfortable.
   Plan avoid(const FlightTask& task, const FlightState& start, std::int64_t t_ns);
-  Plan adopt(const FlightTask& task, const FlightState& start, std::int64_t t_ns, const Manoeuvre& manoeuvre,
-             PlanOrigin origin);
+  /// Puts it in force; `rollout` is the manoeuvre flown from the plan's start, with its points.
+  Plan adopt(std::int64_t t_ns, const Manoeuvre& manoeuvre, PlanOrigin origin, Rollout rollout);
 
   PlannerConfig config_;
   FlightModel model_;

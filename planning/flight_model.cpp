@@ -18,7 +18,8 @@ FlightModel::FlightModel(const Airframe& airframe, const FlightModelConfig& conf
     : airframe_(airframe),
       config_(config),
       lifting_area_m2_(airframe.wing_area_m2 * airframe.wing_lift_factor),
-      elevon_arm_m_(-airframe.elevon_hinge_x_m + 0.5 * airframe.elevon_chord_m) {
+      elevon_arm_m_(-airframe.elevon_hinge_x_m + 0.5 * airframe.elevon_chord_m),
+      sin_twice_differential_(std::sin(2 * config.greatest_differential_rad)) {
   // Level flight at cruise speed: lift carries the weight, thrust carries what drag the plate and the body
   // make.
   const double q = dynamic_pressure_pa(airframe_, config_.cruise_speed_mps);
@@ -29,28 +30,36 @@ FlightModel::FlightModel(const Airframe& airframe, const FlightModelConfig& conf
       std::min(airframe_.max_thrust_n, weight_n * sine * drag_to_lift + q * airframe_.body_drag_area_m2);
 }
 
-double FlightModel::path_pitch_rate_radps(const FlightState& state) const {
+FlightModel::Attitude::Attitude(const FlightState& state)
+    : sin_alpha(std::sin(state.angle_of_attack_rad)),
+      cos_alpha(std::cos(state.angle_of_attack_rad)),
+      sin_bank(std::sin(state.bank_rad)),
+      cos_bank(std::cos(state.bank_rad)),
+      sin_climb(std::sin(state.climb_angle_rad)),
+      cos_climb(std::cos(state.climb_angle_rad)) {}
+
+double FlightModel::path_pitch_rate_radps(const FlightState& state, const Attitude& attitude) const {
   const double q = dynamic_pressure_pa(airframe_, state.speed_mps);
-  const double normal_n = 2 * std::sin(state.angle_of_attack_rad) * q * lifting_area_m2_;
+  const double normal_n = 2 * attitude.sin_alpha * q * lifting_area_m2_;
   const double weight_n = airframe_.mass_kg * airframe_.gravity_mps2;
-  const double carried_n = weight_n * std::cos(state.climb_angle_rad) * std::cos(state.bank_rad);
-  return (normal_n * std::cos(state.angle_of_attack_rad) - carried_n) / (airframe_.mass_kg * state.speed_mps);
+  const double carried_n = weight_n * attitude.cos_climb * attitude.cos_bank;
+  return (normal_n * attitude.cos_alpha - carried_n) / (airframe_.mass_kg * state.speed_mps);
 }
 
-double FlightModel::commanded_angle_of_attack_rad(const FlightState& state, double climb_mps) const {
+double FlightModel::commanded_angle_of_attack_rad(const FlightState& state, double climb_mps,
+                                                  const Attitude& attitude) const {
   const double speed = std::max(state.speed_mps, 4.0);
   const double q = dynamic_pressure_pa(airframe_, speed);
   const double wanted_climb_angle = std::asin(std::clamp(climb_mps / speed, -0.5, 0.5));
   const double turn_up_radps = (wanted_climb_angle - state.climb_angle_rad) / config_.climb_angle_time_s;
   const double upward_n =
-      airframe_.mass_kg * (speed * turn_up_radps + airframe_.gravity_mps2 * std::cos(state.climb_angle_rad));
+      airframe_.mass_kg * (speed * turn_up_radps + airframe_.gravity_mps2 * attitude.cos_climb);
   // Beyond 80 deg of bank the wing cannot carry the weight at all: it pulls as if at 80 deg, which is the
   // cap.
-  const double share = std::max(std::cos(state.bank_rad), 0.17);
+  const double share = std::max(attitude.cos_bank, 0.17);
   // Lift is N cos(a) + X sin(a) with N = 2 sin(a) q S and X = thrust less body drag; cos(a) taken as now.
   const double forward_n = commanded_thrust_n(state) - q * airframe_.body_drag_area_m2;
-  const double sine =
-      upward_n / (share * (2 * q * lifting_area_m2_ * std::cos(state.angle_of_attack_rad) + forward_n));
+  const double sine = upward_n / (share * (2 * q * lifting_area_m2_ * attitude.cos_alpha + forward_n));
   // Near the least speed pulling harder only stalls what is left: the cap closes towards level flight's own
   // angle.
   const double reserve = std::clamp((speed - config_.least_speed_mps + 0.5) / 1.0, 0.6, 1.0);
@@ -80,7 +89,7 @@ double FlightModel::reachable_roll_acceleration_radps2(const FlightState& state,
   const double slope_nm = elevon_roll_moment_nm_per_rad(state.speed_mps);
   const double damping_nms =
       airframe_.rate_damping_nmspr.x() + slope_nm * airframe_.elevon_y_m / std::max(state.speed_mps, 4.0);
-  const double greatest_nm = slope_nm * 0.5 * std::sin(2 * config_.greatest_differential_rad);
+  const double greatest_nm = slope_nm * 0.5 * sin_twice_differential_;
   const double damped_nm = damping_nms * state.roll_rate_radps;
   return std::clamp(wanted_radps2, (-greatest_nm - damped_nm) / airframe_.inertia_kgm2.x(),
                     (greatest_nm - damped_nm) / airframe_.inertia_kgm2.x());
@@ -96,9 +105,8 @@ FlightState FlightModel::advance(const FlightState& state, const FlightCommand& 
   const double speed = std::max(state.speed_mps, 4.0);
   const double q = dynamic_pressure_pa(airframe_, speed);
   const double alpha = state.angle_of_attack_rad;
-  const double sin_alpha = std::sin(alpha), cos_alpha = std::cos(alpha);
-  const double sin_bank = std::sin(state.bank_rad), cos_bank = std::cos(state.bank_rad);
-  const double sin_climb = std::sin(state.climb_angle_rad), cos_climb = std::cos(state.climb_angle_rad);
+  const Attitude attitude(state);
+  const auto [sin_alpha, cos_alpha, sin_bank, cos_bank, sin_climb, cos_climb] = attitude;
   const double gravity = airframe_.gravity_mps2;
 
   // Inner loops of the path follower, as lags.
@@ -107,11 +115,11 @@ FlightState FlightModel::advance(const FlightState& state, const FlightCommand& 
   const double roll_acceleration = reachable_roll_acceleration_radps2(
       state, (wanted_roll - state.roll_rate_radps) * (1 - std::exp(-dt_s / config_.roll_time_s)) / dt_s);
   const double alpha_decay = 1 - std::exp(-dt_s / config_.angle_of_attack_time_s);
-  const double wanted_alpha = commanded_angle_of_attack_rad(state, command.climb_mps);
+  const double wanted_alpha = commanded_angle_of_attack_rad(state, command.climb_mps, attitude);
 
   // Forces along body z (wing, less the elevons' share that balances the pitch damping), body y (winglets),
   // thrust.
-  const double pitch_rate = path_pitch_rate_radps(state);
+  const double pitch_rate = path_pitch_rate_radps(state, attitude);
   const double body_pitch_rate = pitch_rate + (wanted_alpha - alpha) * alpha_decay / dt_s;
   const double balance_n = airframe_.rate_damping_nmspr.y() * body_pitch_rate / elevon_arm_m_;
   const double normal_n = 2 * sin_alpha * q * lifting_area_m2_ - balance_n;
@@ -154,9 +162,10 @@ FlightState FlightModel::advance(const FlightState& state, const FlightCommand& 
   const double mean_heading = 0.5 * (state.heading_rad + next.heading_rad);
   const double mean_climb = 0.5 * (state.climb_angle_rad + next.climb_angle_rad);
   const double distance = dt_s * 0.5 * (state.speed_mps + next.speed_mps);
+  const double cos_mean_climb = std::cos(mean_climb);
   next.position_world +=
-      distance * Eigen::Vector3d(std::cos(mean_climb) * std::cos(mean_heading),
-                                 std::cos(mean_climb) * std::sin(mean_heading), std::sin(mean_climb));
+      distance * Eigen::Vector3d(cos_mean_climb * std::cos(mean_heading),
+                                 cos_mean_climb * std::sin(mean_heading), std::sin(mean_climb));
   return next;
 }
 

@@ -70,7 +70,9 @@ class FlightModel {
   FlightState advance(const FlightState& state, const FlightCommand& command, double dt_s) const;
 
   /// The angle of attack that bends the path towards the commanded climb, within the envelope.
-  double commanded_angle_of_attack_rad(const FlightState& state, double climb_mps) const;
+  double commanded_angle_of_attack_rad(const FlightState& state, double climb_mps) const {
+    return commanded_angle_of_attack_rad(state, climb_mps, Attitude(state));
+  }
   /// The roll rate about the velocity that takes out the bank error, within what the elevons can give.
   double commanded_roll_rate_radps(const FlightState& state, double bank_rad) const;
   double commanded_thrust_n(const FlightState& state) const;
@@ -82,16 +84,28 @@ class FlightModel {
   /// Distance of the elevons' mid-chord behind the centre of mass.
   double elevon_arm_m() const { return elevon_arm_m_; }
   /// Rate of turn of the path in the body's pitch plane (nose up positive) that this angle of attack makes.
-  double path_pitch_rate_radps(const FlightState& state) const;
+  double path_pitch_rate_radps(const FlightState& state) const {
+    return path_pitch_rate_radps(state, Attitude(state));
+  }
 
   const Airframe& airframe() const { return airframe_; }
   const FlightModelConfig& config() const { return config_; }
 
  private:
+  /// Sines and cosines that several of a step's terms need: they are most of its cost.
+  struct Attitude {
+    explicit Attitude(const FlightState& state);
+    double sin_alpha, cos_alpha, sin_bank, cos_bank, sin_climb, cos_climb;
+  };
+  double path_pitch_rate_radps(const FlightState& state, const Attitude& attitude) const;
+  double commanded_angle_of_attack_rad(const FlightState& state, double climb_mps,
+                                       const Attitude& attitude) const;
+
   Airframe airframe_;
   FlightModelConfig config_;
   double lifting_area_m2_;  ///< the wing's, times its lift factor
   double elevon_arm_m_;
+  double sin_twice_differential_;  ///< of the greatest differential deflection
   double level_thrust_n_;
 };
 

@@ -72,16 +72,21 @@ double cost_rate(const FlightTask& task, const FlightState& state, double cleara
          config.slow_weight * square(slow);
 }
 
+double greatest_clearance_m(const TrajectoryConfig& config, double least_clearance_m) {
+  return std::max(config.comfortable_clearance_m, least_clearance_m);
+}
+
 double final_cost(const FlightTask& task, const FlightState& state) {
   return task.config.final_heading_weight * square(state.heading_rad - task.mission.heading_rad) +
          task.config.bank_weight * square(state.bank_rad);
 }
 
 Rollout fly_out(const FlightTask& task, const FlightState& start, const Manoeuvre& manoeuvre,
-                double least_clearance_m, bool keep_points, bool stop_when_too_near) {
+                double least_clearance_m, bool keep_points, bool stop_when_too_near, double greatest_cost) {
   Rollout rollout;
   FlightState state = start;
   const double step_s = task.config.step_s;
+  const double greatest_m = greatest_clearance_m(task.config, least_clearance_m);
   std::size_t part = 0;
   double part_left_s = manoeuvre.empty() ? 0 : manoeuvre.front().duration_s;
   bool too_near = false;
@@ -93,14 +98,14 @@ Rollout fly_out(const FlightTask& task, const FlightState& start, const Manoeuvr
     if (in_manoeuvre) part_left_s -= step_s;
     if (keep_points) rollout.points.push_back(plan_point(state, command, t_s));
     state = task.model.advance(state, command, step_s);
-    const double clearance = task.field.clearance_m(state, 3.0);
+    const double clearance = task.field.clearance_m(state, greatest_m);
     rollout.least_clearance_m = std::min(rollout.least_clearance_m, clearance);
     rollout.cost += step_s * cost_rate(task, state, clearance);
     const double margin = std::min(clearance, band_clearance_m(task, state));
     rollout.least_margin_m = std::min(rollout.least_margin_m, margin);
     too_near = too_near || margin < least_clearance_m;
     if (!too_near) rollout.free_until_s = t_s + step_s;
-    if (too_near && stop_when_too_near) break;
+    if ((too_near && stop_when_too_near) || rollout.cost > greatest_cost) break;
     if (progress_m(task, state.position_world) >= task.config.horizon_m) {
       rollout.reached_horizon = !too_near;
       break;

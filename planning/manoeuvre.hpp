@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "planning/flight_model.hpp"
@@ -80,10 +81,15 @@ double band_clearance_m(const FlightTask& task, const FlightState& state);
 /// Distance made good along the course since the plan's start.
 double progress_m(const FlightTask& task, const Eigen::Vector3d& position_world);
 
+/// The clearance beyond which more of it changes no decision and no cost, where `least_clearance_m` is asked.
+double greatest_clearance_m(const TrajectoryConfig& config, double least_clearance_m);
+
 /// A manoeuvre flown in the model to the horizon.
 struct Rollout {
   double cost = 0;
-  double least_clearance_m = 3.0;  ///< from obstacles, over the whole rollout (up to where it stopped)
+  /// From obstacles, over the whole rollout (up to where it stopped); what is beyond greatest_clearance_m
+  /// does not count.
+  double least_clearance_m = 3.0;
   double least_margin_m =
       3.0;  ///< the same, or the distance to the altitude band's limits where that is less
   bool reached_horizon = false;   ///< false: came nearer than `least_clearance_m` or left the band before
@@ -93,8 +99,10 @@ struct Rollout {
 
 /// Flies `manoeuvre` from `start`; stops where the clearance falls below `least_clearance_m`. With
 /// `keep_points` the trajectory comes along, every step. With `stop_when_too_near` false it flies on to the
-/// horizon all the same.
+/// horizon all the same. It also stops, short of the horizon, once it has cost more than `greatest_cost`:
+/// costs only grow.
 Rollout fly_out(const FlightTask& task, const FlightState& start, const Manoeuvre& manoeuvre,
-                double least_clearance_m, bool keep_points, bool stop_when_too_near = true);
+                double least_clearance_m, bool keep_points, bool stop_when_too_near = true,
+                double greatest_cost = std::numeric_limits<double>::infinity());
 
 }  // namespace understory

@@ -18,11 +18,11 @@ ImprovedManoeuvre improve_manoeuvre(const FlightTask& task, const FlightState& s
                                     const ManoeuvreImprovementConfig& config, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> gaussian;
-  const auto cost_of = [&](const Manoeuvre& candidate) {
-    const Rollout rollout = fly_out(task, start, candidate, least_clearance_m, false);
+  const auto cost_of = [&](const Manoeuvre& candidate, double greatest_cost) {
+    const Rollout rollout = fly_out(task, start, candidate, least_clearance_m, false, true, greatest_cost);
     return rollout.reached_horizon ? rollout.cost : std::numeric_limits<double>::infinity();
   };
-  ImprovedManoeuvre best{manoeuvre, cost_of(manoeuvre)};
+  ImprovedManoeuvre best{manoeuvre, cost_of(manoeuvre, std::numeric_limits<double>::infinity())};
   if (manoeuvre.empty()) return best;
   for (int iteration = 0; iteration < config.iterations; ++iteration) {
     Manoeuvre candidate = best.manoeuvre;
@@ -33,7 +33,7 @@ ImprovedManoeuvre improve_manoeuvre(const FlightTask& task, const FlightState& s
                                         -climb_limit_mps, climb_limit_mps);
     part.duration_s = std::clamp(part.duration_s + config.duration_sigma_s * gaussian(generator),
                                  least_part_s, greatest_part_s);
-    const double cost = cost_of(candidate);
+    const double cost = cost_of(candidate, best.cost);
     if (cost < best.cost) best = {std::move(candidate), cost};
   }
   return best;

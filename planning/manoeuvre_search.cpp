@@ -6,13 +6,16 @@
 #include <ompl/control/SpaceInformation.h>
 #include <ompl/control/planners/sst/SST.h>
 #include <ompl/control/spaces/RealVectorControlSpace.h>
-#include <ompl/datastructures/NearestNeighborsLinear.h>
+#include <ompl/datastructures/NearestNeighbors.h>
 #include <ompl/util/Console.h>
+#include <ompl/util/Exception.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include "planning/flight_places.hpp"
 
 namespace understory {
 namespace {
@@ -68,8 +71,7 @@ class CorridorSampler : public ob::StateSampler {
   const FlightState& start_;
 };
 
-// The space of flight states. OMPL needs a distance for nearest neighbours; units are chosen so that one unit
-// of each matters about equally over the horizon: 1 m, 0.3 rad of heading, 0.8 rad of bank.
+// The space of flight states.
 class FlightStateSpace : public ob::StateSpace {
  public:
   FlightStateSpace(const FlightTask& task, const FlightState& start, std::uint32_t seed)
@@ -78,12 +80,7 @@ class FlightStateSpace : public ob::StateSpace {
   }
 
   double distance(const ob::State* a, const ob::State* b) const override {
-    const FlightState& one = node_of(a).flight;
-    const FlightState& other = node_of(b).flight;
-    const double heading = (one.heading_rad - other.heading_rad) / 0.3;
-    const double bank = (one.bank_rad - other.bank_rad) / 0.8;
-    return std::sqrt((one.position_world - other.position_world).squaredNorm() + heading * heading +
-                     bank * bank);
+    return std::sqrt(squared_distance(place_of(node_of(a).flight), place_of(node_of(b).flight)));
   }
   ob::StateSamplerPtr allocDefaultStateSampler() const override {
     return std::make_shared<CorridorSampler>(this, task_, start_, seed_);
@@ -157,7 +154,11 @@ class FreeCourse : public ob::Goal {
     const double to_go_m = task_.config.horizon_m - progress_m(task_, node.flight.position_world);
     if (distance != nullptr) *distance = std::max(0.0, to_go_m);
     if (node.cost >= best_cost) return false;
-    const Rollout rest = fly_out(task_, node.flight, {}, task_.config.least_clearance_m, false);
+    // What cannot become the cheapest is not flown to its end: SST makes nothing of it either. A little more
+    // is allowed than what is left to spend, so that rounding decides nothing.
+    const double to_spend = (best_cost - node.cost) * (1 + 1e-9) + 1e-9;
+    const Rollout rest =
+        fly_out(task_, node.flight, {}, task_.config.least_clearance_m, false, true, to_spend);
     if (!rest.reached_horizon) return false;
     if (node.cost + rest.cost < best_cost) {
       best_cost = node.cost + rest.cost;
@@ -171,6 +172,47 @@ class FreeCourse : public ob::Goal {
 
  private:
   const FlightTask& task_;
+};
+
+// SST's motions by their places. OMPL's own structures ask for each distance through a pointer to a function.
+template <typename Motion>
+class NearestMotions : public ompl::NearestNeighbors<Motion> {
+ public:
+  bool reportsSortedResults() const override { return true; }
+  void clear() override { motions_.clear(), places_.clear(); }
+  void add(const Motion& motion) override {
+    motions_.push_back(motion);
+    places_.add(place(motion));
+  }
+  bool remove(const Motion& motion) override {
+    const auto last = std::find(motions_.rbegin(), motions_.rend(), motion);
+    if (last == motions_.rend()) return false;
+    places_.remove(static_cast<std::size_t>(motions_.rend() - last - 1));
+    motions_.erase(std::next(last).base());
+    return true;
+  }
+  Motion nearest(const Motion& motion) const override {
+    if (motions_.empty()) throw ompl::Exception("no motions to be near to");
+    return motions_[places_.nearest(place(motion))];
+  }
+  void nearestK(const Motion& motion, std::size_t k, std::vector<Motion>& nearest) const override {
+    give(places_.nearest(place(motion), k), nearest);
+  }
+  void nearestR(const Motion& motion, double radius, std::vector<Motion>& nearest) const override {
+    give(places_.within(place(motion), radius), nearest);
+  }
+  std::size_t size() const override { return motions_.size(); }
+  void list(std::vector<Motion>& motions) const override { motions = motions_; }
+
+ private:
+  static FlightPlace place(const Motion& motion) { return place_of(node_of(motion->state_).flight); }
+  void give(const std::vector<std::size_t>& numbers, std::vector<Motion>& motions) const {
+    motions.clear();
+    for (const std::size_t number : numbers) motions.push_back(motions_[number]);
+  }
+
+  std::vector<Motion> motions_;
+  FlightPlaces places_;
 };
 
 // SST with a seed of its own for each search; OMPL seeds one generator per process, which would tie a replan
@@ -193,7 +235,8 @@ void propagate(const FlightTask& task, const ManoeuvreSearchConfig& config, cons
   if (!continues) to.parts[to.part_count++] = {command, 0};
   to.parts[to.part_count - 1].duration_s += step_s;
   to.flight = task.model.advance(from.flight, command, step_s);
-  const double clearance = task.field.clearance_m(to.flight, 3.0);
+  const double clearance =
+      task.field.clearance_m(to.flight, greatest_clearance_m(task.config, task.config.least_clearance_m));
   to.cost += step_s * cost_rate(task, to.flight, clearance);
   to.free = std::min(clearance, band_clearance_m(task, to.flight)) >= task.config.least_clearance_m &&
             progress_m(task, to.flight.position_world) < task.config.horizon_m;
@@ -243,7 +286,7 @@ std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightSt
   planner->setProblemDefinition(problem);
   planner->setSelectionRadius(config.selection_radius);
   planner->setPruningRadius(config.pruning_radius);
-  planner->setNearestNeighbors<ompl::NearestNeighborsLinear>();
+  planner->setNearestNeighbors<NearestMotions>();
   int asked = 0;
   planner->solve(ob::PlannerTerminationCondition([&] { return ++asked > config.iterations; }));
   if (std::isinf(goal->best_cost)) return std::nullopt;

@@ -8,8 +8,7 @@ namespace understory {
 namespace {
 
 constexpr double grid_cell_m = 1.0;
-constexpr double grid_reach_m =
-    3.6;  // a wing's half span, a column's radius and the greatest clearance asked for
+constexpr double rounding_m = 1e-9;  // more than any rounding, less than anything that matters
 
 // Least distance between the segments a0-a1 and b0-b1: Ericson 2005, Real-Time Collision Detection,
 // section 5.1.9.
@@ -34,7 +33,7 @@ struct CellPoint {
 }  // namespace
 
 ObstacleField::ObstacleField(const ObstacleFieldConfig& config, const std::vector<ObstaclePoint>& points,
-                             double distance_flown_m)
+                             double distance_flown_m, double greatest_asked_m)
     : config_(config) {
   std::vector<CellPoint> cells;
   cells.reserve(points.size());
@@ -64,24 +63,26 @@ ObstacleField::ObstacleField(const ObstacleFieldConfig& config, const std::vecto
                         cells[end - 1].z + config.vertical_reach_m, radius_m + 0.5 * config.cell_m});
     first = end;
   }
-  build_grid();
+  double greatest_radius_m = 0;
+  for (const Column& column : columns_) greatest_radius_m = std::max(greatest_radius_m, column.radius_m);
+  build_grid(config.half_span_m + config.wing_radius_m + greatest_radius_m + greatest_asked_m + rounding_m);
 }
 
-void ObstacleField::build_grid() {
+void ObstacleField::build_grid(double reach_m) {
   if (columns_.empty()) return;
   Eigen::Vector2d low = columns_.front().centre_world, high = low;
   for (const Column& column : columns_) {
     low = low.cwiseMin(column.centre_world);
     high = high.cwiseMax(column.centre_world);
   }
-  grid_origin_ = low.array() - grid_reach_m;
-  const Eigen::Vector2d size = high.array() + grid_reach_m - grid_origin_.array();
+  grid_origin_ = low.array() - reach_m;
+  const Eigen::Vector2d size = high.array() + reach_m - grid_origin_.array();
   grid_width_ = static_cast<int>(size.x() / grid_cell_m) + 1;
   grid_height_ = static_cast<int>(size.y() / grid_cell_m) + 1;
 
   const auto for_each_cell_near = [&](const Column& column, auto&& visit) {
     const Eigen::Vector2d at = (column.centre_world - grid_origin_) / grid_cell_m;
-    const double reach = grid_reach_m / grid_cell_m;
+    const double reach = reach_m / grid_cell_m;
     for (int y = std::max(0, static_cast<int>(at.y() - reach)); y <= at.y() + reach && y < grid_height_; ++y)
       for (int x = std::max(0, static_cast<int>(at.x() - reach)); x <= at.x() + reach && x < grid_width_; ++x)
         visit(y * grid_width_ + x);
@@ -91,11 +92,14 @@ void ObstacleField::build_grid() {
   for (const Column& column : columns_)
     for_each_cell_near(column, [&](int cell) { ++cell_start_[cell + 1]; });
   for (std::size_t cell = 1; cell < cell_start_.size(); ++cell) cell_start_[cell] += cell_start_[cell - 1];
-  cell_columns_.resize(cell_start_.back());
+  near_.resize(static_cast<std::size_t>(cell_start_.back()));
   std::vector<std::int32_t> next(cell_start_.begin(), cell_start_.end() - 1);
   for (std::size_t index = 0; index < columns_.size(); ++index)
-    for_each_cell_near(columns_[index],
-                       [&](int cell) { cell_columns_[next[cell]++] = static_cast<std::int32_t>(index); });
+    for_each_cell_near(columns_[index], [&](int cell) {
+      near_[static_cast<std::size_t>(next[cell]++)] = {columns_[index].centre_world,
+                                                       columns_[index].radius_m + config_.wing_radius_m,
+                                                       static_cast<std::int32_t>(index)};
+    });
 }
 
 double ObstacleField::clearance_m(const FlightState& state, double greatest_m) const {
@@ -109,15 +113,21 @@ double ObstacleField::clearance_m(const FlightState& state, double greatest_m) c
   const Eigen::Vector3d half_wing = config_.half_span_m * left_wing_direction_world(state);
   const Eigen::Vector3d left_tip = state.position_world + half_wing,
                         right_tip = state.position_world - half_wing;
+  const Eigen::Vector2d across = half_wing.head<2>();
+  const double per_across_m2 = 1 / std::max(across.squaredNorm(), 1e-12);
   double least = greatest_m;
   for (int k = cell_start_[cell]; k < cell_start_[cell + 1]; ++k) {
-    const Column& column = columns_[cell_columns_[k]];
-    const double around_m = column.radius_m + config_.wing_radius_m;
-    const double centre_m = (column.centre_world - state.position_world.head<2>()).norm();
-    if (centre_m - config_.half_span_m - around_m >= least) continue;
+    const Near& near = near_[static_cast<std::size_t>(k)];
+    // A column is nowhere nearer than its axis prolonged, seen from above: a point beside the wing's shadow.
+    const double matters_m = least + near.around_m + rounding_m;
+    if (matters_m <= 0) continue;
+    const Eigen::Vector2d beside = near.centre_world - state.position_world.head<2>();
+    const double along = std::clamp(beside.dot(across) * per_across_m2, -1.0, 1.0);
+    if ((beside - along * across).squaredNorm() > matters_m * matters_m) continue;
+    const Column& column = columns_[static_cast<std::size_t>(near.column)];
     const Eigen::Vector3d bottom(column.centre_world.x(), column.centre_world.y(), column.bottom_m);
     const Eigen::Vector3d top(column.centre_world.x(), column.centre_world.y(), column.top_m);
-    least = std::min(least, segment_distance_m(left_tip, right_tip, bottom, top) - around_m);
+    least = std::min(least, segment_distance_m(left_tip, right_tip, bottom, top) - near.around_m);
   }
   return least;
 }

@@ -35,7 +35,8 @@ void visit_fields(Visitor& visit, ObstacleFieldConfig& config) {
 }
 
 /// The remembered points as a planner wants them: upright columns in a horizontal grid, asked for the free
-/// distance to a wing in a given attitude. Rebuilt for each replan, asked some ten thousand times.
+/// distance to a wing in a given attitude. Rebuilt for each replan, asked some ten thousand times where that
+/// searches.
 class ObstacleField {
  public:
   struct Column {
@@ -44,24 +45,32 @@ class ObstacleField {
     double radius_m;  ///< half a cell and the points' uncertainty
   };
 
+  /// `greatest_asked_m`: the greatest clearance that it will be asked about; the nearer, the cheaper.
   ObstacleField(const ObstacleFieldConfig& config, const std::vector<ObstaclePoint>& points,
-                double distance_flown_m);
+                double distance_flown_m, double greatest_asked_m = 3.0);
 
   /// Free distance from the wing (a capsule from tip to tip, banked as in `state`) to the nearest column, m;
-  /// negative in a collision; `greatest_m` at most, which is what free space answers (at most 3 m).
+  /// negative in a collision; `greatest_m` at most, which is what free space answers (at most what the
+  /// constructor was told).
   double clearance_m(const FlightState& state, double greatest_m) const;
 
   const std::vector<Column>& columns() const { return columns_; }
 
  private:
-  void build_grid();
+  void build_grid(double reach_m);
 
   ObstacleFieldConfig config_;
   std::vector<Column> columns_;
   Eigen::Vector2d grid_origin_ = Eigen::Vector2d::Zero();
   int grid_width_ = 0, grid_height_ = 0;
-  std::vector<std::int32_t> cell_start_;    ///< per cell, into cell_columns_; one more than there are cells
-  std::vector<std::int32_t> cell_columns_;  ///< columns within reach of each cell
+  std::vector<std::int32_t> cell_start_;  ///< per cell, into near_; one more than there are cells
+  /// Columns within reach of each cell, with what tells most of them from the nearest.
+  struct Near {
+    Eigen::Vector2d centre_world;
+    double around_m;  ///< the column's radius and the wing's
+    std::int32_t column;
+  };
+  std::vector<Near> near_;
 };
 
 }  // namespace understory

@@ -37,8 +37,15 @@ double clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airfra
       Segment{T_world_body * Eigen::Vector3d(airframe.winglet_x_m, tip_y, 0),
               T_world_body * Eigen::Vector3d(airframe.winglet_x_m, -tip_y, 0)},
       Segment{T_world_body * Eigen::Vector3d(nose_x, 0, 0), T_world_body * Eigen::Vector3d(tail_x, 0, 0)}};
+  Eigen::AlignedBox3d around;
+  for (const Segment& part : parts) around.extend(part.from).extend(part.to);
+  constexpr double rounding_m = 1e-9;
   double least = std::numeric_limits<double>::infinity();
   for (const Obstacle& bar : obstacles) {
+    // The boxes' distance tells most bars of a forest from the nearest.
+    Eigen::AlignedBox3d box(bar.from_world.cwiseMin(bar.to_world), bar.from_world.cwiseMax(bar.to_world));
+    const double matters_m = least + bar.radius_m + rounding_m;
+    if (matters_m < 0 || around.squaredExteriorDistance(box) > matters_m * matters_m) continue;
     for (const Segment& part : parts) {
       least = std::min(least, segment_distance_m(part, {bar.from_world, bar.to_world}) - bar.radius_m);
     }

@@ -70,11 +70,12 @@ World world_of(const Scenario& scenario, const std::filesystem::path& models_fol
 }
 
 std::unique_ptr<StereoCameras> cameras_of(const Scenario& scenario, const World& world,
-                                          const CalibratedRig& rig) {
+                                          const CalibratedRig& rig, RendererKind renderer) {
   const CameraSeeds seeds{seed_for(scenario.sensor_seed(), "cameras"),
                           seed_for(scenario.sensor_seed(), "camera_shot_noise")};
   try {
-    return std::make_unique<StereoCameras>(world, rig.rig, scenario.cameras.cameras, seeds, rig.calibration);
+    return std::make_unique<StereoCameras>(world, rig.rig, scenario.cameras.cameras, seeds, rig.calibration,
+                                           renderer);
   } catch (const std::runtime_error& error) {
     throw MachineError(error.what());
   }
@@ -123,12 +124,16 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   if (!options.output_folder.empty()) prepare_run_folder(scenario, options.output_folder);
 
   const std::vector<Obstacle> obstacles = course_obstacles(scenario);
-  const World world = world_of(scenario, options.models_folder, obstacles);
+  const World world =
+      stopwatch.time("setup", [&] { return world_of(scenario, options.models_folder, obstacles); });
   Aircraft aircraft = aircraft_of(scenario, world);
   // Oracles and the blind aircraft look at no image: rendering one would be most of their flight's cost.
   const bool looks = scenario.perception.detector == DetectorKind::pushbroom ||
                      scenario.perception.detector == DetectorKind::block_matching;
-  const auto cameras = looks || options.video ? cameras_of(scenario, world, calibrated) : nullptr;
+  const auto cameras =
+      looks || options.video
+          ? stopwatch.time("setup", [&] { return cameras_of(scenario, world, calibrated, options.renderer); })
+          : nullptr;
   OnboardSensors sensors(scenario);
 
   TruthHistory history;
@@ -171,10 +176,12 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
       const StereoFrame frame = std::move(pending.front());
       pending.pop_front();
       stopwatch.time("detect", [&] { autopilot.on(frame); });
-      record.observe(looks ? frame : StereoFrame{frame.t_ns, {}, {}}, autopilot.hits().size());
-      record.remember_of_frame(
-          autopilot.map().points(), frame.t_ns,
-          history.at(frame.t_ns).T_world_body * state_source->state_at(frame.t_ns).T_world_body.inverse());
+      stopwatch.time("record", [&] {
+        record.observe(looks ? frame : StereoFrame{frame.t_ns, {}, {}}, autopilot.hits().size());
+        record.remember_of_frame(
+            autopilot.map().points(), frame.t_ns,
+            history.at(frame.t_ns).T_world_body * state_source->state_at(frame.t_ns).T_world_body.inverse());
+      });
       if (film)
         stopwatch.time("film", [&] {
           film->observe(rectifier ? rectifier->rectify(frame) : frame, autopilot, *state_source,
@@ -184,8 +191,10 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
     if (due.replan(step)) stopwatch.time("replan", [&] { autopilot.replan(truth.t_ns); });
     if (due.imu(step)) controls = stopwatch.time("control", [&] { return autopilot.controls(truth.t_ns); });
 
-    record.observe(truth, aircraft.launched());
-    if (due.record(step)) record.observe(truth, autopilot.state(), controls, aircraft.launched());
+    stopwatch.time("record", [&] {
+      record.observe(truth, aircraft.launched());
+      if (due.record(step)) record.observe(truth, autopilot.state(), controls, aircraft.launched());
+    });
     if (options.on_progress && step % 120 == 0) {
       const FlightResult& so_far = record.result();
       options.on_progress({static_cast<double>(truth.t_ns) * 1e-9, stopwatch.elapsed_s(), so_far.progress_m,

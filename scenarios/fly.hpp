@@ -5,6 +5,7 @@
 
 #include "scenarios/flight_result.hpp"
 #include "scenarios/scenario.hpp"
+#include "sim/renderer_kind.hpp"
 #include "sim/truth.hpp"
 
 namespace understory {
@@ -22,7 +23,8 @@ struct FlightProgress {
 struct FlyOptions {
   std::filesystem::path models_folder;
   std::filesystem::path output_folder;  ///< made where missing; gets the run's files; empty: none are written
-  bool video = false;                                      ///< also flight.mp4 and still.png
+  bool video = false;                   ///< also flight.mp4 and still.png
+  RendererKind renderer = RendererKind::osmesa;            ///< the machine's: not part of the scenario
   std::function<void(const Truth&)> on_truth;              ///< every physics step; may be empty
   std::function<void(const FlightProgress&)> on_progress;  ///< ten times per simulated second; may be empty
 };

@@ -53,8 +53,9 @@ GeomBox box_of(const mjModel& model, const mjvGeom& geom) {
 
 }  // namespace
 
-SceneRenderer::SceneRenderer(const mjModel& model, double view_distance_m, int width_px, int height_px)
-    : model_(model), view_distance_m_(view_distance_m) {
+SceneRenderer::SceneRenderer(const mjModel& model, double view_distance_m, int width_px, int height_px,
+                             RendererKind renderer)
+    : model_(model), view_distance_m_(view_distance_m), gl_({.renderer = renderer}) {
   gl_.make_current(width_px, height_px);
   mjr_defaultContext(&context_);
   mjr_makeContext(&model_, &context_, mjFONTSCALE_100);
@@ -106,8 +107,8 @@ void SceneRenderer::fill_scene(const std::array<Eye, 2>& eyes) {
   std::vector<std::pair<double, const SceneryGeom*>> seen;
   for (const SceneryGeom& item : scenery_) {
     const double range_m = distance_m(eyes[0].T_world_camera.translation(), item.box);
-    if (item.obstacle && range_m > view_distance_m_) continue;
-    if (may_see(eyes[0], item.box) || may_see(eyes[1], item.box))
+    if (culls_ && item.obstacle && range_m > view_distance_m_) continue;
+    if (!culls_ || may_see(eyes[0], item.box) || may_see(eyes[1], item.box))
       seen.emplace_back(item.obstacle ? range_m : far_m, &item);
   }
   std::stable_sort(seen.begin(), seen.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -118,20 +119,20 @@ void SceneRenderer::fill_scene(const std::array<Eye, 2>& eyes) {
   light(scene_);
 }
 
-void SceneRenderer::render(const std::array<Eye, 2>& eyes) {
+const std::uint8_t* SceneRenderer::render(const std::array<Eye, 2>& eyes) {
   // Another renderer may have drawn since.
   gl_.make_current(2 * eyes[0].width_px, eyes[0].height_px);
   fill_scene(eyes);
   scene_.stereo = mjSTEREO_SIDEBYSIDE;
   mjr_render({0, 0, 2 * eyes[0].width_px, eyes[0].height_px}, &scene_, &context_);
-  gl_.finish();
+  return gl_.finished_pixels();
 }
 
 std::array<cv::Mat, 2> SceneRenderer::gray_pair(const std::array<Eye, 2>& eyes) {
-  render(eyes);
+  const std::uint8_t* pixels = render(eyes);
   const int width_px = eyes[0].width_px;
-  return {gray_with_sky(gl_.pixels(), 2 * width_px, eyes[0]),
-          gray_with_sky(gl_.pixels() + 4 * width_px, 2 * width_px, eyes[1])};
+  return {gray_with_sky(pixels, 2 * width_px, eyes[0]),
+          gray_with_sky(pixels + 4 * width_px, 2 * width_px, eyes[1])};
 }
 
 cv::Mat SceneRenderer::left_depth(const std::array<Eye, 2>& eyes) {
@@ -153,8 +154,7 @@ cv::Mat SceneRenderer::colour_with_aircraft(const mjData& data, const Eye& eye) 
   scene_.stereo = mjSTEREO_NONE;
   gl_.make_current(eye.width_px, eye.height_px);
   mjr_render({0, 0, eye.width_px, eye.height_px}, &scene_, &context_);
-  gl_.finish();
-  return colour_with_sky(gl_.pixels(), eye);
+  return colour_with_sky(gl_.finished_pixels(), eye);
 }
 
 }  // namespace understory

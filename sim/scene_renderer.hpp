@@ -17,7 +17,8 @@ class SceneRenderer {
  public:
   /// Keeps a reference to the model. The size is that of the first picture; others may follow. Throws
   /// std::runtime_error in one line where no GL library can be loaded.
-  SceneRenderer(const mjModel& model, double view_distance_m, int width_px, int height_px);
+  SceneRenderer(const mjModel& model, double view_distance_m, int width_px, int height_px,
+                RendererKind renderer);
   ~SceneRenderer();
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;
@@ -28,6 +29,8 @@ class SceneRenderer {
   cv::Mat left_depth(const std::array<Eye, 2>& eyes);
   /// One eye's view of everything, the aircraft's skin too: BGR, 8 bits, for people.
   cv::Mat colour_with_aircraft(const mjData& data, const Eye& eye);
+  /// To compare with: from now on all scenery is drawn, however far and wherever it is.
+  void stop_culling() { culls_ = false; }
   /// The renderer's own name and version.
   std::string name() const { return gl_.renderer(); }
 
@@ -40,10 +43,12 @@ class SceneRenderer {
   void gather_scenery();
   void update_scene(const mjData& data, bool with_aircraft);
   void fill_scene(const std::array<Eye, 2>& eyes);
-  void render(const std::array<Eye, 2>& eyes);
+  /// RGBA of both eyes side by side, as OffscreenContext::finished_pixels.
+  const std::uint8_t* render(const std::array<Eye, 2>& eyes);
 
   const mjModel& model_;
   double view_distance_m_;
+  bool culls_ = true;
   OffscreenContext gl_;
   mjrContext context_{};
   mjvScene scene_{};

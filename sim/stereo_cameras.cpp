@@ -43,12 +43,12 @@ struct StereoCameras::Implementation {
   PoseHistory poses;
 
   Implementation(const mjModel& model_, const StereoRig& rig_, const CameraConfig& config_, CameraSeeds seeds,
-                 const std::optional<StereoCalibration>& raw)
+                 const std::optional<StereoCalibration>& raw, RendererKind renderer)
       : model(model_),
         rig(rig_),
         config(config_),
         optics(rig, config, raw),
-        scene(model, config.view_distance_m, 2 * rig.width_px, rig.height_px),
+        scene(model, config.view_distance_m, 2 * rig.width_px, rig.height_px, renderer),
         response(config, falloff_of(optics, config), seeds.shot),
         noise(config.noise_gray, seeds.noise),
         exposure_ns(config.exposure_ns()),
@@ -81,8 +81,9 @@ struct StereoCameras::Implementation {
 };
 
 StereoCameras::StereoCameras(const World& world, const StereoRig& rig, const CameraConfig& config,
-                             CameraSeeds seeds, const std::optional<StereoCalibration>& raw)
-    : implementation_(std::make_unique<Implementation>(*world.model, rig, config, seeds, raw)) {}
+                             CameraSeeds seeds, const std::optional<StereoCalibration>& raw,
+                             RendererKind renderer)
+    : implementation_(std::make_unique<Implementation>(*world.model, rig, config, seeds, raw, renderer)) {}
 
 StereoCameras::~StereoCameras() = default;
 

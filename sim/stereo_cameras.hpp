@@ -10,6 +10,7 @@
 #include "perception/stereo_frame.hpp"
 #include "perception/stereo_rig.hpp"
 #include "sim/camera_config.hpp"
+#include "sim/renderer_kind.hpp"
 #include "sim/world.hpp"
 
 namespace understory {
@@ -20,15 +21,16 @@ struct CameraSeeds {
   std::uint64_t shot = 0;
 };
 
-/// Renders both eyes of a rig offscreen (OSMesa, loaded at run time; software, bit-reproducible on one
-/// machine).
+/// Renders both eyes of a rig offscreen (OSMesa or EGL, loaded at run time; in software bit-reproducible on
+/// one machine).
 class StereoCameras {
  public:
   /// Throws std::runtime_error in one line where no GL library can be loaded. Not thread safe; create and use
   /// on one thread. `raw`: absent, images come rectified, as `rig` says; present, they come as these cameras
   /// give them, and `rig` must be rectified_rig(*raw).
   StereoCameras(const World& world, const StereoRig& rig, const CameraConfig& config, CameraSeeds seeds,
-                const std::optional<StereoCalibration>& raw = std::nullopt);
+                const std::optional<StereoCalibration>& raw = std::nullopt,
+                RendererKind renderer = RendererKind::osmesa);
   ~StereoCameras();
 
   /// Where the body is, at every physics step: what an image that takes time is made of.

@@ -21,6 +21,8 @@ struct BenchArguments : CalibrationArguments {
   std::string json;
   int pairs = 64;
   int rounds = 20;
+  bool closed_loop = false;
+  ClosedLoopBenchArguments flights;
 };
 
 std::vector<StereoFrame> recorded(const BenchArguments& arguments) {
@@ -32,7 +34,11 @@ std::vector<StereoFrame> recorded(const BenchArguments& arguments) {
   return frames;
 }
 
-int run_bench(const BenchArguments& arguments) {
+int run_bench(BenchArguments arguments) {
+  if (arguments.closed_loop) {
+    arguments.flights.json = arguments.json;
+    return run_closed_loop_bench(arguments.flights);
+  }
   std::filesystem::path rig_file = arguments.rig;
   if (rig_file.empty())
     rig_file = arguments.inputs.empty() ? project_root() / "models" / "rigs" / "raw" / "long.xml"
@@ -70,9 +76,10 @@ int run_bench(const BenchArguments& arguments) {
 
 void add_bench_command(CLI::App& app, Command& chosen) {
   const auto arguments = std::make_shared<BenchArguments>();
-  CLI::App* command = app.add_subcommand("bench", "time the detector against OpenCV's remap and matchers");
-  command->add_option("INPUT", arguments->inputs,
-                      "recorded pairs, as for detect (default: rendered pairs, none twice)");
+  CLI::App* command =
+      app.add_subcommand("bench", "time the detector against OpenCV's remap and matchers, or whole flights");
+  CLI::Option* inputs = command->add_option(
+      "INPUT", arguments->inputs, "recorded pairs, as for detect (default: rendered pairs, none twice)");
   command->add_option("--rig", arguments->rig,
                       "as for rig (default: the long rig's raw cameras, or INPUT's own)");
   add_calibration_options(*command, *arguments);
@@ -83,6 +90,15 @@ void add_bench_command(CLI::App& app, Command& chosen) {
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
   command->add_option("--json", arguments->json, "also write the rows there");
+  command
+      ->add_flag("--closed-loop", arguments->closed_loop,
+                 "time whole flights through the library's forests instead, alone and two side by side")
+      ->excludes(inputs);
+  command->add_option("--flights", arguments->flights.flights, "with --closed-loop: of each kind")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  add_settings_option(*command, arguments->flights.settings);
+  add_renderer_option(*command, arguments->flights.renderer);
   command->callback([arguments, &chosen] { chosen = [arguments] { return run_bench(*arguments); }; });
 }
 

@@ -23,6 +23,7 @@ struct FlyArguments : ScenarioArguments {
   std::string out;  // empty: runs/<name>-<seed>, or with a row no run folder at all
   std::string row;  // empty: none, as the next
   std::string junit;
+  RendererKind renderer = RendererKind::osmesa;
   bool video = false;
   bool quiet = false;
 };
@@ -69,6 +70,7 @@ int run_fly(const FlyArguments& arguments) {
   options.models_folder = project_root() / "models";
   require_rig(scenario, arguments, options.models_folder);
   options.video = arguments.video;
+  options.renderer = arguments.renderer;
   options.output_folder = arguments.out;
   if (arguments.out.empty() && arguments.row.empty())
     options.output_folder = fmt::format("runs/{}-{}", scenario.name, scenario.seed);
@@ -97,6 +99,7 @@ void add_fly_command(CLI::App& app, Command& chosen) {
   add_scenario_options(*command, *arguments);
   command->add_option("--seed", arguments->seed, "of course and sensors; goes before the scenario's own");
   command->add_option("--out", arguments->out, "run folder (default: runs/<name>-<seed>)");
+  add_renderer_option(*command, arguments->renderer);
   command->add_option("--row", arguments->row,
                       "write the flight's row here, as campaign and collect read it; no run folder");
   command->add_option("--junit", arguments->junit, "write the flight as a JUnit test case");

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "perception/io/calibration_file.hpp"
+#include "sim/renderer_kind.hpp"
 
 namespace CLI {
 class App;
@@ -39,6 +40,21 @@ struct ScenarioArguments {
   std::vector<std::string> settings;  ///< key=value
 };
 void add_scenario_options(CLI::App& command, ScenarioArguments& arguments);
+/// --set alone.
+void add_settings_option(CLI::App& command, std::vector<std::string>& settings);
+
+/// --renderer, as every command that draws has it; must outlive the parsing.
+void add_renderer_option(CLI::App& command, RendererKind& renderer);
+
+/// What `bench --closed-loop` was given.
+struct ClosedLoopBenchArguments {
+  int flights = 4;                    ///< of each kind: seeds 1000 and on
+  std::vector<std::string> settings;  ///< key=value, of every flight
+  RendererKind renderer = RendererKind::osmesa;
+  std::string json;  ///< empty: none
+};
+/// Runs it; the exit status. Throws ScenarioError in a build without the simulator.
+int run_closed_loop_bench(const ClosedLoopBenchArguments& arguments);
 
 /// --unit, --size and --depth, as every command that reads a calibration has them.
 struct CalibrationArguments {

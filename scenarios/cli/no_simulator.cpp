@@ -20,6 +20,11 @@ void add_refusal(CLI::App& app, Command& chosen, const std::string& name) {
 
 }  // namespace
 
+int run_closed_loop_bench(const ClosedLoopBenchArguments&) {
+  throw ScenarioError(
+      "bench --closed-loop: expected a build with the simulator, this one has none (UNDERSTORY_SIM=OFF)");
+}
+
 void add_fly_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "fly"); }
 void add_campaign_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "campaign"); }
 void add_shard_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "shard"); }

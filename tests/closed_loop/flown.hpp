@@ -26,15 +26,16 @@ struct Flown {
 };
 
 /// Flies a library scenario in a process of its own (one process flies one flight: OMPL's generator is
-/// global) and reads its run folder. `settings` are "key=value".
-inline Flown flown(const std::string& scenario, int seed, const std::vector<std::string>& settings = {}) {
+/// global) and reads its run folder. `settings` are "key=value", `options` are added as they are.
+inline Flown flown(const std::string& scenario, int seed, const std::vector<std::string>& settings = {},
+                   const std::string& options = "") {
   static int count = 0;
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() /
       ("understory_test_" + std::to_string(getpid()) + "_" + std::to_string(count++));
   std::string command = std::string("'") + UNDERSTORY_BINARY + "' fly '" + UNDERSTORY_SOURCE_DIR +
                         "/scenarios/library/" + scenario + ".yaml' --quiet --seed " + std::to_string(seed) +
-                        " --out '" + folder.string() + "'";
+                        " --out '" + folder.string() + "' " + options;
   for (const std::string& setting : settings) command += " --set '" + setting + "'";
   const int status = std::system(command.c_str());
   Flown flight;

@@ -1,5 +1,7 @@
+#include <dlfcn.h>
 #include <gtest/gtest.h>
 
+#include "sim/egl_library.hpp"
 #include "tests/closed_loop/flown.hpp"
 
 namespace understory {
@@ -14,6 +16,19 @@ TEST(Repeat, TheSameFlightTwiceIsTheSameToTheBit) {
   EXPECT_EQ(one.trajectory, other.trajectory);
   EXPECT_GT(one.result.at("frames"), 100);
   EXPECT_GT(one.detections(), 0);
+}
+
+TEST(Repeat, TheOtherLibraryDrawsTheSameFlight) {
+  if (void* library = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_LOCAL)) {
+    dlclose(library);
+  } else {
+    GTEST_SKIP() << "no libEGL.so.1 here (Debian's libegl1)";
+  }
+  if (has_gpu_device_file()) GTEST_SKIP() << "a GPU is here, and EGL draws on it";
+  const Flown osmesa = flown("forest", 1000, short_forest, "--renderer osmesa");
+  const Flown egl = flown("forest", 1000, short_forest, "--renderer egl");
+  EXPECT_EQ(osmesa.digest(), egl.digest());
+  EXPECT_NE(std::string(egl.result.at("versions").at("renderer")).find("llvmpipe"), std::string::npos);
 }
 
 TEST(Repeat, AnotherSensorSeedIsAnotherFlightThroughTheSameForest) {

@@ -67,7 +67,7 @@ TEST(FlyOut, StopsWhereTheBandEnds) {
   const Rollout rollout = fly_out(flight.task(), flight.start, {{{0, 2}, 2.0}}, 0.05, true);
   EXPECT_FALSE(rollout.reached_horizon);
   EXPECT_LT(rollout.least_margin_m, 0.05);
-  EXPECT_GE(rollout.least_clearance_m, 3.0);  // no obstacle far and wide
+  EXPECT_GE(rollout.least_clearance_m, flight.config.comfortable_clearance_m);  // no obstacle far and wide
   EXPECT_LT(rollout.points.back().position_world.x(), flight.config.horizon_m);
 }
 

@@ -7,6 +7,7 @@
 
 #include "perception/pushbroom_stereo.hpp"
 #include "perception/rectify.hpp"
+#include "scenarios/bench/closed_loop_bench.hpp"
 #include "scenarios/bench/stereo_scenes.hpp"
 
 namespace understory {
@@ -46,6 +47,39 @@ TEST(Bench, HasARowForEachClaimWithItsYardstick) {
     EXPECT_NE(to_json(rows).find("\"name\": " + row["yardstick"].dump()), std::string::npos);
   }
   EXPECT_EQ(with_ratio, static_cast<int>(rows.size()) - 2);  // remap and StereoBM are the yardsticks
+}
+
+TEST(ClosedLoopBench, ARowAddsUpItsFlights) {
+  const std::vector<TimedFlight> alone{{6, 2, 720, {{"render", 1.0}, {"replan", 0.5}, {"film", 0.1}}, 200, 2},
+                                       {4, 3, 480, {{"render", 2.0}, {"detect", 0.25}}, 210, 2.5}};
+  const ClosedLoopRow one = closed_loop_row("one", 1, alone, 5, nullptr);
+  EXPECT_EQ(one.flights, 2);
+  EXPECT_DOUBLE_EQ(one.pairs_per_s, 240);
+  EXPECT_DOUBLE_EQ(one.simulated_per_s, 2);
+  EXPECT_DOUBLE_EQ(one.peak_memory_mb, 210);
+  EXPECT_DOUBLE_EQ(one.cpu_per_simulated_s, 0.45);
+  double sum = 0;
+  for (const auto& [stage, share] : one.shares) {
+    const double expected = stage == "render"   ? 3.0
+                            : stage == "replan" ? 0.5
+                            : stage == "detect" ? 0.25
+                            : stage == "other"  ? 1.25  // stages not told are in it
+                                                : 0;
+    EXPECT_NEAR(share, expected / 5, 1e-12) << stage;
+    sum += share;
+  }
+  EXPECT_NEAR(sum, 1, 1e-12);
+
+  const ClosedLoopRow two = closed_loop_row("two", 2, alone, 3.125, &one);  // side by side
+  EXPECT_DOUBLE_EQ(two.simulated_per_s, 3.2);
+  EXPECT_DOUBLE_EQ(two.ratio, 0.625);  // of the time
+  const auto list = nlohmann::json::parse(to_json(std::vector<ClosedLoopRow>{one, two}));
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_TRUE(list[0]["yardstick"].is_null());
+  EXPECT_EQ(list[1]["yardstick"], "one");
+  EXPECT_EQ(list[1]["processes"], 2);
+  EXPECT_DOUBLE_EQ(list[0]["shares"]["render"].get<double>(), 0.6);
+  EXPECT_NE(to_table({one, two}).find("0.62 of one"), std::string::npos);
 }
 
 }  // namespace

@@ -165,6 +165,28 @@ TEST(Cli, ValidateWritesTheFlightModelsPageAndHoldsItsTolerances) {
     EXPECT_TRUE(fs::exists(fs::path(UNDERSTORY_SOURCE_DIR "/docs/flight_model") / figure.path().filename()));
 }
 
+TEST(Cli, ARendererIsOneOfThree) {
+  expect_refusal("fly clear --renderer crayon", "osmesa,egl,auto");
+  const Folder folder;
+  expect_refusal("fly clear --renderer egl --out " + folder.path.string(), "libegl1", 3,
+                 "UNDERSTORY_EGL=/nonexistent/libEGL.so");
+}
+
+TEST(Cli, BenchTimesWholeFlights) {
+  const Folder folder;
+  const std::string json = (folder.path / "rows.json").string();
+  const Outcome bench = understory("bench --closed-loop --flights 1 --set time_limit_s=0.5 --json " + json);
+  EXPECT_EQ(bench.status, 0) << bench.text;
+  for (const char* part :
+       {"forest, one at a time", "dense, two side by side", "paper", "ten times the trees"})
+    EXPECT_NE(bench.text.find(part), std::string::npos) << part << " not in\n" << bench.text;
+  EXPECT_GT(fs::file_size(json), 1000u);
+  expect_refusal("bench --closed-loop somewhere", "INPUT");
+  const Outcome refused = understory("bench --closed-loop --flights 1 --set no.such=1");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.text.find("a flight refused its input"), std::string::npos) << refused.text;
+}
+
 TEST(Cli, AMissingLibraryOrModelIsTheMachines) {
   const Folder folder;
   const std::string out = " --out " + (folder.path / "run").string();

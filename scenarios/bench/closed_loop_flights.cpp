@@ -1,0 +1,91 @@
+#include "scenarios/bench/closed_loop_flights.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <map>
+
+#include "scenarios/bench/flight_processes.hpp"
+#include "scenarios/config_tree.hpp"
+#include "scenarios/file_output.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+struct Batch {
+  std::vector<TimedFlight> flights;
+  double elapsed_s = 0;
+};
+
+/// Every seed of the scenario, `processes` at a time.
+Batch fly_batch(const ClosedLoopBenchOptions& options, const fs::path& scenario, int processes,
+                const std::string& setting) {
+  const fs::path runs = fs::temp_directory_path() / fmt::format("understory-bench-{}", getpid());
+  prepare_output_folder(runs);
+  const auto run_folder = [&](std::uint64_t seed) { return runs / fmt::format("{}", seed); };
+  std::map<std::uint64_t, Clock::time_point> started;
+  Batch batch;
+  int failed_status = 0;
+  FlightProcesses flights(processes, [&](std::uint64_t seed, int status) {
+    if (status != 0 && status != 1) {  // the goal reached or not: timed alike
+      failed_status = status;
+      return;
+    }
+    TimedFlight flight = timed_flight(run_folder(seed) / "result.json");
+    flight.wall_s = seconds_since(started.at(seed));
+    flight.peak_memory_mb = static_cast<double>(flights.use().peak_memory_bytes) * 1e-6;
+    flight.cpu_s = flights.use().cpu_s;
+    batch.flights.push_back(flight);
+  });
+  const Clock::time_point begin = Clock::now();
+  for (std::uint64_t seed = options.first_seed; seed <= options.last_seed && failed_status == 0; ++seed) {
+    std::vector<std::string> arguments{"fly", scenario.string(), "--quiet", "--out",
+                                       run_folder(seed).string()};
+    arguments.insert(arguments.end(), {"--seed", fmt::format("{}", seed)});
+    arguments.insert(arguments.end(), options.arguments.begin(), options.arguments.end());
+    if (!setting.empty()) arguments.insert(arguments.end(), {"--set", setting});
+    flights.start(seed, arguments);
+    started[seed] = Clock::now();
+  }
+  flights.wait_for_all();
+  batch.elapsed_s = seconds_since(begin);
+  fs::remove_all(runs);
+  if (failed_status == 2) throw ScenarioError("bench: a flight refused its input (see above)");
+  if (failed_status != 0)
+    throw MachineError(fmt::format("bench: a flight ended with status {}", failed_status));
+  return batch;
+}
+
+}  // namespace
+
+std::vector<ClosedLoopRow> bench_closed_loop(const ClosedLoopBenchOptions& options) {
+  std::vector<ClosedLoopRow> rows;
+  const auto add = [&](const std::string& name, const fs::path& scenario, int processes,
+                       const std::string& setting, std::ptrdiff_t yardstick) {
+    options.on_progress(name);
+    const Batch batch = fly_batch(options, scenario, processes, setting);
+    const ClosedLoopRow* against = yardstick < 0 ? nullptr : &rows[static_cast<std::size_t>(yardstick)];
+    rows.push_back(closed_loop_row(name, processes, batch.flights, batch.elapsed_s, against));
+    return std::ssize(rows) - 1;
+  };
+  for (const fs::path& scenario : options.scenarios) {
+    const std::string name = scenario.stem().string();
+    const std::ptrdiff_t alone = add(name + ", one at a time", scenario, 1, "", -1);
+    add(name + ", two side by side", scenario, 2, "", alone);
+  }
+  const std::string name = options.sparse.stem().string();
+  const std::ptrdiff_t narrow =
+      add(name + ", trees to 20 m aside", options.sparse, 1, "forest.half_width_m=20", -1);
+  add(name + ", to 200 m: ten times the trees", options.sparse, 1, "forest.half_width_m=200", narrow);
+  return rows;
+}
+
+}  // namespace understory

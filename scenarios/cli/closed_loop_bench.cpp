@@ -1,0 +1,35 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "scenarios/bench/closed_loop_flights.hpp"
+#include "scenarios/cli/commands.hpp"
+#include "scenarios/file_output.hpp"
+
+namespace understory {
+
+int run_closed_loop_bench(const ClosedLoopBenchArguments& arguments) {
+  ClosedLoopBenchOptions options;
+  for (const char* name : {"forest", "dense", "paper"}) options.scenarios.push_back(scenario_file(name));
+  options.sparse = scenario_file("forest");
+  options.last_seed = options.first_seed + static_cast<std::uint64_t>(arguments.flights) - 1;
+  for (const std::string& setting : arguments.settings)
+    options.arguments.insert(options.arguments.end(), {"--set", setting});
+  for (const auto& [word, kind] : renderer_names)
+    if (kind == arguments.renderer)
+      options.arguments.insert(options.arguments.end(), {"--renderer", std::string(word)});
+  const bool shows_progress = isatty(STDOUT_FILENO) == 1;
+  if (shows_progress)
+    options.on_progress = [](const std::string& what) {
+      fmt::print("\r\033[K{}", what);
+      std::fflush(stdout);
+    };
+  const std::vector<ClosedLoopRow> rows = bench_closed_loop(options);
+  if (shows_progress) fmt::print("\r\033[K");
+  fmt::print("{}", to_table(rows));
+  if (!arguments.json.empty()) write_whole_file(arguments.json, to_json(rows));
+  return 0;
+}
+
+}  // namespace understory

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+namespace understory {
+
+/// Who draws the pictures. A machine's matter, not a scenario's: on a CPU all draw the same bits (Mesa's
+/// llvmpipe, one version); a GPU draws its own, so compare digests of flights drawn alike.
+enum class RendererKind {
+  osmesa,    ///< software, through libOSMesa
+  egl,       ///< a GPU where there is one, otherwise software, through libEGL
+  automatic  ///< a GPU through libEGL where there is one, otherwise software: libOSMesa, or else libEGL
+};
+
+inline constexpr std::array<std::pair<std::string_view, RendererKind>, 3> renderer_names{
+    {{"osmesa", RendererKind::osmesa}, {"egl", RendererKind::egl}, {"auto", RendererKind::automatic}}};
+
+}  // namespace understory

@@ -1,0 +1,120 @@
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+
+#include "sim/egl_library.hpp"
+#include "tests/sim/camera_scenes.hpp"
+
+/// A process draws through one library: every renderer gets a child, and this process opens none.
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+
+void append(std::ofstream& file, const cv::Mat& image) {
+  file.write(reinterpret_cast<const char*>(image.data),
+             static_cast<std::streamsize>(image.total() * image.elemSize()));
+}
+
+/// Pairs, depths and chase views of several poses, one after the other.
+void draw(RendererKind renderer, const fs::path& to) {
+  const World world = forest_world();
+  StereoCameras cameras(world, paper_rig(), noiseless(), {1, 1}, std::nullopt, renderer);
+  std::ofstream file(to, std::ios::binary);
+  for (int i = 0; i < 6; ++i) {
+    const Eigen::Quaterniond attitude(Eigen::AngleAxisd(0.3 * i - 0.7, Eigen::Vector3d::UnitX()) *
+                                      Eigen::AngleAxisd(0.1 * i - 0.2, Eigen::Vector3d::UnitZ()));
+    const DataPointer data = data_at(world, {1.7 * i, 0.4 * i - 1, 3}, attitude);
+    const StereoFrame frame = cameras.capture(*data, i);
+    append(file, frame.left);
+    append(file, frame.right);
+    append(file, cameras.depth(*data));
+    append(file, cameras.chase_view(*data, 320, 200));
+  }
+}
+
+struct Drawn {
+  std::string pictures;  ///< empty where nothing could be drawn
+  std::string complaint;
+};
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// What draw() leaves in a process of its own, whose environment has `variable` set.
+Drawn drawn(RendererKind renderer, const char* variable = nullptr, const char* value = nullptr) {
+  const fs::path pictures = fs::path(testing::TempDir()) / ("renderers_" + std::to_string(getpid()));
+  const fs::path complaint = pictures.string() + ".txt";
+  if (const pid_t child = fork(); child == 0) {
+    if (variable != nullptr) setenv(variable, value, 1);
+    try {
+      draw(renderer, pictures);
+    } catch (const std::runtime_error& error) {
+      std::ofstream(complaint) << error.what();
+    }
+    _exit(0);
+  } else {
+    waitpid(child, nullptr, 0);
+  }
+  const Drawn result{text_of(pictures), text_of(complaint)};
+  fs::remove(pictures);
+  fs::remove(complaint);
+  return result;
+}
+
+TEST(Renderers, OsmesaAndEglDrawTheSameBitsInSoftware) {
+  if (void* library = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_LOCAL)) {
+    dlclose(library);
+  } else {
+    GTEST_SKIP() << "no libEGL.so.1 here (Debian's libegl1)";
+  }
+  if (has_gpu_device_file()) GTEST_SKIP() << "a GPU is here, and EGL draws on it";
+  const Drawn osmesa = drawn(RendererKind::osmesa), egl = drawn(RendererKind::egl);
+  EXPECT_EQ(osmesa.complaint + egl.complaint, "");
+  EXPECT_EQ(osmesa.pictures.size(), 6u * (376 * 240 * (1 + 1 + 4) + 320 * 200 * 3));
+  EXPECT_TRUE(osmesa.pictures == egl.pictures);
+}
+
+TEST(Renderers, AutomaticIsSoftwareWhereThereIsNoGpu) {
+  if (has_gpu_device_file()) GTEST_SKIP() << "a GPU is here";
+  const Drawn osmesa = drawn(RendererKind::osmesa), chosen = drawn(RendererKind::automatic);
+  EXPECT_EQ(chosen.complaint, "");
+  EXPECT_TRUE(osmesa.pictures == chosen.pictures);
+}
+
+TEST(Renderers, AMissingLibraryIsOneLineThatNamesThePackage) {
+  const Drawn egl = drawn(RendererKind::egl, "UNDERSTORY_EGL", "/nonexistent/libEGL.so");
+  EXPECT_NE(egl.complaint.find("libegl1"), std::string::npos) << egl.complaint;
+  EXPECT_EQ(egl.complaint.find('\n'), std::string::npos);
+  const Drawn none = drawn(RendererKind::egl, "UNDERSTORY_EGL", "libz.so.1");
+  EXPECT_NE(none.complaint.find("no EGL"), std::string::npos) << none.complaint;
+}
+
+TEST(Renderers, AProcessKeepsToItsFirstLibrary) {
+  const World world = bare_world("");
+  if (const pid_t child = fork(); child == 0) {
+    const StereoCameras first(world, paper_rig(), noiseless(), {1, 1});
+    const StereoCameras second(world, paper_rig(), noiseless(), {1, 1}, std::nullopt,
+                               RendererKind::automatic);
+    try {
+      const StereoCameras other(world, paper_rig(), noiseless(), {1, 1}, std::nullopt, RendererKind::egl);
+    } catch (const std::runtime_error&) {
+      _exit(7);
+    }
+    _exit(0);
+  } else {
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 7);
+  }
+}
+
+}  // namespace
+}  // namespace understory
