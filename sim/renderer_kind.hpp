@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string_view>
 #include <utility>
 
@@ -16,5 +17,10 @@ enum class RendererKind {
 
 inline constexpr std::array<std::pair<std::string_view, RendererKind>, 3> renderer_names{
     {{"osmesa", RendererKind::osmesa}, {"egl", RendererKind::egl}, {"auto", RendererKind::automatic}}};
+
+/// The word a command line uses for it.
+constexpr std::string_view word_for(RendererKind kind) {
+  return renderer_names[static_cast<std::size_t>(kind)].first;
+}
 
 }  // namespace understory

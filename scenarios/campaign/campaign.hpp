@@ -18,6 +18,7 @@ struct Campaign {
   std::string name;
   std::vector<Condition> conditions;
   std::vector<std::uint64_t> seeds;
+  std::string renderer = "osmesa";  ///< renderer_kind.hpp's word: the machine's, given with the command
   double timeout_s = 300;  ///< of wall time: a flight that takes longer hangs
 };
 

@@ -40,6 +40,7 @@ std::string manifest_of(const Campaign& campaign) {
   json["format"] = results_format;
   json["program"] = {{"understory", understory_version}, {"digest", program_digest()}};
   json["name"] = campaign.name;
+  json["renderer"] = campaign.renderer;
   json["timeout_s"] = campaign.timeout_s;
   json["conditions"] = Json::array();
   for (const Condition& condition : campaign.conditions) json["conditions"].push_back(condition.name);
@@ -73,6 +74,7 @@ void require_same(const CampaignFolder& folder, const Campaign& campaign) {
   if (json["program"].value("digest", "") != program_digest())
     refuse("this understory is another build than the campaign's");
   if (held.seeds != campaign.seeds) refuse("seeds changed");
+  if (held.renderer != campaign.renderer) refuse("renderer changed");
   if (held.timeout_s != campaign.timeout_s) refuse("timeout_s changed");
   for (const Condition& condition : campaign.conditions) {
     const auto same = [&](const Condition& other) {
@@ -104,6 +106,7 @@ Campaign read_campaign(const CampaignFolder& folder) {
   Campaign campaign;
   try {
     campaign.name = json.at("name");
+    campaign.renderer = json.at("renderer");
     campaign.timeout_s = json.at("timeout_s");
     campaign.seeds = json.at("seeds").get<std::vector<std::uint64_t>>();
     for (const Json& name : json.at("conditions")) campaign.conditions.push_back({name, ""});

@@ -219,6 +219,7 @@ std::vector<std::string> flight_arguments(const CampaignFolder& folder, const Ca
                                      "--quiet",
                                      "--row",
                                      whole.flight_file(task).string()};
+  arguments.insert(arguments.end(), {"--renderer", campaign.renderer});
   if (keeps_run) arguments.insert(arguments.end(), {"--out", (path / "runs" / task.id).string()});
   return arguments;
 }

@@ -16,9 +16,8 @@ int run_closed_loop_bench(const ClosedLoopBenchArguments& arguments) {
   options.last_seed = options.first_seed + static_cast<std::uint64_t>(arguments.flights) - 1;
   for (const std::string& setting : arguments.settings)
     options.arguments.insert(options.arguments.end(), {"--set", setting});
-  for (const auto& [word, kind] : renderer_names)
-    if (kind == arguments.renderer)
-      options.arguments.insert(options.arguments.end(), {"--renderer", std::string(word)});
+  options.arguments.insert(options.arguments.end(),
+                           {"--renderer", std::string(word_for(arguments.renderer))});
   const bool shows_progress = isatty(STDOUT_FILENO) == 1;
   if (shows_progress)
     options.on_progress = [](const std::string& what) {

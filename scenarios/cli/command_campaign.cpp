@@ -29,6 +29,7 @@ struct CampaignArguments {
   std::string out;    // empty: results/<name>
   std::string junit;  // empty: none
   std::string engine = "local";
+  RendererKind renderer = RendererKind::osmesa;
   SlurmConfig slurm;
   int jobs = 0;  // 0: a flight a core
   bool waits = true;
@@ -121,7 +122,8 @@ Finish fly_on_slurm(const CampaignFolder& folder, const Campaign& campaign,
 }
 
 int run_campaign(const CampaignArguments& arguments) {
-  const Campaign campaign = load_campaign(arguments.file, scenario_file);
+  Campaign campaign = load_campaign(arguments.file, scenario_file);
+  campaign.renderer = word_for(arguments.renderer);
   require_rigs(campaign, arguments.file);
   const CampaignFolder folder{arguments.out.empty() ? fs::path("results") / campaign.name
                                                     : fs::path(arguments.out)};
@@ -152,6 +154,7 @@ void add_campaign_command(CLI::App& app, Command& chosen) {
   command->add_option("--out", arguments->out, "results folder (default: results/<name>)");
   command->add_option("--jobs", arguments->jobs, "flights at a time (default: one a core)")
       ->check(CLI::Range(1, 1024));
+  add_renderer_option(*command, arguments->renderer);
   command->add_option("--engine", arguments->engine, "local, or slurm: a job array")
       ->check(CLI::IsMember({"local", "slurm"}))
       ->capture_default_str();

@@ -134,6 +134,9 @@ TEST(CampaignFolder, HoldsOneCampaignAndGoesOnWithNoOther) {
                             "scenario: clear\nseeds: 1..2\ntimeout_s: 3\n",
                             "scenario: clear\nseeds: 1..2\ngrid: {time_limit_s: [20]}\n"})
     EXPECT_THROW(prepare_campaign_folder(results, campaign_of(other), true), ScenarioError) << other;
+  Campaign drawn_otherwise = campaign;
+  drawn_otherwise.renderer = "egl";
+  EXPECT_THROW(prepare_campaign_folder(results, drawn_otherwise, true), ScenarioError);
 }
 
 TEST(CampaignFolder, OfAnotherFormatIsRefused) {
