@@ -90,6 +90,11 @@ double span_of(const std::vector<FlightRow>& rows, const PlotAxis& axis) {
   return axis.value(*greatest) - axis.value(*least);
 }
 
+/// Whether any conditions differ in nothing else: scenarios that differ in much besides are no scan.
+bool is_scanned(const std::vector<FlightRow>& rows, const PlotAxis& axis) {
+  return std::ranges::any_of(counted(rows, axis), [](const CountedSeries& one) { return one.at.size() > 1; });
+}
+
 LinePlot success_over(const std::vector<FlightRow>& all_rows, const PlotAxis& axis, LinePlot plot) {
   const std::vector<FlightRow> rows = flown_ones(all_rows);
   const std::vector<CountedSeries> all = counted(rows, axis);
@@ -105,6 +110,9 @@ LinePlot success_over(const std::vector<FlightRow>& all_rows, const PlotAxis& ax
   }
   return plot;
 }
+
+/// "forest" of "forest-blind": what a campaign's file puts first.
+std::string scenario_of(const std::string& condition) { return condition.substr(0, condition.find('-')); }
 
 /// A curve's corners: along each step, then down to the next.
 Series steps_of(const ConditionSummary& summary) {
@@ -150,19 +158,26 @@ LinePlot success_by_condition(const std::vector<FlightRow>& rows) {
 }
 
 std::vector<LinePlot> survival_curves(const std::vector<FlightRow>& rows) {
-  constexpr std::size_t to_a_panel = 4;
+  constexpr std::size_t to_a_panel = 6;
+  const std::vector<ConditionSummary> all = summarise(flown_ones(rows));
   std::vector<LinePlot> panels;
   double furthest_m = 0;
-  for (const ConditionSummary& summary : summarise(flown_ones(rows))) {
-    if (panels.empty() || panels.back().series.size() == to_a_panel) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    // A scenario's conditions stay together where they fit.
+    const std::string scenario = scenario_of(all[i].condition);
+    const bool begins = i == 0 || scenario_of(all[i - 1].condition) != scenario;
+    const auto size = static_cast<std::size_t>(std::ranges::count_if(
+        all, [&](const ConditionSummary& one) { return scenario_of(one.condition) == scenario; }));
+    const std::size_t room = panels.empty() ? 0 : to_a_panel - panels.back().series.size();
+    if (room == 0 || (begins && size > room)) {
       panels.emplace_back();
       panels.back().title = "Survival over distance";
       panels.back().x_label = "progress (m)";
       panels.back().y_label = "still flying (%), 95 %";
       panels.back().y_range = percent_range;
     }
-    panels.back().series.push_back(steps_of(summary));
-    furthest_m = std::max(furthest_m, summary.survival.last_at);
+    panels.back().series.push_back(steps_of(all[i]));
+    furthest_m = std::max(furthest_m, all[i].survival.last_at);
   }
   for (LinePlot& panel : panels) panel.x_range = AxisRange{0, std::max(furthest_m, 1.0)};
   return panels;
@@ -172,8 +187,8 @@ std::string campaign_svg(const std::vector<FlightRow>& all_rows) {
   const std::vector<FlightRow> rows = flown_ones(all_rows);
   if (rows.empty()) return "";
   std::vector<LinePlot> panels;
-  if (span_of(rows, speed_axis) > 0) panels.push_back(success_over_speed(rows));
-  if (span_of(rows, density_axis) > 0) panels.push_back(success_over_density(rows));
+  if (is_scanned(rows, speed_axis)) panels.push_back(success_over_speed(rows));
+  if (is_scanned(rows, density_axis)) panels.push_back(success_over_density(rows));
   if (panels.empty()) panels.push_back(success_by_condition(rows));
   for (LinePlot& panel : survival_curves(rows)) panels.push_back(std::move(panel));
   return to_svg(panels, 2);

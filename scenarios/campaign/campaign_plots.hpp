@@ -21,10 +21,11 @@ LinePlot success_over_density(const std::vector<FlightRow>& rows);
 LinePlot success_by_condition(const std::vector<FlightRow>& rows);
 
 /// Share of flights that get beyond each distance (m of progress): Kaplan and Meier's steps with 95 % bands,
-/// at most four conditions to a panel.
+/// at most six conditions to a panel, those of a scenario together where they fit.
 std::vector<LinePlot> survival_curves(const std::vector<FlightRow>& rows);
 
-/// One SVG: success over speed and over density, each where it varies, or else by condition; then survival.
+/// One SVG: success over speed and over density, each where conditions differ in nothing else, or else by
+/// condition; then survival.
 /// Flights that failed to run enter nothing. Empty where none was flown.
 std::string campaign_svg(const std::vector<FlightRow>& rows);
 

@@ -79,7 +79,7 @@ TEST(CampaignPlots, SurvivalGoesDownInSteps) {
   EXPECT_NEAR(series.y[2], 90, 1e-9);
   EXPECT_NEAR(series.y[5], 80, 1e-9);
   EXPECT_TRUE(series.band);
-  for (int more = 0; more < 4; ++more) add_ten(rows, fmt::format("other{}", more), 10, 25, more);
+  for (int more = 0; more < 6; ++more) add_ten(rows, fmt::format("other{}", more), 10, 25, more);
   EXPECT_EQ(survival_curves(rows).size(), 2u);
 }
 
