@@ -13,7 +13,6 @@
 #include "planning/autopilot.hpp"
 #include "scenarios/detection_depths.hpp"
 #include "scenarios/due.hpp"
-#include "scenarios/file_output.hpp"
 #include "scenarios/flight_film.hpp"
 #include "scenarios/named_seed.hpp"
 #include "scenarios/onboard_sensors.hpp"
@@ -90,14 +89,6 @@ void take_counts(const Autopilot& autopilot, const Stopwatch& stopwatch, FlightR
   result.replans = counts.straight + counts.solved + counts.kept + counts.fallback;
   result.timings = stopwatch.timings();
   result.wall_s = stopwatch.elapsed_s();
-}
-
-void prepare_run_folder(const Scenario& scenario, const std::filesystem::path& folder) {
-  prepare_output_folder(folder);
-  for (const char* file : {"result.json", "trajectory.csv", "map.ply", "flight.mp4", "still.png"}) {
-    std::filesystem::remove(folder / file);  // of an earlier run: must not pass for this one's
-  }
-  write_whole_file(folder / "scenario.yaml", scenario_to_text(scenario));
 }
 
 }  // namespace
