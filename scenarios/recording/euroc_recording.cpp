@@ -59,9 +59,9 @@ EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario,
         fmt::format("{}: expected a folder without a recording, found mav0 in it", folder.string()));
   prepare_output_folder(folder);
   fs::remove_all(part_, ignored);  // of a recording that was broken off
+  require_free_space(part_, expected_bytes(scenario, rig.rig, expected_s));
   for (const char* sensor : {"cam0/data", "cam1/data", "depth0/data", "imu0", "state_groundtruth_estimate0"})
     prepare_output_folder(part_ / sensor);
-  require_free_space(part_, expected_bytes(scenario, rig.rig, expected_s));
 
   // The flight's own IMU draws its constants from this seed.
   const ImuConfig& config = scenario.sensors.sensors.imu;

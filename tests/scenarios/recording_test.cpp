@@ -273,6 +273,7 @@ TEST(EurocRecording, ARecordingThatBreaksOffDoesNotLookWhole) {
   }
   EXPECT_TRUE(fs::is_empty(folder.path()));
   EXPECT_THROW(EurocRecording(folder.path(), scenario, rig_of(scenario, root / "models"), 1e9), MachineError);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
 }  // namespace
