@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
@@ -92,6 +94,49 @@ TEST(Walk, SeedsSwayDifferentlyAndRepeat) {
   };
   EXPECT_TRUE(at_a_second("1000").isApprox(at_a_second("1000"), 0));
   EXPECT_FALSE(at_a_second("1000").isApprox(at_a_second("1001"), 1e-4));
+}
+
+/// Along a ray to the bark of a vertical trunk, in multiples of the ray; +infinity where it passes.
+double reach_to(const Obstacle& trunk, const Eigen::Vector3d& from_world, const Eigen::Vector3d& ray_world) {
+  const double none = std::numeric_limits<double>::infinity();
+  const Eigen::Vector2d o = (from_world - trunk.from_world).head<2>(), d = ray_world.head<2>();
+  const double a = d.squaredNorm(), b = o.dot(d), c = o.squaredNorm() - trunk.radius_m * trunk.radius_m;
+  if (b * b < a * c || b > 0) return none;
+  const double reach = (-b - std::sqrt(b * b - a * c)) / a;
+  const double z = from_world.z() + reach * ray_world.z();
+  return z < trunk.from_world.z() || z > trunk.to_world.z() ? none : reach;
+}
+
+TEST(Walk, TheRecordedDepthOfTrunksIsThatOfTheirCylinders) {
+  const support::TemporaryFolder folder;
+  const Scenario scenario =
+      library_scenario("forest", {"seed=1003", "time_limit_s=0.5", "cameras.rate_hz=2",
+                                  "forest.square_metres_per_tree=20", "forest.length_m=20"});
+  FlyOptions options;
+  options.models_folder = root / "models";
+  options.output_folder = folder.path();
+  walk_recorded(scenario, {}, options);
+  const StereoRig rig = read_calibrated_rig(folder.path(), {}).rig;
+  const auto poses = read_poses(folder.path() / "mav0/state_groundtruth_estimate0/data.csv");
+  const std::string name = std::to_string(recorded_ns(0)) + ".png";
+  const cv::Mat depth =
+      cv::imread((folder.path() / "mav0/depth0/data" / name).string(), cv::IMREAD_UNCHANGED);
+  const Eigen::Isometry3d T_world_camera = pose_at(poses, recorded_ns(0)).value() * rig.T_body_camera;
+  int seen = 0, agreed = 0;
+  for (int row = 0; row < rig.height_px; row += 2)
+    for (int column = 0; column < rig.width_px; ++column) {
+      const Eigen::Vector3d ray_camera((column - rig.center_left_x_px) / rig.focal_px,
+                                       (row - rig.center_y_px) / rig.focal_px, 1);
+      const Eigen::Vector3d ray_world = T_world_camera.linear() * ray_camera;
+      double nearest_m = std::numeric_limits<double>::infinity();
+      for (const Obstacle& trunk : course_obstacles(scenario))
+        nearest_m = std::min(nearest_m, reach_to(trunk, T_world_camera.translation(), ray_world));
+      if (nearest_m > 25) continue;
+      ++seen;
+      agreed += std::abs(depth.at<std::uint16_t>(row, column) - 1000 * nearest_m) < 20 ? 1 : 0;
+    }
+  EXPECT_GT(seen, 2000);
+  EXPECT_GT(agreed, 0.95 * seen);  // the rest: outlines, where the drawn trunk has flat sides
 }
 
 /// The ground at height h lies where a pixel's ray has fallen by h: read back from the PNG and the poses.
