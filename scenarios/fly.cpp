@@ -13,7 +13,6 @@
 #include "planning/autopilot.hpp"
 #include "scenarios/detection_depths.hpp"
 #include "scenarios/due.hpp"
-#include "scenarios/file_output.hpp"
 #include "scenarios/flight_film.hpp"
 #include "scenarios/named_seed.hpp"
 #include "scenarios/onboard_sensors.hpp"
@@ -24,6 +23,7 @@
 #include "scenarios/run_record.hpp"
 #include "scenarios/scenario_io.hpp"
 #include "scenarios/scenario_rig.hpp"
+#include "scenarios/simulated_parts.hpp"
 #include "scenarios/stopwatch.hpp"
 #include "sim/frame_drops.hpp"
 #include "sim/stereo_cameras.hpp"
@@ -60,36 +60,20 @@ std::unique_ptr<StateSource> state_source_of(const Scenario& scenario, const Tru
   return std::make_unique<Filter>(scenario.estimation.filter);
 }
 
-World world_of(const Scenario& scenario, const std::filesystem::path& models_folder,
-               const std::vector<Obstacle>& obstacles) {
-  try {
-    return build_world(models_folder, scenario.flown_airframe(), obstacles, scenario.world_config());
-  } catch (const std::runtime_error& error) {
-    throw MachineError(error.what());  // the models are the project's, not the caller's
-  }
-}
+/// The autopilot, with somebody listening in on its IMU.
+struct Overheard {
+  Autopilot& autopilot;
+  const std::function<void(const ImuSample&)>& on_imu;
 
-std::unique_ptr<StereoCameras> cameras_of(const Scenario& scenario, const World& world,
-                                          const CalibratedRig& rig, RendererKind renderer) {
-  const CameraSeeds seeds{seed_for(scenario.sensor_seed(), "cameras"),
-                          seed_for(scenario.sensor_seed(), "camera_shot_noise")};
-  try {
-    return std::make_unique<StereoCameras>(world, rig.rig, scenario.cameras.cameras, seeds, rig.calibration,
-                                           renderer);
-  } catch (const std::runtime_error& error) {
-    throw MachineError(error.what());
+  void on(const ImuSample& sample) {
+    if (on_imu) on_imu(sample);
+    autopilot.on(sample);
   }
-}
-
-Aircraft aircraft_of(const Scenario& scenario, const World& world) {
-  try {
-    const Wind wind(scenario.wind_world_mps, scenario.wind, scenario.stand(),
-                    seed_for(scenario.seed, "wind"));
-    return Aircraft(*world.model, scenario.flown_airframe(), scenario.launch, wind, scenario.actuators);
-  } catch (const std::runtime_error& error) {
-    throw ScenarioError(error.what());
+  template <typename Sample>
+  void on(const Sample& sample) {
+    autopilot.on(sample);
   }
-}
+};
 
 void take_counts(const Autopilot& autopilot, const Stopwatch& stopwatch, FlightResult& result) {
   const PlannerCounts& counts = autopilot.counts();
@@ -105,14 +89,6 @@ void take_counts(const Autopilot& autopilot, const Stopwatch& stopwatch, FlightR
   result.replans = counts.straight + counts.solved + counts.kept + counts.fallback;
   result.timings = stopwatch.timings();
   result.wall_s = stopwatch.elapsed_s();
-}
-
-void prepare_run_folder(const Scenario& scenario, const std::filesystem::path& folder) {
-  prepare_output_folder(folder);
-  for (const char* file : {"result.json", "trajectory.csv", "map.ply", "flight.mp4", "still.png"}) {
-    std::filesystem::remove(folder / file);  // of an earlier run: must not pass for this one's
-  }
-  write_whole_file(folder / "scenario.yaml", scenario_to_text(scenario));
 }
 
 }  // namespace
@@ -131,7 +107,7 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   const bool looks = scenario.perception.detector == DetectorKind::pushbroom ||
                      scenario.perception.detector == DetectorKind::block_matching;
   const auto cameras =
-      looks || options.video
+      looks || options.video || options.on_frame
           ? stopwatch.time("setup", [&] { return cameras_of(scenario, world, calibrated, options.renderer); })
           : nullptr;
   OnboardSensors sensors(scenario);
@@ -144,6 +120,7 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   Autopilot autopilot(autopilot_config, scenario.airframe, rig, scenario.mission(), *detector, *state_source,
                       seed_for(scenario.seed, "planner"));
 
+  Overheard overheard{autopilot, options.on_imu};
   const Due due(scenario);
   FrameDrops drops(scenario.cameras.drop_probability, seed_for(scenario.sensor_seed(), "camera_drops"));
   const std::int64_t lag_ns = scenario.cameras.cameras.exposure_lag_ns();
@@ -164,7 +141,8 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
     const Truth& truth = aircraft.truth();
     history.observe(truth);
     if (options.on_truth) options.on_truth(truth);
-    stopwatch.time("estimate", [&] { sensors.deliver(due, step, truth, autopilot); });
+    stopwatch.time("estimate", [&] { sensors.deliver(due, step, truth, overheard); });
+    if (options.on_estimate && due.imu(step)) options.on_estimate(autopilot.state());
     if (cameras) cameras->observe(aircraft.data(), truth.t_ns);
     if (due.camera(step) && !drops.next()) {
       pending.push_back(
@@ -175,6 +153,7 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
     while (!pending.empty() && truth.t_ns >= pending.front().t_ns + latency_ns) {
       const StereoFrame frame = std::move(pending.front());
       pending.pop_front();
+      if (options.on_frame) stopwatch.time("record", [&] { options.on_frame(frame, *cameras); });
       stopwatch.time("detect", [&] { autopilot.on(frame); });
       stopwatch.time("record", [&] {
         record.observe(looks ? frame : StereoFrame{frame.t_ns, {}, {}}, autopilot.hits().size());

@@ -3,12 +3,17 @@
 #include <filesystem>
 #include <functional>
 
+#include "estimation/samples.hpp"
+#include "estimation/state.hpp"
+#include "perception/stereo_frame.hpp"
 #include "scenarios/flight_result.hpp"
 #include "scenarios/scenario.hpp"
 #include "sim/renderer_kind.hpp"
 #include "sim/truth.hpp"
 
 namespace understory {
+
+class StereoCameras;
 
 /// Where a flight is, for a progress line.
 struct FlightProgress {
@@ -24,8 +29,13 @@ struct FlyOptions {
   std::filesystem::path models_folder;
   std::filesystem::path output_folder;  ///< made where missing; gets the run's files; empty: none are written
   bool video = false;                   ///< also flight.mp4 and still.png
-  RendererKind renderer = RendererKind::osmesa;            ///< the machine's: not part of the scenario
-  std::function<void(const Truth&)> on_truth;              ///< every physics step; may be empty
+  RendererKind renderer = RendererKind::osmesa;   ///< the machine's: not part of the scenario
+  std::function<void(const Truth&)> on_truth;     ///< every physics step; may be empty
+  std::function<void(const ImuSample&)> on_imu;   ///< as the stack gets it, faults included
+  std::function<void(const State&)> on_estimate;  ///< at the IMU's rate, the step's samples taken in
+  /// Every frame as it reaches the stack, with the cameras that took it, for the depth behind it. Not empty:
+  /// images are rendered whatever the detector. What a hook does changes no flight.
+  std::function<void(const StereoFrame&, StereoCameras&)> on_frame;
   std::function<void(const FlightProgress&)> on_progress;  ///< ten times per simulated second; may be empty
 };
 

@@ -9,6 +9,7 @@
 #include "perception/io/hit_files.hpp"
 #include "scenarios/clearance.hpp"
 #include "scenarios/file_output.hpp"
+#include "scenarios/scenario_io.hpp"
 
 namespace understory {
 namespace {
@@ -39,6 +40,14 @@ std::span<const std::byte> bytes_of(const cv::Mat& image) {
 }
 
 }  // namespace
+
+void prepare_run_folder(const Scenario& scenario, const std::filesystem::path& folder) {
+  prepare_output_folder(folder);
+  for (const char* file : {"result.json", "trajectory.csv", "map.ply", "flight.mp4", "still.png"}) {
+    std::filesystem::remove(folder / file);  // of an earlier run: must not pass for this one's
+  }
+  write_whole_file(folder / "scenario.yaml", scenario_to_text(scenario));
+}
 
 RunRecord::RunRecord(const Scenario& scenario, std::vector<Obstacle> obstacles)
     : scenario_(scenario), obstacles_(std::move(obstacles)), trajectory_(trajectory_header) {

@@ -15,6 +15,10 @@
 
 namespace understory {
 
+/// Makes `folder`, removes the files that an earlier run left there, and writes scenario.yaml. Throws
+/// ScenarioError where it cannot be written.
+void prepare_run_folder(const Scenario& scenario, const std::filesystem::path& folder);
+
 /// Collects what a flight leaves behind and scores it. Works in memory; write() makes the run folder's files,
 /// each whole or not at all, result.json last.
 class RunRecord {

@@ -67,7 +67,9 @@ class Imu {
  public:
   Imu(const ImuConfig& config, std::uint64_t seed);
   ImuSample measure(const Truth& truth);
-  const Eigen::Vector3d& gyro_bias_radps() const { return gyro_bias_radps_; }  ///< for scoring
+  /// The flight's constants, for scoring; what wanders comes on top.
+  const Eigen::Vector3d& gyro_bias_radps() const { return gyro_bias_radps_; }
+  const Eigen::Vector3d& accelerometer_bias_mps2() const { return accelerometer_bias_mps2_; }
 
  private:
   /// The pull of the propeller's imbalance, which grows with the thrust (N) and turns in the plane across the

@@ -112,8 +112,11 @@ StereoFrame StereoCameras::capture(const mjData& data, std::int64_t t_ns) {
 }
 
 cv::Mat StereoCameras::depth(const mjData& data) {
-  Implementation& self = *implementation_;
-  return self.scene.left_depth(eyes_of(self.rig, aircraft_pose(self.model, data)));
+  return depth(aircraft_pose(implementation_->model, data));
+}
+
+cv::Mat StereoCameras::depth(const Eigen::Isometry3d& T_world_body) {
+  return implementation_->scene.left_depth(eyes_of(implementation_->rig, T_world_body));
 }
 
 cv::Mat StereoCameras::chase_view(const mjData& data, int width_px, int height_px) {

@@ -40,6 +40,8 @@ class StereoCameras {
   StereoFrame capture(const mjData& data, std::int64_t t_ns);
   /// Depth in the left image, rectified, at the moment of `data`: CV_32FC1, metres along the optical axis.
   cv::Mat depth(const mjData& data);
+  /// The same from where the body was at another moment.
+  cv::Mat depth(const Eigen::Isometry3d& T_world_body);
   /// What a camera following the aircraft sees, BGR 8-bit, for people.
   cv::Mat chase_view(const mjData& data, int width_px, int height_px);
   /// The renderer's own name and version, for records.

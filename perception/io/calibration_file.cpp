@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -56,6 +57,14 @@ void require_in_range(const StereoRig& rig, const fs::path& path) {
     require("principal point in px", center_px, least_center_px, greatest_center_px, "");
 }
 
+/// Whether rectifying would leave this camera's images as they are.
+bool is_rectified(const CameraCalibration& camera) {
+  const bool is_bent = std::any_of(camera.distortion.begin(), camera.distortion.end(),
+                                   [](double coefficient) { return coefficient != 0; });
+  return !is_bent && camera.rectification == cv::Matx33d::eye() &&
+         camera.projection.get_minor<3, 3>(0, 0) == camera.camera_matrix;
+}
+
 CalibratedRig from_rig_file(const fs::path& path, const CalibrationOptions& options) {
   if (options.meters_per_unit != 1)
     throw_file_fault(path.string(), 0, "unit", "expected metres: a rig file has no other");
@@ -66,8 +75,9 @@ CalibratedRig from_rig_file(const fs::path& path, const CalibrationOptions& opti
 }
 
 CalibratedRig from_cameras(StereoCalibration calibration, const fs::path& path,
-                           const CalibrationOptions& options) {
-  constexpr double default_depth_m = 10;
+                           const CalibrationOptions& options,
+                           std::optional<double> depth_said_m = std::nullopt) {
+  const double default_depth_m = depth_said_m.value_or(10);
   calibration.name = path.string();  // rectified_rig begins its complaints with it
   CalibratedRig read;
   read.rig = rectified_rig(calibration, default_depth_m);
@@ -85,8 +95,13 @@ CalibratedRig read_calibrated_rig(const fs::path& path, const CalibrationOptions
     throw_file_fault(path.string(), 0, "unit", "expected a length above 0 and up to 1000 m");
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) {
-    if (const auto folder = euroc_folder(path))
-      return from_cameras(read_euroc_calibration(*folder, options), path, options);
+    if (const auto folder = euroc_folder(path)) {
+      const EurocCalibration euroc = read_euroc_calibration(*folder, options);
+      CalibratedRig read = from_cameras(euroc.calibration, path, options, euroc.detection_depth_m);
+      if (is_rectified(read.calibration->left) && is_rectified(read.calibration->right))
+        read.calibration.reset();
+      return read;
+    }
     return from_cameras(read_opencv_calibration(path, options), path, options);
   }
   if (looks_like_opencv(read_text_file(path)))

@@ -28,7 +28,8 @@ struct CalibratedRig {
 ///   image_height where they are,
 /// - a folder of such files: one matrix each (M1.xml, D1.xml, R1.xml, P1.xml, M2.xml ...), or intrinsics.yml
 ///   and extrinsics.yml,
-/// - a EuRoC/ASL folder (mav0, or the folder above it): cam0/sensor.yaml (left) and cam1/sensor.yaml (right).
+/// - a EuRoC/ASL folder (mav0, or the folder above it): cam0/sensor.yaml (left) and cam1/sensor.yaml (right);
+///   the detection depth where cam0's says one (read_euroc_calibration).
 /// The rig is named after its file or folder. The pose in the body: a rig file's own mounting; EuRoC's T_BS,
 /// whose body is the file's own (the IMU, x up); OpenCV's files know no body, so the raw left camera sits at
 /// its origin and looks along its x axis. What is returned fits a detector (the detection depth's disparity

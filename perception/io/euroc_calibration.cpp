@@ -19,21 +19,26 @@ struct Sensor {
   CameraCalibration camera;
   ImageSize size;
   Eigen::Isometry3d T_body_sensor;
+  bool says_rectification = false;  ///< the camera's rectification and, but for the baseline, projection
+  std::optional<double> detection_depth_m;
 };
 
+constexpr double rotation_tolerance = 1e-3;  // files rounded by hand
+
+bool is_rotation(const Eigen::Matrix3d& matrix) {
+  const double departure = (matrix * matrix.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  return departure < rotation_tolerance && matrix.determinant() > 0;
+}
+
 Eigen::Isometry3d pose(StrictMap& map, double meters_per_unit) {
-  constexpr double rotation_tolerance = 1e-3;  // files rounded by hand
-  constexpr double greatest_value = 1e6;       // an offset in some unit; checked in metres below
+  constexpr double greatest_value = 1e6;  // an offset in some unit; checked in metres below
   StrictMap fields = map.map("T_BS");
   fields.whole("rows", 4, 4);
   fields.whole("cols", 4, 4);
   const std::vector<double> data = fields.numbers("data", 16, -greatest_value, greatest_value);
   const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(data.data());
   const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
-  const double departure =
-      (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(departure < rotation_tolerance) || rotation.determinant() < 0)
-    map.fail("T_BS", "expected a rotation in the first three rows and columns");
+  if (!is_rotation(rotation)) map.fail("T_BS", "expected a rotation in the first three rows and columns");
   if (!(matrix.row(3) == Eigen::RowVector4d(0, 0, 0, 1)))
     map.fail("T_BS", "expected a last row of 0, 0, 0, 1");
   Eigen::Isometry3d T_body_sensor = Eigen::Isometry3d::Identity();
@@ -47,6 +52,23 @@ Eigen::Isometry3d pose(StrictMap& map, double meters_per_unit) {
 void require_text(StrictMap& map, const std::string& key, const std::string& expected) {
   if (const std::string found = map.text(key); found != expected)
     map.fail(key, "expected " + expected + ", found '" + found + "'");
+}
+
+/// What `understory record` adds to the layout: how the pair was rectified, which its detector's hits hang
+/// on.
+void read_additions(StrictMap& map, Sensor& sensor) {
+  if (map.has("detection_depth_m"))
+    sensor.detection_depth_m = map.number("detection_depth_m", least_depth_m, greatest_depth_m);
+  sensor.says_rectification = map.has("rectification");
+  if (!sensor.says_rectification) return;
+  const std::vector<double> rotation = map.numbers("rectification", 9, -1.1, 1.1);
+  if (!is_rotation(Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rotation.data())))
+    map.fail("rectification", "expected a rotation, row by row");
+  sensor.camera.rectification = cv::Matx33d(rotation.data());
+  const std::vector<double> pinhole =
+      map.numbers("rectified_intrinsics", 3, least_center_px, greatest_focal_px);
+  sensor.camera.projection =
+      cv::Matx34d(pinhole[0], 0, pinhole[1], 0, 0, pinhole[0], pinhole[2], 0, 0, 0, 1, 0);
 }
 
 Sensor read_sensor(const fs::path& file, double meters_per_unit) {
@@ -65,8 +87,11 @@ Sensor read_sensor(const fs::path& file, double meters_per_unit) {
     map.fail("intrinsics", "expected fu, fv, cu, cv in px: a focal length is too short or a center too far");
   sensor.camera.camera_matrix = cv::Matx33d(pinhole[0], 0, pinhole[2], 0, pinhole[1], pinhole[3], 0, 0, 1);
   require_text(map, "distortion_model", "radial-tangential");
-  sensor.camera.distortion =
-      map.numbers("distortion_coefficients", 4, -greatest_coefficient, greatest_coefficient);
+  // EuRoC has four; cameras that need more of OpenCV's k1 k2 p1 p2 k3 k4 k5 k6 say them in that order.
+  const std::size_t found = map.length("distortion_coefficients");
+  sensor.camera.distortion = map.numbers("distortion_coefficients", found == 5 || found == 8 ? found : 4,
+                                         -greatest_coefficient, greatest_coefficient);
+  read_additions(map, sensor);
   return sensor;
 }
 
@@ -79,7 +104,7 @@ std::optional<fs::path> euroc_folder(const fs::path& path) {
   return std::nullopt;
 }
 
-StereoCalibration read_euroc_calibration(const fs::path& folder, const CalibrationOptions& options) {
+EurocCalibration read_euroc_calibration(const fs::path& folder, const CalibrationOptions& options) {
   const fs::path right_file = folder / "cam1" / "sensor.yaml";
   const Sensor left = read_sensor(folder / "cam0" / "sensor.yaml", options.meters_per_unit);
   const Sensor right = read_sensor(right_file, options.meters_per_unit);
@@ -93,7 +118,15 @@ StereoCalibration read_euroc_calibration(const fs::path& folder, const Calibrati
   calibration.left = left.camera;
   calibration.right = right.camera;
   calibration.T_body_left = left.T_body_sensor;
+  if (left.says_rectification != right.says_rectification)
+    throw_file_fault(right_file.string(), 0, "rectification",
+                     "expected in both cameras' files or in neither");
   const Eigen::Isometry3d T_right_left = right.T_body_sensor.inverse() * left.T_body_sensor;
+  if (left.says_rectification) {
+    calibration.right.projection(0, 3) =
+        -calibration.right.projection(0, 0) * T_right_left.translation().norm();
+    return {calibration, left.detection_depth_m};
+  }
   cv::Matx33d R_right_left;
   cv::Vec3d t_right_m;
   cv::eigen2cv(Eigen::Matrix3d(T_right_left.linear()), R_right_left);
@@ -101,7 +134,7 @@ StereoCalibration read_euroc_calibration(const fs::path& folder, const Calibrati
   if (!rectify_pair(calibration, R_right_left, t_right_m))
     throw_file_fault(right_file.string(), 0, "T_BS",
                      "expected two cameras that cv::stereoRectify brings side by side");
-  return calibration;
+  return {calibration, left.detection_depth_m};
 }
 
 }  // namespace understory

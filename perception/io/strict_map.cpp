@@ -48,6 +48,11 @@ std::vector<double> StrictMap::numbers(const std::string& key, std::size_t count
   return values;
 }
 
+std::size_t StrictMap::length(const std::string& key) const {
+  const TextNode* node = find(key);
+  return node != nullptr && node->kind == TextNode::Kind::list ? node->children.size() : 0;
+}
+
 StrictMap StrictMap::map(const std::string& key) { return {file_, take(key), prefix_ + key + "."}; }
 
 void StrictMap::refuse_others() const {

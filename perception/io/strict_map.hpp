@@ -24,6 +24,8 @@ class StrictMap {
   int whole(const std::string& key, int least, int greatest);
   /// A list of numbers, `count` of them.
   std::vector<double> numbers(const std::string& key, std::size_t count, double least, double greatest);
+  /// How many values the list has; 0 where it is none or missing.
+  std::size_t length(const std::string& key) const;
   StrictMap map(const std::string& key);
   /// What the value calls itself: "opencv-matrix".
   std::string type(const std::string& key) { return take(key).type; }

@@ -3,14 +3,13 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
-#include <cstdio>
 #include <memory>
 
 #include "scenarios/campaign/flight_row_io.hpp"
 #include "scenarios/campaign/flown_row.hpp"
 #include "scenarios/campaign/junit.hpp"
 #include "scenarios/cli/commands.hpp"
+#include "scenarios/cli/flight_terminal.hpp"
 #include "scenarios/file_output.hpp"
 #include "scenarios/fly.hpp"
 #include "scenarios/scenario_io.hpp"
@@ -27,27 +26,6 @@ struct FlyArguments : ScenarioArguments {
   bool video = false;
   bool quiet = false;
 };
-
-void print_progress(const FlightProgress& progress) {
-  const std::string clearance =
-      std::isfinite(progress.min_clearance_m) ? fmt::format("{:.2f} m", progress.min_clearance_m) : "-";
-  fmt::print("\r\033[K{:5.2f} s  {:5.1f} of {:.0f} m  {:4.1f} m/s  least clearance {}  {:.2f} x real time",
-             progress.simulated_s, progress.progress_m, progress.goal_m, progress.speed_mps, clearance,
-             progress.wall_s > 0 ? progress.simulated_s / progress.wall_s : 0.0);
-  std::fflush(stdout);
-}
-
-/// Here, where it is still known which line named the rig.
-void require_rig(const Scenario& scenario, const FlyArguments& arguments,
-                 const std::filesystem::path& models_folder) {
-  const std::filesystem::path rigs = models_folder / "rigs";
-  std::error_code ignored;
-  if (std::filesystem::exists(rigs / (scenario.rig + ".yaml"), ignored)) return;
-  if (std::filesystem::is_regular_file(scenario.rig, ignored)) return;
-  throw ScenarioError(fmt::format("{}: rig: expected a name in {} or a rig file, got '{}'",
-                                  where_given(scenario_file(arguments.scenario), arguments.settings, "rig"),
-                                  rigs.string(), scenario.rig));
-}
 
 /// As a campaign reads it. The row file's name is the flight's id, the scenario's file that of its condition.
 FlightRow row_of(const FlyArguments& arguments, const Scenario& scenario, const FlightResult& result) {
@@ -68,7 +46,7 @@ int run_fly(const FlyArguments& arguments) {
   const Scenario scenario = load_scenario(scenario_file(arguments.scenario), arguments.settings);
   FlyOptions options;
   options.models_folder = project_root() / "models";
-  require_rig(scenario, arguments, options.models_folder);
+  require_rig(scenario, arguments, options.models_folder / "rigs");
   options.video = arguments.video;
   options.renderer = arguments.renderer;
   options.output_folder = arguments.out;
@@ -77,7 +55,7 @@ int run_fly(const FlyArguments& arguments) {
   if (options.video && options.output_folder.empty())
     throw ScenarioError("--video: expected --out beside --row");
   const bool shows_progress = !arguments.quiet && isatty(STDOUT_FILENO) == 1;
-  if (shows_progress) options.on_progress = print_progress;
+  if (shows_progress) options.on_progress = print_flight_progress;
   const FlightResult result = fly(scenario, options);
   if (shows_progress) fmt::print("\r\033[K");
   const FlightRow row = row_of(arguments, scenario, result);

@@ -25,6 +25,7 @@ using Command = std::function<int()>;
 /// Each adds one command with its options to `app`; where that command is the one given, `chosen` becomes its
 /// run.
 void add_fly_command(CLI::App& app, Command& chosen);
+void add_record_command(CLI::App& app, Command& chosen);
 void add_campaign_command(CLI::App& app, Command& chosen);
 void add_shard_command(CLI::App& app, Command& chosen);
 void add_collect_command(CLI::App& app, Command& chosen);

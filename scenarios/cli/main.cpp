@@ -29,6 +29,7 @@ int run(int argc, char** argv) {
 
   Command chosen;
   add_fly_command(app, chosen);
+  add_record_command(app, chosen);
   add_campaign_command(app, chosen);
   add_shard_command(app, chosen);
   add_collect_command(app, chosen);

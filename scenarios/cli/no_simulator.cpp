@@ -26,6 +26,7 @@ int run_closed_loop_bench(const ClosedLoopBenchArguments&) {
 }
 
 void add_fly_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "fly"); }
+void add_record_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "record"); }
 void add_campaign_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "campaign"); }
 void add_shard_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "shard"); }
 void add_validate_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "validate"); }

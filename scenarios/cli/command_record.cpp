@@ -1,0 +1,91 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "scenarios/cli/commands.hpp"
+#include "scenarios/cli/flight_terminal.hpp"
+#include "scenarios/recording/record.hpp"
+#include "scenarios/scenario_io.hpp"
+
+namespace understory {
+namespace {
+
+struct RecordArguments : ScenarioArguments {
+  std::string seed;
+  std::string out;
+  RendererKind renderer = RendererKind::osmesa;
+  std::string walk_mps;  // empty: flies
+  double height_m = WalkConfig{}.height_m;
+  bool has_height = false;
+};
+
+/// A progress line where there is a terminal, gone before the report or a complaint.
+struct ProgressOnTerminal {
+  bool shown = isatty(STDOUT_FILENO) == 1;
+  ~ProgressOnTerminal() {
+    if (shown) fmt::print("\r\033[K");
+  }
+};
+
+std::string report_of(const RecordedFlight& flight) {
+  return to_report(flight.result) + fmt::format("  {:<18}{}\n", "frames", flight.frames);
+}
+
+std::string report_of(const RecordedWalk& walk) {
+  return fmt::format(
+      "walked {:.1f} m in {:.1f} s, from x = {:.1f} m along y = {:.1f} m, {:.2f} m high: {} frames\n",
+      walk.walked_m, walk.walked_s, walk.path.from_x_m, walk.path.lane_y_m, walk.path.config.height_m,
+      walk.frames);
+}
+
+int run_record(const RecordArguments& arguments) {
+  if (arguments.has_height && arguments.walk_mps.empty())
+    throw ScenarioError("--height: expected beside --walk");
+  const Scenario scenario = load_scenario(scenario_file(arguments.scenario), arguments.settings);
+  FlyOptions options;
+  options.models_folder = project_root() / "models";
+  require_rig(scenario, arguments, options.models_folder / "rigs");
+  options.renderer = arguments.renderer;
+  options.output_folder = arguments.out;
+  std::string report;
+  {
+    const ProgressOnTerminal progress;
+    if (progress.shown) options.on_progress = print_flight_progress;
+    if (arguments.walk_mps.empty())
+      report = report_of(fly_recorded(scenario, options));
+    else
+      report =
+          report_of(walk_recorded(scenario, {std::stod(arguments.walk_mps), arguments.height_m}, options));
+  }
+  fmt::print("{}  {:<18}{}\n", report, "files", arguments.out);
+  return exit_goal;
+}
+
+}  // namespace
+
+void add_record_command(CLI::App& app, Command& chosen) {
+  const auto arguments = std::make_shared<RecordArguments>();
+  CLI::App* command = app.add_subcommand(
+      "record", "fly or walk through a scenario and keep images, true depth and poses as a EuRoC data set");
+  add_scenario_options(*command, *arguments);
+  command->add_option("--seed", arguments->seed, "of course and sensors; goes before the scenario's own");
+  command->add_option("--out", arguments->out, "folder for the recording; gets mav0")->required();
+  add_renderer_option(*command, arguments->renderer);
+  // A flag, so that a scenario's name behind it stays one; as a string, since CLI11 rounds flags' numbers.
+  command
+      ->add_flag("--walk{1.4}", arguments->walk_mps,
+                 "--walk or --walk=SPEED: carry the cameras through at a walk (1.4 m/s)")
+      ->check(CLI::Range(0.1, 5.0));
+  CLI::Option* height = command->add_option("--height", arguments->height_m, "of the walk, m")
+                            ->capture_default_str()
+                            ->check(CLI::Range(0.3, 8.0));
+  command->callback([arguments, height, &chosen] {
+    arguments->has_height = height->count() > 0;
+    if (!arguments->seed.empty()) arguments->settings.push_back("seed=" + arguments->seed);
+    chosen = [arguments] { return run_record(*arguments); };
+  });
+}
+
+}  // namespace understory

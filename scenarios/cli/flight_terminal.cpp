@@ -1,0 +1,31 @@
+#include "scenarios/cli/flight_terminal.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "scenarios/scenario_io.hpp"
+
+namespace understory {
+
+void print_flight_progress(const FlightProgress& progress) {
+  const std::string clearance =
+      std::isfinite(progress.min_clearance_m) ? fmt::format("{:.2f} m", progress.min_clearance_m) : "-";
+  fmt::print("\r\033[K{:5.2f} s  {:5.1f} of {:.0f} m  {:4.1f} m/s  least clearance {}  {:.2f} x real time",
+             progress.simulated_s, progress.progress_m, progress.goal_m, progress.speed_mps, clearance,
+             progress.wall_s > 0 ? progress.simulated_s / progress.wall_s : 0.0);
+  std::fflush(stdout);
+}
+
+void require_rig(const Scenario& scenario, const ScenarioArguments& arguments,
+                 const std::filesystem::path& rigs) {
+  std::error_code ignored;
+  if (std::filesystem::exists(rigs / (scenario.rig + ".yaml"), ignored)) return;
+  if (std::filesystem::is_regular_file(scenario.rig, ignored)) return;
+  throw ScenarioError(fmt::format("{}: rig: expected a name in {} or a rig file, got '{}'",
+                                  where_given(scenario_file(arguments.scenario), arguments.settings, "rig"),
+                                  rigs.string(), scenario.rig));
+}
+
+}  // namespace understory

@@ -1,0 +1,162 @@
+#include "scenarios/recording/euroc_recording.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <opencv2/core.hpp>
+
+#include "scenarios/config_tree.hpp"
+#include "scenarios/due.hpp"
+#include "scenarios/file_output.hpp"
+#include "scenarios/named_seed.hpp"
+#include "scenarios/video_writer.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kept_ns = 1'000'000'000;
+
+std::string text_of(const char* header, const std::map<std::int64_t, std::string>& lines) {
+  std::string text = header;
+  for (const auto& [t_ns, line] : lines) text += line;
+  return text;
+}
+
+/// Images hardly shrink where they are noisy, depth does: their bytes unpacked bound what PNG makes of them.
+std::uintmax_t expected_bytes(const Scenario& scenario, const StereoRig& rig, double expected_s) {
+  const double per_frame = 4.0 * rig.width_px * rig.height_px;
+  return static_cast<std::uintmax_t>(per_frame * scenario.cameras.rate_hz * expected_s);
+}
+
+}  // namespace
+
+cv::Mat depth_in_millimetres(const cv::Mat& depth_m) {
+  cv::Mat millimetres(depth_m.size(), CV_16UC1);
+  for (int row = 0; row < depth_m.rows; ++row) {
+    const auto* from = depth_m.ptr<float>(row);
+    auto* to = millimetres.ptr<std::uint16_t>(row);
+    for (int column = 0; column < depth_m.cols; ++column) {
+      const double value = std::round(1000.0 * static_cast<double>(from[column]));
+      const bool fits = value > 0 && value <= std::numeric_limits<std::uint16_t>::max();
+      to[column] = fits ? static_cast<std::uint16_t>(value) : std::uint16_t{0};
+    }
+  }
+  return millimetres;
+}
+
+EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario, const CalibratedRig& rig,
+                               double expected_s)
+    : folder_(folder / "mav0"),
+      part_(folder / "mav0.part"),
+      rig_(rig.rig),
+      truth_every_steps_(Due(scenario).imu_steps) {
+  std::error_code ignored;
+  if (fs::exists(fs::symlink_status(folder_, ignored)))
+    throw ScenarioError(
+        fmt::format("{}: expected a folder without a recording, found mav0 in it", folder.string()));
+  prepare_output_folder(folder);
+  fs::remove_all(part_, ignored);  // of a recording that was broken off
+  require_free_space(part_, expected_bytes(scenario, rig.rig, expected_s));
+  for (const char* sensor : {"cam0/data", "cam1/data", "depth0/data", "imu0", "state_groundtruth_estimate0"})
+    prepare_output_folder(part_ / sensor);
+
+  // The flight's own IMU draws its constants from this seed.
+  const ImuConfig& config = scenario.sensors.sensors.imu;
+  const Imu imu(config, seed_for(scenario.sensor_seed(), "imu"));
+  gyro_bias_radps_ = imu.gyro_bias_radps();
+  accelerometer_bias_mps2_ = imu.accelerometer_bias_mps2();
+
+  const auto cameras = recorded_cameras(rig);
+  const int camera_hz = scenario.cameras.rate_hz;
+  write_whole_file(part_ / "cam0/sensor.yaml", camera_sensor_text(cameras[0], rig_, camera_hz));
+  write_whole_file(part_ / "cam1/sensor.yaml", camera_sensor_text(cameras[1], rig_, camera_hz));
+  write_whole_file(part_ / "depth0/sensor.yaml", depth_sensor_text(rig_, camera_hz));
+  write_whole_file(part_ / "imu0/sensor.yaml", imu_sensor_text(config, scenario.sensors.sensors.imu_rate_hz));
+  write_whole_file(part_ / "state_groundtruth_estimate0/sensor.yaml",
+                   state_sensor_text("the simulation's truth; biases are the flight's constants"));
+}
+
+EurocRecording::~EurocRecording() {
+  std::error_code ignored;
+  fs::remove_all(part_, ignored);
+}
+
+void EurocRecording::observe(const Truth& truth) {
+  recent_.push_back(truth);
+  while (recent_.front().t_ns < truth.t_ns - kept_ns) recent_.pop_front();
+  if (steps_++ % truth_every_steps_ == 0) add_true_state(truth);
+}
+
+/// An image's moment may lie between two steps, the first one's before all of them.
+Truth EurocRecording::truth_at(std::int64_t t_ns) const {
+  auto after = recent_.begin();
+  while (after != recent_.end() && after->t_ns < t_ns) ++after;
+  if (after == recent_.end()) return recent_.back();
+  Truth truth = *after;
+  if (truth.t_ns == t_ns || after == recent_.begin()) {
+    truth.t_ns = t_ns;
+    return truth;
+  }
+  const Truth& before = *std::prev(after);
+  const double share =
+      static_cast<double>(t_ns - before.t_ns) / static_cast<double>(after->t_ns - before.t_ns);
+  const Eigen::Quaterniond from(before.T_world_body.linear()), to(after->T_world_body.linear());
+  const auto between = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) -> Eigen::Vector3d {
+    return (1 - share) * a + share * b;
+  };
+  truth.t_ns = t_ns;
+  truth.T_world_body =
+      Eigen::Translation3d(between(before.T_world_body.translation(), after->T_world_body.translation())) *
+      from.slerp(share, to);
+  truth.velocity_world_mps = between(before.velocity_world_mps, after->velocity_world_mps);
+  return truth;
+}
+
+void EurocRecording::add_true_state(const Truth& truth) {
+  true_states_.try_emplace(truth.t_ns, state_line({truth.t_ns, truth.T_world_body, truth.velocity_world_mps,
+                                                   gyro_bias_radps_, accelerometer_bias_mps2_}));
+}
+
+void EurocRecording::add(const ImuSample& sample) { imu_lines_ += imu_line(sample); }
+
+void EurocRecording::add_estimate(const State& state) {
+  estimates_.try_emplace(state.t_ns, state_line({state.t_ns, state.T_world_body,
+                                                 state.T_world_body.linear() * state.velocity_body_mps,
+                                                 state.gyro_bias_radps, state.accelerometer_bias_mps2}));
+}
+
+void EurocRecording::add(const StereoFrame& frame, StereoCameras& cameras) {
+  const Truth truth = truth_at(frame.t_ns);
+  add_true_state(truth);
+  const std::string name = fmt::format("{}.png", recorded_ns(frame.t_ns));
+  write_png(part_ / "cam0/data" / name, frame.left);
+  write_png(part_ / "cam1/data" / name, frame.right);
+  write_png(part_ / "depth0/data" / name, depth_in_millimetres(cameras.depth(truth.T_world_body)));
+  image_lines_ += fmt::format("{},{}\n", recorded_ns(frame.t_ns), name);
+  ++frames_;
+}
+
+void EurocRecording::finish() {
+  if (frames_ == 0)
+    throw ScenarioError(fmt::format("{}: expected at least one frame, the scenario's cameras gave none",
+                                    folder_.parent_path().string()));
+  for (const char* camera : {"cam0", "cam1", "depth0"})
+    write_whole_file(part_ / camera / "data.csv", image_header + image_lines_);
+  write_whole_file(part_ / "imu0/data.csv", imu_header + imu_lines_);
+  write_whole_file(part_ / "state_groundtruth_estimate0/data.csv", text_of(state_header, true_states_));
+  if (!estimates_.empty()) {
+    prepare_output_folder(part_ / "estimate0");
+    write_whole_file(part_ / "estimate0/sensor.yaml",
+                     state_sensor_text("what the flight's own estimator believed at the time"));
+    write_whole_file(part_ / "estimate0/data.csv", text_of(state_header, estimates_));
+  }
+  std::error_code error;
+  fs::rename(part_, folder_, error);
+  if (error)
+    throw ScenarioError(fmt::format("{}: expected a writable output: {}", folder_.string(), error.message()));
+}
+
+}  // namespace understory

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "estimation/samples.hpp"
+#include "estimation/state.hpp"
+#include "perception/stereo_frame.hpp"
+#include "scenarios/recording/euroc_texts.hpp"
+#include "scenarios/scenario.hpp"
+#include "sim/stereo_cameras.hpp"
+#include "sim/truth.hpp"
+
+namespace understory {
+
+/// Keeps what cameras and IMU saw, and what was true, in the EuRoC/ASL layout: <folder>/mav0
+/// (docs/record.md). It bears that name only when it is whole ("mav0.part" until then). Images are written as
+/// they come, the tables by finish().
+class EurocRecording {
+ public:
+  /// `expected_s`: how much of simulated time is to come; that many images must fit the disk. Throws
+  /// ScenarioError where the folder cannot be written or has a recording already, MachineError where the disk
+  /// is too full.
+  EurocRecording(const std::filesystem::path& folder, const Scenario& scenario, const CalibratedRig& rig,
+                 double expected_s);
+  ~EurocRecording();  ///< removes what finish() has not made whole
+  EurocRecording(const EurocRecording&) = delete;
+  EurocRecording& operator=(const EurocRecording&) = delete;
+
+  /// Every physics step, before what is seen in it.
+  void observe(const Truth& truth);
+  void add(const ImuSample& sample);
+  void add_estimate(const State& state);
+  /// Within a second of its moment. `cameras`, those that took it, draw the true depth. Throws MachineError
+  /// where the disk is full.
+  void add(const StereoFrame& frame, StereoCameras& cameras);
+  /// Throws ScenarioError where there is no frame.
+  void finish();
+
+  std::int64_t frames() const { return frames_; }
+
+ private:
+  Truth truth_at(std::int64_t t_ns) const;
+  void add_true_state(const Truth& truth);
+
+  std::filesystem::path folder_, part_;
+  StereoRig rig_;
+  std::int64_t truth_every_steps_;
+  Eigen::Vector3d gyro_bias_radps_, accelerometer_bias_mps2_;
+  std::deque<Truth> recent_;
+  std::int64_t steps_ = 0;
+  std::int64_t frames_ = 0;
+  std::string image_lines_, imu_lines_;
+  std::map<std::int64_t, std::string> true_states_, estimates_;  ///< by time: frames come late
+};
+
+/// Depth in metres (CV_32FC1) as 16-bit millimetres; 0 where there is nothing within 65.535 m.
+cv::Mat depth_in_millimetres(const cv::Mat& depth_m);
+
+}  // namespace understory

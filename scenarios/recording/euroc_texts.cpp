@@ -1,0 +1,121 @@
+#include "scenarios/recording/euroc_texts.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <opencv2/core/eigen.hpp>
+
+#include "scenarios/versions.hpp"
+
+namespace understory {
+namespace {
+
+std::string pose_text(const Eigen::Isometry3d& T_body_sensor) {
+  const Eigen::Matrix4d& m = T_body_sensor.matrix();
+  std::string text = "T_BS:\n  cols: 4\n  rows: 4\n  data: [";
+  for (int row = 0; row < 4; ++row)
+    fmt::format_to(std::back_inserter(text), "{}{}, {}, {}, {}", row > 0 ? ",\n         " : "", m(row, 0),
+                   m(row, 1), m(row, 2), m(row, 3));
+  return text + "]\n";
+}
+
+std::string head_text(const char* type, const std::string& comment, const Eigen::Isometry3d& T_body_sensor) {
+  return fmt::format("sensor_type: {}\ncomment: understory {}, {}\n\n{}", type, understory_version, comment,
+                     pose_text(T_body_sensor));
+}
+
+/// What cameras and depth images share.
+std::string pinhole_text(const CameraCalibration& camera, const StereoRig& rig, int rate_hz) {
+  const cv::Matx33d& K = camera.camera_matrix;
+  return fmt::format(
+      "\nrate_hz: {}\nresolution: [{}, {}]\ncamera_model: pinhole\n"
+      "intrinsics: [{}, {}, {}, {}] # fu, fv, cu, cv\n"
+      "distortion_model: radial-tangential\ndistortion_coefficients: [{}]\n",
+      rate_hz, rig.width_px, rig.height_px, K(0, 0), K(1, 1), K(0, 2), K(1, 2),
+      fmt::join(camera.distortion, ", "));
+}
+
+CameraCalibration rectified_camera(const StereoRig& rig, double center_x_px) {
+  CameraCalibration camera;
+  camera.camera_matrix = cv::Matx33d(rig.focal_px, 0, center_x_px, 0, rig.focal_px, rig.center_y_px, 0, 0, 1);
+  camera.distortion = {0, 0, 0, 0};
+  camera.projection =
+      cv::Matx34d(rig.focal_px, 0, center_x_px, 0, 0, rig.focal_px, rig.center_y_px, 0, 0, 0, 1, 0);
+  return camera;
+}
+
+std::string vector_text(const Eigen::Vector3d& v, int digits) {
+  return fmt::format(",{:.{}f},{:.{}f},{:.{}f}", v.x(), digits, v.y(), digits, v.z(), digits);
+}
+
+}  // namespace
+
+std::array<RecordedCamera, 2> recorded_cameras(const CalibratedRig& calibrated) {
+  const StereoRig& rig = calibrated.rig;
+  Eigen::Isometry3d T_body_right = rig.T_body_camera * Eigen::Translation3d(rig.baseline_m, 0, 0);
+  if (!calibrated.calibration)
+    return {RecordedCamera{rectified_camera(rig, rig.center_left_x_px), rig.T_body_camera},
+            RecordedCamera{rectified_camera(rig, rig.center_right_x_px), T_body_right}};
+  const StereoCalibration& raw = *calibrated.calibration;
+  Eigen::Matrix3d R_rectified_raw;
+  cv::cv2eigen(raw.right.rectification, R_rectified_raw);
+  T_body_right.linear() = T_body_right.linear() * R_rectified_raw;
+  std::array<RecordedCamera, 2> cameras{RecordedCamera{raw.left, raw.T_body_left},
+                                        RecordedCamera{raw.right, T_body_right}};
+  for (RecordedCamera& camera : cameras)
+    if (camera.camera.distortion.empty()) camera.camera.distortion = {0, 0, 0, 0};
+  return cameras;
+}
+
+std::string camera_sensor_text(const RecordedCamera& recorded, const StereoRig& rig, int rate_hz) {
+  const CameraCalibration& camera = recorded.camera;
+  const cv::Matx34d& P = camera.projection;
+  return head_text("camera", "simulated", recorded.T_body_camera) + pinhole_text(camera, rig, rate_hz) +
+         fmt::format(
+             "\n# Not EuRoC's: camera axes into rectified ones; the rectified pair's focal length, cu, cv; "
+             "where "
+             "the detector looks.\nrectification: [{}]\nrectified_intrinsics: [{}, {}, {}]\n"
+             "detection_depth_m: {}\n",
+             fmt::join(camera.rectification.val, ", "), P(0, 0), P(0, 2), P(1, 2), rig.detection_depth_m);
+}
+
+std::string depth_sensor_text(const StereoRig& rig, int rate_hz) {
+  return head_text("depth", "true depth along the optical axis of the rectified left camera",
+                   rig.T_body_camera) +
+         pinhole_text(rectified_camera(rig, rig.center_left_x_px), rig, rate_hz) +
+         "depth_unit_m: 0.001 # 16-bit PNG; 0: nothing within 65.535 m\n";
+}
+
+std::string imu_sensor_text(const ImuConfig& config, int rate_hz) {
+  // White noise of a density d, sampled at a rate f behind a filter that wide, has the deviation d sqrt(f).
+  const double per_root_hz = 1 / std::sqrt(static_cast<double>(rate_hz));
+  return head_text("imu", "simulated", Eigen::Isometry3d::Identity()) +
+         fmt::format(
+             "rate_hz: {}\n\n"
+             "gyroscope_noise_density: {:.6g}     # [ rad / s / sqrt(Hz) ]\n"
+             "gyroscope_random_walk: {:.6g}       # [ rad / s^2 / sqrt(Hz) ]\n"
+             "accelerometer_noise_density: {:.6g} # [ m / s^2 / sqrt(Hz) ]\n"
+             "accelerometer_random_walk: {:.6g}   # [ m / s^3 / sqrt(Hz) ]\n",
+             rate_hz, config.gyro_noise_radps * per_root_hz, config.gyro_walk_radpsps_rthz,
+             config.accelerometer_noise_mps2 * per_root_hz, config.accelerometer_walk_mps2ps_rthz);
+}
+
+std::string state_sensor_text(const std::string& comment) {
+  return head_text("visual-inertial", comment, Eigen::Isometry3d::Identity());
+}
+
+std::string imu_line(const ImuSample& sample) {
+  return fmt::format("{}", recorded_ns(sample.t_ns)) + vector_text(sample.angular_rate_body_radps, 9) +
+         vector_text(sample.specific_force_body_mps2, 9) + "\n";
+}
+
+std::string state_line(const RecordedState& state) {
+  const Eigen::Quaterniond q(state.T_world_body.linear());
+  return fmt::format("{}", recorded_ns(state.t_ns)) + vector_text(state.T_world_body.translation(), 9) +
+         fmt::format(",{:.12f},{:.12f},{:.12f},{:.12f}", q.w(), q.x(), q.y(), q.z()) +
+         vector_text(state.velocity_world_mps, 9) + vector_text(state.gyro_bias_radps, 9) +
+         vector_text(state.accelerometer_bias_mps2, 9) + "\n";
+}
+
+}  // namespace understory

@@ -1,0 +1,52 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+/// `understory record` as people meet it.
+namespace {
+
+namespace fs = std::filesystem;
+using understory::support::content_of;
+using understory::support::expect_refusal;
+using understory::support::TemporaryFolder;
+using understory::support::understory;
+
+const std::string flight = " forest --seed 1007 --set time_limit_s=0.9 --set cameras.rate_hz=60";
+
+TEST(RecordCommand, RecordingChangesNoFlight) {
+  const TemporaryFolder folder;
+  const std::string flown = (folder.path() / "flown").string(), kept = (folder.path() / "kept").string();
+  EXPECT_EQ(understory("fly --quiet" + flight + " --out " + flown).status, 1);  // time is over
+  const auto outcome = understory("record" + flight + " --out " + kept);
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  const auto digest = [](const std::string& run) {
+    return nlohmann::json::parse(content_of(fs::path(run) / "result.json")).at("digest");
+  };
+  EXPECT_EQ(digest(flown), digest(kept));
+  EXPECT_EQ(content_of(fs::path(flown) / "scenario.yaml"), content_of(fs::path(kept) / "scenario.yaml"));
+  for (const char* sensor : {"cam0", "cam1", "imu0", "state_groundtruth_estimate0", "estimate0", "depth0"})
+    for (const char* file : {"sensor.yaml", "data.csv"})
+      EXPECT_TRUE(fs::is_regular_file(fs::path(kept) / "mav0" / sensor / file)) << sensor << ", " << file;
+  expect_refusal("record" + flight + " --out " + kept, "expected a folder without a recording");
+}
+
+TEST(RecordCommand, WrongArgumentsAreBadInput) {
+  const TemporaryFolder folder;
+  const std::string out = " --out " + (folder.path() / "out").string();
+  expect_refusal("record forest", "--out");
+  expect_refusal("record nowhere" + out, "nowhere");
+  expect_refusal("record forest --walk=0" + out, "--walk");
+  expect_refusal("record forest --walk --height 20" + out, "--height");
+  expect_refusal("record forest --height 2" + out, "--height: expected beside --walk");
+  expect_refusal("record forest --walk --set forest.square_metres_per_tree=4" + out, "straight lane");
+  expect_refusal("record forest --set rig=none" + out, "rig: expected a name");
+  expect_refusal("record forest --out /proc/none", "/proc/none");
+  EXPECT_FALSE(fs::exists(folder.path() / "out"));
+}
+
+}  // namespace
