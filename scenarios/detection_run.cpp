@@ -12,6 +12,7 @@
 #include "scenarios/bad_input.hpp"
 #include "scenarios/detection_input.hpp"
 #include "scenarios/detection_pictures.hpp"
+#include "scenarios/elapsed.hpp"
 #include "scenarios/file_output.hpp"
 #include "scenarios/picture_folder.hpp"
 
@@ -20,10 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 /// Runs `work` and adds its wall time to `sum_ms`; gives back what `work` gives.
 template <typename Work>

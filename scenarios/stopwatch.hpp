@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/elapsed.hpp"
 #include "scenarios/flight_result.hpp"
 
 namespace understory {
@@ -31,10 +32,6 @@ class Stopwatch {
     Clock::time_point begin = Clock::now();
     ~Booking() { stopwatch.book(stage, seconds_since(begin)); }
   };
-
-  static double seconds_since(Clock::time_point begin) {
-    return std::chrono::duration<double>(Clock::now() - begin).count();
-  }
 
   void book(const char* stage, double seconds) {
     auto timing = std::find_if(timings_.begin(), timings_.end(),

@@ -8,6 +8,7 @@
 
 #include "scenarios/bench/flight_processes.hpp"
 #include "scenarios/config_tree.hpp"
+#include "scenarios/elapsed.hpp"
 #include "scenarios/file_output.hpp"
 
 namespace understory {
@@ -15,10 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 struct Batch {
   std::vector<TimedFlight> flights;

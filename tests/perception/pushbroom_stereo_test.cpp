@@ -9,7 +9,6 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "perception/isolation.hpp"
 #include "tests/perception/rigs.hpp"
 #include "tests/support/synthetic_stereo.hpp"
 
@@ -302,24 +301,6 @@ TEST(PushbroomStereo, RefusesImagesOfAnotherSizeOrKind) {
   EXPECT_THROW(detector.detect({0, right_size, small}), std::logic_error);
   EXPECT_THROW(detector.detect({0, cv::Mat(240, 376, CV_8UC3, cv::Scalar()), right_size}), std::logic_error);
   EXPECT_TRUE(detector.detect({0, right_size, right_size}).empty());
-}
-
-TEST(Isolation, KeepsExactlyTheHitsWithCompany) {
-  std::vector<StereoHit> hits(6);
-  const double x[] = {0.0, 0.9, 5.0,
-                      1.7, 5.5, 9.0};  // 0.0 has one other within 1 m, 0.9 two, 1.7 one, 5.0 one
-  for (std::size_t i = 0; i < 6; ++i) hits[i].position_camera = {x[i], 0, 10};
-  const auto kept = [&](int least_points) {
-    std::vector<StereoHit> some;
-    without_isolated(hits, least_points, 1.0, some);
-    return some;
-  };
-  ASSERT_EQ(kept(3).size(), 1u);
-  EXPECT_DOUBLE_EQ(kept(3)[0].position_camera.x(), 0.9);
-  EXPECT_EQ(kept(2).size(), 5u);
-  EXPECT_EQ(kept(1).size(), 6u);
-  hits.clear();
-  EXPECT_TRUE(kept(3).empty());
 }
 
 }  // namespace
