@@ -102,22 +102,34 @@ TEST_F(CampaignRun, KilledAgainAndAgainItEndsWithTheRowsOfAnUndisturbedOne) {
 }
 
 TEST_F(CampaignRun, ACrashAHangAndAKillCostOneFlightEach) {
-  const std::string campaign = blind("seeds: 1..6\ntimeout_s: 2\n");
+  const std::string campaign = blind("seeds: 1..6\ntimeout_s: 4\ngrid: {forest.length_m: [250]}\n");
   const pid_t child = start(campaign, "results");
-  kill(process_of("clear-blind-1"), SIGSEGV);
-  kill(process_of("clear-blind-3"), SIGKILL);
-  kill(process_of("clear-blind-5"), SIGSTOP);
+  const auto strike = [](const std::string& seed, int signal) {
+    const pid_t flight = process_of("clear-blind-length_m=250-" + seed);
+    ASSERT_GT(flight, 1) << "flight " << seed << " was over before it was found";
+    kill(flight, signal);
+  };
+  strike("1", SIGSEGV);
+  strike("3", SIGKILL);
+  strike("5", SIGSTOP);
   EXPECT_EQ(wait_for(child), 1);
   const std::string rows = text("results/flights.csv");
-  EXPECT_NE(rows.find("clear-blind-1,clear-blind,1,crashed,signal 11 (Segmentation fault),"),
+  EXPECT_NE(
+      rows.find(
+          "clear-blind-length_m=250-1,clear-blind-length_m=250,1,crashed,signal 11 (Segmentation fault),"),
+      std::string::npos)
+      << rows;
+  EXPECT_NE(rows.find("clear-blind-length_m=250-3,clear-blind-length_m=250,3,killed,signal 9 (Killed),"),
             std::string::npos)
       << rows;
-  EXPECT_NE(rows.find("clear-blind-3,clear-blind,3,killed,signal 9 (Killed),"), std::string::npos) << rows;
-  EXPECT_NE(rows.find("clear-blind-5,clear-blind,5,hung,took longer than timeout_s = 2 s,"),
-            std::string::npos)
+  EXPECT_NE(
+      rows.find(
+          "clear-blind-length_m=250-5,clear-blind-length_m=250,5,hung,took longer than timeout_s = 4 s,"),
+      std::string::npos)
       << rows;
   for (const char* seed : {"2", "4", "6"})
-    EXPECT_NE(rows.find(std::string("clear-blind-") + seed + ",clear-blind," + seed + ",flown,,goal,"),
+    EXPECT_NE(rows.find(std::string("clear-blind-length_m=250-") + seed + ",clear-blind-length_m=250," +
+                        seed + ",flown,,goal,"),
               std::string::npos)
         << rows;
   // And flown again they are as if nothing had been.

@@ -80,7 +80,7 @@ class Cluster {
       if (is_daemon || is_task) processes.insert(std::stoi(name));
       if (is_task) processes.insert(parent_of(process.path()));  // the step, or a task again
     }
-    processes.erase(1);
+    for (const pid_t none_of_ours : {-1, 0, 1}) processes.erase(none_of_ours);
     processes.erase(getpid());
     for (const pid_t process : processes) kill(process, SIGSTOP);
     for (const pid_t process : processes) kill(process, SIGKILL);
