@@ -10,20 +10,15 @@
 #include <cstring>
 
 #include "scenarios/file_output.hpp"
+#include "scenarios/this_program.hpp"
 
 namespace understory {
 
 void FlightProcesses::start(std::uint64_t tag, const std::vector<std::string>& arguments) {
   while (running_.size() >= static_cast<std::size_t>(greatest_count_)) wait_for_one();
-  std::vector<char*> argv{const_cast<char*>("understory")};
-  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
   const pid_t child = fork();
   if (child < 0) throw MachineError(fmt::format("cannot start a flight: {}", std::strerror(errno)));
-  if (child == 0) {
-    execv("/proc/self/exe", argv.data());
-    _exit(127);
-  }
+  if (child == 0) become_this_program(arguments);
   running_[child] = tag;
 }
 

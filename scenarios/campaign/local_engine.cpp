@@ -20,6 +20,7 @@
 #include "scenarios/campaign/stop_signals.hpp"
 #include "scenarios/config_tree.hpp"
 #include "scenarios/file_output.hpp"
+#include "scenarios/this_program.hpp"
 
 namespace understory {
 namespace {
@@ -51,17 +52,13 @@ std::string last_line_of(const fs::path& file) {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(127);
-  std::vector<char*> argv{const_cast<char*>("understory")};
-  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
   const int nothing = open("/dev/null", O_RDWR);
   const int log_file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   if (nothing < 0 || log_file < 0) _exit(127);
   dup2(nothing, STDIN_FILENO);
   dup2(nothing, STDOUT_FILENO);
   dup2(log_file, STDERR_FILENO);
-  execv("/proc/self/exe", argv.data());
-  _exit(127);
+  become_this_program(arguments);
 }
 
 pid_t start(const std::vector<std::string>& arguments, const fs::path& log) {

@@ -7,45 +7,35 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <thread>
 
 #include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 /// Campaigns as they are run and as they break: flights of a clear field by the blind, a fraction of a second
 /// each.
 namespace {
 
 namespace fs = std::filesystem;
+using understory::support::content_of;
 using understory::support::expect_refusal;
 using understory::support::Outcome;
 using understory::support::understory;
 
 class CampaignRun : public testing::Test {
  protected:
-  fs::path path =
-      fs::path(testing::TempDir()) /
-      ("understory_campaign_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-  void SetUp() override {
-    fs::remove_all(path);
-    fs::create_directories(path);
-  }
-  void TearDown() override { fs::remove_all(path); }
+  const understory::support::TemporaryFolder temporary;
+  const fs::path& path = temporary.path();
 
   std::string file(const std::string& name, const std::string& text) const {
-    std::ofstream(path / name) << text;
-    return (path / name).string();
+    return temporary.write(name, text).string();
   }
   std::string blind(const std::string& more) const {
     return file("blind.yaml",
                 "scenario: clear\noverrides: [{name: blind, set: {perception.detector: none}}]\n" + more);
   }
-  std::string text(const fs::path& name) const {
-    std::ifstream stream(path / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
+  std::string text(const fs::path& name) const { return content_of(path / name); }
   std::string out(const std::string& name) const { return " --out " + (path / name).string(); }
 
   /// The campaign in the background.
@@ -64,9 +54,7 @@ class CampaignRun : public testing::Test {
   static pid_t process_of(const std::string& id) {
     for (int look = 0; look < 2000; ++look) {
       for (const auto& process : fs::directory_iterator("/proc")) {
-        std::ifstream stream(process.path() / "cmdline", std::ios::binary);
-        const std::string line{std::istreambuf_iterator<char>(stream), {}};
-        if (line.find("/" + id + ".json") != std::string::npos)
+        if (content_of(process.path() / "cmdline").find("/" + id + ".json") != std::string::npos)
           return std::stoi(process.path().filename().string());
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -74,8 +62,6 @@ class CampaignRun : public testing::Test {
     return -1;
   }
 };
-
-constexpr int killed_by_nobody = 0;
 
 int wait_for(pid_t child) {
   int status = 0;
@@ -92,7 +78,7 @@ TEST_F(CampaignRun, KilledAgainAndAgainItEndsWithTheRowsOfAnUndisturbedOne) {
     kill(child, kills % 3 == 2 ? SIGINT : SIGKILL);
     wait_for(child);
   }
-  EXPECT_EQ(understory("campaign " + campaign + out("disturbed") + " --resume").status, killed_by_nobody);
+  EXPECT_EQ(understory("campaign " + campaign + out("disturbed") + " --resume").status, 0);
   EXPECT_EQ(text("disturbed/flights.csv"), text("undisturbed/flights.csv"));
   EXPECT_EQ(text("disturbed/flights.jsonl"), text("undisturbed/flights.jsonl"));
   const std::string rows = text("disturbed/flights.csv");

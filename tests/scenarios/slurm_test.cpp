@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <set>
 #include <string>
 #include <thread>
@@ -20,6 +19,7 @@
 namespace {
 
 namespace fs = std::filesystem;
+using understory::support::content_of;
 using understory::support::Outcome;
 using understory::support::understory;
 
@@ -27,11 +27,6 @@ bool installed() {
   for (const char* program : {"slurmctld", "slurmd", "sbatch", "squeue", "munged"})
     if (std::system(("command -v " + std::string(program) + " >/dev/null 2>&1").c_str()) != 0) return false;
   return true;
-}
-
-std::string content_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 /// munged, slurmctld and two slurmd with keys, ports and folders of their own.

@@ -5,10 +5,10 @@
 
 #include <cstdio>
 #include <fstream>
-#include <iterator>
 
 #include "sim/egl_library.hpp"
 #include "tests/sim/camera_scenes.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 /// A process draws through one library: every renderer gets a child, and this process opens none.
 namespace understory {
@@ -43,11 +43,6 @@ struct Drawn {
   std::string complaint;
 };
 
-std::string text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 /// What draw() leaves in a process of its own, whose environment has `variable` set.
 Drawn drawn(RendererKind renderer, const char* variable = nullptr, const char* value = nullptr) {
   const fs::path pictures = fs::path(testing::TempDir()) / ("renderers_" + std::to_string(getpid()));
@@ -63,7 +58,7 @@ Drawn drawn(RendererKind renderer, const char* variable = nullptr, const char* v
   } else {
     waitpid(child, nullptr, 0);
   }
-  const Drawn result{text_of(pictures), text_of(complaint)};
+  const Drawn result{support::content_of(pictures), support::content_of(complaint)};
   fs::remove(pictures);
   fs::remove(complaint);
   return result;
