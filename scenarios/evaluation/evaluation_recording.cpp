@@ -1,0 +1,119 @@
+#include "scenarios/evaluation/evaluation_recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
+
+#include "perception/io/euroc_calibration.hpp"
+#include "perception/io/image_file.hpp"
+#include "perception/io/text_table.hpp"
+#include "scenarios/bad_input.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A 16-bit image of the rig's size: depth in millimetres, numbers of objects.
+cv::Mat read_16_bit_image(const fs::path& file, const StereoRig& rig) {
+  const cv::Mat image = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
+  if (image.type() != CV_16UC1 || image.size() != cv::Size(rig.width_px, rig.height_px))
+    throw std::runtime_error(
+        fmt::format("{}: expected a 16-bit gray image of {}x{}", file.string(), rig.width_px, rig.height_px));
+  return image;
+}
+
+std::vector<TimedPose> poses_where_there(const fs::path& file) {
+  return fs::exists(file) ? read_poses(file) : std::vector<TimedPose>();
+}
+
+/// From the poses 10 ms before and after.
+double speed_at(const std::vector<TimedPose>& poses, std::int64_t t_ns) {
+  constexpr std::int64_t beside_ns = 10'000'000;
+  const std::int64_t from_ns = std::max(t_ns - beside_ns, poses.front().t_ns);
+  const std::int64_t to_ns = std::min(t_ns + beside_ns, poses.back().t_ns);
+  const auto from = pose_at(poses, from_ns), to = pose_at(poses, to_ns);
+  if (!from || !to || to_ns <= from_ns) return 0;
+  return (to->translation() - from->translation()).norm() / (1e-9 * static_cast<double>(to_ns - from_ns));
+}
+
+}  // namespace
+
+std::vector<RecordedObject> parse_recorded_objects(const std::string& text, const std::string& name) {
+  constexpr const char* expected = "expected 'number,name,kind,from_x,from_y,from_z,to_x,to_y,to_z,radius'";
+  std::vector<RecordedObject> objects;
+  for (const TableLine& line : table_lines(text, CellsParted::by_commas)) {
+    if (line.cells.size() != 10) fail_at_line(name, line.number, expected);
+    const auto number = [&](std::size_t cell) {
+      const auto value = number_in(line.cells[cell]);
+      if (!value) fail_at_line(name, line.number, expected);
+      return *value;
+    };
+    RecordedObject object;
+    const auto given = nanoseconds_in(line.cells[0]);  // a whole number from 0
+    if (!given || *given < 1 || *given > 65535) fail_at_line(name, line.number, expected);
+    object.number = static_cast<int>(*given);
+    object.name = line.cells[1];
+    object.kind = line.cells[2];
+    object.from_world = {number(3), number(4), number(5)};
+    object.to_world = {number(6), number(7), number(8)};
+    object.radius_m = number(9);
+    objects.push_back(object);
+  }
+  return objects;
+}
+
+EvaluationRecording::EvaluationRecording(const fs::path& folder, const CalibrationOptions& options) {
+  bad_input_if_refused([&] {
+    sequence_ = euroc_sequence(folder);
+    folder_ = *euroc_folder(folder);
+    camera_ = read_calibrated_rig(folder, options);
+    true_poses_ = poses_where_there(folder_ / "state_groundtruth_estimate0/data.csv");
+    estimates_ = poses_where_there(folder_ / "estimate0/data.csv");
+    has_depth_ = fs::exists(folder_ / "depth0/data.csv");
+    const fs::path objects = folder_ / "objects0/objects.csv";
+    if (fs::exists(objects)) objects_ = parse_recorded_objects(text_of(objects), objects.string());
+    return 0;
+  });
+  if (camera_.calibration) rectifier_.emplace(*camera_.calibration, Interpolation::nearest);
+}
+
+double EvaluationRecording::duration_s() const {
+  if (sequence_.pairs.size() < 2) return 0;
+  return 1e-9 * static_cast<double>(sequence_.pairs.back().t_ns - sequence_.pairs.front().t_ns);
+}
+
+EvaluationFrame EvaluationRecording::frame(std::size_t index) {
+  const StereoFiles& files = sequence_.pairs[index];
+  EvaluationFrame frame;
+  bad_input_if_refused([&] {
+    frame.pair = {files.t_ns, read_gray_image(files.left), read_gray_image(files.right)};
+    const fs::path name = files.left.filename();
+    if (has_depth_) frame.truth.depth_mm = read_16_bit_image(folder_ / "depth0/data" / name, rig());
+    if (has_objects()) frame.truth.objects = read_16_bit_image(folder_ / "objects0/data" / name, rig());
+    return 0;
+  });
+  if (rectifier_) frame.pair = rectifier_->rectify(frame.pair);
+  if (frame.pair.left.size() != cv::Size(rig().width_px, rig().height_px))
+    throw ScenarioError(fmt::format("{}: expected {}x{} as the calibration has", files.left.string(),
+                                    rig().width_px, rig().height_px));
+  frame.mean_gray = cv::mean(frame.pair.left)[0];
+  if (!has_poses()) return frame;
+  if (const auto T_world_body = pose_at(true_poses_, files.t_ns)) {
+    frame.T_world_camera = *T_world_body * rig().T_body_camera;
+    frame.T_odometry_camera = frame.T_world_camera;
+    frame.speed_mps = speed_at(true_poses_, files.t_ns);
+    frame.bank_rad = std::asin(std::min(1.0, std::abs(frame.T_world_camera->linear()(2, 0))));
+  }
+  if (!has_estimates()) return frame;
+  frame.T_odometry_camera.reset();
+  if (const auto T_odometry_body = pose_at(estimates_, files.t_ns))
+    frame.T_odometry_camera = *T_odometry_body * rig().T_body_camera;
+  return frame;
+}
+
+}  // namespace understory

@@ -1,0 +1,76 @@
+#include "scenarios/evaluation/obstacle_sightings.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "scenarios/clearance.hpp"
+
+namespace understory {
+namespace {
+
+constexpr double half_span_m = 0.4318;  // FACTS: span 0.8636 m
+constexpr double straight_on_m = 15;    // farther than any depth looked at
+constexpr double passed_by_m = 0.5;     // the path goes on at least this far beyond
+
+}  // namespace
+
+ObstacleSightings::ObstacleSightings(std::vector<RecordedObject> objects, double baseline_m)
+    : objects_(std::move(objects)), baseline_m_(baseline_m) {}
+
+void ObstacleSightings::add(const EvaluationFrame& frame, const DetectionGrid& grid,
+                            const std::vector<ExpectedBlock>& expected, const std::vector<StereoHit>& hits) {
+  if (!frame.T_world_camera) return;
+  path_world_.push_back(*frame.T_world_camera * Eigen::Vector3d(0.5 * baseline_m_, 0, 0));
+  for (const ExpectedBlock& block : expected) {
+    Gathered& gathered = gathered_[block.object];
+    if (gathered.sighting.blocks_in_view++ == 0) gathered.seen_at = path_world_.size() - 1;
+  }
+  for (const StereoHit& hit : hits) {
+    const DepthInterval& interval = grid.depths[grid.depth_of(hit)].one_pixel;
+    const BlockContent content = content_between(frame.truth, hit.column_px, hit.row_px, interval, true);
+    if (!content.holds()) continue;
+    ObstacleSighting& sighting = gathered_[content.object].sighting;
+    ++sighting.hits;
+    if (sighting.hits == 1) sighting.first_hit_m = content.mean_depth_m;
+    if (sighting.hits == 3) sighting.third_hit_m = content.mean_depth_m;
+  }
+}
+
+bool ObstacleSightings::would_touch(const RecordedObject& object, std::size_t at) const {
+  const std::size_t to = std::min(at + 1, path_world_.size() - 1), from = to > 0 ? to - 1 : 0;
+  const Eigen::Vector3d step = path_world_[to] - path_world_[from];
+  if (step.norm() < 1e-9) return false;
+  const Segment ahead{path_world_[at], path_world_[at] + straight_on_m * step.normalized()};
+  return segment_distance_m(ahead, {object.from_world, object.to_world}) - object.radius_m <= half_span_m;
+}
+
+std::vector<ObstacleSighting> ObstacleSightings::passed() const {
+  std::vector<ObstacleSighting> sightings;
+  if (path_world_.size() < 2) return sightings;
+  for (const RecordedObject& object : objects_) {
+    if (!object.is_obstacle()) continue;
+    const Segment bar{object.from_world, object.to_world};
+    double least_m = std::numeric_limits<double>::infinity();
+    std::size_t nearest = 0;
+    for (std::size_t i = 0; i + 1 < path_world_.size(); ++i) {
+      const double distance_m = segment_distance_m({path_world_[i], path_world_[i + 1]}, bar);
+      if (distance_m >= least_m) continue;
+      least_m = distance_m;
+      nearest = i;
+    }
+    if ((path_world_.back() - path_world_[nearest]).norm() < passed_by_m) continue;
+    const auto found = gathered_.find(object.number);
+    ObstacleSighting sighting;
+    if (found != gathered_.end()) {
+      sighting = found->second.sighting;
+      sighting.on_the_path = would_touch(object, found->second.seen_at);
+    }
+    sighting.object = object.number;
+    sighting.miss_m = least_m - object.radius_m;
+    sightings.push_back(sighting);
+  }
+  return sightings;
+}
+
+}  // namespace understory

@@ -1,0 +1,211 @@
+#include "scenarios/evaluation/vision_tally.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+
+namespace understory {
+namespace {
+
+constexpr double response_bin_m = 0.5, response_reach_m = 30;
+constexpr DepthInterval any_depth{0.001, 65.535};
+
+/// The bin of `edges` that `value` lies in, as "02 1 to 2 m": numbered, so that names sort.
+std::string bin_name(double value, const std::vector<double>& edges, const char* unit) {
+  const auto above = std::ranges::upper_bound(edges, value);
+  const auto index = above - edges.begin();
+  if (above == edges.begin()) return fmt::format("{:02} below {} {}", index, edges.front(), unit);
+  if (above == edges.end()) return fmt::format("{:02} from {} {}", index, edges.back(), unit);
+  return fmt::format("{:02} {} to {} {}", index, *(above - 1), *above, unit);
+}
+
+/// Quarters of the one-pixel interval, in disparity.
+std::string distance_name(const ExpectedBlock& block, const DetectionGrid& grid, const StereoRig& rig) {
+  const LookedAtDepth& depth = grid.depths[block.depth];
+  const double off_px = depth.disparity_px - rig.disparity_px(block.mean_depth_m);  // farther: positive
+  const int quarter = std::clamp(static_cast<int>(std::floor(2 * off_px)), -2, 1);
+  return fmt::format("{}{} {:.2f} to {:.2f} m", block.depth, quarter + 2,
+                     rig.depth_m(depth.disparity_px - 0.5 * quarter),
+                     rig.depth_m(depth.disparity_px - 0.5 * (quarter + 1)));
+}
+
+/// Whether every block has a hit. `depth`: only hits of that depth looked at; otherwise of any.
+std::vector<bool> blocks_hit(const std::vector<StereoHit>& hits, const DetectionGrid& grid) {
+  std::vector<bool> hit_at(static_cast<std::size_t>(grid.block_count()) * grid.depths.size());
+  for (const StereoHit& hit : hits) {
+    const int block = grid.block_of(hit);
+    if (block >= 0)
+      hit_at[grid.depth_of(hit) * static_cast<std::size_t>(grid.block_count()) +
+             static_cast<std::size_t>(block)] = true;
+  }
+  return hit_at;
+}
+
+struct FrameTally {
+  const EvaluationFrame& frame;
+  const DetectionGrid& grid;
+  const StereoRig& rig;
+  const std::map<int, std::string>& kinds;
+  VisionTally& to;
+
+  std::string kind_of(int object) const {
+    const auto found = kinds.find(object);
+    return found == kinds.end() ? "surface" : found->second;
+  }
+  /// The parts that a whole frame belongs to.
+  std::array<TallyPart*, 3> frame_parts() const {
+    static const std::vector<double> grays{48, 80, 112, 144, 176}, speeds_mps{2, 8, 9, 10, 11, 12, 13},
+        banks_deg{10, 30, 50};
+    return {&to.parts["lighting"][bin_name(frame.mean_gray, grays, "gray")],
+            &to.parts["speed"][bin_name(frame.speed_mps, speeds_mps, "m/s")],
+            &to.parts["bank"][bin_name(frame.bank_rad * 180 / std::numbers::pi, banks_deg, "deg")]};
+  }
+  std::string lateral_name(int block, double depth_m) const {
+    static const std::vector<double> edges_m{1, 2, 3, 4};
+    const double column_px = (block % grid.columns + 0.5) * truth_block_px - 0.5;
+    return bin_name(std::abs(column_px - rig.center_left_x_px) * depth_m / rig.focal_px, edges_m, "m");
+  }
+
+  void add_hits(const std::vector<StereoHit>& hits, const std::array<TallyPart*, 3>& parts) {
+    for (const StereoHit& hit : hits) {
+      const auto right = judge(hit, frame.truth, grid);
+      for (std::size_t i = 0; i < tolerance_count; ++i) to.precision[i].count(right[i]);
+      for (TallyPart* part : parts) part->precision.count(right[one_pixel]);
+      const int block = grid.block_of(hit);
+      if (block >= 0) {
+        ++(right[one_pixel] ? to.right_at : to.wrong_at)[static_cast<std::size_t>(block)];
+        to.parts["lateral offset"][lateral_name(block, hit.position_camera.z())].precision.count(
+            right[one_pixel]);
+      }
+      if (!right[one_pixel]) ++to.false_on[lies_on(hit, frame.truth, kinds)];
+    }
+  }
+
+  void add_expected(const std::vector<bool>& hit_at, const std::array<TallyPart*, 3>& parts) {
+    const auto is_hit = [&](const ExpectedBlock& block) -> bool {
+      return hit_at[block.depth * static_cast<std::size_t>(grid.block_count()) +
+                    static_cast<std::size_t>(block.block)];
+    };
+    for (std::size_t i = 0; i < tolerances_m.size(); ++i)
+      for (const ExpectedBlock& block : expected_blocks(frame.truth, grid, tolerances_m[i]))
+        to.recall[i].count(is_hit(block));
+    for (const ExpectedBlock& block : expected_blocks(frame.truth, grid)) {
+      const bool found = is_hit(block);
+      to.recall[one_pixel].count(found);
+      for (TallyPart* part : parts) part->recall.count(found);
+      to.parts["kind"][kind_of(block.object)].recall.count(found);
+      to.parts["distance"][distance_name(block, grid, rig)].recall.count(found);
+      to.parts["lateral offset"][lateral_name(block.block, block.mean_depth_m)].recall.count(found);
+      ++to.expected_at[static_cast<std::size_t>(block.block)];
+    }
+  }
+
+  /// Hits on obstacles at every depth: what the detector answers to.
+  void add_response(const std::vector<bool>& hit_at) {
+    const auto blocks = static_cast<std::size_t>(grid.block_count());
+    for (int row = 0; row < grid.rows; ++row)
+      for (int column = grid.first_column(0); column < grid.columns; ++column) {
+        const BlockContent content =
+            content_between(frame.truth, column * truth_block_px, row * truth_block_px, any_depth, true);
+        if (content.pixels < truth_block_px * truth_block_px) continue;  // edges have two depths
+        const auto bin = static_cast<std::size_t>(content.mean_depth_m / response_bin_m);
+        if (bin >= to.response.size()) continue;
+        bool found = false;
+        for (std::size_t depth = 0; depth < grid.depths.size(); ++depth)
+          found = found || hit_at[depth * blocks + static_cast<std::size_t>(row * grid.columns + column)];
+        to.response[bin].count(found);
+      }
+  }
+};
+
+void make_room(const DetectionGrid& grid, VisionTally& tally) {
+  tally.columns = grid.columns;
+  for (auto* map : {&tally.right_at, &tally.wrong_at, &tally.expected_at})
+    map->resize(static_cast<std::size_t>(grid.block_count()));
+  tally.response.resize(static_cast<std::size_t>(response_reach_m / response_bin_m));
+}
+
+}  // namespace
+
+std::array<bool, tolerance_count> judge(const StereoHit& hit, const TrueImages& truth,
+                                        const DetectionGrid& grid) {
+  const auto borne_out = [&](DepthInterval depths) {
+    return content_between(truth, hit.column_px, hit.row_px, depths, false).holds();
+  };
+  const double claimed_m = hit.position_camera.z();
+  std::array<bool, tolerance_count> right{};
+  for (std::size_t i = 0; i < tolerances_m.size(); ++i)
+    right[i] = borne_out({claimed_m - tolerances_m[i], claimed_m + tolerances_m[i]});
+  right[one_pixel] = borne_out(grid.depths[grid.depth_of(hit)].one_pixel);
+  return right;
+}
+
+std::string lies_on(const StereoHit& hit, const TrueImages& truth, const std::map<int, std::string>& kinds) {
+  constexpr double jump_m = 1.0;
+  const auto kind_of = [&](int object) {
+    const auto found = kinds.find(object);
+    return found == kinds.end() ? std::string("surface") : found->second;
+  };
+  const BlockContent all = content_between(truth, hit.column_px, hit.row_px, any_depth, false);
+  if (!all.holds()) return "sky";
+  const BlockContent obstacle = content_between(truth, hit.column_px, hit.row_px, any_depth, true);
+  const BlockContent beyond =
+      content_between(truth, hit.column_px, hit.row_px, {obstacle.mean_depth_m + jump_m, 65.5}, false);
+  const bool sky_too = all.pixels <= truth_block_px * truth_block_px - least_true_pixels;
+  if (obstacle.holds() && (beyond.holds() || sky_too)) return "edge of " + kind_of(obstacle.object);
+  if (!obstacle.holds()) return kind_of(all.object);
+  return kind_of(obstacle.object) +
+         (obstacle.mean_depth_m < hit.position_camera.z() ? ", nearer" : ", farther");
+}
+
+void VisionTally::add(const VisionTally& other) {
+  frames += other.frames;
+  seconds += other.seconds;
+  for (std::size_t i = 0; i < tolerance_count; ++i) {
+    precision[i].add(other.precision[i]);
+    recall[i].add(other.recall[i]);
+  }
+  for (const auto& [what, count] : other.false_on) false_on[what] += count;
+  for (const auto& [name, bins] : other.parts)
+    for (const auto& [bin, part] : bins) {
+      parts[name][bin].precision.add(part.precision);
+      parts[name][bin].recall.add(part.recall);
+    }
+  response.resize(std::max(response.size(), other.response.size()));
+  for (std::size_t i = 0; i < other.response.size(); ++i) response[i].add(other.response[i]);
+  columns = std::max(columns, other.columns);
+  const auto add_map = [](std::vector<std::int64_t>& to, const std::vector<std::int64_t>& from) {
+    to.resize(std::max(to.size(), from.size()));
+    for (std::size_t i = 0; i < from.size(); ++i) to[i] += from[i];
+  };
+  add_map(right_at, other.right_at);
+  add_map(wrong_at, other.wrong_at);
+  add_map(expected_at, other.expected_at);
+}
+
+double VisionTally::f_score() const {
+  const double p = precision[one_pixel].value(), r = recall[one_pixel].value();
+  return p + r > 0 ? 2 * p * r / (p + r) : 0;
+}
+
+double VisionTally::false_per_second() const {
+  const Share& share = precision[one_pixel];
+  return seconds > 0 ? static_cast<double>(share.of - share.with) / seconds : 0;
+}
+
+void tally(const EvaluationFrame& frame, const DetectionGrid& grid, const StereoRig& rig,
+           const std::map<int, std::string>& kinds, const std::vector<StereoHit>& hits, VisionTally& to) {
+  make_room(grid, to);
+  ++to.frames;
+  FrameTally frame_tally{frame, grid, rig, kinds, to};
+  const auto parts = frame_tally.frame_parts();
+  const std::vector<bool> hit_at = blocks_hit(hits, grid);
+  frame_tally.add_hits(hits, parts);
+  frame_tally.add_expected(hit_at, parts);
+  frame_tally.add_response(hit_at);
+}
+
+}  // namespace understory

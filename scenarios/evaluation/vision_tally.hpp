@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scenarios/evaluation/detection_grid.hpp"
+#include "scenarios/evaluation/evaluation_frame.hpp"
+#include "scenarios/evaluation/share.hpp"
+
+namespace understory {
+
+/// How near to the claimed depth the truth must lie: metres, or the interval that one pixel leaves open.
+inline constexpr std::array<double, 3> tolerances_m{0.25, 0.50, 1.00};
+inline constexpr std::size_t tolerance_count = 4, one_pixel = 3;
+inline constexpr std::array<const char*, tolerance_count> tolerance_names{"0.25 m", "0.50 m", "1.00 m",
+                                                                          "one pixel"};
+
+/// Whether the truth in a hit's block bears it out, at each tolerance. Ground counts: it is there.
+std::array<bool, tolerance_count> judge(const StereoHit& hit, const TrueImages& truth,
+                                        const DetectionGrid& grid);
+
+/// What a false hit lies on: "sky", "ground", "trunk, nearer", "edge of trunk" (its block holds an obstacle
+/// and something at least a metre farther). `kinds`: by object number; "surface" where nobody says.
+std::string lies_on(const StereoHit& hit, const TrueImages& truth, const std::map<int, std::string>& kinds);
+
+/// One part of the frames or blocks: hits that are right, expected blocks that were hit; at one pixel.
+struct TallyPart {
+  Share precision, recall;
+};
+
+/// Detections of one algorithm against the truth. Tallies of recordings add up.
+struct VisionTally {
+  std::int64_t frames = 0;
+  double seconds = 0;
+  std::array<Share, tolerance_count> precision, recall;
+  std::map<std::string, std::int64_t> false_on;  ///< hits wrong by more than a pixel
+  /// "kind", "distance" (true, of the block), "lateral offset" (of the block from the optical axis),
+  /// "lighting" (mean gray of the image), "speed", "bank"; each by its bins' names, which sort.
+  std::map<std::string, std::map<std::string, TallyPart>> parts;
+  /// Obstacle blocks of any depth, in bins of half a metre from 0, and how many have a hit.
+  std::vector<Share> response;
+  /// Over the image, a cell per block: hits right at one pixel, wrong ones, expected blocks.
+  std::vector<std::int64_t> right_at, wrong_at, expected_at;
+  int columns = 0;
+
+  void add(const VisionTally& other);
+  double f_score() const;  ///< harmonic mean of precision and recall at one pixel
+  double false_per_second() const;
+};
+
+/// Adds one frame's hits.
+void tally(const EvaluationFrame& frame, const DetectionGrid& grid, const StereoRig& rig,
+           const std::map<int, std::string>& kinds, const std::vector<StereoHit>& hits, VisionTally& tally);
+
+}  // namespace understory
