@@ -1,9 +1,28 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace understory {
+
+/// What an obstacle is to people.
+enum class ObstacleKind { trunk, post, crossbar, rail, wall };
+
+inline constexpr std::array<std::string_view, 5> obstacle_kind_names{"trunk", "post", "crossbar", "rail",
+                                                                     "wall"};
+constexpr std::string_view word_for(ObstacleKind kind) {
+  return obstacle_kind_names[static_cast<std::size_t>(kind)];
+}
+
+/// Numbers of what is drawn, as images of objects bear them: nothing (the sky), the ground, then a course's
+/// obstacles in their order.
+inline constexpr std::uint16_t object_nothing = 0;
+inline constexpr std::uint16_t object_ground = 1;
+inline constexpr std::uint16_t object_first_obstacle = 2;
 
 /// A round bar between two points: a trunk, a goal post, a crossbar. World frame, m.
 struct Obstacle {
@@ -13,6 +32,7 @@ struct Obstacle {
   double radius_m = 0.15;
   double texture_turn_rad = 0;  ///< rotates the bark about the axis, so that no two trunks look the same
   double texture_shift = 0;     ///< 0 .. 1: shifts the bark along the axis
+  ObstacleKind kind = ObstacleKind::trunk;
 };
 
 }  // namespace understory

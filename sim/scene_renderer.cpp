@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "sim/image_sensor.hpp"
@@ -29,6 +30,26 @@ void light(mjvScene& scene) {
 void plain_rendering(mjvScene& scene) {
   std::fill(std::begin(scene.flags), std::end(scene.flags), mjtByte{0});
   scene.flags[mjRND_CULL_FACE] = 1;
+}
+
+/// MuJoCo draws segid + 1 as red + 256 green + 65536 blue, and nothing, where there is nothing, as black.
+cv::Mat object_numbers(const std::uint8_t* pixels, int row_px, const Eye& eye) {
+  cv::Mat objects(eye.height_px, eye.width_px, CV_16UC1);
+  for (int row = 0; row < objects.rows; ++row) {
+    const std::uint8_t* from = pixels + std::size_t{4} * (objects.rows - 1 - row) * row_px;
+    auto* to = objects.ptr<std::uint16_t>(row);
+    for (int column = 0; column < objects.cols; ++column, from += 4)
+      to[column] = static_cast<std::uint16_t>(from[3] == 0 ? object_nothing : from[0] + 256 * from[1]);
+  }
+  return objects;
+}
+
+/// As images of objects number it, from its geom's name.
+int object_of(const std::string& geom_name) {
+  constexpr std::string_view prefix = "scenery_";
+  if (geom_name == "scenery_ground") return object_ground;
+  if (geom_name.rfind(prefix, 0) != 0) return object_nothing;  // a test's own scenery
+  return object_first_obstacle + std::stoi(geom_name.substr(prefix.size()));
 }
 
 /// A geom's own box, from its mesh; geoms of other types are boxed by their bounding sphere.
@@ -80,10 +101,11 @@ void SceneRenderer::gather_scenery() {
   mj_kinematics(&model_, data.get());
   update_scene(*data, false);
   for (int i = 0; i < scene_.ngeom; ++i) {
-    const mjvGeom& geom = scene_.geoms[i];
+    mjvGeom geom = scene_.geoms[i];
     const char* name = mj_id2name(&model_, mjOBJ_GEOM, geom.objid);
-    const bool ground = name != nullptr && std::string(name) == "scenery_ground";
-    scenery_.push_back({geom, box_of(model_, geom), !ground});
+    const int object = object_of(name != nullptr ? name : "");
+    geom.segid = object - 1;
+    scenery_.push_back({geom, box_of(model_, geom), object != object_ground});
   }
 }
 
@@ -137,7 +159,18 @@ std::array<cv::Mat, 2> SceneRenderer::gray_pair(const std::array<Eye, 2>& eyes) 
 
 cv::Mat SceneRenderer::left_depth(const std::array<Eye, 2>& eyes) {
   render(eyes);
-  cv::Mat depth(eyes[0].height_px, eyes[0].width_px, CV_32FC1);
+  return read_depth(eyes[0]);
+}
+
+TrueView SceneRenderer::true_left_view(const std::array<Eye, 2>& eyes) {
+  scene_.flags[mjRND_SEGMENT] = scene_.flags[mjRND_IDCOLOR] = 1;  // flat: a geom's number for its colour
+  const std::uint8_t* pixels = render(eyes);
+  scene_.flags[mjRND_SEGMENT] = scene_.flags[mjRND_IDCOLOR] = 0;
+  return {read_depth(eyes[0]), object_numbers(pixels, 2 * eyes[0].width_px, eyes[0])};
+}
+
+cv::Mat SceneRenderer::read_depth(const Eye& eye) {
+  cv::Mat depth(eye.height_px, eye.width_px, CV_32FC1);
   std::vector<float> values(depth.total());
   mjr_readPixels(nullptr, values.data(), {0, 0, depth.cols, depth.rows}, &context_);
   for (int row = 0; row < depth.rows; ++row) {

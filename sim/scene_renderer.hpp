@@ -9,6 +9,7 @@
 
 #include "sim/camera_frustum.hpp"
 #include "sim/offscreen_context.hpp"
+#include "sim/true_view.hpp"
 
 namespace understory {
 
@@ -27,6 +28,8 @@ class SceneRenderer {
   std::array<cv::Mat, 2> gray_pair(const std::array<Eye, 2>& eyes);
   /// Depth in the left eye's view: CV_32FC1, metres along the optical axis.
   cv::Mat left_depth(const std::array<Eye, 2>& eyes);
+  /// The same depth, and what is seen at it, from one drawing.
+  TrueView true_left_view(const std::array<Eye, 2>& eyes);
   /// One eye's view of everything, the aircraft's skin too: BGR, 8 bits, for people.
   cv::Mat colour_with_aircraft(const mjData& data, const Eye& eye);
   /// To compare with: from now on all scenery is drawn, however far and wherever it is.
@@ -45,6 +48,8 @@ class SceneRenderer {
   void fill_scene(const std::array<Eye, 2>& eyes);
   /// RGBA of both eyes side by side, as OffscreenContext::finished_pixels.
   const std::uint8_t* render(const std::array<Eye, 2>& eyes);
+  /// Of the left eye's view as last rendered.
+  cv::Mat read_depth(const Eye& eye);
 
   const mjModel& model_;
   double view_distance_m_;

@@ -119,6 +119,10 @@ cv::Mat StereoCameras::depth(const Eigen::Isometry3d& T_world_body) {
   return implementation_->scene.left_depth(eyes_of(implementation_->rig, T_world_body));
 }
 
+TrueView StereoCameras::true_view(const Eigen::Isometry3d& T_world_body) {
+  return implementation_->scene.true_left_view(eyes_of(implementation_->rig, T_world_body));
+}
+
 cv::Mat StereoCameras::chase_view(const mjData& data, int width_px, int height_px) {
   const Eigen::Isometry3d aircraft = aircraft_pose(implementation_->model, data);
   const Eigen::Vector3d forward = aircraft.linear().col(0);

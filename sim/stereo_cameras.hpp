@@ -11,6 +11,7 @@
 #include "perception/stereo_rig.hpp"
 #include "sim/camera_config.hpp"
 #include "sim/renderer_kind.hpp"
+#include "sim/true_view.hpp"
 #include "sim/world.hpp"
 
 namespace understory {
@@ -42,6 +43,8 @@ class StereoCameras {
   cv::Mat depth(const mjData& data);
   /// The same from where the body was at another moment.
   cv::Mat depth(const Eigen::Isometry3d& T_world_body);
+  /// What is where in the left image, rectified, with the body there: the same depth, and the objects.
+  TrueView true_view(const Eigen::Isometry3d& T_world_body);
   /// What a camera following the aircraft sees, BGR 8-bit, for people.
   cv::Mat chase_view(const mjData& data, int width_px, int height_px);
   /// The renderer's own name and version, for records.

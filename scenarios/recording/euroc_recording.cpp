@@ -10,6 +10,7 @@
 #include "scenarios/due.hpp"
 #include "scenarios/file_output.hpp"
 #include "scenarios/named_seed.hpp"
+#include "scenarios/scenario_io.hpp"
 #include "scenarios/video_writer.hpp"
 
 namespace understory {
@@ -25,10 +26,19 @@ std::string text_of(const char* header, const std::map<std::int64_t, std::string
   return text;
 }
 
-/// Images hardly shrink where they are noisy, depth does: their bytes unpacked bound what PNG makes of them.
+/// Images hardly shrink where they are noisy, depth and objects do: their bytes unpacked bound what PNG makes
+/// of them.
 std::uintmax_t expected_bytes(const Scenario& scenario, const StereoRig& rig, double expected_s) {
-  const double per_frame = 4.0 * rig.width_px * rig.height_px;
+  const double per_frame = 6.0 * rig.width_px * rig.height_px;
   return static_cast<std::uintmax_t>(per_frame * scenario.cameras.rate_hz * expected_s);
+}
+
+void require_numbers_for(const std::vector<Obstacle>& obstacles) {
+  constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max() - object_first_obstacle + 1;
+  if (obstacles.size() > most)
+    throw ScenarioError(
+        fmt::format("record: expected at most {} obstacles, as many as 16 bits can number, found {}", most,
+                    obstacles.size()));
 }
 
 }  // namespace
@@ -57,10 +67,13 @@ EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario,
   if (fs::exists(fs::symlink_status(folder_, ignored)))
     throw ScenarioError(
         fmt::format("{}: expected a folder without a recording, found mav0 in it", folder.string()));
+  const std::vector<Obstacle> obstacles = course_obstacles(scenario);
+  require_numbers_for(obstacles);
   prepare_output_folder(folder);
   fs::remove_all(part_, ignored);  // of a recording that was broken off
   require_free_space(part_, expected_bytes(scenario, rig.rig, expected_s));
-  for (const char* sensor : {"cam0/data", "cam1/data", "depth0/data", "imu0", "state_groundtruth_estimate0"})
+  for (const char* sensor :
+       {"cam0/data", "cam1/data", "depth0/data", "objects0/data", "imu0", "state_groundtruth_estimate0"})
     prepare_output_folder(part_ / sensor);
 
   // The flight's own IMU draws its constants from this seed.
@@ -74,6 +87,8 @@ EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario,
   write_whole_file(part_ / "cam0/sensor.yaml", camera_sensor_text(cameras[0], rig_, camera_hz));
   write_whole_file(part_ / "cam1/sensor.yaml", camera_sensor_text(cameras[1], rig_, camera_hz));
   write_whole_file(part_ / "depth0/sensor.yaml", depth_sensor_text(rig_, camera_hz));
+  write_whole_file(part_ / "objects0/sensor.yaml", objects_sensor_text(rig_, camera_hz));
+  write_whole_file(part_ / "objects0/objects.csv", objects_text(obstacles));
   write_whole_file(part_ / "imu0/sensor.yaml", imu_sensor_text(config, scenario.sensors.sensors.imu_rate_hz));
   write_whole_file(part_ / "state_groundtruth_estimate0/sensor.yaml",
                    state_sensor_text("the simulation's truth; biases are the flight's constants"));
@@ -134,7 +149,9 @@ void EurocRecording::add(const StereoFrame& frame, StereoCameras& cameras) {
   const std::string name = fmt::format("{}.png", recorded_ns(frame.t_ns));
   write_png(part_ / "cam0/data" / name, frame.left);
   write_png(part_ / "cam1/data" / name, frame.right);
-  write_png(part_ / "depth0/data" / name, depth_in_millimetres(cameras.depth(truth.T_world_body)));
+  const TrueView view = cameras.true_view(truth.T_world_body);
+  write_png(part_ / "depth0/data" / name, depth_in_millimetres(view.depth_m));
+  write_png(part_ / "objects0/data" / name, view.objects);
   image_lines_ += fmt::format("{},{}\n", recorded_ns(frame.t_ns), name);
   ++frames_;
 }
@@ -143,7 +160,7 @@ void EurocRecording::finish() {
   if (frames_ == 0)
     throw ScenarioError(fmt::format("{}: expected at least one frame, the scenario's cameras gave none",
                                     folder_.parent_path().string()));
-  for (const char* camera : {"cam0", "cam1", "depth0"})
+  for (const char* camera : {"cam0", "cam1", "depth0", "objects0"})
     write_whole_file(part_ / camera / "data.csv", image_header + image_lines_);
   write_whole_file(part_ / "imu0/data.csv", imu_header + imu_lines_);
   write_whole_file(part_ / "state_groundtruth_estimate0/data.csv", text_of(state_header, true_states_));

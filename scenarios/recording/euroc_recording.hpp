@@ -22,7 +22,8 @@ namespace understory {
 class EurocRecording {
  public:
   /// `expected_s`: how much of simulated time is to come; that many images must fit the disk. Throws
-  /// ScenarioError where the folder cannot be written or has a recording already, MachineError where the disk
+  /// ScenarioError where the folder cannot be written or has a recording already or the
+  /// course more obstacles than 16 bits can number, MachineError where the disk
   /// is too full.
   EurocRecording(const std::filesystem::path& folder, const Scenario& scenario, const CalibratedRig& rig,
                  double expected_s);
@@ -34,7 +35,8 @@ class EurocRecording {
   void observe(const Truth& truth);
   void add(const ImuSample& sample);
   void add_estimate(const State& state);
-  /// Within a second of its moment. `cameras`, those that took it, draw the true depth. Throws MachineError
+  /// Within a second of its moment. `cameras`, those that took it, draw the true depth and
+  /// the objects. Throws MachineError
   /// where the disk is full.
   void add(const StereoFrame& frame, StereoCameras& cameras);
   /// Throws ScenarioError where there is no frame.

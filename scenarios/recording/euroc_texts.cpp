@@ -87,6 +87,12 @@ std::string depth_sensor_text(const StereoRig& rig, int rate_hz) {
          "depth_unit_m: 0.001 # 16-bit PNG; 0: nothing within 65.535 m\n";
 }
 
+std::string objects_sensor_text(const StereoRig& rig, int rate_hz) {
+  return head_text("objects", "which object the rectified left camera sees", rig.T_body_camera) +
+         pinhole_text(rectified_camera(rig, rig.center_left_x_px), rig, rate_hz) +
+         "objects: objects.csv # 16-bit PNG; 0: nothing\n";
+}
+
 std::string imu_sensor_text(const ImuConfig& config, int rate_hz) {
   // White noise of a density d, sampled at a rate f behind a filter that wide, has the deviation d sqrt(f).
   const double per_root_hz = 1 / std::sqrt(static_cast<double>(rate_hz));
@@ -108,6 +114,20 @@ std::string state_sensor_text(const std::string& comment) {
 std::string imu_line(const ImuSample& sample) {
   return fmt::format("{}", recorded_ns(sample.t_ns)) + vector_text(sample.angular_rate_body_radps, 9) +
          vector_text(sample.specific_force_body_mps2, 9) + "\n";
+}
+
+std::string objects_text(const std::vector<Obstacle>& obstacles) {
+  std::string text = objects_header;
+  const auto add = [&](std::size_t number, std::string_view name, std::string_view kind, const Obstacle& bar,
+                       double radius_m) {
+    fmt::format_to(std::back_inserter(text), "{},{},{}{}{},{:.6f}\n", number, name, kind,
+                   vector_text(bar.from_world, 6), vector_text(bar.to_world, 6), radius_m);
+  };
+  add(object_ground, "ground", "ground", Obstacle{}, 0);
+  for (std::size_t i = 0; i < obstacles.size(); ++i)
+    add(object_first_obstacle + i, obstacles[i].name, word_for(obstacles[i].kind), obstacles[i],
+        obstacles[i].radius_m);
+  return text;
 }
 
 std::string state_line(const RecordedState& state) {

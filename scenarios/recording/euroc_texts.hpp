@@ -4,10 +4,12 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "estimation/samples.hpp"
 #include "perception/io/calibration_file.hpp"
 #include "sim/imu.hpp"
+#include "sim/obstacle.hpp"
 
 namespace understory {
 
@@ -32,6 +34,8 @@ std::array<RecordedCamera, 2> recorded_cameras(const CalibratedRig& rig);
 std::string camera_sensor_text(const RecordedCamera& camera, const StereoRig& rig, int rate_hz);
 /// That of the depth images, which are of the rectified left camera whatever the images are.
 std::string depth_sensor_text(const StereoRig& rig, int rate_hz);
+/// That of the images of objects, which are of the same camera.
+std::string objects_sensor_text(const StereoRig& rig, int rate_hz);
 /// imu0/sensor.yaml: noise per root hertz; the random walks are 0 where the scenario has them off.
 std::string imu_sensor_text(const ImuConfig& config, int rate_hz);
 /// Of the body's states, true or estimated.
@@ -48,7 +52,13 @@ inline constexpr const char* state_header =
     "b_w_RS_S_x [rad s^-1],b_w_RS_S_y [rad s^-1],b_w_RS_S_z [rad s^-1],"
     "b_a_RS_S_x [m s^-2],b_a_RS_S_y [m s^-2],b_a_RS_S_z [m s^-2]\n";
 
+inline constexpr const char* objects_header =
+    "#number,name,kind,from_x [m],from_y [m],from_z [m],to_x [m],to_y [m],to_z [m],radius [m]\n";
+
 std::string imu_line(const ImuSample& sample);
+
+/// objects0/objects.csv: what the numbers in the images of objects stand for, the ground first. World frame.
+std::string objects_text(const std::vector<Obstacle>& obstacles);
 
 /// What a line of a state's data.csv says; t_ns is simulated time.
 struct RecordedState {

@@ -29,7 +29,8 @@ TEST(RecordCommand, RecordingChangesNoFlight) {
   };
   EXPECT_EQ(digest(flown), digest(kept));
   EXPECT_EQ(content_of(fs::path(flown) / "scenario.yaml"), content_of(fs::path(kept) / "scenario.yaml"));
-  for (const char* sensor : {"cam0", "cam1", "imu0", "state_groundtruth_estimate0", "estimate0", "depth0"})
+  for (const char* sensor :
+       {"cam0", "cam1", "imu0", "state_groundtruth_estimate0", "estimate0", "depth0", "objects0"})
     for (const char* file : {"sensor.yaml", "data.csv"})
       EXPECT_TRUE(fs::is_regular_file(fs::path(kept) / "mav0" / sensor / file)) << sensor << ", " << file;
   expect_refusal("record" + flight + " --out " + kept, "expected a folder without a recording");

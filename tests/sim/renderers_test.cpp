@@ -21,7 +21,7 @@ void append(std::ofstream& file, const cv::Mat& image) {
              static_cast<std::streamsize>(image.total() * image.elemSize()));
 }
 
-/// Pairs, depths and chase views of several poses, one after the other.
+/// Pairs, depths, objects and chase views of several poses, one after the other.
 void draw(RendererKind renderer, const fs::path& to) {
   const World world = forest_world();
   StereoCameras cameras(world, paper_rig(), noiseless(), {1, 1}, std::nullopt, renderer);
@@ -34,6 +34,7 @@ void draw(RendererKind renderer, const fs::path& to) {
     append(file, frame.left);
     append(file, frame.right);
     append(file, cameras.depth(*data));
+    append(file, cameras.true_view(Eigen::Translation3d(1.7 * i, 0.4 * i - 1, 3) * attitude).objects);
     append(file, cameras.chase_view(*data, 320, 200));
   }
 }
@@ -73,7 +74,7 @@ TEST(Renderers, OsmesaAndEglDrawTheSameBitsInSoftware) {
   if (has_gpu_device_file()) GTEST_SKIP() << "a GPU is here, and EGL draws on it";
   const Drawn osmesa = drawn(RendererKind::osmesa), egl = drawn(RendererKind::egl);
   EXPECT_EQ(osmesa.complaint + egl.complaint, "");
-  EXPECT_EQ(osmesa.pictures.size(), 6u * (376 * 240 * (1 + 1 + 4) + 320 * 200 * 3));
+  EXPECT_EQ(osmesa.pictures.size(), 6u * (376 * 240 * (1 + 1 + 4 + 2) + 320 * 200 * 3));
   EXPECT_TRUE(osmesa.pictures == egl.pictures);
 }
 

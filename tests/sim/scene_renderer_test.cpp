@@ -25,6 +25,16 @@ World wide_forest() {
   return build_world(std::filesystem::path(UNDERSTORY_SOURCE_DIR) / "models", Airframe{}, obstacles, {});
 }
 
+Eigen::Isometry3d flown_pose(int i) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = Eigen::Vector3d(3.0 * i - 18, 11 - 2.0 * i, 1.5 + 0.4 * i);
+  pose.linear() = (Eigen::AngleAxisd(0.7 * i, Eigen::Vector3d::UnitZ()) *
+                   Eigen::AngleAxisd(0.05 * i - 0.3, Eigen::Vector3d::UnitY()) *
+                   Eigen::AngleAxisd(0.25 * i - 1.5, Eigen::Vector3d::UnitX()))
+                      .toRotationMatrix();
+  return pose;
+}
+
 TEST(SceneRenderer, CullingTakesNothingAwayUpToTheViewDistance) {
   const World world = wide_forest();
   const StereoRig rig = paper_rig();
@@ -34,13 +44,7 @@ TEST(SceneRenderer, CullingTakesNothingAwayUpToTheViewDistance) {
   drawing_all.stop_culling();
   int near = 0, taken_away = 0;
   for (int i = 0; i < 12; ++i) {
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.translation() = Eigen::Vector3d(3.0 * i - 18, 11 - 2.0 * i, 1.5 + 0.4 * i);
-    pose.linear() = (Eigen::AngleAxisd(0.7 * i, Eigen::Vector3d::UnitZ()) *
-                     Eigen::AngleAxisd(0.05 * i - 0.3, Eigen::Vector3d::UnitY()) *
-                     Eigen::AngleAxisd(0.25 * i - 1.5, Eigen::Vector3d::UnitX()))
-                        .toRotationMatrix();
-    const std::array<Eye, 2> eyes = eyes_of(rig, pose);
+    const std::array<Eye, 2> eyes = eyes_of(rig, flown_pose(i));
     const auto culled = culling.gray_pair(eyes), all = drawing_all.gray_pair(eyes);
     const cv::Mat culled_depth = culling.left_depth(eyes), all_depth = drawing_all.left_depth(eyes);
     for (int row = 0; row < rig.height_px; ++row)
@@ -58,6 +62,31 @@ TEST(SceneRenderer, CullingTakesNothingAwayUpToTheViewDistance) {
   }
   EXPECT_GT(near, 100'000);
   EXPECT_GT(taken_away, 100);  // what stands beyond is not drawn
+}
+
+/// Numbering what is drawn neither moves the depth nor leaves a trace in the pictures after it.
+TEST(SceneRenderer, NumberedObjectsHaveTheDepthOfThePicture) {
+  const World world = wide_forest();
+  const StereoRig rig = paper_rig();
+  SceneRenderer plain(*world.model, view_distance_m, 2 * rig.width_px, rig.height_px, RendererKind::osmesa);
+  SceneRenderer numbering(*world.model, view_distance_m, 2 * rig.width_px, rig.height_px,
+                          RendererKind::osmesa);
+  int on_trunks = 0;
+  for (int i = 0; i < 12; ++i) {
+    const std::array<Eye, 2> eyes = eyes_of(rig, flown_pose(i));
+    const TrueView view = numbering.true_left_view(eyes);
+    EXPECT_TRUE(equal(view.depth_m, plain.left_depth(eyes)));
+    const auto after = numbering.gray_pair(eyes), expected = plain.gray_pair(eyes);
+    EXPECT_TRUE(equal(after[0], expected[0]) && equal(after[1], expected[1]));
+    for (int row = 0; row < rig.height_px; ++row)
+      for (int column = 0; column < rig.width_px; ++column) {
+        const std::uint16_t object = view.objects.at<std::uint16_t>(row, column);
+        ASSERT_EQ(object == object_nothing, view.depth_m.at<float>(row, column) > 499);
+        ASSERT_LT(object, object_first_obstacle + world.obstacles.size());
+        on_trunks += object >= object_first_obstacle ? 1 : 0;
+      }
+  }
+  EXPECT_GT(on_trunks, 50'000);
 }
 
 }  // namespace

@@ -1,0 +1,179 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <limits>
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "perception/io/pose_file.hpp"
+#include "scenarios/oracles/true_depth.hpp"
+#include "scenarios/recording/euroc_texts.hpp"
+#include "scenarios/recording/record.hpp"
+#include "scenarios/scenario_io.hpp"
+#include "scenarios/scenario_rig.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+/// The recorded images of objects, read back, against rays sent at the course.
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path root = UNDERSTORY_SOURCE_DIR;
+
+/// A line of objects.csv.
+struct Object {
+  std::string name, kind;
+  Eigen::Vector3d from_world = Eigen::Vector3d::Zero(), to_world = Eigen::Vector3d::Zero();
+  double radius_m = 0;
+};
+
+/// Their places are their numbers; 0 is nothing.
+std::vector<Object> read_objects(const fs::path& file) {
+  std::istringstream lines(support::content_of(file));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line + "\n", objects_header);
+  std::vector<Object> objects(1);
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    std::array<std::string, 10> cell;
+    for (std::string& text : cell) std::getline(cells, text, ',');
+    EXPECT_EQ(cell[0], std::to_string(objects.size()));
+    const auto vector = [&](std::size_t at) {
+      return Eigen::Vector3d(std::stod(cell[at]), std::stod(cell[at + 1]), std::stod(cell[at + 2]));
+    };
+    objects.push_back({cell[1], cell[2], vector(3), vector(6), std::stod(cell[9])});
+  }
+  return objects;
+}
+
+/// What a ray of the left camera meets first, by the file's own geometry.
+cv::Mat expected_objects(const std::vector<Object>& objects, const StereoRig& rig,
+                         const Eigen::Isometry3d& T_world_body) {
+  const Eigen::Isometry3d T_world_camera = T_world_body * rig.T_body_camera;
+  const Eigen::Vector3d eye = T_world_camera.translation();
+  cv::Mat expected(rig.height_px, rig.width_px, CV_16UC1);
+  for (int row = 0; row < rig.height_px; ++row)
+    for (int column = 0; column < rig.width_px; ++column) {
+      const Eigen::Vector3d ray_camera((column - rig.center_left_x_px) / rig.focal_px,
+                                       (row - rig.center_y_px) / rig.focal_px, 1);
+      const Eigen::Vector3d ray = T_world_camera.linear() * ray_camera;
+      std::size_t first = 0;
+      double nearest = std::numeric_limits<double>::infinity();
+      const double to_ground = -eye.z() / ray.z();
+      const Eigen::Vector2d at = (eye + to_ground * ray).head<2>();
+      if (to_ground > 0 && at.cwiseAbs().maxCoeff() < 400) nearest = to_ground, first = 1;  // its rim
+      for (std::size_t i = 2; i < objects.size(); ++i) {
+        const double reach =
+            ray_meets_bar(eye, ray, objects[i].from_world, objects[i].to_world, objects[i].radius_m);
+        if (reach < nearest) nearest = reach, first = i;
+      }
+      expected.at<std::uint16_t>(row, column) = static_cast<std::uint16_t>(first);
+    }
+  return expected;
+}
+
+struct Agreement {
+  int compared = 0, agreed = 0, on_obstacles = 0;
+};
+
+/// Where a pixel's neighbours are of one object: outlines are drawn with flat sides.
+Agreement compare(const cv::Mat& found, const cv::Mat& expected) {
+  Agreement agreement;
+  for (int row = 2; row + 2 < found.rows; ++row)
+    for (int column = 2; column + 2 < found.cols; ++column) {
+      const std::uint16_t here = expected.at<std::uint16_t>(row, column);
+      const cv::Mat around = expected(cv::Rect(column - 2, row - 2, 5, 5));
+      if (cv::countNonZero(around != here) > 0) continue;
+      ++agreement.compared;
+      agreement.agreed += found.at<std::uint16_t>(row, column) == here ? 1 : 0;
+      agreement.on_obstacles += here >= 2 ? 1 : 0;
+    }
+  return agreement;
+}
+
+struct Recorded {
+  std::vector<Object> objects;
+  Agreement agreement;
+};
+
+/// A second of walking, compared frame by frame.
+Recorded walked(const std::string& name, std::vector<std::string> settings, const fs::path& folder) {
+  settings.insert(settings.end(), {"seed=1003", "time_limit_s=1", "cameras.rate_hz=4"});
+  const Scenario scenario = load_scenario(root / "scenarios/library" / (name + ".yaml"), settings);
+  FlyOptions options;
+  options.models_folder = root / "models";
+  options.output_folder = folder;
+  walk_recorded(scenario, {}, options);
+  Recorded recorded{read_objects(folder / "mav0/objects0/objects.csv"), {}};
+  EXPECT_EQ(recorded.objects.size(), 2 + course_obstacles(scenario).size());
+  EXPECT_EQ(support::content_of(folder / "mav0/objects0/data.csv"),
+            support::content_of(folder / "mav0/cam0/data.csv"));
+  const StereoRig rig = read_calibrated_rig(folder, {}).rig;
+  const auto poses = read_poses(folder / "mav0/state_groundtruth_estimate0/data.csv");
+  for (const auto& entry : fs::directory_iterator(folder / "mav0/objects0/data")) {
+    const cv::Mat found = cv::imread(entry.path().string(), cv::IMREAD_UNCHANGED);
+    EXPECT_EQ(found.type(), CV_16UC1);
+    const std::int64_t t_ns = std::stoll(entry.path().stem().string());
+    const Agreement one =
+        compare(found, expected_objects(recorded.objects, rig, pose_at(poses, t_ns).value()));
+    recorded.agreement.compared += one.compared;
+    recorded.agreement.agreed += one.agreed;
+    recorded.agreement.on_obstacles += one.on_obstacles;
+  }
+  return recorded;
+}
+
+TEST(Objects, OfAForestAreThoseThatRaysMeet) {
+  const support::TemporaryFolder folder;
+  const Recorded forest =
+      walked("forest", {"cameras.view_distance_m=200", "forest.square_metres_per_tree=20"}, folder.path());
+  EXPECT_EQ(forest.objects[1].kind, "ground");
+  EXPECT_EQ(forest.objects[2].kind, "trunk");
+  EXPECT_GT(forest.agreement.on_obstacles, 20'000);
+  EXPECT_EQ(forest.agreement.agreed, forest.agreement.compared);
+}
+
+TEST(Objects, OfAGoalAreThoseThatRaysMeet) {
+  const support::TemporaryFolder folder;
+  const Recorded goal = walked("goalposts", {"goalposts.ahead_m=17"}, folder.path());
+  ASSERT_EQ(goal.objects.size(), 5u);
+  EXPECT_EQ(goal.objects[2].kind, "post");
+  EXPECT_EQ(goal.objects[4].name, "crossbar");
+  EXPECT_EQ(goal.objects[4].kind, "crossbar");
+  EXPECT_GT(goal.agreement.on_obstacles, 500);
+  EXPECT_EQ(goal.agreement.agreed, goal.agreement.compared);
+}
+
+/// What is not drawn is no object: neither image nor depth nor number knows of it.
+TEST(Objects, BeyondTheViewAreNone) {
+  const support::TemporaryFolder folder;
+  const Recorded forest = walked("forest", {"cameras.view_distance_m=5"}, folder.path());
+  for (const auto& entry : fs::directory_iterator(folder.path() / "mav0/objects0/data")) {
+    double greatest = 0;
+    cv::minMaxLoc(cv::imread(entry.path().string(), cv::IMREAD_UNCHANGED), nullptr, &greatest);
+    EXPECT_EQ(greatest, object_ground);
+  }
+  EXPECT_GT(forest.agreement.on_obstacles, 0);  // although some stand there
+}
+
+TEST(Objects, MoreThanTheirNumbersCanTellAreRefused) {
+  const support::TemporaryFolder folder;
+  const Scenario scenario =
+      load_scenario(root / "scenarios/library/forest.yaml",
+                    {"forest.length_m=1000", "forest.half_width_m=200", "forest.square_metres_per_tree=4"});
+  FlyOptions options;
+  options.models_folder = root / "models";
+  options.output_folder = folder.path();
+  EXPECT_THROW(fly_recorded(scenario, options), ScenarioError);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+}  // namespace
+}  // namespace understory
