@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "estimation/filter.hpp"
-#include "perception/block_matching.hpp"
+#include "perception/full_stereo_detector.hpp"
 #include "perception/pushbroom_stereo.hpp"
 #include "perception/rectifying_detector.hpp"
 #include "planning/autopilot.hpp"
@@ -31,6 +31,14 @@
 namespace understory {
 namespace {
 
+template <typename MatcherConfig>
+std::unique_ptr<ObstacleDetector> full_stereo_of(const CalibratedRig& cameras, const MatcherConfig& matcher,
+                                                 const FullStereoCrop& crop) {
+  auto detector = std::make_unique<FullStereoDetector>(cameras.rig, matcher, crop);
+  if (!cameras.calibration) return detector;
+  return std::make_unique<RectifyingDetector>(*cameras.calibration, std::move(detector));
+}
+
 std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const CalibratedRig& cameras,
                                               const std::vector<Obstacle>& obstacles,
                                               const TruthHistory& history) {
@@ -42,11 +50,10 @@ std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const Ca
         return std::make_unique<PushbroomStereo>(*cameras.calibration, rig.detection_depth_m,
                                                  scenario.perception.pushbroom);
       return std::make_unique<PushbroomStereo>(rig, scenario.perception.pushbroom);
-    case DetectorKind::block_matching: {
-      auto matching = std::make_unique<BlockMatching>(rig, scenario.perception.block_matching);
-      if (!cameras.calibration) return matching;
-      return std::make_unique<RectifyingDetector>(*cameras.calibration, std::move(matching));
-    }
+    case DetectorKind::stereo_bm:
+      return full_stereo_of(cameras, scenario.perception.stereo_bm, scenario.perception.full_stereo);
+    case DetectorKind::stereo_sgbm:
+      return full_stereo_of(cameras, scenario.perception.stereo_sgbm, scenario.perception.full_stereo);
     case DetectorKind::true_depth:
       return std::make_unique<TrueDepth>(rig, obstacles, history);
     case DetectorKind::none:
@@ -103,11 +110,10 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   const World world =
       stopwatch.time("setup", [&] { return world_of(scenario, options.models_folder, obstacles); });
   Aircraft aircraft = aircraft_of(scenario, world);
-  // Oracles and the blind aircraft look at no image: rendering one would be most of their flight's cost.
-  const bool looks = scenario.perception.detector == DetectorKind::pushbroom ||
-                     scenario.perception.detector == DetectorKind::block_matching;
+  // Rendering an image that nobody looks at would be most of the flight's cost.
+  const bool looking = looks(scenario.perception.detector);
   const auto cameras =
-      looks || options.video || options.on_frame
+      looking || options.video || options.on_frame
           ? stopwatch.time("setup", [&] { return cameras_of(scenario, world, calibrated, options.renderer); })
           : nullptr;
   OnboardSensors sensors(scenario);
@@ -156,7 +162,7 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
       if (options.on_frame) stopwatch.time("record", [&] { options.on_frame(frame, *cameras); });
       stopwatch.time("detect", [&] { autopilot.on(frame); });
       stopwatch.time("record", [&] {
-        record.observe(looks ? frame : StereoFrame{frame.t_ns, {}, {}}, autopilot.hits().size());
+        record.observe(looking ? frame : StereoFrame{frame.t_ns, {}, {}}, autopilot.hits().size());
         record.remember_of_frame(
             autopilot.map().points(), frame.t_ns,
             history.at(frame.t_ns).T_world_body * state_source->state_at(frame.t_ns).T_world_body.inverse());

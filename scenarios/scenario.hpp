@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "estimation/filter_config.hpp"
-#include "perception/block_matching.hpp"
+#include "perception/full_stereo_detector.hpp"
 #include "perception/pushbroom_stereo.hpp"
 #include "planning/airframe.hpp"
 #include "planning/autopilot.hpp"
@@ -31,16 +31,17 @@
 namespace understory {
 
 enum class Course { forest, goalposts, clear };
-enum class DetectorKind { pushbroom, block_matching, true_depth, none };
+enum class DetectorKind { pushbroom, stereo_bm, stereo_sgbm, true_depth, none };
 enum class StateKind { filter, truth };
-enum class RulePreset { robust, paper };      ///< which numbers perception.pushbroom starts from
+enum class RulePreset { robust, paper };             ///< which numbers perception.pushbroom starts from
 enum class FilterPreset { tuned, original, windy };  ///< which numbers estimation.filter starts from
 
 inline constexpr std::array<std::pair<std::string_view, Course>, 3> course_names{
     {{"forest", Course::forest}, {"goalposts", Course::goalposts}, {"clear", Course::clear}}};
-inline constexpr std::array<std::pair<std::string_view, DetectorKind>, 4> detector_names{
+inline constexpr std::array<std::pair<std::string_view, DetectorKind>, 5> detector_names{
     {{"pushbroom", DetectorKind::pushbroom},
-     {"block_matching", DetectorKind::block_matching},
+     {"stereo_bm", DetectorKind::stereo_bm},
+     {"stereo_sgbm", DetectorKind::stereo_sgbm},
      {"true_depth", DetectorKind::true_depth},
      {"none", DetectorKind::none}}};
 inline constexpr std::array<std::pair<std::string_view, StateKind>, 2> state_names{
@@ -58,6 +59,10 @@ inline constexpr std::array<std::pair<std::string_view, SensorGrade>, 4> sensor_
 /// The word a scenario uses for a value.
 inline std::string_view word_for(DetectorKind kind) {
   return detector_names[static_cast<std::size_t>(kind)].first;
+}
+/// Whether a detector looks at images. Oracles and the blind aircraft do not.
+inline bool looks(DetectorKind kind) {
+  return kind != DetectorKind::true_depth && kind != DetectorKind::none;
 }
 inline std::string_view word_for(StateKind kind) { return state_names[static_cast<std::size_t>(kind)].first; }
 
@@ -113,7 +118,9 @@ struct PerceptionSection {
   DetectorKind detector = DetectorKind::pushbroom;
   RulePreset rule = RulePreset::robust;  ///< keys given under pushbroom win over it
   PushbroomConfig pushbroom = robust_rule();
-  BlockMatchingConfig block_matching;
+  StereoBmConfig stereo_bm;
+  StereoSgbmConfig stereo_sgbm;
+  FullStereoCrop full_stereo;  ///< what of either's depths becomes hits
 };
 
 struct EstimationSection {
@@ -213,7 +220,9 @@ void visit_fields(Visitor& visit, PerceptionSection& section) {
   visit("rule", section.rule, rule_names);
   visit("depths_m", section.pushbroom.depths_m, 0.1, 1000.0);  // to look at; empty: the rig's own
   visit("pushbroom", section.pushbroom);
-  visit("block_matching", section.block_matching);
+  visit("stereo_bm", section.stereo_bm);
+  visit("stereo_sgbm", section.stereo_sgbm);
+  visit("full_stereo", section.full_stereo);
 }
 
 template <typename Visitor>

@@ -55,6 +55,20 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
          "sensors.magnetometer_rate_hz: expected a rate that divides 1200");
   expect(divides(scenario.sensors.sensors.gps_rate_hz),
          "sensors.gps_rate_hz: expected a rate that divides 1200");
+  const PerceptionSection& perception = scenario.perception;
+  expect(perception.stereo_bm.window_px % 2 == 1, "perception.stereo_bm.window_px: expected an odd number");
+  expect(perception.stereo_sgbm.window_px % 2 == 1,
+         "perception.stereo_sgbm.window_px: expected an odd number");
+  expect(perception.stereo_bm.prefilter_size_px % 2 == 1,
+         "perception.stereo_bm.prefilter_size_px: expected an odd number");
+  expect(perception.stereo_bm.disparities % 16 == 0,
+         "perception.stereo_bm.disparities: expected a multiple of 16");
+  expect(perception.stereo_sgbm.disparities % 16 == 0,
+         "perception.stereo_sgbm.disparities: expected a multiple of 16");
+  expect(perception.stereo_sgbm.smoothness_1 < perception.stereo_sgbm.smoothness_2,
+         "perception.stereo_sgbm.smoothness_1: expected less than smoothness_2");
+  expect(perception.full_stereo.least_depth_m < perception.full_stereo.greatest_depth_m,
+         "perception.full_stereo.least_depth_m: expected less than greatest_depth_m");
   for (std::size_t i = 0; i < scenario.faults.size(); ++i) {
     const FaultConfig& fault = scenario.faults[i];
     expect(can_have(fault.sensor, fault.kind),

@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "perception/block_matching.hpp"
+#include "perception/full_stereo_detector.hpp"
 #include "perception/io/calibration_file.hpp"
 #include "perception/io/rig_file.hpp"
 #include "perception/pushbroom_stereo.hpp"
@@ -129,10 +129,10 @@ TEST_P(RawImages, DetectorsThatKnowNoRawPairsGetRectifiedOnes) {
   const World world = forest_world();
   StereoCameras eyes(world, cameras.rig, noiseless(), {1, 1}, cameras.calibration);
   const StereoFrame frame = eyes.capture(*data_at(world, {-4, 0.4, 3}, level), 0);
-  RectifyingDetector detector(*cameras.calibration,
-                              std::make_unique<BlockMatching>(cameras.rig, BlockMatchingConfig{}));
+  RectifyingDetector detector(*cameras.calibration, std::make_unique<FullStereoDetector>(
+                                                        cameras.rig, StereoBmConfig{}, FullStereoCrop{}));
   const auto hits = detector.detect(frame);
-  BlockMatching plain(cameras.rig, BlockMatchingConfig{});
+  FullStereoDetector plain(cameras.rig, StereoBmConfig{}, FullStereoCrop{});
   Rectifier rectifier(*cameras.calibration, Interpolation::nearest);
   const auto expected = plain.detect(rectifier.rectify(frame));
   ASSERT_EQ(hits.size(), expected.size());
