@@ -6,6 +6,7 @@ find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(Boost REQUIRED)                  # headers only: Boost.Math's distributions
 find_package(pugixml REQUIRED)
+find_package(nanoflann REQUIRED)
 
 find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs calib3d videoio)
 add_library(opencv_core_parts INTERFACE)      # what the flight stack may use

@@ -44,6 +44,8 @@ class FullStereoDetector : public ObstacleDetector {
   FullStereoDetector(const StereoRig& rig, const StereoSgbmConfig& config, const FullStereoCrop& crop)
       : rig_(rig), crop_(crop), stereo_(rig, config) {}
   const std::vector<StereoHit>& detect(const StereoFrame& frame) override;
+  /// That of the last frame, as FullStereo::depth_m; empty before the first.
+  const cv::Mat& depth_m() const { return depth_m_; }
 
  private:
   void add_cell(const cv::Mat& depth_m, int column_px, int row_px);
@@ -51,6 +53,7 @@ class FullStereoDetector : public ObstacleDetector {
   StereoRig rig_;
   FullStereoCrop crop_;
   FullStereo stereo_;
+  cv::Mat depth_m_;
   std::vector<float> cell_m_;
   std::vector<StereoHit> hits_;
 };

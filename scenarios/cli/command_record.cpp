@@ -19,6 +19,7 @@ struct RecordArguments : ScenarioArguments {
   std::string walk_mps;  // empty: flies
   double height_m = WalkConfig{}.height_m;
   bool has_height = false;
+  bool quiet = false;
 };
 
 /// A progress line where there is a terminal, gone before the report or a complaint.
@@ -52,14 +53,14 @@ int run_record(const RecordArguments& arguments) {
   std::string report;
   {
     const ProgressOnTerminal progress;
-    if (progress.shown) options.on_progress = print_flight_progress;
+    if (progress.shown && !arguments.quiet) options.on_progress = print_flight_progress;
     if (arguments.walk_mps.empty())
       report = report_of(fly_recorded(scenario, options));
     else
       report =
           report_of(walk_recorded(scenario, {std::stod(arguments.walk_mps), arguments.height_m}, options));
   }
-  fmt::print("{}  {:<18}{}\n", report, "files", arguments.out);
+  if (!arguments.quiet) fmt::print("{}  {:<18}{}\n", report, "files", arguments.out);
   return exit_goal;
 }
 
@@ -73,6 +74,7 @@ void add_record_command(CLI::App& app, Command& chosen) {
   command->add_option("--seed", arguments->seed, "of course and sensors; goes before the scenario's own");
   command->add_option("--out", arguments->out, "folder for the recording; gets mav0")->required();
   add_renderer_option(*command, arguments->renderer);
+  command->add_flag("--quiet", arguments->quiet, "print nothing");
   // A flag, so that a scenario's name behind it stays one; as a string, since CLI11 rounds flags' numbers.
   command
       ->add_flag("--walk{1.4}", arguments->walk_mps,

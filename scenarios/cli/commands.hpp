@@ -33,6 +33,7 @@ void add_validate_command(CLI::App& app, Command& chosen);
 void add_gate_command(CLI::App& app, Command& chosen);
 void add_rig_command(CLI::App& app, Command& chosen);
 void add_detect_command(CLI::App& app, Command& chosen);
+void add_evaluate_command(CLI::App& app, Command& chosen);
 void add_bench_command(CLI::App& app, Command& chosen);
 
 /// The scenario's name and --set, as every command that flies has them.
@@ -56,6 +57,12 @@ struct ClosedLoopBenchArguments {
 };
 /// Runs it; the exit status. Throws ScenarioError in a build without the simulator.
 int run_closed_loop_bench(const ClosedLoopBenchArguments& arguments);
+
+/// Records what `file` asks for (EvaluationSuite), `jobs` at once, each into FOLDER/NAME-SEED; what is there
+/// already stays. The recordings' folders, in the file's order. Throws ScenarioError where the file is wrong
+/// or one could not be recorded, or in a build without the simulator.
+std::vector<std::filesystem::path> record_suite(const std::filesystem::path& file,
+                                                const std::filesystem::path& folder, int jobs);
 
 /// --unit, --size and --depth, as every command that reads a calibration has them.
 struct CalibrationArguments {

@@ -37,6 +37,7 @@ int run(int argc, char** argv) {
   add_validate_command(app, chosen);
   add_rig_command(app, chosen);
   add_detect_command(app, chosen);
+  add_evaluate_command(app, chosen);
   add_bench_command(app, chosen);
   try {
     app.parse(argc, argv);

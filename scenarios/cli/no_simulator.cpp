@@ -25,6 +25,12 @@ int run_closed_loop_bench(const ClosedLoopBenchArguments&) {
       "bench --closed-loop: expected a build with the simulator, this one has none (UNDERSTORY_SIM=OFF)");
 }
 
+std::vector<std::filesystem::path> record_suite(const std::filesystem::path& file,
+                                                const std::filesystem::path&, int) {
+  throw ScenarioError(file.string() +
+                      ": expected a folder: this build has no simulator to record with (UNDERSTORY_SIM=OFF)");
+}
+
 void add_fly_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "fly"); }
 void add_record_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "record"); }
 void add_campaign_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "campaign"); }

@@ -20,9 +20,7 @@ void DistanceHistogram::add(const DistanceHistogram& other) {
   no_match += other.no_match;
 }
 
-std::int64_t DistanceHistogram::total() const {
-  return std::accumulate(bins.begin(), bins.end(), no_match);
-}
+std::int64_t DistanceHistogram::total() const { return std::accumulate(bins.begin(), bins.end(), no_match); }
 
 double DistanceHistogram::share_within(double limit_m) const {
   const auto within = std::min<std::ptrdiff_t>(std::lround(limit_m / bin_m), bin_count);

@@ -31,7 +31,7 @@ std::vector<double> nearest_distances_m(const std::vector<Eigen::Vector3d>& from
   Tree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(16));
   tree.buildIndex();
   for (std::size_t i = 0; i < from.size(); ++i) {
-    std::size_t index = 0;
+    unsigned int index = 0;
     double squared_m2 = 0;
     tree.knnSearch(from[i].data(), 1, &index, &squared_m2);
     distances_m[i] = std::sqrt(squared_m2);

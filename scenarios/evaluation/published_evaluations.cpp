@@ -9,10 +9,10 @@
 namespace understory {
 namespace {
 
-constexpr double crop_m = 0.5;         // evaluation 1: StereoBM's points about the detection depth
-constexpr double least_range_m = 1.5;  // evaluation 2 ignores nearer points
-constexpr double near_m = 5.0;         // evaluation 3 asks for points nearer than this
-constexpr double nothing_there_m = 10; // what counts where there is nothing to compare with
+constexpr double crop_m = 0.5;          // evaluation 1: StereoBM's points about the detection depth
+constexpr double least_range_m = 1.5;   // evaluation 2 ignores nearer points
+constexpr double near_m = 5.0;          // evaluation 3 asks for points nearer than this
+constexpr double nothing_there_m = 10;  // what counts where there is nothing to compare with
 constexpr int first_obstacle = 2;
 
 Eigen::Vector3d point_at(const StereoRig& rig, double column_px, double row_px, double depth_m) {
@@ -34,9 +34,8 @@ std::vector<Eigen::Vector3d> points_between(const StereoRig& rig, const cv::Mat&
   std::vector<Eigen::Vector3d> points;
   for (int v = 0; v < depth_m.rows; ++v) {
     const auto* row = depth_m.ptr<float>(v);
-    const auto* object = on_obstacles != nullptr && !on_obstacles->empty()
-                             ? on_obstacles->ptr<std::uint16_t>(v)
-                             : nullptr;
+    const auto* object =
+        on_obstacles != nullptr && !on_obstacles->empty() ? on_obstacles->ptr<std::uint16_t>(v) : nullptr;
     for (int u = 0; u < depth_m.cols; ++u) {
       if (row[u] <= 0 || row[u] < least_m || row[u] > greatest_m) continue;
       if (object != nullptr && object[u] < first_obstacle) continue;
@@ -90,11 +89,11 @@ void PublishedEvaluations::compare(const EvaluationFrame& frame, const std::vect
     if (in_view(rig_, remembered.back())) remembered_in_view.push_back(remembered.back());
   }
   constexpr double everything_m = std::numeric_limits<double>::max();
-  for (const double distance_m : nearest_distances_m(
-           remembered_in_view, points_between(rig_, depth_m, least_range_m, everything_m)))
+  for (const double distance_m :
+       nearest_distances_m(remembered_in_view, points_between(rig_, depth_m, least_range_m, everything_m)))
     scores_.false_positives.add(or_far(distance_m));
-  for (const double distance_m : nearest_distances_m(
-           points_between(rig_, depth_m, 0, near_m, &frame.truth.objects), remembered))
+  for (const double distance_m :
+       nearest_distances_m(points_between(rig_, depth_m, 0, near_m, &frame.truth.objects), remembered))
     scores_.false_negatives.add(or_far(distance_m));
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "scenarios/config_tree.hpp"
+#include "scenarios/evaluation/one_pixel_counts.hpp"
 
 namespace understory {
 
@@ -59,24 +60,11 @@ RecordingScore VisionData::score(const Recording& recording, const PushbroomConf
   ObstacleSightings sightings(recording.objects, rig_.baseline_m);
   RecordingScore score;
   score.name = recording.name;
-  std::vector<bool> hit_at;
   for (const EvaluationFrame& frame : recording.frames) {
     ++score.frames;
     const std::vector<StereoHit>& hits = detector.detect(frame.pair);
     const auto expected = expected_blocks(frame.truth, grid);
-    hit_at.assign(static_cast<std::size_t>(grid.block_count()) * grid.depths.size(), false);
-    for (const StereoHit& hit : hits) {
-      const std::size_t depth = grid.depth_of(hit);
-      score.precision.count(
-          content_between(frame.truth, hit.column_px, hit.row_px, grid.depths[depth].one_pixel, false)
-              .holds());
-      const int block = grid.block_of(hit);
-      if (block >= 0)
-        hit_at[depth * static_cast<std::size_t>(grid.block_count()) + static_cast<std::size_t>(block)] = true;
-    }
-    for (const ExpectedBlock& block : expected)
-      score.recall.count(hit_at[block.depth * static_cast<std::size_t>(grid.block_count()) +
-                                static_cast<std::size_t>(block.block)]);
+    count_one_pixel(frame.truth, grid, expected, hits, score.precision, score.recall);
     sightings.add(frame, grid, expected, hits);
   }
   for (const ObstacleSighting& sighting : sightings.passed()) {

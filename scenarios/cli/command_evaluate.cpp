@@ -1,0 +1,123 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+#include "scenarios/cli/commands.hpp"
+#include "scenarios/config_reader.hpp"
+#include "scenarios/evaluation/evaluation.hpp"
+#include "scenarios/evaluation/evaluation_files.hpp"
+
+namespace understory {
+
+/// The keys of --set, named as in a scenario.
+struct EvaluatedPerception {
+  EvaluationSettings& settings;
+};
+struct EvaluatedAutopilot {
+  EvaluationSettings& settings;
+};
+template <typename Visitor>
+void visit_fields(Visitor& visit, EvaluatedPerception& perception) {
+  visit("depths_m", perception.settings.rule.depths_m, 0.1, 1000.0);
+  visit("pushbroom", perception.settings.rule);
+  visit("stereo_bm", perception.settings.stereo_bm);
+  visit("stereo_sgbm", perception.settings.stereo_sgbm);
+}
+template <typename Visitor>
+void visit_fields(Visitor& visit, EvaluatedAutopilot& autopilot) {
+  visit("map", autopilot.settings.map);
+}
+template <typename Visitor>
+void visit_fields(Visitor& visit, EvaluationSettings& settings) {
+  EvaluatedPerception perception{settings};
+  EvaluatedAutopilot autopilot{settings};
+  visit("perception", perception);
+  visit("autopilot", autopilot);
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct EvaluateArguments {
+  std::vector<std::string> inputs;
+  std::string rule = "robust";
+  std::vector<std::string> settings;
+  std::string with, out;
+  int every = 1;
+  int jobs = 0;
+};
+
+void print_progress(const EvaluationProgress& progress) {
+  if (progress.frames % 20 != 0 && progress.frames != progress.frames_expected) return;
+  const double rate = static_cast<double>(progress.frames) / std::max(progress.wall_s, 1e-9);
+  fmt::print("\r\033[K{} of {} frames, {:.0f} s left", progress.frames, progress.frames_expected,
+             static_cast<double>(progress.frames_expected - progress.frames) / rate);
+  std::fflush(stdout);
+}
+
+EvaluationSettings settings_of(const EvaluateArguments& arguments) {
+  EvaluationSettings settings;
+  settings.rule = arguments.rule == "paper" ? paper_rule() : robust_rule();
+  settings.every = arguments.every;
+  for (const std::string& setting : arguments.settings) read_config(parse_assignment(setting), settings);
+  return settings;
+}
+
+int run_evaluate(const EvaluateArguments& arguments) {
+  EvaluationOptions options;
+  options.settings = settings_of(arguments);
+  options.jobs = arguments.jobs > 0 ? arguments.jobs
+                                    : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  fs::path out = arguments.out;
+  std::error_code ignored;
+  const bool is_suite = arguments.inputs.size() == 1 && fs::is_regular_file(arguments.inputs[0], ignored);
+  if (out.empty()) out = fs::path("evaluations") / fs::path(arguments.inputs[0]).stem();
+  if (is_suite)
+    options.folders = record_suite(arguments.inputs[0], out / "recordings", options.jobs);
+  else
+    options.folders.assign(arguments.inputs.begin(), arguments.inputs.end());
+  const bool terminal = isatty(STDOUT_FILENO) == 1;
+  if (terminal) options.on_progress = print_progress;
+  Evaluation evaluation;
+  try {
+    evaluation = evaluate(options);
+  } catch (...) {
+    if (terminal) fmt::print("\r\033[K");
+    throw;
+  }
+  if (terminal) fmt::print("\r\033[K");
+  write_evaluation(evaluation, out);
+  fmt::print("{}\nfiles: {}\n", evaluation_report(evaluation), out.string());
+  return exit_goal;
+}
+
+}  // namespace
+
+void add_evaluate_command(CLI::App& app, Command& chosen) {
+  const auto arguments = std::make_shared<EvaluateArguments>();
+  CLI::App* command = app.add_subcommand(
+      "evaluate", "judge detections against recorded truth, and against StereoBM as the paper did");
+  command
+      ->add_option("INPUT", arguments->inputs,
+                   "EuRoC folders as `record` leaves them; or one file of what to record and evaluate")
+      ->required();
+  command->add_option("--rule", arguments->rule, "paper or robust: the rule in the table's first line")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"paper", "robust"}));
+  add_settings_option(*command, arguments->settings);
+  command->add_option("--every", arguments->every, "take every n-th frame")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  command->add_option("--jobs", arguments->jobs, "recordings at once (default: as many as cores)")
+      ->check(CLI::Range(1, 1024));
+  command->add_option("--out", arguments->out, "folder for the results (default: evaluations/NAME)");
+  command->callback([arguments, &chosen] { chosen = [arguments] { return run_evaluate(*arguments); }; });
+}
+
+}  // namespace understory

@@ -1,0 +1,52 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "scenarios/bench/flight_processes.hpp"
+#include "scenarios/cli/commands.hpp"
+#include "scenarios/config_tree.hpp"
+#include "scenarios/evaluation/evaluation_suite.hpp"
+#include "scenarios/file_output.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
+
+std::vector<fs::path> record_suite(const fs::path& file, const fs::path& folder, int jobs) {
+  const EvaluationSuite suite = load_evaluation_suite(file, scenario_file);
+  prepare_output_folder(folder);
+  std::size_t failed = suite.recordings.size(), done = 0;
+  const bool terminal = isatty(STDOUT_FILENO) == 1;
+  FlightProcesses processes(jobs, [&](std::uint64_t tag, int status) {
+    if (status != 0 && failed == suite.recordings.size()) failed = static_cast<std::size_t>(tag);
+    ++done;
+    if (!terminal) return;
+    fmt::print("\r\033[K{} of {} recorded", done, suite.recordings.size());
+    std::fflush(stdout);
+  });
+  std::vector<fs::path> folders;
+  for (const SuiteRecording& recording : suite.recordings) {
+    folders.push_back(folder / recording.name);
+    if (fs::exists(folders.back() / "mav0")) {  // it bears that name only when it is whole
+      ++done;
+      continue;
+    }
+    std::vector<std::string> arguments{"record"};
+    arguments.insert(arguments.end(), recording.arguments.begin(), recording.arguments.end());
+    arguments.insert(arguments.end(), {"--out", folders.back().string(), "--quiet"});
+    processes.start(folders.size() - 1, arguments);
+  }
+  processes.wait_for_all();
+  if (terminal) fmt::print("\r\033[K");
+  if (failed < suite.recordings.size())
+    throw ScenarioError(fmt::format("{}: {} could not be recorded (understory record {} says why)",
+                                    file.string(), suite.recordings[failed].name,
+                                    fmt::join(suite.recordings[failed].arguments, " ")));
+  return folders;
+}
+
+}  // namespace understory

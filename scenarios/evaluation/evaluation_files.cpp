@@ -1,0 +1,159 @@
+#include "scenarios/evaluation/evaluation_files.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <string_view>
+#include <vector>
+
+#include "scenarios/detection_result.hpp"
+#include "scenarios/evaluation/evaluation_pictures.hpp"
+#include "scenarios/evaluation/evaluation_plots.hpp"
+#include "scenarios/evaluation/evaluation_tables.hpp"
+#include "scenarios/file_output.hpp"
+#include "scenarios/picture_folder.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::string heading(const Evaluation& evaluation) {
+  const RecordingEvaluation& first = evaluation.recordings.front();
+  return fmt::format(
+      "{} recordings, {} frames, {:.1f} s; rig {}, looking {:.2f} m ahead, one pixel is {:.2f} to {:.2f} m\n",
+      evaluation.recordings.size(), evaluation.all.frames, evaluation.all.seconds, first.rig.name,
+      first.detection_depth_m, first.one_pixel.near_m, first.one_pixel.far_m);
+}
+
+/// Quoted where a cell holds a comma.
+std::string to_csv(const PrintedTable& table) {
+  std::string text;
+  const auto add = [&](const std::vector<std::string>& cells) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const bool quoted = cells[i].find(',') != std::string::npos;
+      text += fmt::format("{}{}{}{}", i > 0 ? "," : "", quoted ? "\"" : "", cells[i], quoted ? "\"" : "");
+    }
+    text += "\n";
+  };
+  add(table.head);
+  for (const auto& row : table.rows) add(row);
+  return text;
+}
+
+Json to_json(const Share& share) {
+  return {{"of", share.of}, {"with", share.with}, {"share", share.value()}};
+}
+
+Json to_json(const DistanceHistogram& histogram) {
+  return {{"bin_m", DistanceHistogram::bin_m},
+          {"bins", histogram.bins},
+          {"no_match", histogram.no_match},
+          {"within_0.5_m", histogram.share_within(0.5)},
+          {"within_1.0_m", histogram.share_within(1)},
+          {"within_2.0_m", histogram.share_within(2)}};
+}
+
+Json algorithm_json(const EvaluationSum& sum, std::size_t index) {
+  const VisionTally& tally = sum.tallies[index];
+  std::int64_t hidden = 0;
+  const Share near = found_within(sum.sightings[index], 1),
+              far = found_within(sum.sightings[index], 3, &hidden);
+  Json json{{"name", algorithm_names[index]}, {"hits", sum.hits[index]}};
+  for (std::size_t i = 0; i < tolerance_count; ++i) {
+    json["precision"][tolerance_names[i]] = to_json(tally.precision[i]);
+    json["recall"][tolerance_names[i]] = to_json(tally.recall[i]);
+  }
+  json["f_score"] = tally.f_score();
+  json["false_per_second"] = tally.false_per_second();
+  json["false_on"] = tally.false_on;
+  json["found_within_1_m"] = to_json(near);
+  json["found_within_3_m"] = to_json(far);
+  json["hidden_within_3_m"] = hidden;
+  if (!sum.cost_ms[index].empty()) json["median_ms"] = quantile(sum.cost_ms[index], 0.5);
+  for (const auto& [name, bins] : tally.parts)
+    for (const auto& [bin, part] : bins)
+      json["parts"][name][bin] = {{"precision", to_json(part.precision)}, {"recall", to_json(part.recall)}};
+  return json;
+}
+
+Json sum_json(const EvaluationSum& sum) {
+  Json json{
+      {"name", sum.name}, {"recordings", sum.recordings}, {"frames", sum.frames}, {"seconds", sum.seconds}};
+  for (std::size_t i = 0; i < algorithm_count; ++i) json["algorithms"].push_back(algorithm_json(sum, i));
+  for (std::size_t i = 0; i < published_algorithms.size(); ++i)
+    json["paper"].push_back({{"name", algorithm_names[published_algorithms[i]]},
+                             {"single_frame", to_json(sum.published[i].single_frame)},
+                             {"false_positives", to_json(sum.published[i].false_positives)},
+                             {"false_negatives", to_json(sum.published[i].false_negatives)}});
+  for (const InvarianceRow& row : sum.invariance)
+    json["invariance"].push_back({{"rule", row.rule},
+                                  {"filter", row.filter},
+                                  {"hits", row.hits},
+                                  {"precision", to_json(row.precision)},
+                                  {"recall", to_json(row.recall)}});
+  for (const PrecisionRecallCurve& curve : sum.curves) {
+    Json points;
+    for (const CurvePoint& point : curve.points)
+      points.push_back({{"threshold", point.threshold},
+                        {"precision", to_json(point.precision)},
+                        {"recall", to_json(point.recall)}});
+    json["curves"].push_back({{"name", curve.algorithm}, {"threshold", curve.threshold}, {"points", points}});
+  }
+  return json;
+}
+
+void write_picture(const fs::path& file, const cv::Mat& picture) {
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".png", picture, bytes);
+  write_whole_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+}  // namespace
+
+std::string evaluation_report(const Evaluation& evaluation) {
+  std::string text = heading(evaluation);
+  for (const EvaluationTable& table : evaluation_tables(evaluation))
+    text += "\n" + table.title + "\n" + to_text(table.table);
+  return text;
+}
+
+std::string evaluation_json(const Evaluation& evaluation) {
+  const RecordingEvaluation& first = evaluation.recordings.front();
+  Json json{{"rig", first.rig.name},
+            {"detection_depth_m", first.detection_depth_m},
+            {"one_pixel_m", {first.one_pixel.near_m, first.one_pixel.far_m}},
+            {"all", sum_json(evaluation.all)}};
+  for (const EvaluationSum& scene : evaluation.scenes) json["scenes"].push_back(sum_json(scene));
+  return json.dump(1) + "\n";
+}
+
+void write_evaluation(const Evaluation& evaluation, const fs::path& folder) {
+  prepare_output_folder(folder);
+  prepare_output_folder(folder / "tables");
+  std::string summary = "# Evaluation\n\n" + heading(evaluation);
+  for (const EvaluationTable& table : evaluation_tables(evaluation)) {
+    summary += "\n## " + table.title + "\n\n" + to_markdown(table.table);
+    write_whole_file(folder / "tables" / (table.file + ".csv"), to_csv(table.table));
+  }
+  write_whole_file(folder / "evaluation.json", evaluation_json(evaluation));
+  write_whole_file(folder / "distances.svg", distances_plot(evaluation));
+  if (evaluation.has_depth()) {
+    write_whole_file(folder / "precision_recall.svg", precision_recall_plot(evaluation));
+    write_whole_file(folder / "response.svg", response_plot(evaluation));
+    write_picture(folder / "heat_map.png", heat_maps(evaluation.all.tallies[our_rule], "our rule"));
+    write_picture(folder / "heat_map_paper.png",
+                  heat_maps(evaluation.all.tallies[the_papers_rule], "the paper's rule"));
+    remove_pictures(folder / "worst");
+    write_worst_frames(evaluation, folder / "worst");
+  }
+  if (evaluation.has_objects()) {
+    write_whole_file(folder / "first_hits.svg", first_hits_plot(evaluation));
+    write_whole_file(folder / "obstacles.csv", to_csv(obstacles_table(evaluation)));
+  }
+  write_whole_file(folder / "summary.md", summary);
+}
+
+}  // namespace understory

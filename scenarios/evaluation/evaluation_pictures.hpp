@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "scenarios/evaluation/evaluation.hpp"
+
+namespace understory {
+
+/// Where over the image right hits, wrong ones and expected blocks lie, side by side, each as bright as its
+/// own fullest block; BGR, with titles.
+cv::Mat heat_maps(const VisionTally& tally, const char* title);
+
+/// A frame, three times as large: right hits green, wrong ones red, obstacle blocks that went without thin
+/// yellow. BGR.
+cv::Mat annotated_frame(const EvaluationFrame& frame, const StereoRig& rig, const PushbroomConfig& rule);
+
+/// The worst of all recordings, annotated, as FOLDER/00.png ... Throws as EvaluationRecording does.
+void write_worst_frames(const Evaluation& evaluation, const std::filesystem::path& folder);
+
+}  // namespace understory
