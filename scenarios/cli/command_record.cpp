@@ -6,6 +6,7 @@
 
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/cli/flight_terminal.hpp"
+#include "scenarios/recording/path_file.hpp"
 #include "scenarios/recording/record.hpp"
 #include "scenarios/scenario_io.hpp"
 
@@ -17,6 +18,7 @@ struct RecordArguments : ScenarioArguments {
   std::string out;
   RendererKind renderer = RendererKind::osmesa;
   std::string walk_mps;  // empty: flies
+  std::string path;      // empty: none to follow
   double height_m = WalkConfig{}.height_m;
   bool has_height = false;
   bool quiet = false;
@@ -37,29 +39,46 @@ std::string report_of(const RecordedFlight& flight) {
 std::string report_of(const RecordedWalk& walk) {
   return fmt::format(
       "walked {:.1f} m in {:.1f} s, from x = {:.1f} m along y = {:.1f} m, {:.2f} m high: {} frames\n",
-      walk.walked_m, walk.walked_s, walk.path.from_x_m, walk.path.lane_y_m, walk.path.config.height_m,
-      walk.frames);
+      walk.carried.carried_m, walk.carried.carried_s, walk.path.from_x_m, walk.path.lane_y_m,
+      walk.path.config.height_m, walk.carried.frames);
+}
+
+std::string report_of(const Carried& carried) {
+  return fmt::format("carried {:.1f} m in {:.1f} s: {} frames\n", carried.carried_m, carried.carried_s,
+                     carried.frames);
+}
+
+/// As given, or in the source tree from any working directory: scenarios/paths/level.tum.
+std::filesystem::path path_file(const std::filesystem::path& given) {
+  std::error_code ignored;
+  const std::filesystem::path in_root = project_root() / given;
+  const bool only_there =
+      !std::filesystem::exists(given, ignored) && std::filesystem::exists(in_root, ignored);
+  return only_there ? in_root : given;
+}
+
+std::string record(const RecordArguments& arguments, const Scenario& scenario, FlyOptions options) {
+  const std::vector<TimedPose> path =
+      arguments.path.empty() ? std::vector<TimedPose>{} : read_path(path_file(arguments.path));
+  const ProgressOnTerminal progress;
+  if (progress.shown && !arguments.quiet) options.on_progress = print_flight_progress;
+  if (!path.empty()) return report_of(follow_recorded(scenario, path, options));
+  if (arguments.walk_mps.empty()) return report_of(fly_recorded(scenario, options));
+  return report_of(walk_recorded(scenario, {std::stod(arguments.walk_mps), arguments.height_m}, options));
 }
 
 int run_record(const RecordArguments& arguments) {
   if (arguments.has_height && arguments.walk_mps.empty())
     throw ScenarioError("--height: expected beside --walk");
+  if (!arguments.path.empty() && !arguments.walk_mps.empty())
+    throw ScenarioError("--path: expected without --walk");
   const Scenario scenario = load_scenario(scenario_file(arguments.scenario), arguments.settings);
   FlyOptions options;
   options.models_folder = project_root() / "models";
   require_rig(scenario, arguments, options.models_folder / "rigs");
   options.renderer = arguments.renderer;
   options.output_folder = arguments.out;
-  std::string report;
-  {
-    const ProgressOnTerminal progress;
-    if (progress.shown && !arguments.quiet) options.on_progress = print_flight_progress;
-    if (arguments.walk_mps.empty())
-      report = report_of(fly_recorded(scenario, options));
-    else
-      report =
-          report_of(walk_recorded(scenario, {std::stod(arguments.walk_mps), arguments.height_m}, options));
-  }
+  const std::string report = record(arguments, scenario, options);
   if (!arguments.quiet) fmt::print("{}  {:<18}{}\n", report, "files", arguments.out);
   return exit_goal;
 }
@@ -69,7 +88,8 @@ int run_record(const RecordArguments& arguments) {
 void add_record_command(CLI::App& app, Command& chosen) {
   const auto arguments = std::make_shared<RecordArguments>();
   CLI::App* command = app.add_subcommand(
-      "record", "fly or walk through a scenario and keep images, true depth and poses as a EuRoC data set");
+      "record",
+      "fly, walk or be carried through a scenario and keep images, true depth and poses as a EuRoC data set");
   add_scenario_options(*command, *arguments);
   command->add_option("--seed", arguments->seed, "of course and sensors; goes before the scenario's own");
   command->add_option("--out", arguments->out, "folder for the recording; gets mav0")->required();
@@ -80,6 +100,8 @@ void add_record_command(CLI::App& app, Command& chosen) {
       ->add_flag("--walk{1.4}", arguments->walk_mps,
                  "--walk or --walk=SPEED: carry the cameras through at a walk (1.4 m/s)")
       ->check(CLI::Range(0.1, 5.0));
+  command->add_option("--path", arguments->path,
+                      "carry the cameras along these poses: TUM, EuRoC, or a run's trajectory.csv");
   CLI::Option* height = command->add_option("--height", arguments->height_m, "of the walk, m")
                             ->capture_default_str()
                             ->check(CLI::Range(0.3, 8.0));

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
+#include "perception/io/pose_file.hpp"
 #include "scenarios/fly.hpp"
+#include "scenarios/recording/carry.hpp"
 #include "scenarios/recording/walk.hpp"
 #include "scenarios/scenario.hpp"
 
@@ -20,15 +23,16 @@ RecordedFlight fly_recorded(const Scenario& scenario, FlyOptions options);
 
 struct RecordedWalk {
   WalkPath path;
-  double walked_s = 0;
-  double walked_m = 0;
-  std::int64_t frames = 0;
+  Carried carried;
 };
 
-/// Carries the scenario's cameras and IMU past its obstacles, estimator and autopilot off, and leaves
-/// scenario.yaml and the recording in options.output_folder: the truth as pose, no estimates. Every frame
-/// arrives; a scenario's faults and lost frames are of flights. Ends at the goal plane or after time_limit_s.
-/// Throws as walk_path and EurocRecording do.
+/// Carries the scenario's cameras and IMU past its obstacles on foot (carry_recorded). Ends at the goal plane
+/// or after time_limit_s. Throws as walk_path and EurocRecording do.
 RecordedWalk walk_recorded(const Scenario& scenario, const WalkConfig& config, const FlyOptions& options);
+
+/// Carries them along `poses` of read_path, smoothly, from the first to the last, whatever stands there. Time
+/// starts with the first pose; time_limit_s does not count. Throws as EurocRecording does.
+Carried follow_recorded(const Scenario& scenario, const std::vector<TimedPose>& poses,
+                        const FlyOptions& options);
 
 }  // namespace understory

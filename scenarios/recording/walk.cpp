@@ -10,6 +10,7 @@
 #include "scenarios/clearance.hpp"
 #include "scenarios/config_tree.hpp"
 #include "scenarios/named_seed.hpp"
+#include "scenarios/recording/carried_truth.hpp"
 
 namespace understory {
 namespace {
@@ -82,21 +83,7 @@ WalkPath walk_path(const WalkConfig& config, const Scenario& scenario, const Ste
 }
 
 Truth walk_truth(const WalkPath& path, std::int64_t t_ns) {
-  constexpr double h_s = 1e-4;
-  const double t_s = static_cast<double>(t_ns) * 1e-9;
-  const Eigen::Isometry3d before = pose_at(path, t_s - h_s), now = pose_at(path, t_s),
-                          after = pose_at(path, t_s + h_s);
-  Truth truth;
-  truth.t_ns = t_ns;
-  truth.T_world_body = now;
-  truth.velocity_world_mps = (after.translation() - before.translation()) / (2 * h_s);
-  const Eigen::AngleAxisd turned(Eigen::Matrix3d(before.linear().transpose() * after.linear()));
-  truth.angular_rate_body_radps = turned.angle() * turned.axis() / (2 * h_s);
-  const Eigen::Vector3d acceleration_world_mps2 =
-      (after.translation() - 2 * now.translation() + before.translation()) / (h_s * h_s);
-  truth.specific_force_body_mps2 =
-      now.linear().transpose() * (acceleration_world_mps2 + path.gravity_mps2 * Eigen::Vector3d::UnitZ());
-  return truth;
+  return carried_truth([&](double t_s) { return pose_at(path, t_s); }, t_ns, path.gravity_mps2);
 }
 
 }  // namespace understory

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <limits>
+#include <numbers>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 #include <string>
@@ -13,6 +14,7 @@
 #include "perception/io/pose_file.hpp"
 #include "scenarios/oracles/true_depth.hpp"
 #include "scenarios/recording/euroc_texts.hpp"
+#include "scenarios/recording/path_file.hpp"
 #include "scenarios/recording/record.hpp"
 #include "scenarios/scenario_io.hpp"
 #include "scenarios/scenario_rig.hpp"
@@ -149,6 +151,35 @@ TEST(Objects, OfAGoalAreThoseThatRaysMeet) {
   EXPECT_EQ(goal.objects[4].kind, "crossbar");
   EXPECT_GT(goal.agreement.on_obstacles, 500);
   EXPECT_EQ(goal.agreement.agreed, goal.agreement.compared);
+}
+
+/// Along the banked path, which goes through trunks: where it is at a time is known, and its roll.
+TEST(Objects, AlongTheBankedPathAreThoseThatRaysMeet) {
+  const support::TemporaryFolder folder;
+  const Scenario scenario = load_scenario(root / "scenarios/library/forest.yaml",
+                                          {"seed=1003", "cameras.rate_hz=2", "cameras.view_distance_m=200"});
+  FlyOptions options;
+  options.models_folder = root / "models";
+  options.output_folder = folder.path();
+  EXPECT_EQ(follow_recorded(scenario, read_path(root / "scenarios/paths/banked.tum"), options).frames, 14);
+  const StereoRig rig = read_calibrated_rig(folder.path(), {}).rig;
+  const auto objects = read_objects(folder.path() / "mav0/objects0/objects.csv");
+  constexpr double degree = std::numbers::pi / 180;
+  Agreement all;
+  for (int i = 0; i < 14; ++i) {
+    const double roll_rad = 50 * degree * std::sin(std::numbers::pi * 0.5 * i);
+    Eigen::Isometry3d pose(Eigen::Translation3d(6 * i - 5, 0, 4.5));
+    pose.linear() = (Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitX()) *
+                     Eigen::AngleAxisd(-10.97 * degree, Eigen::Vector3d::UnitY()))
+                        .toRotationMatrix();
+    const std::string name = std::to_string(recorded_ns(i * std::int64_t{500'000'000})) + ".png";
+    const cv::Mat found =
+        cv::imread((folder.path() / "mav0/objects0/data" / name).string(), cv::IMREAD_UNCHANGED);
+    const Agreement one = compare(found, expected_objects(objects, rig, pose));
+    all.compared += one.compared, all.agreed += one.agreed, all.on_obstacles += one.on_obstacles;
+  }
+  EXPECT_GT(all.on_obstacles, 50'000);
+  EXPECT_EQ(all.agreed, all.compared);
 }
 
 /// What is not drawn is no object: neither image nor depth nor number knows of it.
