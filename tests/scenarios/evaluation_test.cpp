@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <opencv2/core.hpp>
 #include <random>
 
@@ -49,7 +50,7 @@ TEST(Evaluation, APlaneAtTheDetectionDepthHasPrecisionOne) {
     for (const PushbroomConfig& rule : {paper_rule(), robust_rule()}) {
       PushbroomStereo detector(plane.rig, rule);
       const auto& hits = detector.detect(plane.frame.pair);
-      ASSERT_GT(hits.size(), 500u);
+      ASSERT_GT(hits.size(), 300u);
       VisionTally result;
       tally(plane.frame, plane.grid, plane.rig, kinds, hits, result);
       for (const Share& share : result.precision) {
@@ -232,8 +233,9 @@ TEST(Evaluation, NearestDistancesAreThoseOfBruteForce) {
 }
 
 TEST(Evaluation, HistogramsCountEdgesToTheNearerBin) {
+  constexpr double beyond = std::numeric_limits<double>::infinity();
   DistanceHistogram histogram;
-  for (const double distance_m : {0.0, 0.5, 0.500001, 1.0, 7.0, 12.0, INFINITY, INFINITY})
+  for (const double distance_m : {0.0, 0.5, 0.500001, 1.0, 7.0, 12.0, beyond, beyond})
     histogram.add(distance_m);
   EXPECT_EQ(histogram.total(), 8);
   EXPECT_DOUBLE_EQ(histogram.share_within(0.5), 2 / 8.0);

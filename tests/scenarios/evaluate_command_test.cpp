@@ -1,0 +1,91 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+/// `understory evaluate` as people meet it.
+namespace {
+
+namespace fs = std::filesystem;
+using understory::support::content_of;
+using understory::support::expect_refusal;
+using understory::support::TemporaryFolder;
+using understory::support::understory;
+
+const char* suite = R"(
+set: {cameras.rate_hz: 20, time_limit_s: 3}
+recordings:
+  - {name: short, scenario: forest, seeds: 1007..1008, walk_mps: 5, height_m: 3, set: {world.bark_contrast: 0.5}}
+)";
+
+/// All figures but the costs, which no two runs share.
+nlohmann::json figures(const fs::path& folder) {
+  nlohmann::json json = nlohmann::json::parse(content_of(folder / "evaluation.json"));
+  for (nlohmann::json* sum : {&json["all"], &json["scenes"][0]})
+    for (nlohmann::json& algorithm : (*sum)["algorithms"]) algorithm.erase("median_ms");
+  return json;
+}
+
+TEST(EvaluateCommand, RecordsASuiteAndJudgesIt) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("short.yaml", suite);
+  const fs::path out = folder.path() / "out";
+  const auto first = understory("evaluate " + file.string() + " --out " + out.string());
+  ASSERT_EQ(first.status, 0) << first.text;
+  for (const char* name : {"summary.md", "evaluation.json", "distances.svg", "precision_recall.svg",
+                           "response.svg", "first_hits.svg", "heat_map.png", "heat_map_paper.png",
+                           "obstacles.csv", "tables/algorithms.csv", "tables/paper.csv"})
+    EXPECT_TRUE(fs::is_regular_file(out / name)) << name;
+  const nlohmann::json all = figures(out)["all"];
+  EXPECT_EQ(all["recordings"], 2);
+  EXPECT_EQ(all["frames"], 120);  // two walks of 3 s
+  for (const auto& algorithm : all["algorithms"])
+    if (algorithm["name"] == "true depth") {
+      EXPECT_EQ(algorithm["precision"]["one pixel"]["share"], 1);
+      EXPECT_EQ(algorithm["recall"]["one pixel"]["share"], 1);
+    }
+
+  // The same recordings given as folders, one after the other: the same figures.
+  const std::string folders =
+      (out / "recordings/short-1007").string() + " " + (out / "recordings/short-1008").string();
+  const fs::path again = folder.path() / "again";
+  const auto second = understory("evaluate " + folders + " --jobs 1 --out " + again.string());
+  ASSERT_EQ(second.status, 0) << second.text;
+  EXPECT_EQ(figures(out), figures(again));
+
+  expect_refusal("evaluate " + folders + " --set perception.pushbroom.edge=3 --out " + again.string(),
+                 "perception.pushbroom.edge: expected a known key");
+  fs::remove(out / "recordings/short-1008/mav0/depth0/data" /
+             fs::directory_iterator(out / "recordings/short-1008/mav0/depth0/data")->path().filename());
+  expect_refusal("evaluate " + folders + " --out " + again.string(), "expected a 16-bit gray image");
+}
+
+TEST(EvaluateCommand, WrongInputIsRefusedInOneLine) {
+  const TemporaryFolder folder;
+  const std::string out = " --out " + (folder.path() / "out").string();
+  expect_refusal("evaluate nowhere" + out, "nowhere");
+  expect_refusal("evaluate " + folder.path().string() + out, "cam0");
+  const auto refuses = [&](const std::string& text, const std::string& part) {
+    const fs::path file = folder.write("suite.yaml", text);
+    expect_refusal("evaluate " + file.string() + out, part);
+  };
+  refuses("recordings: []\n", "recordings: expected a list");
+  refuses("recording: 1\n", "recording: expected one of recordings, set");
+  refuses("recordings:\n  - {name: a, scenario: forest}\n", "recordings.seeds: expected first..last");
+  refuses("recordings:\n  - {name: a, scenario: forest, seeds: 3..1}\n", "expected first <= last");
+  refuses("recordings:\n  - {name: a/b, scenario: forest, seeds: 1}\n", "recordings.name: expected a name");
+  refuses("recordings:\n  - {name: a, scenario: nowhere, seeds: 1}\n", "nowhere");
+  refuses("recordings:\n  - {name: a, scenario: forest, seeds: 1, path: no.tum}\n", "no.tum");
+  refuses(
+      "recordings:\n  - {name: a, scenario: forest, seeds: 1}\n  - {name: a, scenario: dense, seeds: 1}\n",
+      "a-1 is given twice");
+  refuses("recordings:\n  - {name: a, scenario: forest, seeds: 1, set: {rig: none}}\n",
+          "a-1 could not be recorded");
+  EXPECT_FALSE(fs::exists(folder.path() / "out/summary.md"));
+}
+
+}  // namespace
