@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
@@ -26,8 +27,9 @@ cv::Mat heat_map(const std::vector<std::int64_t>& counts, int columns, const std
   cv::Mat small(rows, columns, CV_8UC1);
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column)
-      small.at<std::uint8_t>(row, column) =
-          static_cast<std::uint8_t>(255 * counts[static_cast<std::size_t>(row * columns + column)] / most);
+      small.at<std::uint8_t>(row, column) = static_cast<std::uint8_t>(
+          255 * std::sqrt(static_cast<double>(counts[static_cast<std::size_t>(row * columns + column)]) /
+                          static_cast<double>(most)));
   cv::Mat large, coloured;
   cv::resize(small, large, {}, heat_scale, heat_scale, cv::INTER_NEAREST);
   cv::applyColorMap(large, coloured, cv::COLORMAP_INFERNO);

@@ -68,12 +68,12 @@ std::string precision_recall_plot(const Evaluation& evaluation) {
 }
 
 std::string distances_plot(const Evaluation& evaluation) {
-  std::vector<LinePlot> panels{histogram_panel("1: hits to StereoBM near the depth, single frames",
+  std::vector<LinePlot> panels{histogram_panel("1: single frames, to StereoBM near the depth",
                                                evaluation, &PublishedScores::single_frame)};
   if (evaluation.has_poses()) {
-    panels.push_back(histogram_panel("2: remembered points to StereoBM (false positives)", evaluation,
+    panels.push_back(histogram_panel("2: from remembered points to StereoBM", evaluation,
                                      &PublishedScores::false_positives));
-    panels.push_back(histogram_panel("3: StereoBM nearer than 5 m to remembered points (misses)", evaluation,
+    panels.push_back(histogram_panel("3: from StereoBM to remembered points", evaluation,
                                      &PublishedScores::false_negatives));
   }
   return to_svg(panels);
@@ -101,7 +101,7 @@ std::string response_plot(const Evaluation& evaluation) {
 
 std::string first_hits_plot(const Evaluation& evaluation) {
   LinePlot plot;
-  plot.title = "Obstacles within 3 m of the path, in view: found by the time they were so near";
+  plot.title = "Obstacles within 3 m of the path: found by then";
   plot.x_label = "true distance, m";
   plot.y_label = "% of obstacles";
   for (const std::size_t i : {our_rule, the_papers_rule, stereo_bm}) {
