@@ -8,6 +8,7 @@ namespace understory {
 namespace {
 
 constexpr double uncertainty_px = 0.5;
+constexpr double unlimited_m = 1000;
 
 }  // namespace
 
@@ -16,6 +17,7 @@ FullStereoCrop one_pixel_crop(const StereoRig& rig) {
   FullStereoCrop crop;
   crop.least_depth_m = rig.depth_m(disparity_px + 1);
   crop.greatest_depth_m = rig.depth_m(disparity_px - 1);
+  crop.greatest_below_m = unlimited_m;  // the pushbroom's rows alone
   return crop;
 }
 
@@ -47,6 +49,7 @@ void FullStereoDetector::add_cell(const cv::Mat& depth_m, int column_px, int row
   hit.disparity_px = rig_.disparity_px(z_m);
   hit.position_camera = {(column_px + center_px - rig_.center_left_x_px) * z_m / rig_.focal_px,
                          (row_px + center_px - rig_.center_y_px) * z_m / rig_.focal_px, z_m};
+  if (hit.position_camera.y() > crop_.greatest_below_m) return;
   const double farther_px = hit.disparity_px - uncertainty_px;
   hit.depth = {rig_.depth_m(hit.disparity_px + uncertainty_px),
                farther_px > rig_.infinity_disparity_px() ? rig_.depth_m(farther_px) : crop_.greatest_depth_m};

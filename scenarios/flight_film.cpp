@@ -10,12 +10,12 @@ constexpr int scale = 2;
 }
 
 FlightFilm::FlightFilm(const std::filesystem::path& folder, const StereoRig& rig, StereoCameras& cameras,
-                       int camera_rate_hz)
+                       double frame_rate_hz)
     : folder_(folder),
       rig_(rig),
       cameras_(cameras),
-      video_(folder / "flight.mp4", static_cast<double>(camera_rate_hz) / std::max(1, camera_rate_hz / 30)),
-      every_(std::max(1, camera_rate_hz / 30)) {}
+      video_(folder / "flight.mp4", frame_rate_hz / std::max(1, static_cast<int>(frame_rate_hz / 30))),
+      every_(std::max(1, static_cast<int>(frame_rate_hz / 30))) {}
 
 void FlightFilm::observe(const StereoFrame& frame, const Autopilot& autopilot,
                          const StateSource& state_source, const mjData& data) {

@@ -14,7 +14,7 @@ namespace understory {
 class FlightFilm {
  public:
   FlightFilm(const std::filesystem::path& folder, const StereoRig& rig, StereoCameras& cameras,
-             int camera_rate_hz);
+             double frame_rate_hz);
 
   /// Each frame as the autopilot has just digested it.
   void observe(const StereoFrame& frame, const Autopilot& autopilot, const StateSource& state_source,
@@ -26,7 +26,7 @@ class FlightFilm {
   StereoRig rig_;
   StereoCameras& cameras_;
   VideoFile video_;
-  int every_ = 4;  ///< camera frames per picture
+  int every_ = 4;  ///< frames per picture
   std::int64_t frames_ = 0;
   std::size_t most_hits_ = 0;
   cv::Mat still_;

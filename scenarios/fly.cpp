@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <deque>
 #include <memory>
 #include <optional>
 
@@ -13,6 +12,7 @@
 #include "planning/autopilot.hpp"
 #include "scenarios/detection_depths.hpp"
 #include "scenarios/due.hpp"
+#include "scenarios/flight_computer.hpp"
 #include "scenarios/flight_film.hpp"
 #include "scenarios/named_seed.hpp"
 #include "scenarios/onboard_sensors.hpp"
@@ -130,8 +130,8 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   const Due due(scenario);
   FrameDrops drops(scenario.cameras.drop_probability, seed_for(scenario.sensor_seed(), "camera_drops"));
   const std::int64_t lag_ns = scenario.cameras.cameras.exposure_lag_ns();
-  const auto latency_ns = static_cast<std::int64_t>(scenario.cameras.latency_s * 1e9) + lag_ns;
-  std::deque<StereoFrame> pending;
+  const auto latency_ns = static_cast<std::int64_t>(scenario.cameras.latency_s * 1e9);
+  FlightComputer computer(static_cast<std::int64_t>(scenario.perception.cost_s() * 1e9));
   Controls controls;
   Referee referee(scenario);
   RunRecord record(scenario, obstacles);
@@ -140,7 +140,7 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   std::optional<Rectifier> rectifier;  // for the film only: the detector rectifies what it looks at
   if (options.video && calibrated.calibration)
     rectifier.emplace(*calibrated.calibration, Interpolation::nearest);
-  if (options.video) film.emplace(options.output_folder, rig, *cameras, scenario.cameras.rate_hz);
+  if (options.video) film.emplace(options.output_folder, rig, *cameras, scenario.frame_rate_hz());
 
   std::optional<Ending> ending;
   for (std::int64_t step = 0; !ending; ++step) {
@@ -151,14 +151,17 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
     if (options.on_estimate && due.imu(step)) options.on_estimate(autopilot.state());
     if (cameras) cameras->observe(aircraft.data(), truth.t_ns);
     if (due.camera(step) && !drops.next()) {
-      pending.push_back(
-          cameras ? stopwatch.time("render", [&] { return cameras->capture(aircraft.data(), truth.t_ns); })
-                  : StereoFrame{truth.t_ns - lag_ns, {}, {}});
-      if (!sensors.faults().pass(pending.back())) pending.pop_back();
+      // A busy computer drops frames: what it will not look at need not be rendered.
+      const std::int64_t arrival_ns = truth.t_ns + latency_ns;
+      const std::int64_t next_arrival_ns = time_of_step_ns(step + due.camera_steps) + latency_ns;
+      const bool taken = computer.will_take(arrival_ns, next_arrival_ns) || !scenario.every_frame_arrives();
+      StereoFrame frame{truth.t_ns - lag_ns, {}, {}};
+      if (cameras && taken)
+        frame = stopwatch.time("render", [&] { return cameras->capture(aircraft.data(), truth.t_ns); });
+      if (sensors.faults().pass(frame)) computer.send(std::move(frame), arrival_ns);
     }
-    while (!pending.empty() && truth.t_ns >= pending.front().t_ns + latency_ns) {
-      const StereoFrame frame = std::move(pending.front());
-      pending.pop_front();
+    while (const std::optional<StereoFrame> looked_at = computer.looked_at(truth.t_ns)) {
+      const StereoFrame& frame = *looked_at;
       if (options.on_frame) stopwatch.time("record", [&] { options.on_frame(frame, *cameras); });
       stopwatch.time("detect", [&] { autopilot.on(frame); });
       stopwatch.time("record", [&] {

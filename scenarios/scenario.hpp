@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -15,6 +16,7 @@
 #include "planning/autopilot.hpp"
 #include "planning/mission.hpp"
 #include "scenarios/fence.hpp"
+#include "scenarios/flight_computer.hpp"
 #include "scenarios/forest.hpp"
 #include "scenarios/goalposts.hpp"
 #include "scenarios/windows.hpp"
@@ -127,6 +129,24 @@ struct PerceptionSection {
   StereoBmConfig stereo_bm;
   StereoSgbmConfig stereo_sgbm;
   FullStereoCrop full_stereo;  ///< what of either's depths becomes hits
+  ComputeConfig compute;
+
+  /// What one pair costs the aircraft's computer, simulated seconds; 0 for what is not computed there.
+  double cost_s() const {
+    if (!compute.enabled) return 0;
+    switch (detector) {
+      case DetectorKind::pushbroom:
+        return compute.factor * compute.pushbroom_s;
+      case DetectorKind::stereo_bm:
+        return compute.factor * compute.stereo_bm_s;
+      case DetectorKind::stereo_sgbm:
+        return compute.factor * compute.stereo_sgbm_s;
+      case DetectorKind::true_depth:
+      case DetectorKind::none:
+        break;
+    }
+    return 0;
+  }
 };
 
 struct EstimationSection {
@@ -189,6 +209,14 @@ struct Scenario {
     return config;
   }
   double goal_x_m() const { return forest.clear_m + forest.length_m; }
+  /// Frames that are looked at in a second.
+  double frame_rate_hz() const { return 1 / std::max(1.0 / cameras.rate_hz, perception.cost_s()); }
+  /// Whether every frame reaches the stack, so that it can be told beforehand which will be looked at.
+  bool every_frame_arrives() const {
+    return cameras.drop_probability == 0 && std::ranges::none_of(faults, [](const FaultConfig& fault) {
+             return fault.sensor == FaultySensor::camera;
+           });
+  }
   std::uint64_t sensor_seed() const { return sensors.seed == 0 ? seed : sensors.seed; }
 };
 
@@ -231,6 +259,7 @@ void visit_fields(Visitor& visit, PerceptionSection& section) {
   visit("stereo_bm", section.stereo_bm);
   visit("stereo_sgbm", section.stereo_sgbm);
   visit("full_stereo", section.full_stereo);
+  visit("compute", section.compute);
 }
 
 template <typename Visitor>

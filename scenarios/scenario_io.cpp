@@ -71,6 +71,10 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
          "perception.stereo_sgbm.smoothness_1: expected less than smoothness_2");
   expect(perception.full_stereo.least_depth_m < perception.full_stereo.greatest_depth_m,
          "perception.full_stereo.least_depth_m: expected less than greatest_depth_m");
+  // The estimator remembers where it was for a second, and waits for no older frame than half of it.
+  const double cost_s = perception.cost_s();
+  expect(scenario.cameras.latency_s + cost_s + std::min(cost_s, 1.0 / scenario.cameras.rate_hz) <= 0.5,
+         "perception.compute.factor: expected a frame to be looked at within 0.5 s of its exposure");
   for (std::size_t i = 0; i < scenario.faults.size(); ++i) {
     const FaultConfig& fault = scenario.faults[i];
     expect(can_have(fault.sensor, fault.kind),

@@ -3,7 +3,9 @@
 #include <memory>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
+#include "perception/full_stereo_detector.hpp"
 #include "perception/pushbroom_stereo.hpp"
 #include "perception/rectify.hpp"
 
@@ -40,6 +42,19 @@ void add_yardsticks(const CalibratedRig& rig, const std::vector<StereoFrame>& ra
        [&rectified, matcher = cv::StereoSGBM::create(0, 64, 9), out = cv::Mat()](std::size_t i) mutable {
          matcher->compute(rectified[i].left, rectified[i].right, out);
        }});
+}
+
+/// Full stereo in the detector's place, as it flies: what perception.compute is fed with.
+void add_full_stereo(const CalibratedRig& rig, const std::vector<StereoFrame>& rectified,
+                     std::vector<BenchCase>& cases) {
+  const auto add = [&](const char* name, FullStereoDetector detector) {
+    cases.push_back(
+        {name, 1, matching_name, 10, [&rectified, detector = std::move(detector)](std::size_t i) mutable {
+           detector.detect(rectified[i]);
+         }});
+  };
+  add("full stereo by StereoBM, 112 disparities", {rig.rig, StereoBmConfig{}, {}});
+  add("full stereo by StereoSGBM, 112 disparities", {rig.rig, StereoSgbmConfig{}, {}});
 }
 
 /// Depths at and around the rig's own: whole pixels of disparity apart.
@@ -102,6 +117,7 @@ std::vector<BenchCase> bench_cases(const CalibratedRig& rig, const BenchPairs& p
   cv::setNumThreads(1);
   std::vector<BenchCase> cases;
   add_yardsticks(rig, pairs.delivered, pairs.rectified, cases);
+  add_full_stereo(rig, pairs.rectified, cases);
   add_detectors(rig, pairs.delivered, pairs.rectified, cases);
   return cases;
 }

@@ -116,6 +116,7 @@ TEST_P(FullStereoOf, HitsLieOnThePlaneInsideTheirDepthInterval) {
     EXPECT_NEAR(ray.y() * rig().focal_px + rig().center_y_px, hit.row_px + 2, 1e-9);
     EXPECT_NEAR(hit.disparity_px, rig().disparity_px(hit.position_camera.z()), 1e-9);
     EXPECT_LE(hit.row_px, FullStereoCrop{}.last_row_px);
+    EXPECT_LE(hit.position_camera.y(), FullStereoCrop{}.greatest_below_m);
   }
   ASSERT_GT(hits.size(), 1000u);
   EXPECT_GT(static_cast<double>(inside), 0.95 * static_cast<double>(hits.size()));

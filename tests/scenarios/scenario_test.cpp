@@ -61,6 +61,31 @@ TEST(Scenario, RefusesContradictions) {
   EXPECT_THROW(scenario_from_text("world: {obstacles_visible: false}\n", "a.yaml"), ScenarioError);
 }
 
+TEST(Scenario, FullStereosNumbersAreRefusedInOneLineWhereOpenCvWouldThrow) {
+  const auto refusal = [](const std::string& text) -> std::string {
+    try {
+      scenario_from_text(text, "a.yaml");
+      return "accepted";
+    } catch (const ScenarioError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(refusal("perception:\n  stereo_bm: {window_px: 6}\n"),
+            "a.yaml:2: perception.stereo_bm.window_px: expected an odd number");
+  EXPECT_EQ(refusal("perception:\n  stereo_sgbm: {disparities: 100}\n"),
+            "a.yaml:2: perception.stereo_sgbm.disparities: expected a multiple of 16");
+  EXPECT_EQ(refusal("perception:\n  stereo_sgbm: {smoothness_1: 40}\n"),
+            "a.yaml:2: perception.stereo_sgbm.smoothness_1: expected less than smoothness_2");
+  EXPECT_EQ(refusal("perception: {full_stereo: {least_depth_m: 20}}"),
+            "a.yaml:1: perception.full_stereo.least_depth_m: expected less than greatest_depth_m");
+  EXPECT_EQ(
+      refusal("perception: {detector: stereo}"),
+      "a.yaml:1: perception.detector: expected pushbroom | stereo_bm | stereo_sgbm | true_depth | none, "
+      "got stereo");
+  EXPECT_EQ(refusal("perception: {compute: {factor: -1}}"),
+            "a.yaml:1: perception.compute.factor: expected a number from 0.001 to 1000, got -1");
+}
+
 TEST(Scenario, AGradeIsWhereTheKeysBesideItStart) {
   const Scenario rough = scenario_from_text("sensors: {grade: rough, imu: {gyro_scale: 0.002}}\n", "a.yaml");
   EXPECT_EQ(rough.sensors.sensors.imu.gyro_scale, 0.002);
