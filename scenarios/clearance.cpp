@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace understory {
@@ -28,6 +29,39 @@ double segment_distance_m(const Segment& a, const Segment& b) {
   return (between + s * along_a - t * along_b).norm();
 }
 
+namespace {
+
+/// Between a segment and an upright rectangle, given by its diagonal: 0 where it goes through; otherwise an
+/// edge of the rectangle is nearest, or an end of the segment is that lies over its face.
+double rectangle_distance_m(const Segment& segment, const Segment& diagonal) {
+  const Eigen::Vector3d across = diagonal.to - diagonal.from;
+  const Eigen::Vector3d side(across.x(), across.y(), 0), up(0, 0, across.z());
+  const Eigen::Vector3d normal = side.cross(up).normalized();
+  const Eigen::Vector3d corners[] = {diagonal.from, diagonal.from + side, diagonal.to, diagonal.from + up};
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 4; ++i)
+    least = std::min(least, segment_distance_m(segment, {corners[i], corners[(i + 1) % 4]}));
+  const auto is_over_face = [&](const Eigen::Vector3d& point) {
+    const Eigen::Vector3d from_corner = point - diagonal.from;
+    const double along = from_corner.dot(side) / side.squaredNorm(), height = from_corner.z() / across.z();
+    return along >= 0 && along <= 1 && height >= 0 && height <= 1;
+  };
+  const double a = normal.dot(segment.from - diagonal.from), b = normal.dot(segment.to - diagonal.from);
+  if (is_over_face(segment.from)) least = std::min(least, std::abs(a));
+  if (is_over_face(segment.to)) least = std::min(least, std::abs(b));
+  if (a * b < 0 && is_over_face(segment.from + a / (a - b) * (segment.to - segment.from))) return 0;
+  return least;
+}
+
+}  // namespace
+
+double obstacle_distance_m(const Segment& segment, const Obstacle& obstacle) {
+  const Segment extent{obstacle.from_world, obstacle.to_world};
+  return (obstacle.kind == ObstacleKind::wall ? rectangle_distance_m(segment, extent)
+                                              : segment_distance_m(segment, extent)) -
+         obstacle.radius_m;
+}
+
 double clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airframe,
                    const std::vector<Obstacle>& obstacles) {
   const double tail_x = airframe.elevon_hinge_x_m - airframe.elevon_chord_m;
@@ -47,7 +81,7 @@ double clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airfra
     const double matters_m = least + bar.radius_m + rounding_m;
     if (matters_m < 0 || around.squaredExteriorDistance(box) > matters_m * matters_m) continue;
     for (const Segment& part : parts) {
-      least = std::min(least, segment_distance_m(part, {bar.from_world, bar.to_world}) - bar.radius_m);
+      least = std::min(least, obstacle_distance_m(part, bar));
     }
   }
   return least;

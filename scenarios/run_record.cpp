@@ -143,8 +143,7 @@ void RunRecord::finish(Ending ending) {
   if (obstacles_.size() <= 8) {  // a course of few, named bars: say what was seen of each
     for (const Obstacle& bar : obstacles_) {
       const auto near = [&](const Eigen::Vector3d& point_world) {
-        return segment_distance_m({point_world, point_world}, {bar.from_world, bar.to_world}) <
-               bar.radius_m + 0.5;
+        return obstacle_distance_m({point_world, point_world}, bar) < 0.5;
       };
       result_.points_on_obstacles.emplace_back(
           bar.name, std::count_if(true_positions_world_.begin(), true_positions_world_.end(), near));

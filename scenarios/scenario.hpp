@@ -14,8 +14,10 @@
 #include "planning/airframe.hpp"
 #include "planning/autopilot.hpp"
 #include "planning/mission.hpp"
+#include "scenarios/fence.hpp"
 #include "scenarios/forest.hpp"
 #include "scenarios/goalposts.hpp"
+#include "scenarios/windows.hpp"
 #include "sim/actuators.hpp"
 #include "sim/aircraft.hpp"
 #include "sim/faults.hpp"
@@ -30,14 +32,18 @@
 /// bounded and explained once; the sections here only add what the composition itself decides.
 namespace understory {
 
-enum class Course { forest, goalposts, clear };
+enum class Course { forest, goalposts, clear, windows, fence };
 enum class DetectorKind { pushbroom, stereo_bm, stereo_sgbm, true_depth, none };
 enum class StateKind { filter, truth };
 enum class RulePreset { robust, paper };             ///< which numbers perception.pushbroom starts from
 enum class FilterPreset { tuned, original, windy };  ///< which numbers estimation.filter starts from
 
-inline constexpr std::array<std::pair<std::string_view, Course>, 3> course_names{
-    {{"forest", Course::forest}, {"goalposts", Course::goalposts}, {"clear", Course::clear}}};
+inline constexpr std::array<std::pair<std::string_view, Course>, 5> course_names{
+    {{"forest", Course::forest},
+     {"goalposts", Course::goalposts},
+     {"clear", Course::clear},
+     {"windows", Course::windows},
+     {"fence", Course::fence}}};
 inline constexpr std::array<std::pair<std::string_view, DetectorKind>, 5> detector_names{
     {{"pushbroom", DetectorKind::pushbroom},
      {"stereo_bm", DetectorKind::stereo_bm},
@@ -145,6 +151,8 @@ struct Scenario {
   BandConfig band;
   ForestConfig forest;
   GoalpostsConfig goalposts;
+  WindowsConfig windows;
+  FenceConfig fence;
   LaunchConfig launch;
   Airframe airframe;        ///< what the stack believes in
   MismatchConfig mismatch;  ///< how far the aircraft that flies is from it
@@ -250,6 +258,8 @@ void visit_fields(Visitor& visit, Scenario& scenario) {
   visit("band", scenario.band);
   visit("forest", scenario.forest);
   visit("goalposts", scenario.goalposts);
+  visit("windows", scenario.windows);
+  visit("fence", scenario.fence);
   visit("launch", scenario.launch);
   visit("airframe", scenario.airframe);
   visit("mismatch", scenario.mismatch);

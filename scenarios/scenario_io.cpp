@@ -39,6 +39,8 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
          "band.least_altitude_m: expected less than band.greatest_altitude_m");
   expect(scenario.goalposts.pass_least_m <= scenario.goalposts.pass_greatest_m,
          "goalposts.pass_least_m: expected at most goalposts.pass_greatest_m");
+  expect(scenario.fence.gate_m < 2 * scenario.fence.reach_m,
+         "fence.gate_m: expected less than twice fence.reach_m");
   expect(scenario.actuators.pitch_speed_mps == 0 ||
              scenario.actuators.pitch_speed_mps > scenario.actuators.thrust_speed_mps,
          "actuators.pitch_speed_mps: expected 0 or more than actuators.thrust_speed_mps");
@@ -140,6 +142,10 @@ std::vector<Obstacle> course_obstacles(const Scenario& scenario) {
       return poisson_forest(scenario.forest, scenario.seed);
     case Course::goalposts:
       return goalposts(scenario.goalposts, scenario.seed);
+    case Course::windows:
+      return windows(scenario.windows, scenario.goal_x_m());
+    case Course::fence:
+      return fence(scenario.fence, scenario.goal_x_m());
     case Course::clear:
       break;
   }

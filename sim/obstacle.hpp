@@ -24,7 +24,8 @@ inline constexpr std::uint16_t object_nothing = 0;
 inline constexpr std::uint16_t object_ground = 1;
 inline constexpr std::uint16_t object_first_obstacle = 2;
 
-/// A round bar between two points: a trunk, a goal post, a crossbar. World frame, m.
+/// A round bar between two points: a trunk, a goal post, a crossbar. Or a wall: upright, a rectangle whose
+/// diagonal goes from the one point to the other, twice the radius thick. World frame, m.
 struct Obstacle {
   std::string name;
   Eigen::Vector3d from_world = Eigen::Vector3d::Zero();  ///< for a trunk: its foot

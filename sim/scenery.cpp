@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "sim/facade.hpp"
 #include "sim/textures.hpp"
 #include "sim/trunk_mesh.hpp"
 
@@ -51,10 +52,9 @@ struct Tint {
   double red, blue;
 };
 
-void paint(mjModel& model, const char* name, const TextureRequest& request, const Tint& tint) {
+void paint(mjModel& model, const char* name, const GrayTexture& texture, const Tint& tint) {
   const int id = mj_name2id(&model, mjOBJ_TEXTURE, name);
   if (id < 0) return;
-  const GrayTexture texture = make_texture(request);
   const auto tinted = [](std::uint8_t gray, double factor) {
     return static_cast<mjtByte>(std::min(255.0, gray * factor));
   };
@@ -110,24 +110,34 @@ TrunkMesh ground_mesh() {
   return mesh;
 }
 
-std::string texture_xml(const char* name, const TextureRequest& request) {
+std::string texture_xml(const char* name, int width_px, int height_px) {
   return fmt::format(
       "<texture name=\"{0}\" type=\"2d\" builtin=\"flat\" rgb1=\".5 .5 .5\" width=\"{1}\" height=\"{2}\"/>\n"
       "<material name=\"{0}\" texture=\"{0}\" specular=\"0\" shininess=\"0\" reflectance=\"0\"/>\n",
-      name, request.width_px, request.height_px);
+      name, width_px, height_px);
 }
 
 }  // namespace
 
 SceneryXml scenery_xml(const std::vector<Obstacle>& obstacles, const WorldConfig& config) {
   SceneryXml xml;
-  xml.assets = texture_xml("bark", bark_request(config)) + texture_xml("litter", ground_request(config)) +
+  const TextureRequest bark = bark_request(config), litter = ground_request(config);
+  xml.assets = texture_xml("bark", bark.width_px, bark.height_px) +
+               texture_xml("litter", litter.width_px, litter.height_px) +
                mesh_xml("scenery_ground", ground_mesh());
   xml.bodies = geom_xml("scenery_ground", "litter", Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity());
   if (!config.obstacles_visible) return xml;
+  bool has_facade = false;  // its texture: others need not carry it
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const Obstacle& obstacle = obstacles[i];
     const std::string name = fmt::format("scenery_{}", i);
+    if (obstacle.kind == ObstacleKind::wall) {
+      if (!has_facade) xml.assets += texture_xml("facade", facade_width_px, facade_height_px);
+      has_facade = true;
+      xml.assets += mesh_xml(name, facade_mesh(obstacle));
+      xml.bodies += geom_xml(name, "facade", obstacle.from_world, Eigen::Quaterniond::Identity());
+      continue;
+    }
     const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(
                                         Eigen::Vector3d::UnitZ(), obstacle.to_world - obstacle.from_world) *
                                     Eigen::AngleAxisd(obstacle.texture_turn_rad, Eigen::Vector3d::UnitZ());
@@ -138,8 +148,10 @@ SceneryXml scenery_xml(const std::vector<Obstacle>& obstacles, const WorldConfig
 }
 
 void paint_textures(mjModel& model, const WorldConfig& config) {
-  paint(model, "bark", bark_request(config), {1.06, 0.88});
-  paint(model, "litter", ground_request(config), {0.90, 0.72});
+  paint(model, "bark", make_texture(bark_request(config)), {1.06, 0.88});
+  paint(model, "litter", make_texture(ground_request(config)), {0.90, 0.72});
+  if (mj_name2id(&model, mjOBJ_TEXTURE, "facade") >= 0)
+    paint(model, "facade", facade_texture(config.texture_seed + 2), {1.04, 0.94});
   model.vis.quality.shadowsize = 0;
   model.vis.quality.offsamples = 0;
 }

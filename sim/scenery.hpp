@@ -16,7 +16,8 @@ struct SceneryXml {
 };
 
 /// The ground as a textured slab whose upper face is z = 0, and, where they are visible, the obstacles as
-/// bark-covered prisms, one mesh each. The geoms are named "scenery_ground" and "scenery_<number>".
+/// bark-covered prisms, walls as boxes with windows, one mesh each. The geoms are named "scenery_ground" and
+/// "scenery_<number>".
 SceneryXml scenery_xml(const std::vector<Obstacle>& obstacles, const WorldConfig& config);
 
 /// Fills the compiled model's textures (see models/textures/README.md) and turns off what the cameras have no

@@ -1,5 +1,6 @@
 #include "sim/world.hpp"
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -46,11 +47,24 @@ class MemoryFiles {
   std::unique_ptr<mjVFS> files_ = std::make_unique<mjVFS>();
 };
 
+void write_wall(std::ostream& xml, std::size_t number, const Obstacle& wall) {
+  const Eigen::Vector3d middle = 0.5 * (wall.from_world + wall.to_world), half = wall.to_world - middle;
+  const Eigen::Vector3d along = Eigen::Vector3d(half.x(), half.y(), 0);
+  const Eigen::Vector3d across(-along.y(), along.x(), 0);
+  xml << "<geom name='obstacle_" << number << "' type='box' group='3' contype='0' conaffinity='1' condim='1'"
+      << " size='" << along.norm() << ' ' << wall.radius_m << ' ' << std::abs(half.z()) << "' pos='"
+      << middle.transpose() << "' xyaxes='" << along.transpose() << ' ' << across.transpose() << "'/>\n";
+}
+
 /// Bars are capsules: MuJoCo has exact routines for a capsule against the aircraft's boxes, none for a
 /// cylinder.
 void write_collisions(std::ostream& xml, const std::vector<Obstacle>& obstacles) {
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const Obstacle& bar = obstacles[i];
+    if (bar.kind == ObstacleKind::wall) {
+      write_wall(xml, i, bar);
+      continue;
+    }
     xml << "<geom name='obstacle_" << i << "' type='capsule' group='3' contype='0' conaffinity='1' condim='1'"
         << " rgba='.4 .3 .2 1' size='" << bar.radius_m << "' fromto='" << bar.from_world.transpose() << ' '
         << bar.to_world.transpose() << "'/>\n";

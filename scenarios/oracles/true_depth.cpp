@@ -39,6 +39,27 @@ double ray_meets_bar(const Eigen::Vector3d& origin, const Eigen::Vector3d& direc
   return multiple > 0 && along >= 0 && along <= length_m ? multiple : infinity;
 }
 
+double ray_meets_wall(const Eigen::Vector3d& origin_world, const Eigen::Vector3d& direction_world,
+                      const Obstacle& wall) {
+  const Eigen::Vector3d extent = wall.to_world - wall.from_world;
+  Eigen::Matrix3d R_wall_world;
+  R_wall_world.row(0) = Eigen::Vector3d(extent.x(), extent.y(), 0).normalized();
+  R_wall_world.row(2) = Eigen::Vector3d::UnitZ();
+  R_wall_world.row(1) = R_wall_world.row(2).cross(R_wall_world.row(0));
+  const Eigen::Vector3d half(0.5 * extent.head<2>().norm(), wall.radius_m, 0.5 * std::abs(extent.z()));
+  const Eigen::Vector3d from = R_wall_world * (origin_world - 0.5 * (wall.from_world + wall.to_world));
+  const Eigen::Vector3d direction = R_wall_world * direction_world;
+  double enters = 0, leaves = infinity;  // the three pairs of faces, one after the other
+  for (int axis = 0; axis < 3; ++axis) {
+    if (direction[axis] == 0 && std::abs(from[axis]) > half[axis]) return infinity;
+    if (direction[axis] == 0) continue;
+    const double reach = half[axis] / std::abs(direction[axis]), middle = -from[axis] / direction[axis];
+    enters = std::max(enters, middle - reach);
+    leaves = std::min(leaves, middle + reach);
+  }
+  return enters > 0 && enters < leaves ? enters : infinity;
+}
+
 TrueDepth::TrueDepth(const StereoRig& rig, std::vector<Obstacle> obstacles, const TruthHistory& history)
     : rig_(rig), obstacles_(std::move(obstacles)), history_(history) {
   const double parallax_px =
@@ -54,8 +75,14 @@ const std::vector<StereoHit>& TrueDepth::detect(const StereoFrame& frame) {
       std::max(rig_.center_left_x_px, rig_.width_px - rig_.center_left_x_px) / rig_.focal_px;
   const double corner_y = std::max(rig_.center_y_px, rig_.height_px - rig_.center_y_px) / rig_.focal_px;
   const double reach_m = greatest_depth_m_ * std::sqrt(1 + corner_x * corner_x + corner_y * corner_y);
+  const Eigen::Isometry3d T_world_camera = T_camera_world.inverse();
   std::vector<SeenBar> bars;
+  std::vector<Obstacle> walls;
   for (const Obstacle& bar : obstacles_) {
+    if (bar.kind == ObstacleKind::wall) {
+      walls.push_back(bar);
+      continue;
+    }
     const SeenBar seen{T_camera_world * bar.from_world, T_camera_world * bar.to_world, bar.radius_m};
     const Eigen::Vector3d along = seen.to - seen.from;
     const double nearest = std::clamp(-seen.from.dot(along) / along.squaredNorm(), 0.0, 1.0);
@@ -63,7 +90,7 @@ const std::vector<StereoHit>& TrueDepth::detect(const StereoFrame& frame) {
     if (is_ahead && (seen.from + nearest * along).norm() < reach_m + bar.radius_m) bars.push_back(seen);
   }
   hits_.clear();
-  if (bars.empty()) return hits_;
+  if (bars.empty() && walls.empty()) return hits_;
   for (int row = 0; row <= last_row_px && row + block_px <= rig_.height_px; row += block_px) {
     for (int column = 0; column + block_px <= rig_.width_px; column += block_px) {
       const Eigen::Vector3d ray((column + 2 - rig_.center_left_x_px) / rig_.focal_px,
@@ -72,6 +99,10 @@ const std::vector<StereoHit>& TrueDepth::detect(const StereoFrame& frame) {
       for (const SeenBar& bar : bars) {
         depth_m =
             std::min(depth_m, ray_meets_bar(Eigen::Vector3d::Zero(), ray, bar.from, bar.to, bar.radius_m));
+      }
+      for (const Obstacle& wall : walls) {
+        depth_m = std::min(depth_m,
+                           ray_meets_wall(T_world_camera.translation(), T_world_camera.linear() * ray, wall));
       }
       if (depth_m < least_depth_m_ || depth_m > greatest_depth_m_ || depth_m == infinity) continue;
       hits_.push_back({depth_m * ray, column, row, rig_.disparity_px(depth_m), 0.0, 0.0, {}});

@@ -10,9 +10,9 @@
 namespace understory {
 
 /// Perfect vision with the pushbroom's sight: a hit for every 5x5 block of the left image (rows 0..205, the
-/// original detector's) whose centre ray meets a bar first at a depth within one pixel of disparity of the
-/// detection depth. The depth is analytic (ray against round bar); the images are not looked at. Hits carry
-/// the true point.
+/// original detector's) whose centre ray meets a bar or wall first at a depth within one pixel of disparity
+/// of the detection depth. The depth is analytic (ray against round bar or box); the images are not looked
+/// at. Hits carry the true point.
 class TrueDepth : public ObstacleDetector {
  public:
   /// Keeps a reference to the history, which must hold the moment of every frame it is given.
@@ -31,6 +31,10 @@ class TrueDepth : public ObstacleDetector {
   double greatest_depth_m_ = 0;
   std::vector<StereoHit> hits_;
 };
+
+/// Where a ray first meets a wall, in the world, in the same measure.
+double ray_meets_wall(const Eigen::Vector3d& origin_world, const Eigen::Vector3d& direction_world,
+                      const Obstacle& wall);
 
 /// Where a ray first meets a bar's side: the multiple of `direction` from `origin`; +infinity where it does
 /// not. All in one frame. From inside the bar the answer is +infinity.

@@ -21,8 +21,7 @@ constexpr double degree = pi / 180;
 
 double room_beside(const Segment& lane, const std::vector<Obstacle>& obstacles) {
   double room_m = std::numeric_limits<double>::infinity();
-  for (const Obstacle& bar : obstacles)
-    room_m = std::min(room_m, segment_distance_m(lane, {bar.from_world, bar.to_world}) - bar.radius_m);
+  for (const Obstacle& bar : obstacles) room_m = std::min(room_m, obstacle_distance_m(lane, bar));
   return room_m;
 }
 

@@ -43,6 +43,43 @@ TEST(SegmentDistance, AgreesWithSearch) {
   }
 }
 
+Obstacle wall(const Vector3d& from, const Vector3d& to, double radius_m) {
+  return {"wall", from, to, radius_m, 0, 0, ObstacleKind::wall};
+}
+
+TEST(ObstacleDistance, OfAWallInClosedForms) {
+  const Obstacle facade = wall({10, -5, 0}, {10, 5, 8}, 0.2);
+  const auto from = [&](const Vector3d& a, const Vector3d& b) { return obstacle_distance_m({a, b}, facade); };
+  EXPECT_NEAR(from({4, 0, 4}, {6, 1, 3}), 4 - 0.2, 1e-12);     // an end before its face
+  EXPECT_NEAR(from({9, 0, 4}, {11, 1, 4}), -0.2, 1e-12);       // through
+  EXPECT_NEAR(from({9, 0, 11}, {11, 1, 11}), 3 - 0.2, 1e-12);  // over its upper edge
+  EXPECT_NEAR(from({13, 9, 2}, {13, 9, 2}), 5 - 0.2, 1e-12);   // 3-4-5 to its side
+  EXPECT_NEAR(from({10, 8, 2}, {10, 7, 2}), 2 - 0.2, 1e-12);   // in its plane, beside
+}
+
+// Against a plain search over the segment and the rectangle.
+TEST(ObstacleDistance, OfAWallAgreesWithSearch) {
+  std::mt19937_64 generator(2);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto point = [&] { return Vector3d(unit(generator), unit(generator), unit(generator)); };
+  for (int trial = 0; trial < 40; ++trial) {
+    const Segment segment{2 * point(), 2 * point()};
+    const Vector3d from = point(), to = point();
+    double least = 10;
+    for (int i = 0; i <= 50; ++i)
+      for (int k = 0; k <= 50; ++k)
+        for (int m = 0; m <= 50; ++m) {
+          const Vector3d on_wall(from.x() + i / 50.0 * (to.x() - from.x()),
+                                 from.y() + i / 50.0 * (to.y() - from.y()),
+                                 from.z() + k / 50.0 * (to.z() - from.z()));
+          least = std::min(least, (segment.from + m / 50.0 * (segment.to - segment.from) - on_wall).norm());
+        }
+    const double found = obstacle_distance_m(segment, wall(from, to, 0));
+    EXPECT_LE(found, least + 1e-12);
+    EXPECT_NEAR(found, least, 0.06);
+  }
+}
+
 TEST(Clearance, ABankedWingFitsWhereALevelOneDoesNot) {
   const Airframe airframe;
   const double half_span_m = airframe.span_m / 2;

@@ -99,7 +99,7 @@ TEST(Cli, APictureThatCannotBeWrittenIsBadInputAndAFullDiskTheMachines) {
 TEST(Cli, BadScenariosAreNamedByFileLineAndKey) {
   const Folder folder;
   expect_refusal("fly", "scenario");
-  expect_refusal("fly nowhere", "clear, dense, forest, goalposts, paper");
+  expect_refusal("fly nowhere", "clear, dense, fence, forest, goalposts, horizon, paper");
   expect_refusal("fly " + folder.file("a.yaml", "name: a\nforest:\n  lenght_m: 3\n"),
                  "a.yaml:3: forest.lenght_m");
   expect_refusal("fly " + folder.file("b.yaml", "name: [\n"), "b.yaml:");

@@ -1,11 +1,14 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
+#include "scenarios/fence.hpp"
 #include "scenarios/forest.hpp"
 #include "scenarios/goalposts.hpp"
 #include "scenarios/named_seed.hpp"
+#include "scenarios/windows.hpp"
 
 namespace understory {
 namespace {
@@ -88,6 +91,48 @@ TEST(Goalposts, ArePassedWithinTheirDistances) {
     left += near_y > 0;
   }
   EXPECT_NEAR(left, 100, 30);
+}
+
+TEST(Windows, StandBehindTheGoal) {
+  const WindowsConfig config;
+  const auto walls = windows(config, 60);
+  ASSERT_EQ(walls.size(), 1u);
+  EXPECT_EQ(walls[0].kind, ObstacleKind::wall);
+  EXPECT_NEAR(walls[0].from_world.x() - walls[0].radius_m, 72, 1e-12);  // its face
+  EXPECT_EQ(walls[0].to_world - walls[0].from_world, Eigen::Vector3d(0, 60, 20));
+}
+
+TEST(Fence, PalingsStandInRowsWithGates) {
+  const FenceConfig config;
+  int across = 0, beside = 0, rails = 0;
+  for (const Obstacle& bar : fence(config, 75)) {
+    if (bar.kind == ObstacleKind::rail) {
+      ++rails;
+      EXPECT_NEAR(bar.from_world.z(), bar.to_world.z(), 1e-12);
+      EXPECT_GT(std::abs(bar.from_world.y()), 1.49);
+      continue;
+    }
+    EXPECT_EQ(bar.kind, ObstacleKind::post);
+    EXPECT_EQ(bar.from_world.z(), 0);
+    EXPECT_EQ(bar.to_world.z(), config.height_m);
+    const bool is_across = bar.name.rfind("across", 0) == 0;
+    (is_across ? across : beside) += 1;
+    EXPECT_GE(std::abs(bar.from_world.y()), 0.5 * config.gate_m - 1e-12);
+    EXPECT_LE(std::abs(bar.from_world.y()), config.reach_m + 1e-12);
+    if (is_across)
+      EXPECT_TRUE(bar.from_world.x() == 30 || bar.from_world.x() == 55) << bar.name;
+    else
+      EXPECT_NEAR(bar.from_world.y(), 3.5, 1e-12);
+  }
+  EXPECT_EQ(across, 2 * 2 * 34);  // 13.5 m in steps of 0.4 m, at both ends
+  EXPECT_EQ(beside, 112);         // 44.6 m
+  EXPECT_EQ(rails, 2 * 5);
+  const auto bars = fence(config, 75);
+  double closest_m = 10;
+  for (std::size_t i = 0; i < bars.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      closest_m = std::min(closest_m, (bars[i].from_world - bars[k].from_world).norm());
+  EXPECT_GT(closest_m, 2 * config.paling_radius_m);  // no two in one place
 }
 
 TEST(NamedSeed, NamesAndNeighboursAreUnrelated) {

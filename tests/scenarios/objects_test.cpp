@@ -55,6 +55,21 @@ std::vector<Object> read_objects(const fs::path& file) {
   return objects;
 }
 
+/// Side or end of a bar: rails show theirs at a gate.
+double ray_meets_closed_bar(const Eigen::Vector3d& eye, const Eigen::Vector3d& ray, const Object& bar) {
+  double nearest = ray_meets_bar(eye, ray, bar.from_world, bar.to_world, bar.radius_m);
+  const Eigen::Vector3d axis = (bar.to_world - bar.from_world).normalized();
+  for (const Eigen::Vector3d& end : {bar.from_world, bar.to_world}) {
+    const double reach = (end - eye).dot(axis) / ray.dot(axis);
+    if (reach > 0 && (eye + reach * ray - end).norm() < bar.radius_m) nearest = std::min(nearest, reach);
+  }
+  return nearest;
+}
+
+Obstacle as_wall(const Object& object) {
+  return {object.name, object.from_world, object.to_world, object.radius_m, 0, 0, ObstacleKind::wall};
+}
+
 /// What a ray of the left camera meets first, by the file's own geometry.
 cv::Mat expected_objects(const std::vector<Object>& objects, const StereoRig& rig,
                          const Eigen::Isometry3d& T_world_body) {
@@ -72,8 +87,9 @@ cv::Mat expected_objects(const std::vector<Object>& objects, const StereoRig& ri
       const Eigen::Vector2d at = (eye + to_ground * ray).head<2>();
       if (to_ground > 0 && at.cwiseAbs().maxCoeff() < 400) nearest = to_ground, first = 1;  // its rim
       for (std::size_t i = 2; i < objects.size(); ++i) {
-        const double reach =
-            ray_meets_bar(eye, ray, objects[i].from_world, objects[i].to_world, objects[i].radius_m);
+        const Object& object = objects[i];
+        const double reach = object.kind == "wall" ? ray_meets_wall(eye, ray, as_wall(object))
+                                                   : ray_meets_closed_bar(eye, ray, object);
         if (reach < nearest) nearest = reach, first = i;
       }
       expected.at<std::uint16_t>(row, column) = static_cast<std::uint16_t>(first);
@@ -151,6 +167,53 @@ TEST(Objects, OfAGoalAreThoseThatRaysMeet) {
   EXPECT_EQ(goal.objects[4].kind, "crossbar");
   EXPECT_GT(goal.agreement.on_obstacles, 500);
   EXPECT_EQ(goal.agreement.agreed, goal.agreement.compared);
+}
+
+TEST(Objects, OfAFenceAreThoseThatRaysMeet) {
+  const support::TemporaryFolder folder;
+  const Recorded fence = walked("fence", {"fence.first_across_m=16", "forest.length_m=15"}, folder.path());
+  EXPECT_EQ(fence.objects[2].kind, "post");
+  EXPECT_EQ(fence.objects.back().kind, "rail");
+  EXPECT_GT(fence.agreement.on_obstacles, 500);
+  EXPECT_EQ(fence.agreement.agreed, fence.agreement.compared);
+}
+
+TEST(Objects, OfAWallOfWindowsAreThoseThatRaysMeet) {
+  const support::TemporaryFolder folder;
+  const Recorded facade = walked("windows", {"forest.length_m=5"}, folder.path());
+  ASSERT_EQ(facade.objects.size(), 3u);
+  EXPECT_EQ(facade.objects[2].name, "facade");
+  EXPECT_EQ(facade.objects[2].kind, "wall");
+  EXPECT_GT(facade.agreement.on_obstacles, 100'000);
+  EXPECT_EQ(facade.agreement.agreed, facade.agreement.compared);
+}
+
+/// Flown straight at, a wall is a plane whose depth is one distance less the way gone.
+TEST(Objects, AWallAheadHasOneDepth) {
+  const support::TemporaryFolder folder;
+  const fs::path knots = folder.write(
+      "straight", "0 0 0 4.5 0 -0.095585155 0 0.995421257\n1 12 0 4.5 0 -0.095585155 0 0.995421257\n");
+  FlyOptions options;
+  options.models_folder = root / "models";
+  options.output_folder = folder.path() / "followed";
+  follow_recorded(load_scenario(root / "scenarios/library/windows.yaml", {"cameras.rate_hz=4"}),
+                  read_path(knots), options);
+  const Eigen::Vector3d camera_body =
+      read_calibrated_rig(options.output_folder, {}).rig.T_body_camera.translation();
+  const double nose_up_rad = 10.97 / 180 * std::numbers::pi;
+  const double ahead_m = camera_body.x() * std::cos(nose_up_rad) - camera_body.z() * std::sin(nose_up_rad);
+  for (const int quarter : {3, 4}) {  // before, 65.535 m do not reach
+    const std::string name = std::to_string(recorded_ns(quarter * std::int64_t{250'000'000})) + ".png";
+    const fs::path mav0 = options.output_folder / "mav0";
+    const cv::Mat depth = cv::imread((mav0 / "depth0/data" / name).string(), cv::IMREAD_UNCHANGED);
+    const cv::Mat objects = cv::imread((mav0 / "objects0/data" / name).string(), cv::IMREAD_UNCHANGED);
+    double least = 0, greatest = 0;
+    cv::minMaxLoc(depth, &least, &greatest, nullptr, nullptr, objects == 2);
+    EXPECT_GT(cv::countNonZero(objects == 2), 20'000);
+    const double expected_mm = 1000 * (72 - 3.0 * quarter - ahead_m);
+    EXPECT_NEAR(least, expected_mm, 0.5 + 2e-4 * expected_mm);
+    EXPECT_NEAR(greatest, expected_mm, 0.5 + 2e-4 * expected_mm);
+  }
 }
 
 /// Along the banked path, which goes through trunks: where it is at a time is known, and its roll.

@@ -35,6 +35,33 @@ struct Scene {
   }
 };
 
+TEST(RayMeetsWall, ClosedForms) {
+  const Obstacle wall{"wall", {10, -5, 0}, {10, 5, 8}, 0.2, 0, 0, ObstacleKind::wall};
+  const Vector3d x = Vector3d::UnitX();
+  EXPECT_NEAR(ray_meets_wall({0, 0, 1}, x, wall), 9.8, 1e-12);
+  EXPECT_NEAR(ray_meets_wall({0, 0, 1}, {2, 0.5, 0.2}, wall), 4.9, 1e-12);
+  EXPECT_NEAR(ray_meets_wall({20, 0, 1}, -x, wall), 9.8, 1e-12);         // its back
+  EXPECT_NEAR(ray_meets_wall({10, 0, 10}, {0, 0, -1}, wall), 2, 1e-12);  // its top
+  for (const Vector3d& past : {Vector3d(0, 0, 8.1), Vector3d(0, 5.1, 1), Vector3d(11, 0, 1)})
+    EXPECT_EQ(ray_meets_wall(past, x, wall), std::numeric_limits<double>::infinity());
+  // 45 degrees across the way: 0.2 m of half thickness are 0.2 sqrt 2 along it.
+  const Obstacle turned{"wall", {7, -3, 0}, {13, 3, 8}, 0.2, 0, 0, ObstacleKind::wall};
+  EXPECT_NEAR(ray_meets_wall({0, 0, 1}, x, turned), 10 - 0.2 * std::sqrt(2), 1e-12);
+}
+
+/// A wall at the detection depth fills the view with hits at its depth, banked or not.
+TEST(TrueDepth, AWallIsSeenWhereItStands) {
+  TruthHistory history;
+  Truth truth;
+  truth.T_world_body = Eigen::Translation3d(0, 0, 3) * Eigen::AngleAxisd(0.6, Vector3d::UnitX());
+  history.observe(truth);
+  const Obstacle wall{"wall", {5, -20, 0}, {5, 20, 20}, 0.2, 0, 0, ObstacleKind::wall};
+  TrueDepth detector(paper_rig(), {wall}, history);
+  const auto& hits = detector.detect({0, {}, {}});
+  EXPECT_GT(hits.size(), 2000u);
+  for (const StereoHit& hit : hits) EXPECT_NEAR(hit.position_camera.z(), 4.8, 1e-9);
+}
+
 TEST(RayMeetsBar, ClosedForms) {
   const Vector3d x = Vector3d::UnitX();
   EXPECT_NEAR(ray_meets_bar({0, 0, 1}, x, {5, 0, 0}, {5, 0, 9}, 0.2), 4.8, 1e-12);

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "sim/facade.hpp"
 #include "sim/trunk_mesh.hpp"
 
 namespace understory {
@@ -97,6 +98,35 @@ TEST(Scenery, ModelsTexturesHaveTheConfiguredContrast) {
   };
   EXPECT_NEAR(contrast("bark"), 0.2, 0.004);
   EXPECT_NEAR(contrast("litter"), 0.4, 0.008);
+}
+
+/// What stands in the tile, read where facade.hpp says it stands.
+TEST(Facade, WindowsArePanesInFrames) {
+  const GrayTexture tile = facade_texture(3);
+  const auto gray_at = [&](double x_m, double z_m) {
+    const int column = static_cast<int>((x_m + 0.5 * window_period_m) / window_period_m * tile.width_px);
+    const int row = static_cast<int>((storey_m - z_m) / storey_m * tile.height_px);
+    return static_cast<int>(tile.gray.at(static_cast<std::size_t>(row * tile.width_px + column)));
+  };
+  for (const double z_m : {1.25, 1.8, 2.35})
+    for (const double x_m : {-0.18, 0.18}) EXPECT_LT(gray_at(x_m, z_m), 60);
+  EXPECT_GT(gray_at(0, 1.25), 200);
+  EXPECT_NEAR(gray_at(0.55, 1.25), 165, 20);
+  EXPECT_LT(gray_at(0, 2.75), 130);  // the lintel, above the panes
+}
+
+TEST(Facade, IsClosedAndFacesOutward) {
+  const TrunkMesh mesh = facade_mesh({"wall", {3, -2, 0}, {3, 4, 5}, 0.2, 0, 0, ObstacleKind::wall});
+  double six_volumes = 0;
+  for (const auto& face : mesh.faces)
+    six_volumes += mesh.vertices[face[0]].dot(mesh.vertices[face[1]].cross(mesh.vertices[face[2]]));
+  EXPECT_NEAR(six_volumes / 6, 6 * 5 * 0.4, 1e-9);
+  double least = 1e9, greatest = -1e9;
+  for (const auto& texture : mesh.texture) {
+    least = std::min(least, texture.x());
+    greatest = std::max(greatest, texture.x());
+  }
+  EXPECT_NEAR(greatest - least, 6 / window_period_m, 1e-12);
 }
 
 TEST(TrunkMesh, IsClosedAndFacesOutward) {

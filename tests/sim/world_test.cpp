@@ -60,6 +60,20 @@ TEST(World, CrossbarsCollideToo) {
   EXPECT_EQ(touched({bar}, 0, 3.5), Contact::none);
 }
 
+TEST(World, WallsCollideOverTheirWholeFace) {
+  Obstacle wall{"wall", {0.6, -8, 0}, {0.6, 8, 6}, 0.2, 0, 0, ObstacleKind::wall};
+  EXPECT_EQ(touched({wall}, 0), Contact::none);  // 0.4 m ahead of the centre of mass: the nose is shorter
+  wall.from_world.x() = wall.to_world.x() = 0.3;
+  EXPECT_EQ(touched({wall}, 0), Contact::obstacle);
+  EXPECT_EQ(touched({wall}, 0, 5.9), Contact::obstacle);
+  EXPECT_EQ(touched({wall}, 0, 6.5), Contact::none);
+  wall.from_world.y() = 3;
+  EXPECT_EQ(touched({wall}, 0), Contact::none);
+  const Obstacle turned{"wall", {-3, -2.6, 0},     {3, 3.4, 6}, 0.05, 0,
+                        0,      ObstacleKind::wall};  // 0.28 m off, at 45 deg
+  EXPECT_EQ(touched({turned}, 0), Contact::obstacle);
+}
+
 TEST(World, GroundIsTheGround) {
   EXPECT_EQ(touched({}, 0, 0.01), Contact::ground);
   EXPECT_EQ(touched({}, 0, 0.05), Contact::none);
