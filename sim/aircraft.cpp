@@ -95,6 +95,8 @@ void Aircraft::read_outline() {
           Eigen::Quaterniond(turn[0], turn[1], turn[2], turn[3]) * Eigen::Vector3d::UnitZ();
       const mjtNum* size = model_.geom_size + 3 * geom;  // radius, half length
       bars_.push_back({centre, axis, size[1], size[0]});
+    } else if (model_.geom_type[geom] == mjGEOM_BOX && model_.geom_conaffinity[geom] != 0) {
+      bars_.push_back({centre, Eigen::Vector3d::UnitZ(), 0, model_.geom_rbound[geom]});  // a wall: its sphere
     }
   }
 }
