@@ -12,7 +12,7 @@
 namespace understory {
 namespace {
 
-using Sources = std::vector<ConfigNode>;  ///< the file, then every --set
+using Sources = std::vector<ConfigNode>;  ///< the file, then every --with, then every --set
 
 /// The run folder's name by default, so no more than a plain word.
 bool is_plain_word(const std::string& name) {
@@ -88,8 +88,10 @@ Eigen::Vector3d rail_start_world(const LaunchConfig& launch) {
           launch.altitude_m - launch.rail_length_m * std::sin(launch.climb_angle_rad)};
 }
 
-Sources sources_of(ConfigNode file, const std::vector<std::string>& settings) {
+Sources sources_of(ConfigNode file, const std::vector<std::string>& settings,
+                   const std::vector<std::filesystem::path>& with = {}) {
   Sources sources{std::move(file)};
+  for (const std::filesystem::path& more : with) sources.push_back(parse_config_file(more));
   for (const std::string& setting : settings) sources.push_back(parse_assignment(setting));
   return sources;
 }
@@ -117,8 +119,9 @@ Scenario compose(const Sources& sources, const std::string& name) {
 
 }  // namespace
 
-Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& settings) {
-  return compose(sources_of(parse_config_file(file), settings), file.string());
+Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& settings,
+                       const std::vector<std::filesystem::path>& with) {
+  return compose(sources_of(parse_config_file(file), settings, with), file.string());
 }
 
 Scenario load_changed_scenario(const std::filesystem::path& file, const std::vector<ConfigNode>& changes) {
@@ -133,8 +136,8 @@ Scenario scenario_from_text(const std::string& text, const std::string& name,
 }
 
 std::string where_given(const std::filesystem::path& file, const std::vector<std::string>& settings,
-                        std::string_view key) {
-  const std::string origin = origin_of(sources_of(parse_config_file(file), settings), key);
+                        std::string_view key, const std::vector<std::filesystem::path>& with) {
+  const std::string origin = origin_of(sources_of(parse_config_file(file), settings, with), key);
   return origin.empty() ? file.string() : origin;
 }
 

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <set>
 
-#include "scenarios/config_tree.hpp"
+#include "scenarios/config_keys.hpp"
 #include "scenarios/scenario_io.hpp"
 
 namespace understory {
@@ -24,38 +24,6 @@ struct Variant {
   std::string name;  ///< empty: the scenario as it is
   Changes changes;
 };
-
-[[noreturn]] void refuse(const ConfigNode& node, const std::string& key, const std::string& expected) {
-  throw ScenarioError(fmt::format("{}: {}: expected {}", node.origin, key, expected));
-}
-
-const ConfigNode* child(const ConfigNode& map, std::string_view key) {
-  const auto found = std::ranges::find(map.children, key, &ConfigNode::key);
-  return found == map.children.end() ? nullptr : &*found;
-}
-
-void require_known(const ConfigNode& map, const std::vector<std::string>& known, const std::string& within) {
-  for (const ConfigNode& node : map.children) {
-    if (std::ranges::find(known, node.key) != known.end()) continue;
-    const std::string near = nearest_name(node.key, known);
-    refuse(node, within + node.key,
-           near.empty() ? fmt::format("one of {}", fmt::join(known, ", "))
-                        : fmt::format("a known key (did you mean {}?)", near));
-  }
-}
-
-/// A scalar, or each scalar of a list.
-std::vector<std::string> words_of(const ConfigNode& node, const std::string& key, const char* expected) {
-  std::vector<std::string> words;
-  if (node.kind == ConfigNode::Kind::scalar && !node.text.empty()) words.push_back(node.text);
-  if (node.kind == ConfigNode::Kind::list)
-    for (const ConfigNode& entry : node.children) {
-      if (entry.kind != ConfigNode::Kind::scalar) refuse(entry, key, expected);
-      words.push_back(entry.text);
-    }
-  if (words.empty()) refuse(node, key, expected);
-  return words;
-}
 
 /// "forest.length_m" and its value, or groups of them.
 void add_changes(const ConfigNode& map, const std::string& prefix, Changes& changes) {
@@ -87,21 +55,31 @@ std::string text_of(const ConfigNode& value) {
   return fmt::format("{}", fmt::join(parts, "_"));
 }
 
-std::vector<Variant> overrides_of(const ConfigNode* list) {
+/// Beside the campaign's file, or where it says.
+fs::path beside_or_as_said(const std::string& word, const fs::path& campaign_file) {
+  std::error_code ignored;
+  const fs::path beside = campaign_file.parent_path() / word;
+  return fs::is_regular_file(beside, ignored) ? beside : fs::path(word);
+}
+
+std::vector<Variant> overrides_of(const ConfigNode* list, const fs::path& campaign_file) {
   if (list == nullptr) return {{}};
   if (list->kind != ConfigNode::Kind::list || list->children.empty())
-    refuse(*list, "overrides", "a list [{name: ..., set: {key: value}}, ...]");
+    refuse_key(*list, "overrides", "a list [{name: ..., set: {key: value}}, ...]");
   std::vector<Variant> variants;
   for (const ConfigNode& entry : list->children) {
-    if (entry.kind != ConfigNode::Kind::map) refuse(entry, "overrides", "{name: ..., set: {key: value}}");
-    require_known(entry, {"name", "set"}, "overrides.");
-    const ConfigNode* name = child(entry, "name");
+    if (entry.kind != ConfigNode::Kind::map) refuse_key(entry, "overrides", "{name: ..., set: {key: value}}");
+    require_known_keys(entry, {"name", "with", "set"}, "overrides.");
+    const ConfigNode* name = find_child(entry, "name");
     if (name == nullptr || name->kind != ConfigNode::Kind::scalar || name->text.empty() ||
         plain(name->text) != name->text)
-      refuse(name == nullptr ? entry : *name, "overrides.name", "a name of letters, digits and . _ = -");
+      refuse_key(name == nullptr ? entry : *name, "overrides.name", "a name of letters, digits and . _ = -");
     Variant variant{name->text, {}};
-    if (const ConfigNode* set = child(entry, "set")) {
-      if (set->kind != ConfigNode::Kind::map) refuse(*set, "overrides.set", "a group {key: value, ...}");
+    if (const ConfigNode* with = find_child(entry, "with"))
+      for (const std::string& word : words_of(*with, "overrides.with", "a file of keys, or a list of such"))
+        variant.changes.push_back(parse_config_file(beside_or_as_said(word, campaign_file)));
+    if (const ConfigNode* set = find_child(entry, "set")) {
+      if (set->kind != ConfigNode::Kind::map) refuse_key(*set, "overrides.set", "a group {key: value, ...}");
       add_changes(*set, "", variant.changes);
     }
     variants.push_back(std::move(variant));
@@ -113,10 +91,10 @@ std::vector<Variant> overrides_of(const ConfigNode* list) {
 std::vector<Variant> with_grid(std::vector<Variant> variants, const ConfigNode* grid) {
   if (grid == nullptr) return variants;
   if (grid->kind != ConfigNode::Kind::map || grid->children.empty())
-    refuse(*grid, "grid", "a group {key: [values], ...}");
+    refuse_key(*grid, "grid", "a group {key: [values], ...}");
   for (const ConfigNode& axis : grid->children) {
     if (axis.kind != ConfigNode::Kind::list || axis.children.empty())
-      refuse(axis, "grid." + axis.key, "a list of values");
+      refuse_key(axis, "grid." + axis.key, "a list of values");
     const std::string short_key = axis.key.substr(axis.key.rfind('.') + 1);
     std::vector<Variant> more;
     for (const Variant& variant : variants)
@@ -141,20 +119,19 @@ std::uint64_t seed_of(std::string_view word, const std::string& where, const std
   return seed;
 }
 
-/// Beside the campaign's file, or whatever the command line would find.
-fs::path scenario_of(const std::string& word, const fs::path& campaign_file, const ConfigNode& node,
-                     const FindScenario& find_scenario) {
+}  // namespace
+
+fs::path scenario_beside(const fs::path& file, const ConfigNode& node, const std::string& word,
+                         const FindScenario& find_scenario) {
   std::error_code ignored;
-  const fs::path beside = campaign_file.parent_path() / word;
+  const fs::path beside = file.parent_path() / word;
   if (fs::is_regular_file(beside, ignored)) return beside;
   try {
     return find_scenario(word);
   } catch (const ScenarioError& error) {
-    throw ScenarioError(fmt::format("{}: scenarios: {}", node.origin, error.what()));
+    throw ScenarioError(fmt::format("{}: {}: {}", node.origin, node.key, error.what()));
   }
 }
-
-}  // namespace
 
 std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, const std::string& where) {
   std::vector<std::uint64_t> seeds;
@@ -178,46 +155,47 @@ std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, cons
 
 Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario) {
   const ConfigNode top = parse_config_file(file);
-  require_known(top, {"name", "scenario", "scenarios", "seeds", "overrides", "grid", "timeout_s"}, "");
+  require_known_keys(top, {"name", "scenario", "scenarios", "seeds", "overrides", "grid", "timeout_s"}, "");
   Campaign campaign;
   campaign.name = plain(file.stem().string());
-  if (const ConfigNode* name = child(top, "name")) {
+  if (const ConfigNode* name = find_child(top, "name")) {
     if (name->text.empty() || plain(name->text) != name->text)
-      refuse(*name, "name", "letters, digits and . _ = -");
+      refuse_key(*name, "name", "letters, digits and . _ = -");
     campaign.name = name->text;
   }
-  if (const ConfigNode* timeout = child(top, "timeout_s")) {
+  if (const ConfigNode* timeout = find_child(top, "timeout_s")) {
     const char* const end = timeout->text.data() + timeout->text.size();
     const auto parsed = std::from_chars(timeout->text.data(), end, campaign.timeout_s);
     if (parsed.ec != std::errc() || parsed.ptr != end ||
         !(campaign.timeout_s >= 1 && campaign.timeout_s <= 86400))
-      refuse(*timeout, "timeout_s", "seconds, 1 .. 86400");
+      refuse_key(*timeout, "timeout_s", "seconds, 1 .. 86400");
   }
 
-  const ConfigNode* one = child(top, "scenario");
-  const ConfigNode* scenarios = one != nullptr ? one : child(top, "scenarios");
-  if (scenarios == nullptr || (one != nullptr && child(top, "scenarios") != nullptr))
-    refuse(scenarios == nullptr ? top : *scenarios, "scenarios",
-           "the scenarios to fly, once: [forest, dense]");
-  const ConfigNode* seeds = child(top, "seeds");
-  if (seeds == nullptr) refuse(top, "seeds", "the seeds to fly, for instance 1..200");
+  const ConfigNode* one = find_child(top, "scenario");
+  const ConfigNode* scenarios = one != nullptr ? one : find_child(top, "scenarios");
+  if (scenarios == nullptr || (one != nullptr && find_child(top, "scenarios") != nullptr))
+    refuse_key(scenarios == nullptr ? top : *scenarios, "scenarios",
+               "the scenarios to fly, once: [forest, dense]");
+  const ConfigNode* seeds = find_child(top, "seeds");
+  if (seeds == nullptr) refuse_key(top, "seeds", "the seeds to fly, for instance 1..200");
   campaign.seeds =
       seeds_of(words_of(*seeds, "seeds", "the seeds to fly, for instance 1..200"), seeds->origin + ": seeds");
 
-  const std::vector<Variant> variants = with_grid(overrides_of(child(top, "overrides")), child(top, "grid"));
+  const std::vector<Variant> variants =
+      with_grid(overrides_of(find_child(top, "overrides"), file), find_child(top, "grid"));
   std::set<std::string> seen;
   for (const std::string& word : words_of(*scenarios, "scenarios", "names or files of scenarios")) {
-    const fs::path path = scenario_of(word, file, *scenarios, find_scenario);
+    const fs::path path = scenario_beside(file, *scenarios, word, find_scenario);
     for (const Variant& variant : variants) {
       const Scenario scenario = load_changed_scenario(path, variant.changes);
       const std::string name = joined(plain(path.stem().string()), variant.name);
       if (!seen.insert(name).second)
-        refuse(*scenarios, "scenarios", fmt::format("each condition once, '{}' comes out twice", name));
+        refuse_key(*scenarios, "scenarios", fmt::format("each condition once, '{}' comes out twice", name));
       campaign.conditions.push_back({name, scenario_to_text(scenario)});
     }
   }
   if (campaign.conditions.size() * campaign.seeds.size() > greatest_flights)
-    refuse(*seeds, "seeds", fmt::format("at most {} flights in all", greatest_flights));
+    refuse_key(*seeds, "seeds", fmt::format("at most {} flights in all", greatest_flights));
   return campaign;
 }
 

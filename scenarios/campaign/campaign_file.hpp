@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenarios/campaign/campaign.hpp"
+#include "scenarios/config_tree.hpp"
 
 namespace understory {
 
@@ -14,11 +15,12 @@ using FindScenario = std::function<std::filesystem::path(const std::string&)>;
 
 /// Reads a campaign file:
 ///
-///     scenarios: [forest, dense]        # or scenario: forest; names of the library, or files beside this
-///     one seeds: 1..200                     # or a list: [1, 7, 1000..1019] overrides: # optional, each
-///     flown on its own
+///     scenarios: [forest, dense]        # or scenario: forest; of the library, or files beside this one
+///     seeds: 1..200                     # or a list: [1, 7, 1000..1019]
+///     overrides:                        # optional, each flown on its own
 ///       - {name: ours}
 ///       - {name: blind, set: {perception.detector: none}}
+///       - {name: tuned, with: best.yaml}  # files of keys, beside this one or where they are said to be
 ///     grid:                             # optional: every combination, over each override
 ///       autopilot.flight_model.cruise_speed_mps: [10, 12]
 ///     timeout_s: 300                    # optional, 1 .. 86400
@@ -27,6 +29,11 @@ using FindScenario = std::function<std::filesystem::path(const std::string&)>;
 /// Throws ScenarioError in one line, "file:line: key: expected ...": an unknown key, no seeds, a seed or a
 /// condition twice, whatever a scenario refuses.
 Campaign load_campaign(const std::filesystem::path& file, const FindScenario& find_scenario);
+
+/// The scenario that `word`, given under `node`, means: a file beside `file`, or whatever the command line
+/// would find. Throws ScenarioError, beginning with the node's line and key.
+std::filesystem::path scenario_beside(const std::filesystem::path& file, const ConfigNode& node,
+                                      const std::string& word, const FindScenario& find_scenario);
 
 /// "1..200", "7" or a list of such things, as seeds. Throws ScenarioError, beginning with `where`.
 std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, const std::string& where);

@@ -5,11 +5,10 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "scenarios/config_tree.hpp"
 #include "scenarios/file_output.hpp"
-#include "scenarios/run_digest.hpp"
+#include "scenarios/program_digest.hpp"
 #include "scenarios/versions.hpp"
 
 namespace understory {
@@ -25,14 +24,6 @@ std::optional<std::string> text_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return {};
   return std::string(std::istreambuf_iterator<char>(stream), {});
-}
-
-/// Equal programs fly equal flights.
-std::string program_digest() {
-  RunDigest digest;
-  const std::string binary = text_of("/proc/self/exe").value_or("");
-  digest.add(std::as_bytes(std::span(binary)));
-  return digest.hex();
 }
 
 std::string manifest_of(const Campaign& campaign) {

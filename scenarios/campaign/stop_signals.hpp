@@ -2,7 +2,8 @@
 
 namespace understory {
 
-/// While it lives, SIGINT, SIGTERM and SIGHUP end nothing: they are remembered. One at a time.
+/// While it lives, SIGINT, SIGTERM and SIGHUP end nothing: they are remembered, until the
+/// outermost of several is gone. For one thread.
 class StopSignals {
  public:
   StopSignals();

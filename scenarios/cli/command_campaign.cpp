@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -13,11 +12,11 @@
 #include "scenarios/campaign/slurm_engine.hpp"
 #include "scenarios/cli/campaign_report.hpp"
 #include "scenarios/cli/commands.hpp"
+#include "scenarios/cli/progress_line.hpp"
 #include "scenarios/config_tree.hpp"
 #include "scenarios/file_output.hpp"
 #include "scenarios/scenario_io.hpp"
 #include "scenarios/scenario_rig.hpp"
-#include "scenarios/stopwatch.hpp"
 
 namespace understory {
 namespace {
@@ -49,37 +48,13 @@ void require_rigs(const Campaign& campaign, const std::string& file) {
   }
 }
 
-std::string in_words(double seconds) {
-  if (seconds < 90) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 5400) return fmt::format("{:.0f} min", seconds / 60);
-  return fmt::format("{:.1f} h", seconds / 3600);
+void show(ProgressLine& line, const CampaignProgress& progress) {
+  const std::string not_flown =
+      progress.not_flown > 0 ? fmt::format(", {} not flown", progress.not_flown) : "";
+  line.show(fmt::format("{} of {} flights, {} at the goal{}", progress.over, progress.flights, progress.goals,
+                        not_flown),
+            progress.over - progress.before, progress.flights - progress.over);
 }
-
-/// One line, again and again on a terminal; elsewhere a line each half minute.
-class ProgressLine {
- public:
-  void show(const CampaignProgress& progress) {
-    const double elapsed_s = stopwatch_.elapsed_s();
-    const bool is_last = progress.over == progress.flights;
-    if (!is_terminal_ && !is_last && elapsed_s < next_line_s_) return;
-    next_line_s_ = elapsed_s + 30;
-    const double flown = static_cast<double>(progress.over - progress.before);
-    const double left_s = elapsed_s / flown * static_cast<double>(progress.flights - progress.over);
-    fmt::print("{}{} of {} flights, {} at the goal{}, {} left{}", is_terminal_ ? "\r\033[K" : "",
-               progress.over, progress.flights, progress.goals,
-               progress.not_flown > 0 ? fmt::format(", {} not flown", progress.not_flown) : "",
-               in_words(left_s), is_terminal_ ? "" : "\n");
-    std::fflush(stdout);
-  }
-  void clear() const {
-    if (is_terminal_) fmt::print("\r\033[K");
-  }
-
- private:
-  bool is_terminal_ = isatty(STDOUT_FILENO) == 1;
-  double next_line_s_ = 0;
-  Stopwatch stopwatch_;
-};
 
 int print_tasks(const CampaignFolder& folder, const Campaign& campaign) {
   const fs::path program = fs::read_symlink("/proc/self/exe");
@@ -103,7 +78,7 @@ Finish fly_here(const CampaignFolder& folder, const Campaign& campaign, const Ca
   config.keeps_runs = arguments.keeps_runs;
   ProgressLine line;
   const bool finished = fly_locally(folder, campaign, in_flying_order(campaign), config,
-                                    [&](const CampaignProgress& progress) { line.show(progress); });
+                                    [&](const CampaignProgress& progress) { show(line, progress); });
   line.clear();
   return finished ? Finish::all_over : Finish::stopped;
 }
@@ -116,7 +91,7 @@ Finish fly_on_slurm(const CampaignFolder& folder, const Campaign& campaign,
   if (!arguments.waits) return Finish::stopped;
   ProgressLine line;
   const bool finished =
-      wait_for_slurm(folder, campaign, job, [&](const CampaignProgress& progress) { line.show(progress); });
+      wait_for_slurm(folder, campaign, job, [&](const CampaignProgress& progress) { show(line, progress); });
   line.clear();
   return finished ? Finish::all_over : Finish::stopped;
 }

@@ -43,7 +43,8 @@ FlightCost cost_of(const FlightResult& result) {
 }
 
 int run_fly(const FlyArguments& arguments) {
-  const Scenario scenario = load_scenario(scenario_file(arguments.scenario), arguments.settings);
+  const Scenario scenario =
+      load_scenario(scenario_file(arguments.scenario), arguments.settings, arguments.with);
   FlyOptions options;
   options.models_folder = project_root() / "models";
   require_rig(scenario, arguments, options.models_folder / "rigs");

@@ -72,7 +72,8 @@ int run_record(const RecordArguments& arguments) {
     throw ScenarioError("--height: expected beside --walk");
   if (!arguments.path.empty() && !arguments.walk_mps.empty())
     throw ScenarioError("--path: expected without --walk");
-  const Scenario scenario = load_scenario(scenario_file(arguments.scenario), arguments.settings);
+  const Scenario scenario =
+      load_scenario(scenario_file(arguments.scenario), arguments.settings, arguments.with);
   FlyOptions options;
   options.models_folder = project_root() / "models";
   require_rig(scenario, arguments, options.models_folder / "rigs");

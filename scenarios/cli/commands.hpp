@@ -27,6 +27,7 @@ using Command = std::function<int()>;
 void add_fly_command(CLI::App& app, Command& chosen);
 void add_record_command(CLI::App& app, Command& chosen);
 void add_campaign_command(CLI::App& app, Command& chosen);
+void add_tune_command(CLI::App& app, Command& chosen);
 void add_shard_command(CLI::App& app, Command& chosen);
 void add_collect_command(CLI::App& app, Command& chosen);
 void add_validate_command(CLI::App& app, Command& chosen);
@@ -36,10 +37,11 @@ void add_detect_command(CLI::App& app, Command& chosen);
 void add_evaluate_command(CLI::App& app, Command& chosen);
 void add_bench_command(CLI::App& app, Command& chosen);
 
-/// The scenario's name and --set, as every command that flies has them.
+/// The scenario's name, --with and --set, as every command that flies has them.
 struct ScenarioArguments {
-  std::string scenario;               ///< a path, or a name in scenarios/library
-  std::vector<std::string> settings;  ///< key=value
+  std::string scenario;                     ///< a path, or a name in scenarios/library
+  std::vector<std::filesystem::path> with;  ///< files of keys, over the scenario's own
+  std::vector<std::string> settings;        ///< key=value, over both
 };
 void add_scenario_options(CLI::App& command, ScenarioArguments& arguments);
 /// --set alone.

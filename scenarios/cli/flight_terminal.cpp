@@ -23,9 +23,10 @@ void require_rig(const Scenario& scenario, const ScenarioArguments& arguments,
   std::error_code ignored;
   if (std::filesystem::exists(rigs / (scenario.rig + ".yaml"), ignored)) return;
   if (std::filesystem::is_regular_file(scenario.rig, ignored)) return;
-  throw ScenarioError(fmt::format("{}: rig: expected a name in {} or a rig file, got '{}'",
-                                  where_given(scenario_file(arguments.scenario), arguments.settings, "rig"),
-                                  rigs.string(), scenario.rig));
+  throw ScenarioError(
+      fmt::format("{}: rig: expected a name in {} or a rig file, got '{}'",
+                  where_given(scenario_file(arguments.scenario), arguments.settings, "rig", arguments.with),
+                  rigs.string(), scenario.rig));
 }
 
 }  // namespace understory

@@ -7,6 +7,11 @@ namespace understory {
 void add_scenario_options(CLI::App& command, ScenarioArguments& arguments) {
   command.add_option("scenario", arguments.scenario, "a scenario file, or a name from scenarios/library")
       ->required();
+  command
+      .add_option("--with", arguments.with,
+                  "a file of the scenario's keys that go over its own: what tune leaves")
+      ->allow_extra_args(false)
+      ->trigger_on_parse(false);
   add_settings_option(command, arguments.settings);
 }
 

@@ -77,6 +77,24 @@ TEST(Campaign, FliesEverySeedInEveryConditionOfOverridesAndGrid) {
   EXPECT_EQ(tasks[31].condition, 7u);
 }
 
+TEST(Campaign, PutsFilesOfKeysUnderItsOwn) {
+  const Folder folder("_with");
+  const fs::path keys = folder.path / "tuned.yaml";
+  std::ofstream(keys) << "forest: {length_m: 33, half_width_m: 12}\n";
+  const auto text = [&](const std::string& file) {
+    return "scenario: forest\nseeds: 1\noverrides:\n  - {name: tuned, with: " + file +
+           ", set: {forest.half_width_m: 13}}\n";
+  };
+  const Campaign campaign = campaign_of(text(keys.string()));
+  const Scenario tuned = scenario_from_text(campaign.conditions.at(0).scenario_text, "tuned");
+  EXPECT_EQ(tuned.forest.length_m, 33);
+  EXPECT_EQ(tuned.forest.half_width_m, 13);
+  std::ofstream(keys) << "forest: {lenght_m: 33}\n";
+  EXPECT_NE(refusal_of(text(keys.string())).find("tuned.yaml:1: forest.lenght_m: expected a known key"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(text("none.yaml")).find("none.yaml: expected a readable"), std::string::npos);
+}
+
 TEST(Campaign, RefusesBadFilesInOneLineWithFileLineAndKey) {
   const struct {
     const char* text;
@@ -95,7 +113,7 @@ TEST(Campaign, RefusesBadFilesInOneLineWithFileLineAndKey) {
       {"seeds: 1..3\n", "scenarios: expected the scenarios to fly"},
       {"scenarios: [forest, forest]\nseeds: 1\n",
        "speed.yaml:1: scenarios: expected each condition once, 'forest'"},
-      {"scenario: wood\nseeds: 1\n", "speed.yaml:1: scenarios: wood: expected one of the library"},
+      {"scenario: wood\nseeds: 1\n", "speed.yaml:1: scenario: wood: expected one of the library"},
       {"scenario: forest\nseeds: 1\noverrides:\n  - {name: a}\n  - {name: a}\n",
        "'forest-a' comes out twice"},
       {"scenario: forest\nseeds: 1\noverrides:\n  - {name: a/b}\n",
