@@ -33,6 +33,11 @@ if(UNDERSTORY_SIM)
   add_library(mujoco::mujoco SHARED IMPORTED)
   set_target_properties(mujoco::mujoco PROPERTIES
     IMPORTED_LOCATION "${MUJOCO_LIBRARY}" INTERFACE_INCLUDE_DIRECTORIES "${MUJOCO_INCLUDE_DIR}")
+
+  # Tuning's optimisers. Its headers see Boost.Serialization, whose library is linked, and TBB.
+  find_package(pagmo REQUIRED)
+  add_library(pagmo_only INTERFACE)
+  target_link_libraries(pagmo_only INTERFACE Pagmo::pagmo)
 endif()
 if(UNDERSTORY_TESTS)
   find_package(GTest REQUIRED)

@@ -31,6 +31,7 @@ int run(int argc, char** argv) {
   add_fly_command(app, chosen);
   add_record_command(app, chosen);
   add_campaign_command(app, chosen);
+  add_tune_command(app, chosen);
   add_shard_command(app, chosen);
   add_collect_command(app, chosen);
   add_gate_command(app, chosen);

@@ -34,6 +34,7 @@ std::vector<std::filesystem::path> record_suite(const std::filesystem::path& fil
 void add_fly_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "fly"); }
 void add_record_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "record"); }
 void add_campaign_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "campaign"); }
+void add_tune_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "tune"); }
 void add_shard_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "shard"); }
 void add_validate_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "validate"); }
 

@@ -1,0 +1,98 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <thread>
+
+#include "scenarios/campaign/stop_signals.hpp"
+#include "scenarios/cli/commands.hpp"
+#include "scenarios/cli/progress_line.hpp"
+#include "scenarios/config_tree.hpp"
+#include "scenarios/file_output.hpp"
+#include "scenarios/scenario_rig.hpp"
+#include "scenarios/tuning/flight_judge.hpp"
+#include "scenarios/tuning/tune_report.hpp"
+#include "scenarios/tuning/vision_judge.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TuneArguments {
+  std::string file;
+  std::string out;  // empty: results/tune-<name>
+  RendererKind renderer = RendererKind::osmesa;
+  int jobs = 0;  // 0: a core each
+  bool resume = false;
+};
+
+struct Judges {
+  std::unique_ptr<Judge> training, validation;
+};
+
+Judges judges_of(const TuneFile& file, const TuneArguments& arguments, const fs::path& folder) {
+  const int jobs = arguments.jobs > 0 ? arguments.jobs
+                                      : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  if (file.over == TuningData::recordings)
+    return {std::make_unique<VisionJudge>(file.training_folders, file.every, jobs),
+            std::make_unique<VisionJudge>(file.validation_folders, file.every, jobs)};
+  rig_of(file.scenario, project_root() / "models");  // before anything is flown: every flight would fail
+  const std::string renderer(word_for(arguments.renderer));
+  const auto judge = [&](const char* part, const std::vector<std::uint64_t>& seeds) {
+    return std::make_unique<FlightJudge>(
+        FlightJudgeConfig{folder / "flown" / part, seeds, renderer, file.timeout_s, jobs});
+  };
+  return {judge("training", file.training_seeds), judge("validation", file.validation_seeds)};
+}
+
+void show(ProgressLine& line, const TuneFile& file, const TuneProgress& progress) {
+  line.show(fmt::format("{} {} of {}, best {} {:.4g}", progress.part, progress.done, progress.of,
+                        file.figures[file.objective.goals.front().figure], progress.best),
+            progress.measured, progress.left);
+}
+
+int run_tune(const TuneArguments& arguments) {
+  const TuneFile file = load_tune_file(arguments.file, scenario_file);
+  const fs::path folder =
+      arguments.out.empty() ? fs::path("results") / ("tune-" + file.name) : fs::path(arguments.out);
+  prepare_tune_folder(folder, file, std::string(word_for(arguments.renderer)), arguments.resume);
+  const FolderLock lock(CampaignFolder{folder});
+  const Judges judges = judges_of(file, arguments, folder);
+  const StopSignals stop_signals;
+  ProgressLine line;
+  TuneOptions options;
+  options.folder = folder;
+  options.stop_asked = [&] { return stop_signals.asked(); };
+  options.on_progress = [&](const TuneProgress& progress) { show(line, file, progress); };
+  try {
+    const Tuned tuned = tune(file, *judges.training, *judges.validation, options);
+    write_tune_report(folder, file, tuned, *judges.validation);
+    line.clear();
+    fmt::print("{}{}tables, plots and best.yaml: {}\n",
+               to_text(comparison_table(file, tuned, *judges.validation)),
+               tuned.keeps_limits ? "" : "no trial keeps the limits\n", folder.string());
+  } catch (const Stopped&) {
+    line.clear();
+    throw MachineError(fmt::format("{}: stopped; --resume goes on", folder.string()));
+  }
+  return exit_goal;
+}
+
+}  // namespace
+
+void add_tune_command(CLI::App& app, Command& chosen) {
+  const auto arguments = std::make_shared<TuneArguments>();
+  CLI::App* command =
+      app.add_subcommand("tune", "search a scenario's numbers for what does best on recordings or flights");
+  command->add_option("file", arguments->file, "what to tune, for what: see docs/tuning.md")->required();
+  command->add_option("--out", arguments->out, "results folder (default: results/tune-<name>)");
+  command->add_option("--jobs", arguments->jobs, "flights or recordings at a time (default: one a core)")
+      ->check(CLI::Range(1, 1024));
+  add_renderer_option(*command, arguments->renderer);
+  command->add_flag("--resume", arguments->resume, "go on with what the folder holds");
+  command->callback([arguments, &chosen] { chosen = [arguments] { return run_tune(*arguments); }; });
+}
+
+}  // namespace understory

@@ -1,0 +1,58 @@
+#include "scenarios/tuning/numeric_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <type_traits>
+
+namespace understory {
+namespace {
+
+/// The visitor that collects them.
+class NumericKeyCollector {
+ public:
+  template <typename T>
+  void operator()(std::string_view name, T& field) {
+    if constexpr (std::is_same_v<T, bool> || std::is_same_v<T, std::string> ||
+                  requires { field.emplace_back(); }) {  // a list of structs
+      return;
+    } else {
+      const std::string before = prefix_;
+      prefix_ += std::string(name) + ".";
+      visit_fields(*this, field);
+      prefix_ = before;
+    }
+  }
+
+  template <typename T, typename Least, typename Greatest>
+  void operator()(std::string_view name, T& field, Least least, Greatest greatest) {
+    const double low = static_cast<double>(least), high = static_cast<double>(greatest);
+    const std::string key = prefix_ + std::string(name);
+    if constexpr (std::is_same_v<T, std::uint64_t>) {
+      return;  // seeds
+    } else if constexpr (std::is_arithmetic_v<T>) {
+      keys.push_back({key, std::is_integral_v<T>, low, high, static_cast<double>(field)});
+    } else {
+      int index = 0;
+      for (const double value : field)
+        keys.push_back({fmt::format("{}[{}]", key, index++), false, low, high, value});
+    }
+  }
+
+  template <typename T, std::size_t N>
+  void operator()(std::string_view, T&, const std::array<std::pair<std::string_view, T>, N>&) {}
+
+  std::vector<NumericKey> keys;
+
+ private:
+  std::string prefix_;
+};
+
+}  // namespace
+
+std::vector<NumericKey> numeric_keys(Scenario scenario) {
+  NumericKeyCollector collector;
+  visit_fields(collector, scenario);
+  return collector.keys;
+}
+
+}  // namespace understory

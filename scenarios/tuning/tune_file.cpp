@@ -1,0 +1,272 @@
+#include "scenarios/tuning/tune_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "scenarios/config_keys.hpp"
+#include "scenarios/scenario_io.hpp"
+#include "scenarios/tuning/flight_judge.hpp"
+#include "scenarios/tuning/numeric_keys.hpp"
+#include "scenarios/tuning/vision_judge.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int greatest_trials = 1'000'000;
+
+const ConfigNode& required(const ConfigNode& map, std::string_view key, const std::string& expected) {
+  const ConfigNode* node = find_child(map, key);
+  if (node == nullptr) refuse_key(map, std::string(key), expected);
+  return *node;
+}
+
+const ConfigNode& required_group(const ConfigNode& map, std::string_view key, const std::string& expected) {
+  const ConfigNode& node = required(map, key, expected);
+  if (node.kind != ConfigNode::Kind::map || node.children.empty())
+    refuse_key(node, std::string(key), expected);
+  return node;
+}
+
+/// Within the bounds of its key, and whole where it is.
+double value_of(const ConfigNode& node, const std::string& name, const NumericKey& key) {
+  const double value = number_of(node, name, key.least, key.greatest);
+  if (key.whole && value != std::round(value)) refuse_key(node, name, "a whole number");
+  return value;
+}
+
+void read_range(const ConfigNode& node, const NumericKey& key, Parameter& parameter) {
+  const std::string name = "parameters." + key.key;
+  const std::string expected = "{from: ..., to: ..., scale: linear | log, steps: ...} or {values: [...]}";
+  parameter.from = value_of(required(node, "from", expected), name + ".from", key);
+  parameter.to = value_of(required(node, "to", expected), name + ".to", key);
+  if (!(parameter.from < parameter.to)) refuse_key(node, name, "from less than to");
+  if (const ConfigNode* scale = find_child(node, "scale")) {
+    if (scale->text != "linear" && scale->text != "log") refuse_key(*scale, name + ".scale", "linear | log");
+    parameter.logarithmic = scale->text == "log";
+    if (parameter.logarithmic && parameter.from <= 0) refuse_key(node, name, "from above 0 for scale: log");
+  }
+  if (const ConfigNode* steps = find_child(node, "steps"))
+    parameter.steps = whole_number_of(*steps, name + ".steps", 2, 1000);
+}
+
+Parameter parameter_of(const ConfigNode& node, const NumericKey& key) {
+  const std::string name = "parameters." + node.key;
+  Parameter parameter{key.key, key.whole};
+  if (node.kind != ConfigNode::Kind::map) refuse_key(node, name, "{from: ..., to: ...} or {values: [...]}");
+  require_known_keys(node, {"from", "to", "scale", "steps", "values"}, name + ".");
+  const ConfigNode* values = find_child(node, "values");
+  if (values == nullptr) {
+    read_range(node, key, parameter);
+    return parameter;
+  }
+  if (values->kind != ConfigNode::Kind::list || values->children.size() < 2 || node.children.size() > 1)
+    refuse_key(*values, name + ".values", "two values or more, and nothing beside them");
+  for (const ConfigNode& value : values->children)
+    parameter.values.push_back(value_of(value, name + ".values", key));
+  std::ranges::sort(parameter.values);
+  if (std::ranges::adjacent_find(parameter.values) != parameter.values.end())
+    refuse_key(*values, name + ".values", "each value once");
+  return parameter;
+}
+
+const NumericKey& key_of(const ConfigNode& node, const std::vector<NumericKey>& keys) {
+  const auto found = std::ranges::find(keys, node.key, &NumericKey::key);
+  if (found != keys.end()) return *found;
+  std::vector<std::string> known;
+  for (const NumericKey& key : keys) known.push_back(key.key);
+  const std::string near = nearest_name(node.key, known);
+  refuse_key(node, "parameters." + node.key,
+             "a numeric key of the scenario" + (near.empty() ? "" : " (did you mean " + near + "?)"));
+}
+
+void read_parameters(const ConfigNode& group, TuneFile& tune) {
+  const std::vector<NumericKey> keys = numeric_keys(tune.scenario);
+  for (const ConfigNode& node : group.children) {
+    const NumericKey& key = key_of(node, keys);
+    if (tune.over == TuningData::recordings && !matters_on_recordings(key.key))
+      refuse_key(node, "parameters." + node.key,
+                 "a key of perception.pushbroom or perception.depths_m: recordings feel no other");
+    tune.space.parameters.push_back(parameter_of(node, key));
+    tune.scenario_point.push_back(key.value);
+    const std::size_t bracket = key.key.find('[');
+    if (bracket == std::string::npos) continue;
+    std::vector<double>& list = tune.space.lists[key.key.substr(0, bracket)];
+    list.clear();
+    for (const NumericKey& other : keys)
+      if (other.key.starts_with(key.key.substr(0, bracket + 1))) list.push_back(other.value);
+  }
+}
+
+std::size_t figure_of(const ConfigNode& node, const std::string& key, const std::string& word,
+                      const std::vector<std::string>& names) {
+  const auto found = std::ranges::find(names, word);
+  if (found == names.end())
+    refuse_key(node, key, fmt::format("one of {}, got '{}'", fmt::join(names, ", "), word));
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+void read_objective(const ConfigNode& group, TuneFile& tune) {
+  require_known_keys(group, {"maximize", "minimize", "at_least", "at_most"}, "objective.");
+  std::set<std::size_t> aimed_at;
+  for (const ConfigNode& node : group.children) {
+    const std::string name = "objective." + node.key;
+    if (node.key == "maximize" || node.key == "minimize") {
+      for (const std::string& word : words_of(node, name, "a figure, or a list of such")) {
+        const std::size_t figure = figure_of(node, name, word, tune.figures);
+        if (!aimed_at.insert(figure).second) refuse_key(node, name, "each figure once");
+        tune.objective.goals.push_back({figure, node.key == "maximize"});
+      }
+      continue;
+    }
+    if (node.kind != ConfigNode::Kind::map || node.children.empty())
+      refuse_key(node, name, "bounds of figures: {precision: 0.97}");
+    for (const ConfigNode& bound : node.children)
+      tune.objective.limits.push_back({figure_of(bound, name, bound.key, tune.figures),
+                                       node.key == "at_least",
+                                       number_of(bound, name + "." + bound.key, -1e9, 1e9)});
+  }
+  if (tune.objective.goals.empty())
+    refuse_key(group, "objective",
+               "maximize or minimize, with one of " + fmt::format("{}", fmt::join(tune.figures, ", ")));
+  if (tune.over == TuningData::flights && tune.figures[tune.objective.goals.front().figure] == "success")
+    tune.objective.tie_breaker = figure_of(group, "objective", "progress", tune.figures);
+}
+
+void read_search(const ConfigNode& group, TuneFile& tune) {
+  require_known_keys(group, {"method", "trials", "seed", "sensitivity"}, "search.");
+  std::vector<std::string> methods;
+  for (const auto& [word, method] : search_method_names) methods.emplace_back(word);
+  const std::string expected = fmt::format("{}", fmt::join(methods, " | "));
+  const ConfigNode& method = required(group, "method", expected);
+  const auto found =
+      std::ranges::find(search_method_names, method.text, &std::pair<std::string_view, SearchMethod>::first);
+  if (found == search_method_names.end()) refuse_key(method, "search.method", expected);
+  tune.search.method = found->second;
+  const std::size_t goals = tune.objective.goals.size();
+  if (found->second == SearchMethod::cma_es && goals > 1)
+    refuse_key(method, "search.method", "nsga2, random or grid where there are several goals");
+  if (found->second == SearchMethod::nsga2 && goals == 1)
+    refuse_key(method, "search.method", "cma_es, random or grid where there is one goal");
+  if (const ConfigNode* seed = find_child(group, "seed"))
+    tune.search.seed = static_cast<std::uint64_t>(whole_number_of(*seed, "search.seed", 0, 2'000'000'000));
+  if (const ConfigNode* points = find_child(group, "sensitivity"))
+    tune.search.sensitivity_points = whole_number_of(*points, "search.sensitivity", 2, 1000);
+  const ConfigNode* trials = find_child(group, "trials");
+  if (found->second != SearchMethod::grid) {
+    const std::string wanted = fmt::format("a whole number from 1 to {}", greatest_trials);
+    tune.search.trials =
+        whole_number_of(required(group, "trials", wanted), "search.trials", 1, greatest_trials);
+    return;
+  }
+  if (trials != nullptr) refuse_key(*trials, "search.trials", "none: a grid has as many as it has");
+  double size = 1;
+  for (const Parameter& parameter : tune.space.parameters) {
+    if (parameter.values.empty() && parameter.steps == 0)
+      refuse_key(group, "parameters." + parameter.key, "values, or a range with steps, for a grid");
+    size *= static_cast<double>(spread_values(parameter, parameter.steps).size());
+  }
+  if (size > greatest_trials)
+    refuse_key(group, "search.method", fmt::format("a grid of at most {} points", greatest_trials));
+  tune.search.trials = static_cast<int>(size);
+}
+
+/// Folders as they are, beside the file or where they are said to be, links resolved.
+std::vector<fs::path> folders_of(const ConfigNode& node, const fs::path& file) {
+  std::vector<fs::path> folders;
+  for (const std::string& word : words_of(node, node.key, "folders of recordings")) {
+    std::error_code ignored;
+    const fs::path beside = file.parent_path() / word;
+    const fs::path folder = fs::is_directory(beside, ignored) ? beside : fs::path(word);
+    if (!fs::is_directory(folder, ignored))
+      refuse_key(node, node.key, fmt::format("folders of recordings, there is no {}", word));
+    folders.push_back(fs::canonical(folder));
+  }
+  return folders;
+}
+
+bool holds(const fs::path& folder, const fs::path& other) {
+  return std::mismatch(folder.begin(), folder.end(), other.begin(), other.end()).first == folder.end();
+}
+
+void read_data(const ConfigNode& top, const fs::path& file, TuneFile& tune) {
+  const bool flies = tune.over == TuningData::flights;
+  const std::string expected = flies ? "seeds, for instance 1000..1019" : "folders of recordings";
+  const ConfigNode& training = required(top, "training", expected);
+  const ConfigNode& validation = required(top, "validation", expected);
+  if (flies) {
+    tune.training_seeds = seeds_of(words_of(training, "training", expected), training.origin + ": training");
+    tune.validation_seeds =
+        seeds_of(words_of(validation, "validation", expected), validation.origin + ": validation");
+    for (const std::uint64_t seed : tune.validation_seeds)
+      if (std::ranges::find(tune.training_seeds, seed) != tune.training_seeds.end())
+        refuse_key(validation, "validation", fmt::format("no seed of training, {} is one", seed));
+    return;
+  }
+  tune.training_folders = folders_of(training, file);
+  tune.validation_folders = folders_of(validation, file);
+  std::set<fs::path> seen;
+  for (const fs::path& one : tune.validation_folders)
+    for (const fs::path& other : tune.training_folders)
+      if (holds(one, other) || holds(other, one))
+        refuse_key(validation, "validation",
+                   fmt::format("no recording of training, {} is one", one.string()));
+  for (const auto* some : {&tune.training_folders, &tune.validation_folders})
+    for (const fs::path& folder : *some)
+      if (!seen.insert(folder).second)
+        refuse_key(some == &tune.training_folders ? training : validation, "training",
+                   fmt::format("each recording once, {} is given twice", folder.string()));
+}
+
+std::string name_of(const ConfigNode* node, const fs::path& file) {
+  const auto is_plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
+  };
+  std::string name = node == nullptr ? file.stem().string() : node->text;
+  if (node != nullptr && (name.empty() || !std::ranges::all_of(name, is_plain)))
+    refuse_key(*node, "name", "letters, digits and . _ -");
+  for (char& c : name)
+    if (!is_plain(static_cast<unsigned char>(c))) c = '_';
+  return name;
+}
+
+}  // namespace
+
+TuneFile load_tune_file(const fs::path& file, const FindScenario& find_scenario) {
+  const ConfigNode top = parse_config_file(file);
+  require_known_keys(top,
+                     {"name", "scenario", "parameters", "objective", "search", "over", "training",
+                      "validation", "every", "timeout_s"},
+                     "");
+  TuneFile tune;
+  std::ifstream stream(file, std::ios::binary);
+  tune.text.assign(std::istreambuf_iterator<char>(stream), {});
+  tune.name = name_of(find_child(top, "name"), file);
+  const ConfigNode& scenario = required(top, "scenario", "the scenario whose keys are tuned");
+  tune.scenario_file = scenario_beside(file, scenario, scenario.text, find_scenario);
+  tune.scenario = load_scenario(tune.scenario_file);
+
+  const ConfigNode& over = required(top, "over", "recordings | flights");
+  if (over.text != "recordings" && over.text != "flights") refuse_key(over, "over", "recordings | flights");
+  tune.over = over.text == "flights" ? TuningData::flights : TuningData::recordings;
+  tune.figures = tune.over == TuningData::flights ? flight_figure_names : vision_figure_names;
+  if (const ConfigNode* timeout = find_child(top, "timeout_s"))
+    tune.timeout_s = number_of(*timeout, "timeout_s", 1, 86400);
+
+  if (const ConfigNode* every = find_child(top, "every"))
+    tune.every = whole_number_of(*every, "every", 1, 1000);
+
+  read_parameters(required_group(top, "parameters", "a group {key: {from: ..., to: ...}, ...}"), tune);
+  read_objective(required_group(top, "objective", "a group {maximize: ...}"), tune);
+  read_search(required_group(top, "search", "a group {method: ..., trials: ..., seed: ...}"), tune);
+  read_data(top, file, tune);
+  return tune;
+}
+
+}  // namespace understory

@@ -1,0 +1,226 @@
+#include "scenarios/tuning/tune_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenarios/file_output.hpp"
+#include "scenarios/tuning/tune_comparison.hpp"
+#include "scenarios/tuning/tune_plots.hpp"
+
+namespace understory {
+namespace {
+
+std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-"; }
+
+std::string figure(const Trial& trial, std::size_t i) {
+  return trial.figures.empty() ? "refused" : number(trial.figures[i]);
+}
+
+std::string interval_text(const Interval& interval) {
+  if (!std::isfinite(interval.least) || !std::isfinite(interval.greatest)) return "-";
+  return fmt::format("{:+.3g} to {:+.3g}", interval.least, interval.greatest);
+}
+
+bool keeps_limits(const TuneFile& file, const Trial& trial) {
+  return violation(file.objective, trial.figures) == 0;
+}
+
+std::string objective_in_words(const TuneFile& file) {
+  std::vector<std::string> words;
+  for (const Goal& goal : file.objective.goals)
+    words.push_back(fmt::format("{} {}", goal.maximize ? "greatest" : "least", file.figures[goal.figure]));
+  for (const Limit& limit : file.objective.limits)
+    words.push_back(fmt::format("{} {} {:g}", file.figures[limit.figure],
+                                limit.at_least ? "at least" : "at most", limit.bound));
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+std::string data_in_words(const TuneFile& file) {
+  if (file.over == TuningData::flights)
+    return fmt::format("flights with {} training seeds ({} ...) and {} validation seeds ({} ...)",
+                       file.training_seeds.size(), file.training_seeds.front(), file.validation_seeds.size(),
+                       file.validation_seeds.front());
+  return fmt::format("{} training and {} validation recordings", file.training_folders.size(),
+                     file.validation_folders.size());
+}
+
+std::string method_name(const TuneFile& file) {
+  return std::string(search_method_names[static_cast<std::size_t>(file.search.method)].first);
+}
+
+/// Figures that the objective speaks of, goals first.
+std::vector<std::size_t> aimed_at(const TuneFile& file) {
+  std::vector<std::size_t> figures;
+  const auto add = [&](std::size_t i) {
+    if (std::ranges::find(figures, i) == figures.end()) figures.push_back(i);
+  };
+  for (const Goal& goal : file.objective.goals) add(goal.figure);
+  for (const Limit& limit : file.objective.limits) add(limit.figure);
+  return figures;
+}
+
+/// Of the front: both sides' figures that the objective speaks of, then the parameters.
+PrintedTable front_table(const TuneFile& file, const Tuned& tuned) {
+  PrintedTable table;
+  table.head = {"trial"};
+  for (const std::size_t i : aimed_at(file)) {
+    table.head.push_back(file.figures[i]);
+    table.head.push_back(file.figures[i] + " (training)");
+  }
+  for (const Parameter& parameter : file.space.parameters) table.head.push_back(short_key(parameter.key));
+  for (const JudgedTrial& member : tuned.front) {
+    table.rows.push_back({fmt::format("{}", member.training.number)});
+    for (const std::size_t i : aimed_at(file)) {
+      table.rows.back().push_back(figure(member.validation, i));
+      table.rows.back().push_back(figure(member.training, i));
+    }
+    for (const double value : member.training.point) table.rows.back().push_back(fmt::format("{:g}", value));
+  }
+  return table;
+}
+
+/// A range whose end is best was perhaps too narrow.
+std::string tuned_value(const Parameter& parameter, double value) {
+  const std::vector<double> ends = spread_values(parameter, 2);
+  return fmt::format("{:g}{}", value, value == ends.front() || value == ends.back() ? " (end of range)" : "");
+}
+
+PrintedTable sensitivity_table(const TuneFile& file, const Tuned& tuned) {
+  const std::size_t goal = file.objective.goals.front().figure;
+  PrintedTable table{
+      {"parameter", "range", "the scenario's", "tuned", file.figures[goal] + " over the range", "spread"},
+      {}};
+  if (!file.objective.limits.empty()) table.head.push_back("limits kept from .. to");
+  for (std::size_t i = 0; i < tuned.sensitivity.size(); ++i) {
+    const Sensitivity& one = tuned.sensitivity[i];
+    double least = HUGE_VAL, greatest = -HUGE_VAL, kept_from = NAN, kept_to = NAN;
+    for (std::size_t k = 0; k < one.values.size(); ++k) {
+      if (one.figures[k].empty() || !std::isfinite(one.figures[k][goal])) continue;
+      least = std::min(least, one.figures[k][goal]);
+      greatest = std::max(greatest, one.figures[k][goal]);
+      if (violation(file.objective, one.figures[k]) > 0) continue;
+      if (std::isnan(kept_from)) kept_from = one.values[k];
+      kept_to = one.values[k];
+    }
+    table.rows.push_back(
+        {file.space.parameters[i].key, fmt::format("{:g} .. {:g}", one.values.front(), one.values.back()),
+         fmt::format("{:g}", file.scenario_point[i]),
+         tuned_value(file.space.parameters[i], tuned.best.training.point[i]),
+         fmt::format("{} .. {}", number(least), number(greatest)), number(greatest - least)});
+    if (!file.objective.limits.empty())
+      table.rows.back().push_back(std::isnan(kept_from) ? "-"
+                                                        : fmt::format("{:g} .. {:g}", kept_from, kept_to));
+  }
+  return table;
+}
+
+/// What the paired flights say, in a sentence.
+std::string flights_sentence(const TuneFile& file, const Tuned& tuned) {
+  if (file.over != TuningData::flights || tuned.scenario_units.empty() || tuned.best_units.empty()) return "";
+  const PairedOutcomes goals = paired_goals(tuned);
+  const Interval before = success_interval(tuned.scenario_units), after = success_interval(tuned.best_units);
+  return fmt::format(
+      "\nGoals on the validation seeds: {} of {} as it is (Wilson {:.1f} to {:.1f} %), {} tuned ({:.1f} to "
+      "{:.1f} %); won {}, lost {}; McNemar's exact p {:.3g}.\n",
+      goals.first(), goals.pairs(), 100 * before.least, 100 * before.greatest, goals.second(),
+      100 * after.least, 100 * after.greatest, goals.only_second, goals.only_first, mcnemar_exact_p(goals));
+}
+
+std::string limits_sentence(const TuneFile& file, const Tuned& tuned) {
+  if (file.objective.limits.empty()) return "";
+  if (!tuned.keeps_limits) return "\nNo trial keeps the limits: this one misses them by the least.\n";
+  return keeps_limits(file, tuned.best.validation) ? "\nThe limits are kept on validation data too.\n"
+                                                   : "\nOn validation data the limits are not kept.\n";
+}
+
+std::string gain_sentence(const TuneFile& file, const Tuned& tuned) {
+  const auto cost = [&](const JudgedTrial& trial) { return fitness(file.objective, trial.training.figures); };
+  if (file.objective.goals.size() > 1 || cost(tuned.best) < cost(tuned.scenario)) return "";
+  return "\nNo trial is better than the scenario as it is, on training data: leave it so.\n";
+}
+
+std::string pareto_csv(const TuneFile& file, const Tuned& tuned) {
+  std::string csv = "trial";
+  for (const Parameter& parameter : file.space.parameters) csv += "," + parameter.key;
+  for (const char* side : {"training", "validation"})
+    for (const std::string& name : file.figures) csv += fmt::format(",{}_{}", side, name);
+  csv += "\n";
+  for (const JudgedTrial& member : tuned.front) {
+    csv += fmt::format("{},{}", member.training.number, fmt::join(member.training.point, ","));
+    for (const Trial* trial : {&member.training, &member.validation})
+      for (std::size_t i = 0; i < file.figures.size(); ++i)
+        csv += trial->figures.empty() || !std::isfinite(trial->figures[i])
+                   ? std::string(",")
+                   : fmt::format(",{:.6g}", trial->figures[i]);
+    csv += "\n";
+  }
+  return csv;
+}
+
+}  // namespace
+
+PrintedTable comparison_table(const TuneFile& file, const Tuned& tuned, const Judge& validation) {
+  const std::vector<FigureChange> changes = changes_on_validation(file, tuned, validation);
+  PrintedTable table{
+      {"figure", "as it is", "tuned", "difference", "95 %", "as it is (training)", "tuned (training)"}, {}};
+  for (std::size_t i = 0; i < file.figures.size(); ++i) {
+    const bool is_known = i < changes.size() && std::isfinite(changes[i].difference);
+    table.rows.push_back({file.figures[i], figure(tuned.scenario.validation, i),
+                          figure(tuned.best.validation, i),
+                          is_known ? fmt::format("{:+.3g}", changes[i].difference) : "-",
+                          is_known ? interval_text(changes[i].interval) : "-",
+                          figure(tuned.scenario.training, i), figure(tuned.best.training, i)});
+  }
+  return table;
+}
+
+std::string tune_summary(const TuneFile& file, const Tuned& tuned, const Judge& validation) {
+  std::string text = fmt::format(
+      "# {}\n\n{} parameters of {}, tuned for {} over {}: {} trials, {}, seed {}. Training chose trial {}; "
+      "what "
+      "counts is validation.\n\n",
+      file.name, file.space.parameters.size(), file.scenario_file.stem().string(), objective_in_words(file),
+      data_in_words(file), tuned.trials.size() - 1, method_name(file), file.search.seed,
+      tuned.best.training.number);
+  text += to_markdown(comparison_table(file, tuned, validation));
+  text += flights_sentence(file, tuned) + limits_sentence(file, tuned) + gain_sentence(file, tuned);
+  if (tuned.best_units.size() < 15)
+    text += fmt::format("\nIntervals come from {} units: below about 15 they are too narrow.\n",
+                        tuned.best_units.size());
+  text +=
+      "\n## Pareto front\nOf the training figures; nothing tried is better in one without being worse in "
+      "another. `front/trial-N.yaml` flies each.\n\n" +
+      to_markdown(front_table(file, tuned));
+  text += "\n## Sensitivity\nEach parameter alone varied from the tuned ones, on training data.\n\n" +
+          to_markdown(sensitivity_table(file, tuned));
+  text += "\n## Tuned keys\n```yaml\n" + to_yaml(file.space, tuned.best.training.point) + "```\n";
+  return text;
+}
+
+std::string tuned_config(const TuneFile& file, const JudgedTrial& trial) {
+  std::string text = fmt::format("# {}: trial {} of a search for {}; over {}.\n", file.name,
+                                 trial.training.number, objective_in_words(file), data_in_words(file));
+  for (std::size_t i = 0; i < file.figures.size(); ++i)
+    text += fmt::format("# {} {} (training {})\n", file.figures[i], figure(trial.validation, i),
+                        figure(trial.training, i));
+  return text + to_yaml(file.space, trial.training.point);
+}
+
+void write_tune_report(const std::filesystem::path& folder, const TuneFile& file, const Tuned& tuned,
+                       const Judge& validation) {
+  std::vector<std::string> keys;
+  for (const Parameter& parameter : file.space.parameters) keys.push_back(parameter.key);
+  write_whole_file(folder / "trials.csv", to_csv(tuned.trials, keys, file.figures));
+  write_whole_file(folder / "pareto.csv", pareto_csv(file, tuned));
+  write_whole_file(folder / "summary.md", tune_summary(file, tuned, validation));
+  write_whole_file(folder / "tune.svg", tune_svg(file, tuned));
+  write_whole_file(folder / "best.yaml", tuned_config(file, tuned.best));
+  prepare_output_folder(folder / "front");
+  for (const JudgedTrial& member : tuned.front)
+    write_whole_file(folder / "front" / fmt::format("trial-{}.yaml", member.training.number),
+                     tuned_config(file, member));
+}
+
+}  // namespace understory

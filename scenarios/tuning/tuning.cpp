@@ -1,0 +1,171 @@
+#include "scenarios/tuning/tuning.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "scenarios/config_tree.hpp"
+#include "scenarios/scenario_io.hpp"
+
+namespace understory {
+namespace {
+
+std::vector<std::string> keys_of(const Space& space) {
+  std::vector<std::string> keys;
+  for (const Parameter& parameter : space.parameters) keys.push_back(parameter.key);
+  return keys;
+}
+
+std::vector<Figures> figures_of(const std::vector<Trial>& trials) {
+  std::vector<Figures> figures;
+  for (const Trial& trial : trials) figures.push_back(trial.figures);
+  return figures;
+}
+
+/// One tuning while it goes on.
+class Tuning {
+ public:
+  Tuning(const TuneFile& file, const TuneOptions& options) : file_(file), options_(options) {}
+
+  /// A log of what `judge` says of points.
+  TrialLog log(const std::string& part, Judge& judge) {
+    return TrialLog(options_.folder / (part + ".jsonl"), keys_of(file_.space), file_.figures,
+                    [this, part, &judge](int number, const Point& point) {
+                      const Measured measured = measure(part, number, point, judge);
+                      Trial trial;
+                      trial.refused = measured.refused;
+                      if (measured.refused.empty()) trial.figures = judge.figures(measured.units);
+                      return trial;
+                    });
+  }
+
+  Measured measure(const std::string& part, int number, const Point& point, Judge& judge) {
+    if (options_.stop_asked()) throw Stopped{};
+    ++progress_.measured;
+    Scenario scenario;
+    try {
+      const std::string text = to_yaml(file_.space, point);
+      scenario = load_changed_scenario(file_.scenario_file, {parse_config_text(text, "trial")});
+    } catch (const ScenarioError& error) {  // keys that contradict each other
+      return {{}, error.what()};
+    }
+    return judge.measure(fmt::format("{}-{}", part, number), scenario);
+  }
+
+  /// `after`: what is still to be measured when this part is done, as far as known.
+  void report(const std::string& part, std::size_t done, std::size_t of, std::size_t after) {
+    progress_.part = part;
+    progress_.done = done;
+    progress_.of = of;
+    progress_.left = of - done + after;
+    options_.on_progress(progress_);
+  }
+  void set_best(double figure) { progress_.best = figure; }
+
+ private:
+  const TuneFile& file_;
+  const TuneOptions& options_;
+  TuneProgress progress_;
+};
+
+std::size_t sensitivity_trials(const TuneFile& file) {
+  return static_cast<std::size_t>(file.search.sensitivity_points + 1) * file.space.parameters.size();
+}
+
+/// All trials: the scenario as it is, then the search's.
+std::vector<Trial> run_search(const TuneFile& file, Tuning& tuning, Judge& training) {
+  TrialLog log = tuning.log("trials", training);
+  double least = 3;
+  const auto of = static_cast<std::size_t>(file.search.trials);
+  const auto evaluate = [&](const Point& point) {
+    const Trial trial = log.evaluate(point);
+    const double cost = fitness(file.objective, trial.figures).front();
+    if (cost < least && !trial.figures.empty())
+      tuning.set_best(trial.figures[file.objective.goals.front().figure]);
+    least = std::min(least, cost);
+    tuning.report("trial", log.evaluated().size() - 1, of, greatest_front / 2 + sensitivity_trials(file));
+    return trial.figures;
+  };
+  evaluate(file.scenario_point);
+  search(file.space, file.objective, file.search, evaluate);
+  return log.evaluated();
+}
+
+/// The search's best, numbered as in `trials`; where none keeps the limits, the one that misses them least.
+std::size_t choose_best(const TuneFile& file, const std::vector<Trial>& trials, bool& keeps_limits) {
+  std::vector<Figures> figures = figures_of(trials);
+  figures.front().clear();  // the scenario as it is stands beside, not in the search
+  if (const auto best = best_of(file.objective, figures)) {
+    keeps_limits = true;
+    return *best;
+  }
+  keeps_limits = false;
+  const auto cost = [&](const Figures& some) { return fitness(file.objective, some).front(); };
+  const auto least = std::ranges::min_element(figures, {}, cost);
+  if (least->empty())
+    throw ScenarioError(
+        fmt::format("{}: expected a trial that can be measured, all were refused; the first: {}", file.name,
+                    trials.back().refused));
+  return static_cast<std::size_t>(least - figures.begin());
+}
+
+std::vector<std::size_t> choose_front(const TuneFile& file, const std::vector<Trial>& trials) {
+  std::vector<Figures> figures = figures_of(trials);
+  figures.front().clear();
+  return thinned(pareto_front(file.objective, figures), greatest_front);
+}
+
+/// The values of each parameter alone: spread over its range, and the best's own.
+std::vector<Sensitivity> values_to_vary(const TuneFile& file, const Point& best) {
+  std::vector<Sensitivity> all;
+  for (std::size_t i = 0; i < best.size(); ++i) {
+    Sensitivity one;
+    one.values = spread_values(file.space.parameters[i], file.search.sensitivity_points);
+    if (std::ranges::find(one.values, best[i]) == one.values.end()) one.values.push_back(best[i]);
+    std::ranges::sort(one.values);
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+std::vector<Sensitivity> vary(const TuneFile& file, Tuning& tuning, Judge& training, const Point& best) {
+  TrialLog log = tuning.log("sensitivity", training);
+  std::vector<Sensitivity> all = values_to_vary(file, best);
+  std::size_t of = 0;
+  for (const Sensitivity& one : all) of += one.values.size();
+  for (std::size_t i = 0; i < best.size(); ++i)
+    for (const double value : all[i].values) {
+      Point point = best;
+      point[i] = value;
+      all[i].figures.push_back(log.evaluate(point).figures);
+      tuning.report("sensitivity", log.evaluated().size(), of, 0);
+    }
+  return all;
+}
+
+}  // namespace
+
+Tuned tune(const TuneFile& file, Judge& training, Judge& validation, const TuneOptions& options) {
+  Tuning tuning(file, options);
+  Tuned tuned;
+  tuned.trials = run_search(file, tuning, training);
+  const std::size_t best = choose_best(file, tuned.trials, tuned.keeps_limits);
+  const std::vector<std::size_t> front = choose_front(file, tuned.trials);
+
+  TrialLog log = tuning.log("validation", validation);
+  const auto validated = [&](std::size_t number) {
+    JudgedTrial judged{tuned.trials[number], log.evaluate(tuned.trials[number].point)};
+    tuning.report("validation", log.evaluated().size(), front.size() + 2, sensitivity_trials(file));
+    return judged;
+  };
+  tuned.scenario = validated(0);
+  tuned.best = validated(best);
+  for (const std::size_t number : front) tuned.front.push_back(validated(number));
+  tuned.sensitivity = vary(file, tuning, training, tuned.best.training.point);
+  tuned.scenario_units = tuning.measure("validation", 0, tuned.scenario.training.point, validation).units;
+  tuned.best_units = tuning.measure("validation", 1, tuned.best.training.point, validation).units;
+  return tuned;
+}
+
+}  // namespace understory

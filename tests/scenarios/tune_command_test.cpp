@@ -1,0 +1,126 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "scenarios/scenario_io.hpp"
+#include "scenarios/tuning/vision_judge.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+/// `understory tune` and `--with` as people meet them.
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+using support::content_of;
+using support::expect_refusal;
+
+/// Half a second in the air: what takes long in a flight is left out.
+const std::string short_flight =
+    "name: short\ncourse: clear\ntime_limit_s: 0.5\nforest: {length_m: 10}\ncameras: {rate_hz: 10}\n";
+
+std::string flights_text(const std::string& search) {
+  return "scenario: short.yaml\nparameters:\n  autopilot.flight_model.cruise_speed_mps: {from: 9, to: 12}\n"
+         "objective: {maximize: progress}\nsearch: " +
+         search + "\nover: flights\ntraining: 1000..1001\nvalidation: 1002\n";
+}
+
+TEST(TuneCommand, RefusesBadInputInOneLine) {
+  const support::TemporaryFolder folder;
+  const std::string here = folder.path().string() + "/";
+  folder.write("short.yaml", short_flight);
+  folder.write("bad.yaml",
+               "scenario: short.yaml\nparameters: {forest.lenght_m: {from: 1, to: 2}}\n"
+               "over: flights\n");
+  expect_refusal("tune " + here + "none.yaml", "none.yaml: expected a readable");
+  expect_refusal("tune " + here + "bad.yaml",
+                 "bad.yaml:2: parameters.forest.lenght_m: expected a numeric key");
+  folder.write("tune.yaml", flights_text("{method: random, trials: 1}"));
+  folder.write("out/tune.json", "{}");
+  expect_refusal("tune " + here + "tune.yaml --out " + here + "out", "holds a tuning already: --resume");
+  expect_refusal("tune " + here + "tune.yaml --resume --out " + here + "out", "format changed");
+}
+
+TEST(TuneCommand, WithGoesOverTheScenarioAndItsErrorsNameItsLines) {
+  const support::TemporaryFolder folder;
+  const std::string scenario = folder.write("short.yaml", short_flight).string();
+  const std::string wrong = folder.write("wrong.yaml", "forest:\n  lenght_m: 1\n").string();
+  const std::string wide = folder.write("wide.yaml", "forest:\n  length_m: -1\n").string();
+  const std::string rig = folder.write("rig.yaml", "rig: none\n").string();
+  for (const std::string command : {"fly ", "record "}) {
+    const std::string begin = command + scenario + " --out " + (folder.path() / "run").string() + " --with ";
+    expect_refusal(begin + wrong, "wrong.yaml:2: forest.lenght_m: expected a known key");
+    expect_refusal(begin + wide, "wide.yaml:2: forest.length_m: expected a number");
+    expect_refusal(begin + rig, "rig.yaml:1: rig: expected a name in");
+    expect_refusal(begin + "none.yaml", "none.yaml: expected a readable");
+  }
+  const std::string some = folder.write("some.yaml", "forest: {length_m: 11, half_width_m: 12}\n").string();
+  const fs::path run = folder.path() / "run";
+  support::understory("fly " + scenario + " --with " + some + " --set forest.half_width_m=13 --quiet --out " +
+                      run.string());
+  const Scenario flown = load_scenario(run / "scenario.yaml");
+  EXPECT_EQ(flown.forest.length_m, 11);
+  EXPECT_EQ(flown.forest.half_width_m, 13);
+}
+
+TEST(TuneCommand, KilledAndResumedItEndsWithTheSameLogs) {
+  const support::TemporaryFolder folder;
+  folder.write("short.yaml", short_flight);
+  const std::string file =
+      folder.write("tune.yaml", flights_text("{method: random, trials: 3, seed: 1, sensitivity: 2}"))
+          .string();
+  const std::string tune = "tune " + file + " --jobs 2 --out " + folder.path().string() + "/";
+  EXPECT_EQ(support::understory(tune + "undisturbed").status, 0);
+  for (const char* kill : {"timeout -s KILL 1", "timeout -s INT 2", "timeout -s KILL 3"})
+    support::understory(tune + "stopped --resume", kill);
+  EXPECT_EQ(support::understory(tune + "stopped --resume").status, 0);
+  for (const char* log : {"trials.jsonl", "validation.jsonl", "sensitivity.jsonl", "summary.md", "best.yaml",
+                          "tune.svg", "pareto.csv"})
+    EXPECT_EQ(content_of(folder.path() / "stopped" / log), content_of(folder.path() / "undisturbed" / log))
+        << log;
+  const std::string fly = "fly " + (folder.path() / "short.yaml").string() + " --seed 1002 --quiet --with " +
+                          (folder.path() / "undisturbed" / "best.yaml").string() + " --out " +
+                          (folder.path() / "run").string();
+  EXPECT_LE(support::understory(fly).status, 1);  // flown, to an end good or bad
+  EXPECT_TRUE(fs::exists(folder.path() / "run" / "result.json"));
+}
+
+TEST(TuneCommand, OverRecordingsItsFiguresAreThoseOfTheirScore) {
+  const support::TemporaryFolder folder;
+  const std::string here = folder.path().string() + "/";
+  for (const std::string seed : {"1000", "1001", "1002"})
+    ASSERT_EQ(support::understory("record forest --set time_limit_s=0.6 --set forest.clear_m=2 --set "
+                                  "cameras.rate_hz=20 --seed " +
+                                  seed + " --out " + here + seed)
+                  .status,
+              0);
+  const std::string file =
+      folder
+          .write("tune.yaml",
+                 "scenario: forest\nparameters:\n"
+                 "  perception.pushbroom.least_edge_sum: {from: 100, to: 900}\n"
+                 "  perception.pushbroom.score_limit: {from: 0.05, to: 0.4, scale: log}\n"
+                 "objective: {maximize: [recall, precision]}\n"
+                 "search: {method: nsga2, trials: 20, seed: 1, sensitivity: 2}\nover: recordings\n"
+                 "training: ['1000', '1001']\nvalidation: ['1002']\n")
+          .string();
+  EXPECT_EQ(support::understory("tune " + file + " --jobs 1 --out " + here + "one").status, 0);
+  EXPECT_EQ(support::understory("tune " + file + " --jobs 2 --out " + here + "two").status, 0);
+  EXPECT_EQ(content_of(folder.path() / "one/trials.jsonl"), content_of(folder.path() / "two/trials.jsonl"));
+
+  const Scenario scenario = load_scenario(fs::path(UNDERSTORY_SOURCE_DIR) / "scenarios/library/forest.yaml");
+  const std::vector<fs::path> folders{folder.path() / "1000", folder.path() / "1001"};
+  const VisionScore score = VisionData(folders).score(scenario.perception.pushbroom);
+  VisionJudge judge(folders, 1, 2);
+  const Figures figures = judge.figures(judge.measure("all", scenario).units);
+  EXPECT_GT(score.recall, 0);
+  EXPECT_EQ(figures, (Figures{score.precision, score.recall, score.f_score, score.trunks_1m, score.trunks_3m,
+                              score.hits_per_frame}));
+  Scenario blind = scenario;
+  blind.perception.pushbroom.depths_m = {0.2};
+  EXPECT_FALSE(judge.measure("blind", blind).refused.empty());
+}
+
+}  // namespace
+}  // namespace understory

@@ -1,0 +1,204 @@
+#include "scenarios/tuning/tuning.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenarios/config_tree.hpp"
+#include "scenarios/scenario_io.hpp"
+#include "scenarios/tuning/tune_comparison.hpp"
+#include "scenarios/tuning/tune_report.hpp"
+#include "tests/scenarios/tuning_cases.hpp"
+
+namespace understory {
+namespace {
+
+/// Stands in for flights: closed forms of the two keys. A seed's flight is good where its own limit on the
+/// edge sum, 500 + 10 a place, is kept; speed is greatest at edge 300 and score 0.2, or 0.1 in validation.
+class ClosedForm : public Judge {
+ public:
+  explicit ClosedForm(double best_score) : best_score_(best_score) {}
+  int measured = 0;
+  int stop_after = 1'000'000;
+
+  Measured measure(const std::string&, const Scenario& scenario) override {
+    if (measured >= stop_after) throw Stopped{};
+    ++measured;
+    const PushbroomConfig& rule = scenario.perception.pushbroom;
+    if (rule.score_limit > 0.35) return {{}, "seed 1000: too much"};
+    Measured result;
+    for (int i = 0; i < 20; ++i)
+      result.units.push_back({rule.least_edge_sum <= 500 + 10 * i ? 1.0 : 0.0, 0.5,
+                              12 - std::pow((rule.least_edge_sum - 300) / 100.0, 2) -
+                                  std::pow(10 * (rule.score_limit - best_score_), 2) + i,
+                              0.25});
+    return result;
+  }
+  Figures figures(std::span<const Counts> units) const override {
+    Figures means(4, 0);
+    for (const Counts& unit : units)
+      for (std::size_t i = 0; i < means.size(); ++i) means[i] += unit[i];
+    for (double& mean : means) mean /= static_cast<double>(units.size());
+    return means;
+  }
+
+ private:
+  double best_score_;
+};
+
+TEST_F(TuningTest, TrainingChoosesAndValidationIsMeasuredApart) {
+  const TuneFile file = load(tuning_text("{method: cma_es, trials: 200, seed: 2}"));
+  ClosedForm training(0.2), validation(0.1);
+  const Tuned tuned = tune(file, training, validation, {.folder = results("r")});
+  EXPECT_EQ(tuned.trials.size(), 201u);
+  EXPECT_EQ(tuned.trials[0].point, file.scenario_point);
+  EXPECT_TRUE(tuned.keeps_limits);
+  const Point& best = tuned.best.training.point;
+  EXPECT_NEAR(best[0], 300, 3);
+  EXPECT_NEAR(best[1], 0.2, 0.01);
+  EXPECT_NEAR(tuned.best.training.figures[2], 12 + 9.5, 0.01);
+  EXPECT_NEAR(tuned.best.validation.figures[2], 11 + 9.5, 0.25);  // its own optimum is elsewhere
+  // Flights differ among each other, pairs do not: the difference is exactly known.
+  const std::vector<FigureChange> changes = changes_on_validation(file, tuned, validation);
+  const double difference = tuned.best.validation.figures[2] - tuned.scenario.validation.figures[2];
+  EXPECT_NEAR(changes[2].difference, difference, 1e-9);
+  EXPECT_NEAR(changes[2].interval.least, difference, 1e-9);
+  EXPECT_NEAR(changes[2].interval.greatest, difference, 1e-9);
+}
+
+TEST_F(TuningTest, VariesEachParameterAloneOverItsRange) {
+  const TuneFile file = load(tuning_text());
+  ClosedForm training(0.2), validation(0.2);
+  const Tuned tuned = tune(file, training, validation, {.folder = results("r")});
+  ASSERT_EQ(tuned.sensitivity.size(), 2u);
+  const Sensitivity& edge = tuned.sensitivity[0];
+  EXPECT_EQ(edge.values.front(), 100);
+  EXPECT_EQ(edge.values.back(), 900);
+  EXPECT_GE(edge.values.size(), 9u);
+  for (std::size_t i = 0; i < edge.values.size(); ++i)  // a parabola about 300, whatever the score
+    EXPECT_NEAR(
+        edge.figures[i][2] - tuned.best.training.figures[2],
+        std::pow((tuned.best.training.point[0] - 300) / 100, 2) - std::pow((edge.values[i] - 300) / 100, 2),
+        1e-9);
+  EXPECT_TRUE(tuned.sensitivity[1].figures.back().empty());  // 0.4: refused
+
+  const TuneFile three = load(tuning_text("{method: cma_es, trials: 60, seed: 2, sensitivity: 3}"));
+  const Tuned less = tune(three, training, validation, {.folder = results("three")});
+  EXPECT_EQ(less.sensitivity[0].values, (std::vector<double>{100, less.best.training.point[0], 500, 900}));
+}
+
+TEST_F(TuningTest, SaysSoWhereNoTrialKeepsTheLimits) {
+  TuneFile file = load(tuning_text());
+  file.objective.limits[0].bound = 1.5;
+  ClosedForm training(0.2), validation(0.2);
+  const Tuned tuned = tune(file, training, validation, {.folder = results("r")});
+  EXPECT_FALSE(tuned.keeps_limits);
+  EXPECT_EQ(tuned.best.training.figures[0], 1);  // misses it the least
+  EXPECT_NE(tune_summary(file, tuned, validation).find("No trial keeps the limits"), std::string::npos);
+}
+
+TEST_F(TuningTest, SaysSoWhereTheScenarioIsAsGoodAsItsBestTrial) {
+  TuneFile file = load(tuning_text());
+  const auto summary = [&](const std::string& name) {
+    ClosedForm training(0.2), validation(0.2);
+    return tune_summary(file, tune(file, training, validation, {.folder = results(name)}), validation);
+  };
+  EXPECT_EQ(summary("r").find("leave it so"), std::string::npos);
+  file.scenario_point = {300, 0.2};  // the optimum
+  EXPECT_NE(summary("optimum").find("leave it so"), std::string::npos);
+}
+
+TEST_F(TuningTest, StoppedAnywhereItEndsWithTheSameLogs) {
+  const std::vector<std::string> logs{"trials.jsonl", "validation.jsonl", "sensitivity.jsonl"};
+  for (const char* method :
+       {"{method: cma_es, trials: 60, seed: 2}", "{method: random, trials: 60, seed: 2}"}) {
+    const TuneFile file = load(tuning_text(method));
+    const auto run = [&](const fs::path& where, int stop_after = 1'000'000) {
+      ClosedForm training(0.2), validation(0.1);
+      training.stop_after = stop_after;
+      tune(file, training, validation, {.folder = where});
+      return training.measured;
+    };
+    const fs::path undisturbed = results("undisturbed");
+    const int all = run(undisturbed);
+    const std::string trials = support::content_of(undisturbed / "trials.jsonl");
+    // Whole lines, half a line, nothing; and in the sensitivities.
+    for (const std::size_t kept : {std::size_t{0}, trials.size() / 3, trials.size() / 2, trials.size() - 1}) {
+      const fs::path stopped = results("stopped");
+      folder.write("stopped/trials.jsonl", trials.substr(0, kept));
+      EXPECT_THROW(run(stopped, 2), Stopped);
+      EXPECT_LE(run(stopped), all);
+      for (const std::string& log : logs)
+        EXPECT_EQ(support::content_of(stopped / log), support::content_of(undisturbed / log)) << kept << log;
+      fs::remove_all(stopped);
+    }
+    EXPECT_EQ(run(undisturbed), 0);  // and measures nothing again
+    fs::remove_all(undisturbed);
+  }
+}
+
+TEST_F(TuningTest, RefusesAnotherTuningsLog) {
+  const TuneFile file = load(tuning_text());
+  const auto run = [&](const TuneFile& some, const fs::path& where) {
+    ClosedForm training(0.2), validation(0.1);
+    tune(some, training, validation, {.folder = where});
+  };
+  const fs::path where = results("r");
+  run(file, where);
+  EXPECT_THROW(run(load(tuning_text("{method: cma_es, trials: 60, seed: 3}")), where), ScenarioError);
+  std::string text = support::content_of(where / "trials.jsonl");
+  text.replace(text.find("score_limit"), 5, "scare");
+  folder.write("r/trials.jsonl", text);
+  EXPECT_THROW(run(file, where), ScenarioError);
+}
+
+TEST_F(TuningTest, AFolderGoesOnOnlyWithItsOwnTuning) {
+  const TuneFile file = load(tuning_text());
+  const fs::path where = folder.path() / "r";
+  prepare_tune_folder(where, file, "osmesa", false);
+  EXPECT_THROW(prepare_tune_folder(where, file, "osmesa", false), ScenarioError);
+  EXPECT_NO_THROW(prepare_tune_folder(where, file, "osmesa", true));
+  EXPECT_THROW(prepare_tune_folder(where, file, "egl", true), ScenarioError);
+  EXPECT_THROW(prepare_tune_folder(where, load(tuning_text() + "timeout_s: 9\n"), "osmesa", true),
+               ScenarioError);
+}
+
+TEST_F(TuningTest, LeavesTablesPlotsAndAConfigThatGoesOverTheScenario) {
+  const TuneFile file = load(tuning_text());
+  ClosedForm training(0.2), validation(0.1);
+  const fs::path where = results("r");
+  const Tuned tuned = tune(file, training, validation, {.folder = where});
+  write_tune_report(where, file, tuned, validation);
+  const Scenario scenario = load_scenario(in_library("forest"), {}, {where / "best.yaml"});
+  EXPECT_EQ(scenario.perception.pushbroom.least_edge_sum, tuned.best.training.point[0]);
+  EXPECT_EQ(scenario.perception.pushbroom.score_limit, tuned.best.training.point[1]);
+  EXPECT_EQ(scenario.forest.length_m, file.scenario.forest.length_m);
+  const std::string summary = support::content_of(where / "summary.md");
+  for (const char* part : {"| figure | as it is | tuned |", "## Pareto front", "## Sensitivity", "McNemar",
+                           "perception.pushbroom.score_limit"})
+    EXPECT_NE(summary.find(part), std::string::npos) << part;
+  const std::string trials = support::content_of(where / "trials.csv");
+  EXPECT_EQ(std::count(trials.begin(), trials.end(), '\n'), 62);  // header, the scenario, 60
+  EXPECT_NE(support::content_of(where / "tune.svg").find("front (training)"), std::string::npos);
+  for (const JudgedTrial& member : tuned.front)
+    EXPECT_TRUE(fs::exists(where / "front" / ("trial-" + std::to_string(member.training.number) + ".yaml")));
+  const std::string pareto = support::content_of(where / "pareto.csv");
+  EXPECT_EQ(static_cast<std::size_t>(std::count(pareto.begin(), pareto.end(), '\n')), tuned.front.size() + 1);
+}
+
+TEST_F(TuningTest, APairedStatementAboutFlightsIsMcNemars) {
+  Tuned tuned;
+  for (int i = 0; i < 20; ++i) {  // 10 good both times, 6 won, 1 lost, 3 never
+    tuned.scenario_units.push_back({i < 11 ? 1.0 : 0.0, 0, 0, 0});
+    tuned.best_units.push_back({i < 10 || (i >= 11 && i < 17) ? 1.0 : 0.0, 0, 0, 0});
+  }
+  const PairedOutcomes goals = paired_goals(tuned);
+  EXPECT_EQ(goals.both, 10);
+  EXPECT_EQ(goals.only_second, 6);
+  EXPECT_EQ(goals.only_first, 1);
+  EXPECT_EQ(goals.neither, 3);
+  EXPECT_NEAR(mcnemar_exact_p(goals), 0.125, 1e-9);  // 2 (1 + 7) / 2^7
+}
+
+}  // namespace
+}  // namespace understory
