@@ -7,9 +7,10 @@ include(GNUInstallDirs)
 set_target_properties(perception_io PROPERTIES EXPORT_NAME perception)
 set_target_properties(perception PROPERTIES EXPORT_NAME detection)
 install(TARGETS understory_settings opencv_core_parts opencv_file_parts perception_types pushbroom_kernel perception
-                perception_io estimation_types estimation
+                picture_codecs perception_io estimation_types estimation
         EXPORT understory-targets)
 install(TARGETS understory)
+install(TARGETS understory_picture_codecs LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/understory)
 install(EXPORT understory-targets NAMESPACE understory:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/understory)
 install(DIRECTORY perception estimation DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/understory
         FILES_MATCHING PATTERN "*.hpp")

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "scenarios/config_tree.hpp"
+#include "scenarios/file_output.hpp"
 #include "scenarios/quiet_standard_error.hpp"
 
 namespace understory {
@@ -14,6 +15,8 @@ auto bad_input_if_refused(Read&& read) {
   try {
     const QuietStandardError quiet;
     return read();
+  } catch (const MachineError&) {
+    throw;
   } catch (const std::runtime_error& error) {
     throw ScenarioError(error.what());
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <opencv2/core/mat.hpp>
 #include <opencv2/videoio.hpp>
 
@@ -25,7 +26,7 @@ class VideoFile {
   std::filesystem::path file_;
   double rate_hz_;
   int picture_count_ = 0;
-  cv::VideoWriter writer_;
+  std::unique_ptr<cv::VideoWriter> writer_;  ///< from the first picture on
 };
 
 /// A picture as PNG, whole or not at all.

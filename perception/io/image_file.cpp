@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 #include <string>
 
+#include "perception/io/picture_codecs.hpp"
 #include "perception/io/text_table.hpp"
 
 namespace understory {
@@ -29,15 +29,14 @@ bool is_image_name(const std::filesystem::path& file) {
 }
 
 cv::Mat read_gray_image(const std::filesystem::path& file) {
-  std::string bytes = text_of(file);
+  const std::string bytes = text_of(file);
   const auto expected = [&](const std::string& found) {
     return std::runtime_error(file.string() + ": expected an 8-bit gray image, found " + found);
   };
   if (bytes.empty()) throw expected("an empty file");
   cv::Mat image;
   try {
-    image =
-        cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8UC1, bytes.data()), cv::IMREAD_UNCHANGED);
+    image = picture_codecs().decode(bytes);
   } catch (const cv::Exception&) {
     throw expected("what OpenCV cannot decode");
   }

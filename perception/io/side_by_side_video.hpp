@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <opencv2/core/mat.hpp>
 #include <opencv2/videoio.hpp>
 
@@ -30,7 +31,7 @@ class SideBySideVideo {
 
  private:
   std::filesystem::path file_;
-  cv::VideoCapture capture_;
+  std::unique_ptr<cv::VideoCapture> capture_;
   double rate_hz_ = 0;
   std::int64_t claimed_count_ = 0, next_ = 0;
   int width_px_ = 0, height_px_ = 0;

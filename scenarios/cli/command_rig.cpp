@@ -2,9 +2,9 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 
 #include "perception/io/calibration_file.hpp"
+#include "perception/io/picture_codecs.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config_tree.hpp"
 #include "scenarios/file_output.hpp"
@@ -34,8 +34,7 @@ CalibratedRig read(const RigArguments& arguments) {
 void write_picture(const fs::path& file, const cv::Mat& picture) {
   if (file.extension() != ".png" && file.extension() != ".jpg")
     throw ScenarioError(fmt::format("--out {}: expected a .png or .jpg", file.string()));
-  std::vector<unsigned char> bytes;
-  cv::imencode(file.extension().string(), picture, bytes);
+  const std::vector<unsigned char> bytes = picture_codecs().encode(file.extension().string(), picture);
   write_whole_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

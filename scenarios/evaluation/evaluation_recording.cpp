@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
 #include "perception/io/euroc_calibration.hpp"
 #include "perception/io/image_file.hpp"
+#include "perception/io/picture_codecs.hpp"
 #include "perception/io/text_table.hpp"
 #include "scenarios/bad_input.hpp"
 
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 /// A 16-bit image of the rig's size: depth in millimetres, numbers of objects.
 cv::Mat read_16_bit_image(const fs::path& file, const StereoRig& rig) {
-  const cv::Mat image = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
+  const cv::Mat image = picture_codecs().decode(text_of(file));
   if (image.type() != CV_16UC1 || image.size() != cv::Size(rig.width_px, rig.height_px))
     throw std::runtime_error(
         fmt::format("{}: expected a 16-bit gray image of {}x{}", file.string(), rig.width_px, rig.height_px));

@@ -13,6 +13,12 @@ must(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 must(${CMAKE_COMMAND} -S ${EXAMPLE} -B ${WORK}/build -G Ninja -D CMAKE_PREFIX_PATH=${WORK}/prefix
      -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_BUILD_TYPE=Release)
 must(${CMAKE_COMMAND} --build ${WORK}/build)
+# The installed program finds its module of picture codecs, wherever the prefix was moved to.
+file(RENAME ${WORK}/prefix ${WORK}/moved)
+must(${WORK}/moved/bin/understory rig ${RIG} --out ${WORK}/rig.png)
+if(NOT EXISTS ${WORK}/rig.png)
+  message(FATAL_ERROR "the installed program drew no rig: ${output}")
+endif()
 # Two gray pictures of the rig's size, written by hand: the simplest image format there is.
 string(REPEAT "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ!?" 1410 pixels)
 string(SUBSTRING "${pixels}" 0 90240 pixels)

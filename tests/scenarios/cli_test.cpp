@@ -37,6 +37,32 @@ TEST(Cli, HelpAndVersionSucceed) {
   EXPECT_EQ(understory("--version").status, 0);
 }
 
+TEST(Cli, LibrariesOfPicturesAndFilmsAreNotLoadedAtTheStart) {
+  const Outcome libraries = understory("", "LD_TRACE_LOADED_OBJECTS=1");  // what ldd asks the loader for
+  EXPECT_NE(libraries.text.find("libopencv_core"), std::string::npos) << libraries.text;
+  for (const char* late : {"libopencv_imgcodecs", "libopencv_videoio", "libavcodec", "libgdal"})
+    EXPECT_EQ(libraries.text.find(late), std::string::npos) << libraries.text;
+}
+
+TEST(Cli, APictureWithoutItsModuleIsTheMachinesFault) {
+  const Folder folder;
+  const fs::path alone = folder.path / "understory";
+  fs::copy_file(UNDERSTORY_BINARY, alone);
+  const std::string rig = "rig " UNDERSTORY_SOURCE_DIR "/models/rigs/long.yaml";
+  const std::string elsewhere = "UNDERSTORY_ROOT=" UNDERSTORY_SOURCE_DIR " " + alone.string() + " " + rig;
+  const auto picture = folder.path / "rig.png";
+  // `before` runs the lonely copy; the program itself then only says its version.
+  const Outcome refused =
+      understory("--version", elsewhere + " --out " + picture.string() + " 2>&1; echo status $?;");
+  EXPECT_NE(refused.text.find("pictures and films need a module"), std::string::npos) << refused.text;
+  EXPECT_NE(refused.text.find("status 3"), std::string::npos) << refused.text;
+  EXPECT_FALSE(fs::exists(picture));
+  const Outcome without = understory("--version", elsewhere + " 2>&1; echo status $?;");
+  EXPECT_NE(without.text.find("status 0"), std::string::npos) << without.text;
+  EXPECT_EQ(understory(rig + " --out " + picture.string(), "cd / &&").status, 0);
+  EXPECT_TRUE(fs::exists(picture));
+}
+
 TEST(Cli, WrongArgumentsAreBadInput) {
   expect_refusal("", "subcommand");
   expect_refusal("soar", "subcommand");
