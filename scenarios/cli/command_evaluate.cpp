@@ -48,7 +48,8 @@ struct EvaluateArguments {
   std::vector<std::string> inputs;
   std::string rule = "robust";
   std::vector<std::string> settings;
-  std::string with, out;
+  std::vector<std::string> with;
+  std::string out;
   int every = 1;
   int jobs = 0;
 };
@@ -65,6 +66,7 @@ EvaluationSettings settings_of(const EvaluateArguments& arguments) {
   EvaluationSettings settings;
   settings.rule = arguments.rule == "paper" ? paper_rule() : robust_rule();
   settings.every = arguments.every;
+  for (const std::string& file : arguments.with) read_config(parse_config_file(file), settings);
   for (const std::string& setting : arguments.settings) read_config(parse_assignment(setting), settings);
   return settings;
 }
@@ -110,6 +112,9 @@ void add_evaluate_command(CLI::App& app, Command& chosen) {
   command->add_option("--rule", arguments->rule, "paper or robust: the rule in the table's first line")
       ->capture_default_str()
       ->check(CLI::IsMember({"paper", "robust"}));
+  command->add_option("--with", arguments->with, "file of keys to put over the rule, as `tune` leaves it")
+      ->allow_extra_args(false)
+      ->trigger_on_parse(false);
   add_settings_option(*command, arguments->settings);
   command->add_option("--every", arguments->every, "take every n-th frame")
       ->capture_default_str()

@@ -39,17 +39,14 @@ std::string resampled_text(const Evaluation& evaluation, Share (*of)(const Recor
   return fmt::format("{:.3f} ({:.3f} to {:.3f})", value, estimate.interval.least, estimate.interval.greatest);
 }
 
-EvaluationTable published_table(const Evaluation& evaluation) {
+/// The paper's figures of one sum, the scene's name in front.
+void add_published(const EvaluationSum& sum, bool has_poses, PrintedTable& table) {
   const PublishedFigures paper;
-  const auto& [ours, papers_rule, random] = evaluation.all.published;
-  EvaluationTable table{
-      "paper",
-      "The paper's evaluations, StereoBM as truth; percent",
-      {{"evaluation", "the paper", "our rule", "the paper's rule", "random, here", "random, the paper"}, {}}};
+  const auto& [ours, papers_rule, random] = sum.published;
   const auto row = [&](const char* what, double published, auto figure, std::string published_random) {
-    table.table.rows.push_back({what, percent_text(published), percent_text(figure(ours)),
-                                percent_text(figure(papers_rule)), percent_text(figure(random)),
-                                std::move(published_random)});
+    table.rows.push_back({sum.name, what, percent_text(published), percent_text(figure(ours)),
+                          percent_text(figure(papers_rule)), percent_text(figure(random)),
+                          std::move(published_random)});
   };
   using Scores = PublishedScores;
   row(
@@ -61,7 +58,7 @@ EvaluationTable published_table(const Evaluation& evaluation) {
   row(
       "1 single frame: no match on the frame", paper.single_no_match,
       [](const Scores& s) { return s.single_frame.share_without_match(); }, "-");
-  if (!evaluation.has_poses()) return table;
+  if (!has_poses) return;
   row(
       "2 remembered: within 0.5 m", paper.remembered_within_half_m,
       [](const Scores& s) { return s.false_positives.share_within(0.5); },
@@ -77,6 +74,19 @@ EvaluationTable published_table(const Evaluation& evaluation) {
   row(
       "3 found within 2.0 m", paper.found_within_2_m,
       [](const Scores& s) { return s.false_negatives.share_within(2); }, "-");
+}
+
+EvaluationTable published_table(const Evaluation& evaluation) {
+  EvaluationTable table{"paper",
+                        "The paper's evaluations, StereoBM as truth; percent",
+                        {{"scene", "evaluation", "the paper", "our rule", "the paper's rule", "random, here",
+                          "random, the paper"},
+                         {}}};
+  constexpr std::size_t few = 3;  // of more scenes only the sum, or nobody would read it
+  if (evaluation.scenes.size() > 1 && evaluation.scenes.size() <= few)
+    for (const EvaluationSum& scene : evaluation.scenes)
+      add_published(scene, evaluation.has_poses(), table.table);
+  add_published(evaluation.all, evaluation.has_poses(), table.table);
   return table;
 }
 
