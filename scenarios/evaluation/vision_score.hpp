@@ -47,10 +47,12 @@ class VisionData {
     std::string name;
     std::vector<RecordedObject> objects;
     std::vector<EvaluationFrame> frames;
+    std::vector<std::vector<ExpectedBlock>> expected;  ///< of each frame, at usual_
   };
   RecordingScore score(const Recording& recording, const PushbroomConfig& rule) const;
 
   StereoRig rig_;
+  PushbroomConfig usual_;  ///< rules that look where this one does find the blocks due computed already
   std::vector<Recording> recordings_;
 };
 
