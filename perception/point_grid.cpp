@@ -41,7 +41,7 @@ void PointGrid::grow() {
 int PointGrid::find_in_cell(const Eigen::Vector3d& position) const {
   const Cell cell = cell_of(position);
   for (int index = heads_[bucket_of(cell)]; index >= 0; index = next_[static_cast<std::size_t>(index)])
-    if (cells_[static_cast<std::size_t>(index)] == cell) return index;
+    if (same(cells_[static_cast<std::size_t>(index)], cell)) return index;
   return -1;
 }
 

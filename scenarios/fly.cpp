@@ -114,7 +114,8 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   const bool looking = looks(scenario.perception.detector);
   const auto cameras =
       looking || options.video || options.on_frame
-          ? stopwatch.time("setup", [&] { return cameras_of(scenario, world, calibrated, options.renderer); })
+          ? stopwatch.time("context",
+                           [&] { return cameras_of(scenario, world, calibrated, options.renderer); })
           : nullptr;
   OnboardSensors sensors(scenario);
 

@@ -71,10 +71,17 @@ void RunRecord::observe(const Truth& truth, bool released) {
     result_.progress_m = std::max(result_.progress_m, truth.T_world_body.translation().x());
   }
   if (steps_++ % clearance_every_steps == 0) {
-    result_.min_clearance_m = std::min(
-        result_.min_clearance_m, understory::clearance_m(truth.T_world_body, scenario_.airframe, obstacles_));
+    result_.min_clearance_m = std::min(result_.min_clearance_m, clearance_at(truth));
   }
   last_truth_ = truth;
+}
+
+double RunRecord::clearance_at(const Truth& truth) {
+  if (truth.t_ns != clearance_t_ns_) {
+    clearance_t_ns_ = truth.t_ns;
+    clearance_m_ = understory::clearance_m(truth.T_world_body, scenario_.airframe, obstacles_);
+  }
+  return clearance_m_;
 }
 
 void RunRecord::observe(const Truth& truth, const State& state, const Controls& controls, bool released) {
@@ -83,13 +90,12 @@ void RunRecord::observe(const Truth& truth, const State& state, const Controls& 
   digest_.add(controls.right_elevon_rad);
   digest_.add(controls.thrust_n);
   const Eigen::Vector3d velocity_world = state.T_world_body.linear() * state.velocity_body_mps;
-  const double clearance = clearance_m(truth.T_world_body, scenario_.airframe, obstacles_);
   fmt::format_to(std::back_inserter(trajectory_), "{:.6f}", static_cast<double>(truth.t_ns) * 1e-9);
   append(trajectory_, truth.T_world_body, truth.velocity_world_mps, truth.angular_rate_body_radps);
   append(trajectory_, state.T_world_body, velocity_world, state.angular_rate_body_radps);
   fmt::format_to(std::back_inserter(trajectory_), ",{:.5f},{:.5f},{:.4f},{:.5f},{:.5f},{:.4f},{:.4f}\n",
                  controls.left_elevon_rad, controls.right_elevon_rad, controls.thrust_n,
-                 truth.left_elevon_rad, truth.right_elevon_rad, truth.thrust_n, clearance);
+                 truth.left_elevon_rad, truth.right_elevon_rad, truth.thrust_n, clearance_at(truth));
   if (!released) return;
   const double error_m = (state.T_world_body.translation() - truth.T_world_body.translation()).norm();
   const Eigen::AngleAxisd turn(

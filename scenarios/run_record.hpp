@@ -46,6 +46,9 @@ class RunRecord {
   void write(const std::filesystem::path& folder) const;
 
  private:
+  /// Reckoned once for each moment: both observations of a truth ask.
+  double clearance_at(const Truth& truth);
+
   Scenario scenario_;
   std::vector<Obstacle> obstacles_;
   FlightResult result_;
@@ -60,6 +63,8 @@ class RunRecord {
   double velocity_error_sum_mps_ = 0;
   std::int64_t error_count_ = 0;
   std::int64_t steps_ = 0;
+  std::int64_t clearance_t_ns_ = -1;  ///< the moment of the next
+  double clearance_m_ = 0;
 };
 
 }  // namespace understory

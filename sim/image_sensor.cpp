@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "sim/rounded_gaussians.hpp"
+
 namespace understory {
 namespace {
 
@@ -32,10 +34,7 @@ SkyRow sky_row(const Eye& eye, int row) {
 ImageNoise::ImageNoise(double deviation_gray, std::uint64_t seed)
     : silent_(deviation_gray <= 0), generator_(seed) {
   if (silent_) return;
-  std::normal_distribution<double> gaussian(0.0, deviation_gray);
-  table_.resize(table_size);
-  for (std::int8_t& value : table_)
-    value = static_cast<std::int8_t>(std::clamp(std::lround(gaussian(generator_)), -127L, 127L));
+  table_ = rounded_gaussians(table_size, deviation_gray, generator_);
 }
 
 void ImageNoise::add_to(cv::Mat& gray) {

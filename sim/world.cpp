@@ -44,7 +44,7 @@ class MemoryFiles {
   const mjVFS* get() const { return files_.get(); }
 
  private:
-  std::unique_ptr<mjVFS> files_ = std::make_unique<mjVFS>();
+  std::unique_ptr<mjVFS> files_ = std::make_unique_for_overwrite<mjVFS>();
 };
 
 void write_wall(std::ostream& xml, std::size_t number, const Obstacle& wall) {
@@ -72,7 +72,10 @@ void write_collisions(std::ostream& xml, const std::vector<Obstacle>& obstacles)
 }
 
 /// The extent is fixed, since the near and far planes hang on it and one more tree would otherwise move them:
-/// 0.1 m and 120 m. No multisampling: it ruins depth.
+/// 0.1 m and 120 m. No multisampling: it ruins depth. Nothing is drawn into MuJoCo's own offscreen buffer: a
+/// pixel will do. A contact (condim 1) is one row of constraints and there are no other rows: room for more
+/// is memory that MuJoCo writes over in every mjData, four times a flight (53 MB each with room for a
+/// thousand).
 std::string scene_xml(const Airframe& airframe, const std::vector<Obstacle>& obstacles,
                       const WorldConfig& config) {
   const SceneryXml scenery = scenery_xml(obstacles, config);
@@ -81,12 +84,12 @@ std::string scene_xml(const Airframe& airframe, const std::vector<Obstacle>& obs
   xml.precision(17);
   xml << "<mujoco model='understory'>\n"
       << "<include file='delta_wing.xml'/>\n"
-      << "<size nconmax='200' njmax='1000'/>\n"
+      << "<size nconmax='200' njmax='200'/>\n"
       << "<option timestep='" << 1.0 / physics_rate_hz << "' gravity='0 0 " << -airframe.gravity_mps2
       << "'/>\n"
       << "<statistic extent='50' center='0 0 0'/>\n"
       << "<visual><map znear='0.002' zfar='2.4'/><quality offsamples='0' shadowsize='1024'/>"
-      << "<global offwidth='1280' offheight='720'/></visual>\n"
+      << "<global offwidth='1' offheight='1'/></visual>\n"
       << "<asset>" << scenery.assets << "</asset>\n<worldbody>\n"
       << "<geom name='ground' type='plane' size='0 0 1' group='3' contype='0' conaffinity='1' condim='1'/>\n";
   if (config.obstacles_tangible) write_collisions(xml, obstacles);

@@ -17,9 +17,10 @@ struct TimedFlight {
   double cpu_s = 0;                       ///< the process's own
 };
 
-/// The stages whose shares are told; what is left of the wall time is "other".
-inline const std::vector<std::string> told_stages{"render",  "detect",  "replan", "estimate",
-                                                  "control", "physics", "setup",  "record"};
+/// The stages whose shares are told; what is left of the wall time is "other". "setup" is the world,
+/// "context" the start of the renderer: OpenGL's libraries, textures, the shaders that llvmpipe compiles.
+inline const std::vector<std::string> told_stages{"render",  "detect", "replan",  "estimate", "control",
+                                                  "physics", "setup",  "context", "record"};
 
 /// What flights of one kind cost.
 struct ClosedLoopRow {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <string_view>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "scenarios/evaluation/evaluation_tables.hpp"
 #include "scenarios/file_output.hpp"
 #include "scenarios/picture_folder.hpp"
+#include "scenarios/video_writer.hpp"
 
 namespace understory {
 namespace {
@@ -105,12 +105,6 @@ Json sum_json(const EvaluationSum& sum) {
   return json;
 }
 
-void write_picture(const fs::path& file, const cv::Mat& picture) {
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(".png", picture, bytes);
-  write_whole_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-}
-
 }  // namespace
 
 std::string evaluation_report(const Evaluation& evaluation) {
@@ -143,9 +137,9 @@ void write_evaluation(const Evaluation& evaluation, const fs::path& folder) {
   if (evaluation.has_depth()) {
     write_whole_file(folder / "precision_recall.svg", precision_recall_plot(evaluation));
     write_whole_file(folder / "response.svg", response_plot(evaluation));
-    write_picture(folder / "heat_map.png", heat_maps(evaluation.all.tallies[our_rule], "our rule"));
-    write_picture(folder / "heat_map_paper.png",
-                  heat_maps(evaluation.all.tallies[the_papers_rule], "the paper's rule"));
+    write_png(folder / "heat_map.png", heat_maps(evaluation.all.tallies[our_rule], "our rule"));
+    write_png(folder / "heat_map_paper.png",
+              heat_maps(evaluation.all.tallies[the_papers_rule], "the paper's rule"));
     remove_pictures(folder / "worst");
     write_worst_frames(evaluation, folder / "worst");
   }

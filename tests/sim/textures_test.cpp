@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <random>
 
 namespace understory {
 namespace {
@@ -44,6 +46,59 @@ TextureRequest bark(double contrast, std::uint64_t seed = 1) {
           .elongation = 2.5,
           .fissures = true,
           .seed = seed};
+}
+
+/// The noise of make_texture written plainly: a double at every pixel, one octave after the other.
+std::vector<double> plain_noise(const TextureRequest& request) {
+  std::mt19937_64 generator(request.seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const int width = request.width_px, height = request.height_px;
+  std::vector<double> noise(static_cast<std::size_t>(width * height));
+  for (int octave = 0; octave < request.octaves; ++octave) {
+    const int columns = request.coarsest_cells << octave;
+    const int rows = std::max(
+        1, static_cast<int>(std::lround(request.height_px / (request.elongation * width / columns))));
+    std::vector<double> nodes(static_cast<std::size_t>(columns * rows));
+    for (double& node : nodes) node = uniform(generator);
+    const auto node = [&](int row, int column) {
+      return nodes[static_cast<std::size_t>(row % rows * columns + column % columns)];
+    };
+    const auto smooth = [](double t) { return t * t * (3 - 2 * t); };
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const double across = (x + 0.5) / width * columns, down = (y + 0.5) / height * rows;
+        const int left = static_cast<int>(across), above = static_cast<int>(down);
+        const double s = smooth(across - left), t = smooth(down - above);
+        const double value = std::lerp(std::lerp(node(above, left), node(above, left + 1), s),
+                                       std::lerp(node(above + 1, left), node(above + 1, left + 1), s), t);
+        const bool fissured = request.fissures && octave >= 1 && octave <= 3;
+        noise[static_cast<std::size_t>(y * width + x)] +=
+            fissured ? 2 * std::min(std::abs(value) * 3, 1.0) - 1 : value;
+      }
+  }
+  return noise;
+}
+
+TEST(Textures, AreThePlainNoiseRescaled) {
+  for (const bool fissures : {false, true}) {
+    TextureRequest request{.width_px = 96,
+                           .height_px = 128,
+                           .contrast = 0.05,
+                           .coarsest_cells = 3,
+                           .octaves = 5,
+                           .elongation = 1.5,
+                           .fissures = fissures,
+                           .seed = 5};
+    const std::vector<double> noise = plain_noise(request);
+    const std::vector<std::uint8_t> gray = make_texture(request).gray;
+    const double count = static_cast<double>(noise.size());
+    double mean = 0, square = 0;
+    for (const double value : noise) mean += value / count;
+    for (const double value : noise) square += (value - mean) * (value - mean) / count;
+    const double gain = 0.05 * request.mean_gray / std::sqrt(square);  // nothing is clipped at this contrast
+    for (std::size_t i = 0; i < noise.size(); ++i)
+      ASSERT_NEAR(gray[i], request.mean_gray + gain * (noise[i] - mean), 0.56) << i;  // rounded
+  }
 }
 
 TEST(Textures, ContrastAndMeanAreWhatWasAsked) {
