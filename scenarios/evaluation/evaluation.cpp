@@ -12,6 +12,7 @@
 
 #include "scenarios/config_tree.hpp"
 #include "scenarios/elapsed.hpp"
+#include "scenarios/quiet_standard_error.hpp"
 
 namespace understory {
 namespace {
@@ -117,6 +118,7 @@ Evaluation evaluate(const EvaluationOptions& options) {
   std::atomic<std::size_t> next = 0;
   std::exception_ptr failure;
   std::mutex failure_mutex;
+  const QuietStandardError quiet;  // for all workers: image libraries complain there on their own
   const auto work = [&] {
     for (std::size_t i = next++; i < options.folders.size(); i = next++) try {
         evaluation.recordings[i] =

@@ -68,8 +68,8 @@ std::string precision_recall_plot(const Evaluation& evaluation) {
 }
 
 std::string distances_plot(const Evaluation& evaluation) {
-  std::vector<LinePlot> panels{histogram_panel("1: single frames, to StereoBM near the depth",
-                                               evaluation, &PublishedScores::single_frame)};
+  std::vector<LinePlot> panels{histogram_panel("1: single frames, to StereoBM near the depth", evaluation,
+                                               &PublishedScores::single_frame)};
   if (evaluation.has_poses()) {
     panels.push_back(histogram_panel("2: from remembered points to StereoBM", evaluation,
                                      &PublishedScores::false_positives));

@@ -11,7 +11,7 @@
 #include "perception/io/image_file.hpp"
 #include "perception/io/picture_codecs.hpp"
 #include "perception/io/text_table.hpp"
-#include "scenarios/bad_input.hpp"
+#include "scenarios/config_tree.hpp"
 
 namespace understory {
 namespace {
@@ -41,6 +41,17 @@ double speed_at(const std::vector<TimedPose>& poses, std::int64_t t_ns) {
   return (to->translation() - from->translation()).norm() / (1e-9 * static_cast<double>(to_ns - from_ns));
 }
 
+/// What perception's readers refuse is bad input to this program. Threads read side by side, so that standard
+/// error cannot be kept quiet here (evaluate() does it for all of them).
+template <typename Read>
+auto bad_input_where_refused(Read&& read) {
+  try {
+    return read();
+  } catch (const std::runtime_error& error) {
+    throw ScenarioError(error.what());
+  }
+}
+
 }  // namespace
 
 std::vector<RecordedObject> parse_recorded_objects(const std::string& text, const std::string& name) {
@@ -68,7 +79,7 @@ std::vector<RecordedObject> parse_recorded_objects(const std::string& text, cons
 }
 
 EvaluationRecording::EvaluationRecording(const fs::path& folder, const CalibrationOptions& options) {
-  bad_input_if_refused([&] {
+  bad_input_where_refused([&] {
     sequence_ = euroc_sequence(folder);
     folder_ = *euroc_folder(folder);
     camera_ = read_calibrated_rig(folder, options);
@@ -90,7 +101,7 @@ double EvaluationRecording::duration_s() const {
 EvaluationFrame EvaluationRecording::frame(std::size_t index) {
   const StereoFiles& files = sequence_.pairs[index];
   EvaluationFrame frame;
-  bad_input_if_refused([&] {
+  bad_input_where_refused([&] {
     frame.pair = {files.t_ns, read_gray_image(files.left), read_gray_image(files.right)};
     const fs::path name = files.left.filename();
     if (has_depth_) frame.truth.depth_mm = read_16_bit_image(folder_ / "depth0/data" / name, rig());

@@ -36,13 +36,10 @@ std::string value_text(const ConfigNode& value) {
   return fmt::format("[{}]", fmt::join(parts, ", "));
 }
 
-void add_settings(const ConfigNode* set, std::vector<std::string>& arguments) {
+void add_settings(const ConfigNode* set, std::vector<std::string>& settings) {
   if (set == nullptr) return;
   if (set->kind != ConfigNode::Kind::map) refuse(*set, "set", "a group {key: value, ...}");
-  for (const ConfigNode& node : set->children) {
-    arguments.push_back("--set");
-    arguments.push_back(node.key + "=" + value_text(node));
-  }
+  for (const ConfigNode& node : set->children) settings.push_back(node.key + "=" + value_text(node));
 }
 
 std::string word(const ConfigNode& entry, const char* key, const char* expected) {
@@ -74,22 +71,25 @@ std::vector<SuiteRecording> recordings_of(const ConfigNode& entry, const ConfigN
     refuse(entry, "recordings.name", "a name of letters, digits and . _ -");
   const std::string scenario = word(entry, "scenario", "a scenario");
   const fs::path beside = folder / scenario;
-  std::vector<std::string> common{(fs::is_regular_file(beside) ? beside : find_scenario(scenario)).string()};
+  SuiteRecording recording;
+  recording.scenario = fs::is_regular_file(beside) ? beside : find_scenario(scenario);
   if (child(entry, "path") != nullptr) {
     const fs::path path = folder / word(entry, "path", "a file of poses");
     if (!fs::is_regular_file(path))
       refuse(*child(entry, "path"), "recordings.path", "a file of poses, found none at " + path.string());
-    common.insert(common.end(), {"--path", path.string()});
+    recording.arguments.insert(recording.arguments.end(), {"--path", path.string()});
   }
-  if (child(entry, "walk_mps") != nullptr) common.push_back("--walk=" + word(entry, "walk_mps", "a speed"));
+  if (child(entry, "walk_mps") != nullptr)
+    recording.arguments.push_back("--walk=" + word(entry, "walk_mps", "a speed"));
   if (child(entry, "height_m") != nullptr)
-    common.insert(common.end(), {"--height", word(entry, "height_m", "a height")});
-  add_settings(set_of_all, common);
-  add_settings(child(entry, "set"), common);
+    recording.arguments.insert(recording.arguments.end(), {"--height", word(entry, "height_m", "a height")});
+  add_settings(set_of_all, recording.settings);
+  add_settings(child(entry, "set"), recording.settings);
   std::vector<SuiteRecording> recordings;
   for (const std::uint64_t seed : seeds_in(entry)) {
-    recordings.push_back({fmt::format("{}-{}", name, seed), common});
-    recordings.back().arguments.insert(recordings.back().arguments.end(), {"--seed", std::to_string(seed)});
+    recordings.push_back(recording);
+    recordings.back().name = fmt::format("{}-{}", name, seed);
+    recordings.back().settings.push_back(fmt::format("seed={}", seed));
   }
   return recordings;
 }

@@ -9,10 +9,12 @@
 
 namespace understory {
 
-/// A recording that a suite asks for: the arguments of `understory record`, but for --out.
+/// A recording that a suite asks for, in the words of `understory record`.
 struct SuiteRecording {
   std::string name;  ///< of its folder: the entry's name and the seed, "level-7"
-  std::vector<std::string> arguments;
+  std::filesystem::path scenario;
+  std::vector<std::string> settings;   ///< of --set, the seed among them
+  std::vector<std::string> arguments;  ///< further ones: --path, --walk, --height
 };
 
 /// What `understory evaluate FILE` records before it evaluates.

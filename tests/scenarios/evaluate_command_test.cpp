@@ -17,7 +17,7 @@ using understory::support::TemporaryFolder;
 using understory::support::understory;
 
 const char* suite = R"(
-set: {cameras.rate_hz: 20, time_limit_s: 3}
+set: {cameras.rate_hz: 20, time_limit_s: 1.5}
 recordings:
   - {name: short, scenario: forest, seeds: 1007..1008, walk_mps: 5, height_m: 3, set: {world.bark_contrast: 0.5}}
 )";
@@ -42,7 +42,7 @@ TEST(EvaluateCommand, RecordsASuiteAndJudgesIt) {
     EXPECT_TRUE(fs::is_regular_file(out / name)) << name;
   const nlohmann::json all = figures(out)["all"];
   EXPECT_EQ(all["recordings"], 2);
-  EXPECT_EQ(all["frames"], 120);  // two walks of 3 s
+  EXPECT_EQ(all["frames"], 60);  // two walks of 1.5 s
   for (const auto& algorithm : all["algorithms"])
     if (algorithm["name"] == "true depth") {
       EXPECT_EQ(algorithm["precision"]["one pixel"]["share"], 1);
@@ -61,7 +61,7 @@ TEST(EvaluateCommand, RecordsASuiteAndJudgesIt) {
                  "perception.pushbroom.edge: expected a known key");
   fs::remove(out / "recordings/short-1008/mav0/depth0/data" /
              fs::directory_iterator(out / "recordings/short-1008/mav0/depth0/data")->path().filename());
-  expect_refusal("evaluate " + folders + " --out " + again.string(), "expected a 16-bit gray image");
+  expect_refusal("evaluate " + folders + " --out " + again.string(), "expected a readable file");
 }
 
 TEST(EvaluateCommand, WrongInputIsRefusedInOneLine) {
@@ -84,7 +84,7 @@ TEST(EvaluateCommand, WrongInputIsRefusedInOneLine) {
       "recordings:\n  - {name: a, scenario: forest, seeds: 1}\n  - {name: a, scenario: dense, seeds: 1}\n",
       "a-1 is given twice");
   refuses("recordings:\n  - {name: a, scenario: forest, seeds: 1, set: {rig: none}}\n",
-          "a-1 could not be recorded");
+          "a-1: ");
   EXPECT_FALSE(fs::exists(folder.path() / "out/summary.md"));
 }
 

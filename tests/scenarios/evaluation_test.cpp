@@ -50,7 +50,7 @@ TEST(Evaluation, APlaneAtTheDetectionDepthHasPrecisionOne) {
     for (const PushbroomConfig& rule : {paper_rule(), robust_rule()}) {
       PushbroomStereo detector(plane.rig, rule);
       const auto& hits = detector.detect(plane.frame.pair);
-      ASSERT_GT(hits.size(), 300u);
+      ASSERT_GT(hits.size(), 200u);  // the rest is saturated or plain
       VisionTally result;
       tally(plane.frame, plane.grid, plane.rig, kinds, hits, result);
       for (const Share& share : result.precision) {
