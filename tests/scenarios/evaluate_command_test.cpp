@@ -17,7 +17,7 @@ using understory::support::TemporaryFolder;
 using understory::support::understory;
 
 const char* suite = R"(
-set: {cameras.rate_hz: 20, time_limit_s: 1.5}
+set: {cameras.rate_hz: 10, time_limit_s: 3}
 recordings:
   - {name: short, scenario: forest, seeds: 1007..1008, walk_mps: 5, height_m: 3, set: {world.bark_contrast: 0.5}}
 )";
@@ -42,7 +42,7 @@ TEST(EvaluateCommand, RecordsASuiteAndJudgesIt) {
     EXPECT_TRUE(fs::is_regular_file(out / name)) << name;
   const nlohmann::json all = figures(out)["all"];
   EXPECT_EQ(all["recordings"], 2);
-  EXPECT_EQ(all["frames"], 60);  // two walks of 1.5 s
+  EXPECT_EQ(all["frames"], 60);  // two walks of 3 s
   for (const auto& algorithm : all["algorithms"])
     if (algorithm["name"] == "true depth") {
       EXPECT_EQ(algorithm["precision"]["one pixel"]["share"], 1);
