@@ -6,7 +6,7 @@
 namespace understory {
 namespace {
 
-constexpr std::int64_t costly_every = 8, cheap_every = 2;
+constexpr std::int64_t costly_every = 24, cheap_every = 4;
 
 }  // namespace
 

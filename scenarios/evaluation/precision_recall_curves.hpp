@@ -8,7 +8,7 @@
 namespace understory {
 
 /// Every algorithm at several thresholds over the same frames: score limit and uniqueness of the pushbroom,
-/// uniqueness of StereoBM and StereoSGBM. The costly ones take every eighth frame.
+/// uniqueness of StereoBM and StereoSGBM. The pushbroom takes every fourth frame, the others every 24th.
 class CurveSweeps {
  public:
   CurveSweeps(const StereoRig& rig, const DetectionGrid& grid, const EvaluationSettings& settings);
