@@ -15,7 +15,7 @@ std::vector<ExpectedBlock> blocks_between(const TrueImages& truth, const Detecti
     for (int row = 0; row < grid.rows; ++row)
       for (int column = grid.first_column(depth); column < grid.columns; ++column) {
         const BlockContent content =
-            content_between(truth, column * truth_block_px, row * truth_block_px, interval, true);
+            shared_between(truth, column * truth_block_px, row * truth_block_px, interval);
         if (content.holds())
           blocks.push_back({row * grid.columns + column, depth, content.object, content.mean_depth_m});
       }

@@ -35,7 +35,7 @@ struct DetectionGrid {
   std::size_t depth_of(const StereoHit& hit) const;
 };
 
-/// A block that holds an obstacle at a depth looked at.
+/// A block that holds an obstacle at a depth looked at, where both eyes see it.
 struct ExpectedBlock {
   int block = 0;  ///< row * columns + column
   std::size_t depth = 0;

@@ -104,7 +104,10 @@ EvaluationFrame EvaluationRecording::frame(std::size_t index) {
   bad_input_where_refused([&] {
     frame.pair = {files.t_ns, read_gray_image(files.left), read_gray_image(files.right)};
     const fs::path name = files.left.filename();
-    if (has_depth_) frame.truth.depth_mm = read_16_bit_image(folder_ / "depth0/data" / name, rig());
+    if (has_depth_) {
+      frame.truth.depth_mm = read_16_bit_image(folder_ / "depth0/data" / name, rig());
+      frame.truth.shared_depth_mm = shared_depth(frame.truth.depth_mm, rig());
+    }
     if (has_objects()) frame.truth.objects = read_16_bit_image(folder_ / "objects0/data" / name, rig());
     return 0;
   });

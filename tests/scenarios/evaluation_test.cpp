@@ -26,8 +26,11 @@ const std::map<int, std::string> kinds{{1, "ground"}, {trunk, "trunk"}};
 
 /// All of the picture is one surface square to the axis.
 TrueImages plane_truth(const StereoRig& rig, double depth_m, int object = trunk) {
-  return {cv::Mat(rig.height_px, rig.width_px, CV_16UC1, cv::Scalar(std::round(1000 * depth_m))),
-          cv::Mat(rig.height_px, rig.width_px, CV_16UC1, cv::Scalar(object))};
+  TrueImages truth{cv::Mat(rig.height_px, rig.width_px, CV_16UC1, cv::Scalar(std::round(1000 * depth_m))),
+                   cv::Mat(rig.height_px, rig.width_px, CV_16UC1, cv::Scalar(object)),
+                   {}};
+  truth.shared_depth_mm = shared_depth(truth.depth_mm, rig);
+  return truth;
 }
 
 struct Plane {
@@ -135,10 +138,12 @@ TEST(Evaluation, ARandomDetectorScoresWhatGeometryPredicts) {
   // A trunk of 12 of the columns that can match, from top to bottom; elsewhere the sky.
   EvaluationFrame frame;
   frame.truth = {cv::Mat::zeros(rig.height_px, rig.width_px, CV_16UC1),
-                 cv::Mat::zeros(rig.height_px, rig.width_px, CV_16UC1)};
+                 cv::Mat::zeros(rig.height_px, rig.width_px, CV_16UC1),
+                 {}};
   const cv::Rect place(30 * truth_block_px, 0, 12 * truth_block_px, rig.height_px);
   frame.truth.depth_mm(place).setTo(std::round(1000 * grid.depths[0].depth_m));
   frame.truth.objects(place).setTo(trunk);
+  frame.truth.shared_depth_mm = shared_depth(frame.truth.depth_mm, rig);
   RandomDetector detector(rig, grid, 5);
   constexpr int count = 40, frames = 2000;
   detector.set_count(count);
@@ -183,6 +188,24 @@ TEST(Evaluation, AFifthOfABlockMakesItTrue) {
   EXPECT_EQ(lies_on(hit, truth, kinds), "ground");
 }
 
+TEST(Evaluation, WhatTheRightEyeDoesNotSeeIsNotDue) {
+  // A trunk 40 px wide at 10 m; another 5 m away stands right of it in the left image and covers part of it
+  // in the right one: as many columns as the disparities differ by, less the gap between the two.
+  const StereoRig rig = support::house_rig("long.yaml");
+  cv::Mat depth_mm = cv::Mat::zeros(rig.height_px, rig.width_px, CV_16UC1);
+  constexpr int from_px = 150, width_px = 40, gap_px = 3;
+  depth_mm(cv::Rect(from_px, 0, width_px, rig.height_px)).setTo(10'000);
+  depth_mm(cv::Rect(from_px + width_px + gap_px, 0, 60, rig.height_px)).setTo(5'000);
+  const cv::Mat shared = shared_depth(depth_mm, rig);
+  const double covered_px = rig.disparity_px(5) - rig.disparity_px(10) - gap_px;
+  int kept_px = 0;
+  for (int u = from_px; u < from_px + width_px; ++u) kept_px += shared.at<std::uint16_t>(100, u) != 0;
+  EXPECT_NEAR(kept_px, width_px - covered_px, 1);
+  EXPECT_NE(shared.at<std::uint16_t>(100, from_px), 0);                      // its left side is seen
+  EXPECT_EQ(shared.at<std::uint16_t>(100, from_px + width_px - 1), 0);       // its right one is not
+  EXPECT_NE(shared.at<std::uint16_t>(100, from_px + width_px + gap_px), 0);  // what covers it is
+}
+
 TEST(Evaluation, ObstaclesAreFollowedUntilTheyArePassed) {
   const StereoRig rig = support::house_rig("long.yaml");
   const DetectionGrid grid(rig, {}, 205);
@@ -201,6 +224,7 @@ TEST(Evaluation, ObstaclesAreFollowedUntilTheyArePassed) {
       const cv::Rect block(200, 100, 5, 5);
       frame.truth.depth_mm(block).setTo(1000 * (20 - 0.1 * i));
       frame.truth.objects(block).setTo(trunk);
+      frame.truth.shared_depth_mm = frame.truth.depth_mm;
       hits.push_back(hit_on_block(rig, grid.depths[0], 200, 100));
     }
     sightings.add(frame, grid, expected_blocks(frame.truth, grid), hits);
