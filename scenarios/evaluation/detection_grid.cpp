@@ -27,7 +27,10 @@ std::vector<ExpectedBlock> blocks_between(const TrueImages& truth, const Detecti
 
 LookedAtDepth looked_at_depth(const StereoRig& rig, double asked_m) {
   const int px = static_cast<int>(std::lround(rig.disparity_px(asked_m)));
-  return {px, rig.depth_m(px), {rig.depth_m(px + 1), rig.depth_m(px - 1)}};
+  return {px,
+          rig.depth_m(px),
+          {rig.depth_m(px + 1), rig.depth_m(px - 1)},
+          {rig.depth_m(px + 0.5), rig.depth_m(px - 0.5)}};
 }
 
 DetectionGrid::DetectionGrid(const StereoRig& rig, std::vector<double> depths_m, int last_row_px)

@@ -13,6 +13,7 @@ struct LookedAtDepth {
   int disparity_px = 0;
   double depth_m = 0;
   DepthInterval one_pixel;
+  DepthInterval half_pixel;  ///< whose disparities round to this one: what a look at it can match
 };
 
 /// As PushbroomStereo looks. Depths whose disparity lies within a pixel of infinity assert there.

@@ -23,6 +23,8 @@ void ObstacleSightings::add(const EvaluationFrame& frame, const DetectionGrid& g
   if (!frame.T_world_camera) return;
   path_world_.push_back(*frame.T_world_camera * Eigen::Vector3d(0.5 * baseline_m_, 0, 0));
   for (const ExpectedBlock& block : expected) {
+    const DepthInterval& matched = grid.depths[block.depth].half_pixel;
+    if (block.mean_depth_m < matched.near_m || block.mean_depth_m > matched.far_m) continue;
     Gathered& gathered = gathered_[block.object];
     if (gathered.sighting.blocks_in_view++ == 0) gathered.seen_at = path_world_.size() - 1;
   }

@@ -14,10 +14,10 @@ struct ObstacleSighting {
   int object = 0;
   double miss_m = 0;  ///< least distance from the path of the rig's centre to the surface
   bool on_the_path =
-      false;  ///< straight on, from where it came into view at the depth, a wing would touch it
-  int blocks_in_view =
-      0;         ///< of all frames: blocks of 5x5 px that showed it to both eyes at a depth looked at
-  int hits = 0;  ///< right ones, within one pixel, before it was passed
+      false;               ///< straight on, from where it came into view at the depth, a wing would touch it
+  int blocks_in_view = 0;  ///< of all frames: blocks of 5x5 px that showed it to both eyes within half a
+                           ///< pixel of a depth looked at
+  int hits = 0;            ///< right ones, within one pixel, before it was passed
   double first_hit_m = 0;  ///< its depth at the first of them; 0: never
   double third_hit_m = 0;  ///< and at the third, when it counts as found (the original's avoidance: 3)
   bool hidden() const {
