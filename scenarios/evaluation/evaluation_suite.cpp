@@ -2,31 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <set>
 #include <string_view>
 
-#include "scenarios/config_tree.hpp"
+#include "scenarios/config_keys.hpp"
 
 namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
-
-[[noreturn]] void refuse(const ConfigNode& node, const std::string& key, const std::string& expected) {
-  throw ScenarioError(fmt::format("{}: {}: expected {}", node.origin, key, expected));
-}
-
-const ConfigNode* child(const ConfigNode& map, std::string_view key) {
-  const auto found = std::ranges::find(map.children, key, &ConfigNode::key);
-  return found == map.children.end() ? nullptr : &*found;
-}
-
-void require_known(const ConfigNode& map, const std::vector<std::string>& known, const std::string& within) {
-  for (const ConfigNode& node : map.children)
-    if (std::ranges::find(known, node.key) == known.end())
-      refuse(node, within + node.key, fmt::format("one of {}", fmt::join(known, ", ")));
-}
 
 /// YAML in one line again, as --set takes it.
 std::string value_text(const ConfigNode& value) {
@@ -38,53 +22,52 @@ std::string value_text(const ConfigNode& value) {
 
 void add_settings(const ConfigNode* set, std::vector<std::string>& settings) {
   if (set == nullptr) return;
-  if (set->kind != ConfigNode::Kind::map) refuse(*set, "set", "a group {key: value, ...}");
+  if (set->kind != ConfigNode::Kind::map) refuse_key(*set, "set", "a group {key: value, ...}");
   for (const ConfigNode& node : set->children) settings.push_back(node.key + "=" + value_text(node));
 }
 
 std::string word(const ConfigNode& entry, const char* key, const char* expected) {
-  const ConfigNode* node = child(entry, key);
+  const ConfigNode* node = find_child(entry, key);
   if (node == nullptr || node->kind != ConfigNode::Kind::scalar || node->text.empty())
-    refuse(node == nullptr ? entry : *node, std::string("recordings.") + key, expected);
+    refuse_key(node == nullptr ? entry : *node, std::string("recordings.") + key, expected);
   return node->text;
 }
 
 std::vector<std::uint64_t> seeds_in(const ConfigNode& entry) {
-  const ConfigNode* node = child(entry, "seeds");
-  if (node == nullptr) refuse(entry, "recordings.seeds", "first..last, or a list of seeds");
-  std::vector<std::string> words;
-  if (node->kind == ConfigNode::Kind::scalar) words.push_back(node->text);
-  for (const ConfigNode& part : node->children) words.push_back(part.text);
-  if (words.empty()) refuse(*node, "recordings.seeds", "first..last, or a list of seeds");
-  return seeds_of(words, node->origin + ": recordings.seeds");
+  constexpr const char* expected = "first..last, or a list of seeds";
+  const ConfigNode* node = find_child(entry, "seeds");
+  if (node == nullptr) refuse_key(entry, "recordings.seeds", expected);
+  return seeds_of(words_of(*node, "recordings.seeds", expected), node->origin + ": recordings.seeds");
 }
 
 /// The entry's recordings: one for each seed.
 std::vector<SuiteRecording> recordings_of(const ConfigNode& entry, const ConfigNode* set_of_all,
                                           const fs::path& folder, const FindScenario& find_scenario) {
   if (entry.kind != ConfigNode::Kind::map)
-    refuse(entry, "recordings", "{name: ..., scenario: ..., seeds: ...}");
-  require_known(entry, {"name", "scenario", "seeds", "path", "walk_mps", "height_m", "set"}, "recordings.");
+    refuse_key(entry, "recordings", "{name: ..., scenario: ..., seeds: ...}");
+  require_known_keys(entry, {"name", "scenario", "seeds", "path", "walk_mps", "height_m", "set"},
+                     "recordings.");
   const std::string name = word(entry, "name", "a name of letters, digits and . _ -");
   if (name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-") !=
       std::string::npos)
-    refuse(entry, "recordings.name", "a name of letters, digits and . _ -");
+    refuse_key(entry, "recordings.name", "a name of letters, digits and . _ -");
   const std::string scenario = word(entry, "scenario", "a scenario");
   const fs::path beside = folder / scenario;
   SuiteRecording recording;
   recording.scenario = fs::is_regular_file(beside) ? beside : find_scenario(scenario);
-  if (child(entry, "path") != nullptr) {
+  if (find_child(entry, "path") != nullptr) {
     const fs::path path = folder / word(entry, "path", "a file of poses");
     if (!fs::is_regular_file(path))
-      refuse(*child(entry, "path"), "recordings.path", "a file of poses, found none at " + path.string());
+      refuse_key(*find_child(entry, "path"), "recordings.path",
+                 "a file of poses, found none at " + path.string());
     recording.arguments.insert(recording.arguments.end(), {"--path", path.string()});
   }
-  if (child(entry, "walk_mps") != nullptr)
+  if (find_child(entry, "walk_mps") != nullptr)
     recording.arguments.push_back("--walk=" + word(entry, "walk_mps", "a speed"));
-  if (child(entry, "height_m") != nullptr)
+  if (find_child(entry, "height_m") != nullptr)
     recording.arguments.insert(recording.arguments.end(), {"--height", word(entry, "height_m", "a height")});
   add_settings(set_of_all, recording.settings);
-  add_settings(child(entry, "set"), recording.settings);
+  add_settings(find_child(entry, "set"), recording.settings);
   std::vector<SuiteRecording> recordings;
   for (const std::uint64_t seed : seeds_in(entry)) {
     recordings.push_back(recording);
@@ -98,19 +81,20 @@ std::vector<SuiteRecording> recordings_of(const ConfigNode& entry, const ConfigN
 
 EvaluationSuite load_evaluation_suite(const fs::path& file, const FindScenario& find_scenario) {
   const ConfigNode top = parse_config_file(file);
-  require_known(top, {"recordings", "set"}, "");
-  const ConfigNode* list = child(top, "recordings");
+  require_known_keys(top, {"recordings", "set"}, "");
+  const ConfigNode* list = find_child(top, "recordings");
   if (list == nullptr || list->kind != ConfigNode::Kind::list || list->children.empty())
-    refuse(list == nullptr ? top : *list, "recordings",
-           "a list [{name: ..., scenario: ..., seeds: ...}, ...]");
+    refuse_key(list == nullptr ? top : *list, "recordings",
+               "a list [{name: ..., scenario: ..., seeds: ...}, ...]");
   EvaluationSuite suite;
   suite.name = file.stem().string();
   std::set<std::string> names;
   for (const ConfigNode& entry : list->children)
     for (SuiteRecording& recording :
-         recordings_of(entry, child(top, "set"), file.parent_path(), find_scenario)) {
+         recordings_of(entry, find_child(top, "set"), file.parent_path(), find_scenario)) {
       if (!names.insert(recording.name).second)
-        refuse(entry, "recordings", fmt::format("each recording once, {} is given twice", recording.name));
+        refuse_key(entry, "recordings",
+                   fmt::format("each recording once, {} is given twice", recording.name));
       suite.recordings.push_back(std::move(recording));
     }
   return suite;

@@ -74,7 +74,7 @@ TEST(EvaluateCommand, WrongInputIsRefusedInOneLine) {
     expect_refusal("evaluate " + file.string() + out, part);
   };
   refuses("recordings: []\n", "recordings: expected a list");
-  refuses("recording: 1\n", "recording: expected one of recordings, set");
+  refuses("recording: 1\n", "recording: expected a known key (did you mean recordings?)");
   refuses("recordings:\n  - {name: a, scenario: forest}\n", "recordings.seeds: expected first..last");
   refuses("recordings:\n  - {name: a, scenario: forest, seeds: 3..1}\n", "expected first <= last");
   refuses("recordings:\n  - {name: a/b, scenario: forest, seeds: 1}\n", "recordings.name: expected a name");
@@ -83,8 +83,7 @@ TEST(EvaluateCommand, WrongInputIsRefusedInOneLine) {
   refuses(
       "recordings:\n  - {name: a, scenario: forest, seeds: 1}\n  - {name: a, scenario: dense, seeds: 1}\n",
       "a-1 is given twice");
-  refuses("recordings:\n  - {name: a, scenario: forest, seeds: 1, set: {rig: none}}\n",
-          "a-1: ");
+  refuses("recordings:\n  - {name: a, scenario: forest, seeds: 1, set: {rig: none}}\n", "a-1: ");
   EXPECT_FALSE(fs::exists(folder.path() / "out/summary.md"));
 }
 
