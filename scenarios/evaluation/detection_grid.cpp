@@ -59,6 +59,15 @@ std::size_t DetectionGrid::depth_of(const StereoHit& hit) const {
   return static_cast<std::size_t>(nearest - depths.begin());
 }
 
+std::vector<bool> DetectionGrid::places_hit(const std::vector<StereoHit>& hits) const {
+  std::vector<bool> hit_at(place(depths.size(), 0));
+  for (const StereoHit& hit : hits) {
+    const int block = block_of(hit);
+    if (block >= 0) hit_at[place(depth_of(hit), block)] = true;
+  }
+  return hit_at;
+}
+
 std::vector<ExpectedBlock> expected_blocks(const TrueImages& truth, const DetectionGrid& grid) {
   return blocks_between(truth, grid, [](const LookedAtDepth& depth) { return depth.one_pixel; });
 }

@@ -34,6 +34,12 @@ struct DetectionGrid {
   int block_of(const StereoHit& hit) const;
   /// The depth looked at that is nearest to the hit's.
   std::size_t depth_of(const StereoHit& hit) const;
+  /// A block's place among the blocks of all depths.
+  std::size_t place(std::size_t depth, int block) const {
+    return depth * static_cast<std::size_t>(block_count()) + static_cast<std::size_t>(block);
+  }
+  /// Of every place, whether one of the hits lies there.
+  std::vector<bool> places_hit(const std::vector<StereoHit>& hits) const;
 };
 
 /// A block that holds an obstacle at a depth looked at, where both eyes see it.

@@ -13,13 +13,9 @@ constexpr std::int64_t costly_every = 24, cheap_every = 4;
 CurveSweeps::CurveSweeps(const StereoRig& rig, const DetectionGrid& grid, const EvaluationSettings& settings)
     : grid_(grid) {
   add_rule(rig, algorithm_names[our_rule], settings.rule);
-  PushbroomConfig paper = paper_rule();
-  paper.depths_m = settings.rule.depths_m;
-  paper.last_row_px = settings.rule.last_row_px;
-  add_rule(rig, algorithm_names[the_papers_rule], paper);
+  add_rule(rig, algorithm_names[the_papers_rule], papers_rule_beside(settings.rule));
 
-  FullStereoCrop crop = one_pixel_crop(rig);
-  crop.last_row_px = settings.rule.last_row_px;
+  const FullStereoCrop crop = crop_beside(settings.rule, rig);
   Sweep& block =
       sweeps_.emplace_back(Sweep{algorithm_names[stereo_bm], "uniqueness_percent", costly_every, {}, {}});
   for (const int percent : {0, 5, 10, 18, 30, 50}) {

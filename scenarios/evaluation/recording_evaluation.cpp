@@ -45,13 +45,6 @@ std::string scene_of(const fs::path& folder) {
   return numbered ? name.substr(0, hyphen) : name;
 }
 
-PushbroomConfig paper_rule_on(const PushbroomConfig& rule) {
-  PushbroomConfig paper = paper_rule();
-  paper.depths_m = rule.depths_m;
-  paper.last_row_px = rule.last_row_px;
-  return paper;
-}
-
 PushbroomConfig with_invariance(PushbroomConfig rule, bool on) {
   rule.horizontal_invariance = on;
   return rule;
@@ -98,9 +91,8 @@ Evaluator::Evaluator(const fs::path& folder, const EvaluationSettings& settings)
   const StereoRig& rig = recording_.rig();
   check_depths(settings.rule, rig, "perception.depths_m", "perception.pushbroom");
   for (const RecordedObject& object : recording_.objects()) kinds_[object.number] = object.kind;
-  const PushbroomConfig paper = paper_rule_on(settings.rule);
-  FullStereoCrop crop = one_pixel_crop(rig);
-  crop.last_row_px = settings.rule.last_row_px;
+  const PushbroomConfig paper = papers_rule_beside(settings.rule);
+  const FullStereoCrop crop = crop_beside(settings.rule, rig);
   timed_[our_rule].detector = std::make_unique<PushbroomStereo>(rig, settings.rule);
   timed_[the_papers_rule].detector = std::make_unique<PushbroomStereo>(rig, paper);
   auto bm = std::make_unique<FullStereoDetector>(rig, settings.stereo_bm, crop);
@@ -169,17 +161,17 @@ void Evaluator::keep_if_bad(const EvaluationFrame& frame, std::size_t index) {
 
 void Evaluator::add(const EvaluationFrame& frame, std::size_t index) {
   look(frame);
-  std::vector<ExpectedBlock> expected;
+  DueBlocks due;
   if (recording_.has_depth()) {
-    expected = expected_blocks(frame.truth, grid_);
+    due = due_blocks(frame.truth, grid_);
     for (std::size_t i = 0; i < algorithm_count; ++i) {
-      tally(frame, grid_, recording_.rig(), kinds_, timed_[i].hits, result_.tallies[i]);
-      sightings_[i].add(frame, grid_, expected, timed_[i].hits);
+      tally(frame, grid_, recording_.rig(), kinds_, due, timed_[i].hits, result_.tallies[i]);
+      sightings_[i].add(frame, grid_, due[one_pixel], timed_[i].hits);
     }
     keep_if_bad(frame, index);
-    sweeps_->add(frame, expected);
+    sweeps_->add(frame, due[one_pixel]);
   }
-  add_invariance(frame, expected);
+  add_invariance(frame, due[one_pixel]);
   for (std::size_t i = 0; i < published_.size(); ++i) {
     const std::vector<StereoHit>& hits = timed_[published_algorithms[i]].hits;
     published_[i].remember(frame, hits);
@@ -204,6 +196,19 @@ RecordingEvaluation Evaluator::finish() {
 }
 
 }  // namespace
+
+PushbroomConfig papers_rule_beside(const PushbroomConfig& rule) {
+  PushbroomConfig paper = paper_rule();
+  paper.depths_m = rule.depths_m;
+  paper.last_row_px = rule.last_row_px;
+  return paper;
+}
+
+FullStereoCrop crop_beside(const PushbroomConfig& rule, const StereoRig& rig) {
+  FullStereoCrop crop = one_pixel_crop(rig);
+  crop.last_row_px = rule.last_row_px;
+  return crop;
+}
 
 RecordingEvaluation evaluate_recording(const fs::path& folder, const EvaluationSettings& settings,
                                        const std::function<void()>& on_frame) {

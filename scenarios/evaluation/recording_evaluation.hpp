@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "perception/full_stereo.hpp"
+#include "perception/full_stereo_detector.hpp"
 #include "perception/local_map.hpp"
 #include "perception/pushbroom_stereo.hpp"
 #include "scenarios/evaluation/evaluation_recording.hpp"
@@ -86,6 +87,10 @@ struct RecordingEvaluation {
   std::vector<WorstFrame> worst;  ///< the first is the worst
 };
 inline constexpr std::array<AlgorithmIndex, 3> published_algorithms{our_rule, the_papers_rule, random_hits};
+
+/// The paper's rule, and full stereo's crop, looking where `rule` does.
+PushbroomConfig papers_rule_beside(const PushbroomConfig& rule);
+FullStereoCrop crop_beside(const PushbroomConfig& rule, const StereoRig& rig);
 
 /// Throws ScenarioError as EvaluationRecording does, or where the rule does not fit the rig. `on_frame` is
 /// called after each.

@@ -32,16 +32,9 @@ std::string distance_name(const ExpectedBlock& block, const DetectionGrid& grid,
                      rig.depth_m(depth.disparity_px - 0.5 * (quarter + 1)));
 }
 
-/// Whether every block has a hit. `depth`: only hits of that depth looked at; otherwise of any.
-std::vector<bool> blocks_hit(const std::vector<StereoHit>& hits, const DetectionGrid& grid) {
-  std::vector<bool> hit_at(static_cast<std::size_t>(grid.block_count()) * grid.depths.size());
-  for (const StereoHit& hit : hits) {
-    const int block = grid.block_of(hit);
-    if (block >= 0)
-      hit_at[grid.depth_of(hit) * static_cast<std::size_t>(grid.block_count()) +
-             static_cast<std::size_t>(block)] = true;
-  }
-  return hit_at;
+std::string kind_in(const std::map<int, std::string>& kinds, int object) {
+  const auto found = kinds.find(object);
+  return found == kinds.end() ? "surface" : found->second;
 }
 
 struct FrameTally {
@@ -49,12 +42,9 @@ struct FrameTally {
   const DetectionGrid& grid;
   const StereoRig& rig;
   const std::map<int, std::string>& kinds;
+  const DueBlocks& due;
   VisionTally& to;
 
-  std::string kind_of(int object) const {
-    const auto found = kinds.find(object);
-    return found == kinds.end() ? "surface" : found->second;
-  }
   /// The parts that a whole frame belongs to.
   std::array<TallyPart*, 3> frame_parts() const {
     static const std::vector<double> grays{48, 80, 112, 144, 176}, speeds_mps{2, 8, 9, 10, 11, 12, 13},
@@ -86,17 +76,15 @@ struct FrameTally {
 
   void add_expected(const std::vector<bool>& hit_at, const std::array<TallyPart*, 3>& parts) {
     const auto is_hit = [&](const ExpectedBlock& block) -> bool {
-      return hit_at[block.depth * static_cast<std::size_t>(grid.block_count()) +
-                    static_cast<std::size_t>(block.block)];
+      return hit_at[grid.place(block.depth, block.block)];
     };
     for (std::size_t i = 0; i < tolerances_m.size(); ++i)
-      for (const ExpectedBlock& block : expected_blocks(frame.truth, grid, tolerances_m[i]))
-        to.recall[i].count(is_hit(block));
-    for (const ExpectedBlock& block : expected_blocks(frame.truth, grid)) {
+      for (const ExpectedBlock& block : due[i]) to.recall[i].count(is_hit(block));
+    for (const ExpectedBlock& block : due[one_pixel]) {
       const bool found = is_hit(block);
       to.recall[one_pixel].count(found);
       for (TallyPart* part : parts) part->recall.count(found);
-      to.parts["kind"][kind_of(block.object)].recall.count(found);
+      to.parts["kind"][kind_in(kinds, block.object)].recall.count(found);
       to.parts["distance"][distance_name(block, grid, rig)].recall.count(found);
       to.parts["lateral offset"][lateral_name(block.block, block.mean_depth_m)].recall.count(found);
       ++to.expected_at[static_cast<std::size_t>(block.block)];
@@ -105,7 +93,6 @@ struct FrameTally {
 
   /// Hits on obstacles at every depth: what the detector answers to.
   void add_response(const std::vector<bool>& hit_at) {
-    const auto blocks = static_cast<std::size_t>(grid.block_count());
     for (int row = 0; row < grid.rows; ++row)
       for (int column = grid.first_column(0); column < grid.columns; ++column) {
         const BlockContent content =
@@ -115,7 +102,7 @@ struct FrameTally {
         if (bin >= to.response.size()) continue;
         bool found = false;
         for (std::size_t depth = 0; depth < grid.depths.size(); ++depth)
-          found = found || hit_at[depth * blocks + static_cast<std::size_t>(row * grid.columns + column)];
+          found = found || hit_at[grid.place(depth, row * grid.columns + column)];
         to.response[bin].count(found);
       }
   }
@@ -129,6 +116,14 @@ void make_room(const DetectionGrid& grid, VisionTally& tally) {
 }
 
 }  // namespace
+
+DueBlocks due_blocks(const TrueImages& truth, const DetectionGrid& grid) {
+  DueBlocks due;
+  for (std::size_t i = 0; i < tolerances_m.size(); ++i)
+    due[i] = expected_blocks(truth, grid, tolerances_m[i]);
+  due[one_pixel] = expected_blocks(truth, grid);
+  return due;
+}
 
 std::array<bool, tolerance_count> judge(const StereoHit& hit, const TrueImages& truth,
                                         const DetectionGrid& grid) {
@@ -145,19 +140,15 @@ std::array<bool, tolerance_count> judge(const StereoHit& hit, const TrueImages& 
 
 std::string lies_on(const StereoHit& hit, const TrueImages& truth, const std::map<int, std::string>& kinds) {
   constexpr double jump_m = 1.0;
-  const auto kind_of = [&](int object) {
-    const auto found = kinds.find(object);
-    return found == kinds.end() ? std::string("surface") : found->second;
-  };
   const BlockContent all = content_between(truth, hit.column_px, hit.row_px, any_depth, false);
   if (!all.holds()) return "sky";
   const BlockContent obstacle = content_between(truth, hit.column_px, hit.row_px, any_depth, true);
   const BlockContent beyond =
       content_between(truth, hit.column_px, hit.row_px, {obstacle.mean_depth_m + jump_m, 65.5}, false);
   const bool sky_too = all.pixels <= truth_block_px * truth_block_px - least_true_pixels;
-  if (obstacle.holds() && (beyond.holds() || sky_too)) return "edge of " + kind_of(obstacle.object);
-  if (!obstacle.holds()) return kind_of(all.object);
-  return kind_of(obstacle.object) +
+  if (obstacle.holds() && (beyond.holds() || sky_too)) return "edge of " + kind_in(kinds, obstacle.object);
+  if (!obstacle.holds()) return kind_in(kinds, all.object);
+  return kind_in(kinds, obstacle.object) +
          (obstacle.mean_depth_m < hit.position_camera.z() ? ", nearer" : ", farther");
 }
 
@@ -197,12 +188,13 @@ double VisionTally::false_per_second() const {
 }
 
 void tally(const EvaluationFrame& frame, const DetectionGrid& grid, const StereoRig& rig,
-           const std::map<int, std::string>& kinds, const std::vector<StereoHit>& hits, VisionTally& to) {
+           const std::map<int, std::string>& kinds, const DueBlocks& due, const std::vector<StereoHit>& hits,
+           VisionTally& to) {
   make_room(grid, to);
   ++to.frames;
-  FrameTally frame_tally{frame, grid, rig, kinds, to};
+  FrameTally frame_tally{frame, grid, rig, kinds, due, to};
   const auto parts = frame_tally.frame_parts();
-  const std::vector<bool> hit_at = blocks_hit(hits, grid);
+  const std::vector<bool> hit_at = grid.places_hit(hits);
   frame_tally.add_hits(hits, parts);
   frame_tally.add_expected(hit_at, parts);
   frame_tally.add_response(hit_at);

@@ -18,6 +18,10 @@ inline constexpr std::size_t tolerance_count = 4, one_pixel = 3;
 inline constexpr std::array<const char*, tolerance_count> tolerance_names{"0.25 m", "0.50 m", "1.00 m",
                                                                           "one pixel"};
 
+/// The expected blocks of one frame, at each tolerance: the same for every detector.
+using DueBlocks = std::array<std::vector<ExpectedBlock>, tolerance_count>;
+DueBlocks due_blocks(const TrueImages& truth, const DetectionGrid& grid);
+
 /// Whether the truth in a hit's block bears it out, at each tolerance. Ground counts: it is there.
 std::array<bool, tolerance_count> judge(const StereoHit& hit, const TrueImages& truth,
                                         const DetectionGrid& grid);
@@ -51,8 +55,9 @@ struct VisionTally {
   double false_per_second() const;
 };
 
-/// Adds one frame's hits.
+/// Adds one frame's hits. `due`: due_blocks of the frame.
 void tally(const EvaluationFrame& frame, const DetectionGrid& grid, const StereoRig& rig,
-           const std::map<int, std::string>& kinds, const std::vector<StereoHit>& hits, VisionTally& tally);
+           const std::map<int, std::string>& kinds, const DueBlocks& due, const std::vector<StereoHit>& hits,
+           VisionTally& tally);
 
 }  // namespace understory

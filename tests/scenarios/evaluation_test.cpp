@@ -55,7 +55,8 @@ TEST(Evaluation, APlaneAtTheDetectionDepthHasPrecisionOne) {
       const auto& hits = detector.detect(plane.frame.pair);
       ASSERT_GT(hits.size(), 200u);  // the rest is saturated or plain
       VisionTally result;
-      tally(plane.frame, plane.grid, plane.rig, kinds, hits, result);
+      tally(plane.frame, plane.grid, plane.rig, kinds, due_blocks(plane.frame.truth, plane.grid), hits,
+            result);
       for (const Share& share : result.precision) {
         EXPECT_EQ(share.of, static_cast<std::int64_t>(hits.size()));
         EXPECT_EQ(share.value(), 1);
@@ -73,7 +74,7 @@ TEST(Evaluation, WhatKnowsTheTruthIsRightAndMissesNothing) {
   Plane plane("long.yaml", 0.1);
   const auto hits = true_depth_hits(plane.frame.truth, plane.grid, plane.rig);
   VisionTally result;
-  tally(plane.frame, plane.grid, plane.rig, kinds, hits, result);
+  tally(plane.frame, plane.grid, plane.rig, kinds, due_blocks(plane.frame.truth, plane.grid), hits, result);
   EXPECT_EQ(result.precision[one_pixel].value(), 1);
   EXPECT_EQ(result.recall[one_pixel].value(), 1);
   EXPECT_EQ(result.f_score(), 1);
@@ -83,7 +84,7 @@ TEST(Evaluation, ADetectorMovedBySevenDecimetresLandsInTheRightBin) {
   Plane plane("long.yaml", 0.7);
   auto hits = true_depth_hits(plane_truth(plane.rig, plane.grid.depths[0].depth_m), plane.grid, plane.rig);
   VisionTally result;
-  tally(plane.frame, plane.grid, plane.rig, kinds, hits, result);
+  tally(plane.frame, plane.grid, plane.rig, kinds, due_blocks(plane.frame.truth, plane.grid), hits, result);
   EXPECT_EQ(result.precision[0].value(), 0);          // 0.25 m
   EXPECT_EQ(result.precision[1].value(), 0);          // 0.50 m
   EXPECT_EQ(result.precision[2].value(), 1);          // 1.00 m
@@ -148,7 +149,8 @@ TEST(Evaluation, ARandomDetectorScoresWhatGeometryPredicts) {
   constexpr int count = 40, frames = 2000;
   detector.set_count(count);
   VisionTally result;
-  for (int i = 0; i < frames; ++i) tally(frame, grid, rig, kinds, detector.detect(frame.pair), result);
+  const DueBlocks due = due_blocks(frame.truth, grid);
+  for (int i = 0; i < frames; ++i) tally(frame, grid, rig, kinds, due, detector.detect(frame.pair), result);
 
   const int columns = grid.columns - grid.first_column(0);
   const double share = 12.0 / columns;
