@@ -33,12 +33,19 @@ class ByteRemap {
     int column_px = 0, row_px = 0;
   };
 
+  void add_chunk(const std::int16_t* places, int first_px);
+
   int width_px_, height_px_;
+  // Two loads for every chunk, whether it needs them or not: a number that varies costs more in wrongly
+  // foreseen branches. What some chunks need beyond that is added row by row.
   std::vector<Load> loads_;
   std::vector<std::uint8_t> indices_;  ///< chunk_px for each load: where in it each output pixel lies
-  std::vector<std::int32_t> ends_;     ///< for each chunk, the number of loads up to its last
-  std::ptrdiff_t stride_ = 0;          ///< that offsets_ are for
-  std::vector<std::int32_t> offsets_;  ///< of each load in the source
+  std::vector<Load> more_;
+  std::vector<std::uint8_t> more_indices_;
+  std::vector<std::int32_t> more_columns_;            ///< of the output, where each one's chunk begins
+  std::vector<std::int32_t> more_ends_;               ///< for each row, how many there are up to its last
+  std::ptrdiff_t stride_ = 0;                         ///< that the offsets are for
+  std::vector<std::int32_t> offsets_, more_offsets_;  ///< of each load in the source
 };
 
 }  // namespace understory

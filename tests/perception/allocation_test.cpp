@@ -2,6 +2,7 @@
 // new.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <new>
 
@@ -10,7 +11,7 @@
 #include "tests/support/synthetic_stereo.hpp"
 
 namespace {
-long allocation_count = 0;
+std::atomic<long> allocation_count = 0;
 }
 
 void* operator new(std::size_t size) {
@@ -24,6 +25,30 @@ void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 namespace understory {
 namespace {
 
+/// Raw cameras that happen to see what rectified ones would, so that pairs of the rig serve as raw ones.
+StereoCalibration calibration_of(const StereoRig& rig) {
+  StereoCalibration calibration{rig.name, rig.width_px, rig.height_px, {}, {}, rig.T_body_camera};
+  const double f = rig.focal_px, v = rig.center_y_px;
+  for (const bool is_left : {true, false}) {
+    const double u = is_left ? rig.center_left_x_px : rig.center_right_x_px;
+    CameraCalibration& camera = is_left ? calibration.left : calibration.right;
+    camera.camera_matrix = {f, 0, u, 0, f, v, 0, 0, 1};
+    camera.distortion = {0, 0, 0, 0};
+    camera.rectification = cv::Matx33d::eye();
+    camera.projection = {f, 0, u, is_left ? 0 : -f * rig.baseline_m, 0, f, v, 0, 0, 0, 1, 0};
+  }
+  return calibration;
+}
+
+void expect_no_allocation(PushbroomStereo& detector, const StereoFrame (&frames)[3]) {
+  std::size_t hits = 0;
+  for (const StereoFrame& frame : frames) hits += detector.detect(frame).size();
+  EXPECT_GT(hits, 300u);
+  const long before = allocation_count;
+  for (const StereoFrame& frame : frames) detector.detect(frame);
+  EXPECT_EQ(allocation_count - before, 0);
+}
+
 TEST(Allocation, AFrameAllocatesNothingAfterTheFirst) {
   const StereoRig rig = support::house_rig("long.yaml");
   StereoFrame frames[3];
@@ -33,15 +58,13 @@ TEST(Allocation, AFrameAllocatesNothingAfterTheFirst) {
   PushbroomConfig dense = paper_rule(), several = robust_rule();
   dense.every_pixel = true;
   several.depths_m = {10.1, 8.0, 6.0, 5.0};
-  for (const PushbroomConfig& config : {paper_rule(), robust_rule(), dense, several}) {
-    PushbroomStereo detector(rig, config);
-    std::size_t hits = 0;
-    for (const StereoFrame& frame : frames) hits += detector.detect(frame).size();
-    EXPECT_GT(hits, 300u);
-    const long before = allocation_count;
-    for (const StereoFrame& frame : frames) detector.detect(frame);
-    EXPECT_EQ(allocation_count - before, 0);
-  }
+  for (PushbroomConfig config : {paper_rule(), robust_rule(), dense, several})
+    for (const int threads : {1, 2}) {
+      config.threads = threads;
+      PushbroomStereo rectified(rig, config);
+      PushbroomStereo raw(calibration_of(rig), rig.detection_depth_m, config);
+      for (PushbroomStereo* detector : {&rectified, &raw}) expect_no_allocation(*detector, frames);
+    }
 }
 
 }  // namespace

@@ -5,11 +5,11 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
-#include <hwy/targets.h>
 #include <random>
 
 #include "perception/block_score.hpp"
 #include "perception/io/stereo_recording.hpp"
+#include "tests/support/instruction_sets.hpp"
 #include "tests/support/plain_pushbroom.hpp"
 #include "tests/support/shared_data.hpp"
 
@@ -17,11 +17,13 @@ namespace understory {
 
 bool operator==(const BlockMatch& a, const BlockMatch& b) {
   return a.column_px == b.column_px && a.row_px == b.row_px && a.disparity == b.disparity && a.sad == b.sad &&
-         a.left_edge_sum == b.left_edge_sum && a.right_edge_sum == b.right_edge_sum;
+         a.left_edge_sum == b.left_edge_sum && a.right_edge_sum == b.right_edge_sum &&
+         a.sad_below == b.sad_below && a.sad_above == b.sad_above;
 }
 void PrintTo(const BlockMatch& match, std::ostream* out) {
   *out << "(" << match.column_px << ", " << match.row_px << ", #" << match.disparity << ", sad " << match.sad
-       << ", edges " << match.left_edge_sum << " " << match.right_edge_sum << ")";
+       << ", beside it " << match.sad_below << " " << match.sad_above << ", edges " << match.left_edge_sum
+       << " " << match.right_edge_sum << ")";
 }
 
 namespace {
@@ -92,10 +94,7 @@ BlockRule rule_of(int width_px, int height_px, std::vector<int> disparities) {
 /// Over every instruction set there is; `bands` threads' worth of kernels. Returns the number of matches.
 std::size_t expect_equal(const BlockRule& rule, const Pair& pair, int bands = 1) {
   const std::vector<BlockMatch> expected = support::plain_matches(rule, pair.left_view(), pair.right_view());
-  for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
-    const std::int64_t target = targets & -targets;
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  support::on_every_instruction_set([&](const std::string& name) {
     PushbroomKernel kernel(rule);
     std::vector<BlockMatch> found;
     for (int band = 0; band < bands; ++band) {
@@ -104,10 +103,8 @@ std::size_t expect_equal(const BlockRule& rule, const Pair& pair, int bands = 1)
                         kernel.strip_count() * (band + 1) / bands);
       found.insert(found.end(), matches.begin(), matches.end());
     }
-    EXPECT_EQ(found, expected) << hwy::TargetName(target);
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
+    EXPECT_EQ(found, expected) << name;
+  });
   return expected.size();
 }
 
@@ -212,6 +209,7 @@ TEST(PushbroomKernel, EqualsThePlainRuleForRulesDrawnAtRandom) {
     rule.disparities.front().limit_units = *rc::gen::inRange<std::int64_t>(0, 10 * score_unit);
     rule.horizontal_invariance = *rc::gen::arbitrary<bool>();
     rule.uniqueness = *rc::gen::arbitrary<bool>();
+    rule.neighbours = *rc::gen::arbitrary<bool>();
     rule.infinity_px = *rc::gen::inRange(-width, width);
     rule.least_disparity_px = *rc::gen::inRange(-width, width);
     rule.greatest_disparity_px = *rc::gen::inRange(rule.least_disparity_px, 2 * width);

@@ -6,6 +6,8 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "tests/support/instruction_sets.hpp"
+
 namespace understory {
 namespace {
 
@@ -57,7 +59,7 @@ cv::Mat remapped(const CameraCalibration& camera, const cv::Mat& raw, int interp
   return image;
 }
 
-TEST(Rectifier, EqualsOpenCvsRemapBitForBit) {
+TEST(Rectifier, EqualsOpenCvsRemapBitForBitOnEveryInstructionSet) {
   // From no distortion to a picture turned half way round with its corners outside the source.
   for (const auto& [width, height] :
        std::vector<std::pair<int, int>>{{376, 240}, {16, 9}, {17, 5}, {752, 480}, {9, 9}})
@@ -69,10 +71,14 @@ TEST(Rectifier, EqualsOpenCvsRemapBitForBit) {
           const int flag = interpolation == Interpolation::nearest ? cv::INTER_NEAREST : cv::INTER_LINEAR;
           for (const std::uint64_t seed : {1u, 2u}) {
             const StereoFrame raw{5, noise(width, height, seed), noise(width, height, seed + 10)};
-            const StereoFrame frame = rectifier.rectify(raw);
-            EXPECT_EQ(frame.t_ns, 5);
-            EXPECT_EQ(cv::norm(frame.left, remapped(rig.left, raw.left, flag), cv::NORM_L1), 0);
-            EXPECT_EQ(cv::norm(frame.right, remapped(rig.right, raw.right, flag), cv::NORM_L1), 0);
+            const cv::Mat left = remapped(rig.left, raw.left, flag),
+                          right = remapped(rig.right, raw.right, flag);
+            support::on_every_instruction_set([&](const std::string& name) {
+              const StereoFrame frame = rectifier.rectify(raw);
+              EXPECT_EQ(frame.t_ns, 5);
+              EXPECT_EQ(cv::norm(frame.left, left, cv::NORM_L1), 0) << name;
+              EXPECT_EQ(cv::norm(frame.right, right, cv::NORM_L1), 0) << name;
+            });
           }
         }
       }

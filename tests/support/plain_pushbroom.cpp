@@ -61,6 +61,17 @@ bool unique(const BlockRule& rule, const Images& images, const BlockMatch& match
   return true;
 }
 
+void look_beside(const BlockRule& rule, const Images& images, BlockMatch& match) {
+  const int detection = rule.disparities[static_cast<std::size_t>(match.disparity)].disparity_px;
+  for (const int beside : {-1, 1}) {
+    const int column_px = match.column_px - (detection + beside);
+    const int sad = inside(images.right, column_px, match.row_px)
+                        ? sad_of(images, match.column_px, match.row_px, column_px, match.row_px)
+                        : -1;
+    (beside < 0 ? match.sad_below : match.sad_above) = sad;
+  }
+}
+
 }  // namespace
 
 void edge_map(const GrayView& image, std::vector<std::uint8_t>& edges) {
@@ -133,6 +144,8 @@ std::vector<BlockMatch> plain_matches(const BlockRule& rule, const GrayView& lef
     return (rule.uniqueness && !unique(rule, images, match)) ||
            (rule.horizontal_invariance && repeats(rule, images, match));
   });
+  if (rule.neighbours)
+    for (BlockMatch& match : matches) look_beside(rule, images, match);
   return matches;
 }
 
