@@ -8,7 +8,6 @@
 
 #include "perception/io/hit_files.hpp"
 #include "perception/io/stereo_recording.hpp"
-#include "perception/rectify.hpp"
 #include "scenarios/bad_input.hpp"
 #include "scenarios/detection_input.hpp"
 #include "scenarios/detection_pictures.hpp"
@@ -78,7 +77,7 @@ DetectionResult run_detection(const DetectionOptions& options) {
   const DetectionConfig config = config_for(options, camera.rig);
   std::optional<PosedMap> map = map_for(options, recording, camera.rig, config.map);
   std::optional<Rectifier> rectifier;
-  if (camera.calibration) rectifier.emplace(*camera.calibration, Interpolation::nearest);
+  if (camera.calibration) rectifier.emplace(*camera.calibration, options.interpolation);
   PushbroomStereo detector(camera.rig, config.pushbroom);
   prepare(options.output_folder);
   DetectionResult result = described(camera, detector, config, recording);

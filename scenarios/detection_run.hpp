@@ -8,6 +8,7 @@
 #include "perception/io/calibration_file.hpp"
 #include "perception/local_map.hpp"
 #include "perception/pushbroom_stereo.hpp"
+#include "perception/rectify.hpp"
 #include "scenarios/detection_result.hpp"
 
 namespace understory {
@@ -37,6 +38,7 @@ struct DetectionOptions {
   std::vector<std::filesystem::path> inputs;  ///< as StereoRecording takes them
   std::filesystem::path rig;       ///< as read_calibrated_rig takes it; empty: the EuRoC input's own
   CalibrationOptions calibration;  ///< sizes left open here are the images'
+  Interpolation interpolation = Interpolation::nearest;  ///< of raw images, as in flight
   /// The rule; its last row, said for images of 240 rows as the paper's are, is taken in proportion.
   PushbroomConfig rule = robust_rule();
   std::vector<std::string> settings;  ///< "key=value" of DetectionConfig, last of all

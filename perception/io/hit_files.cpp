@@ -15,11 +15,11 @@ void append(std::string& text, const char* format, Values... values) {
   text.append(line.data(), static_cast<std::size_t>(length));
 }
 
-std::string ply_header(const char* comment, std::size_t count, const char* last_property) {
+std::string ply_header(const char* comment, std::size_t count, const char* last_properties) {
   std::string text = "ply\nformat ascii 1.0\ncomment " + std::string(comment) + "\n";
   append(text, "element vertex %zu\n", count);
   text += "property float x\nproperty float y\nproperty float z\nproperty double t_s\nproperty float score\n";
-  return text + "property " + last_property + "\nend_header\n";
+  return text + "property " + last_properties + "\nend_header\n";
 }
 
 void append_point(std::string& text, const Eigen::Vector3d& position, std::int64_t t_ns, double score) {
@@ -30,12 +30,13 @@ void append_point(std::string& text, const Eigen::Vector3d& position, std::int64
 }  // namespace
 
 std::string hits_to_csv(const std::vector<FrameHits>& frames) {
-  std::string text = "frame,t_ns,x_m,y_m,z_m,row_px,column_px,disparity_px,score,edge_sum\n";
+  std::string text = "frame,t_ns,x_m,y_m,z_m,row_px,column_px,disparity_px,score,edge_sum,near_m,far_m\n";
   for (const FrameHits& frame : frames) {
     for (const StereoHit& hit : frame.hits) {
       const Eigen::Vector3d& p = hit.position_camera;
-      append(text, "%" PRId64 ",%" PRId64 ",%.4f,%.4f,%.4f,%d,%d,%.2f,%.6f,%.0f\n", frame.frame, frame.t_ns,
-             p.x(), p.y(), p.z(), hit.row_px, hit.column_px, hit.disparity_px, hit.score, hit.edge_sum);
+      append(text, "%" PRId64 ",%" PRId64 ",%.4f,%.4f,%.4f,%d,%d,%.2f,%.6f,%.0f,%.4f,%.4f\n", frame.frame,
+             frame.t_ns, p.x(), p.y(), p.z(), hit.row_px, hit.column_px, hit.disparity_px, hit.score,
+             hit.edge_sum, hit.depth.near_m, hit.depth.far_m);
     }
   }
   return text;
@@ -46,11 +47,12 @@ std::string hits_to_ply(const std::vector<FrameHits>& frames) {
   for (const FrameHits& frame : frames) count += frame.hits.size();
   std::string text = ply_header(
       "hits of all frames, each in its own left camera's frame (x right, y down, z forward), metres", count,
-      "int frame");
+      "float edge_sum\nproperty float near_m\nproperty float far_m\nproperty int frame");
   for (const FrameHits& frame : frames) {
     for (const StereoHit& hit : frame.hits) {
       append_point(text, hit.position_camera, frame.t_ns, hit.score);
-      append(text, " %" PRId64 "\n", frame.frame);
+      append(text, " %.0f %.4f %.4f %" PRId64 "\n", hit.edge_sum, hit.depth.near_m, hit.depth.far_m,
+             frame.frame);
     }
   }
   return text;

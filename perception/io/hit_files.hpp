@@ -17,13 +17,14 @@ struct FrameHits {
 };
 
 /// One line per hit under the header
-/// frame,t_ns,x_m,y_m,z_m,row_px,column_px,disparity_px,score,edge_sum
+/// frame,t_ns,x_m,y_m,z_m,row_px,column_px,disparity_px,score,edge_sum,near_m,far_m
 /// x, y, z: centre of the block in the left camera's rectified frame (OpenCV axes); row and column: the
-/// block's upper left pixel in the rectified left image; disparity u_left - u_right; score S and edge sum as
-/// in StereoHit.
+/// block's upper left pixel in the rectified left image; disparity u_left - u_right; score S, edge sum and
+/// depth interval as in StereoHit.
 std::string hits_to_csv(const std::vector<FrameHits>& frames);
 
-/// The same hits as an ASCII PLY cloud: x y z (camera frame, m), time (s), score, frame.
+/// The same hits as an ASCII PLY cloud: x y z (camera frame, m), time (s), score, edge sum, depth interval
+/// (near and far, m), frame.
 std::string hits_to_ply(const std::vector<FrameHits>& frames);
 
 /// Remembered points as an ASCII PLY cloud: x y z (the world they were remembered in, m), time (s), score,

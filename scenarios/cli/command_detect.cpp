@@ -16,6 +16,7 @@ struct DetectArguments : CalibrationArguments {
   std::vector<std::string> inputs;
   std::string rig;
   std::string rule = "robust";
+  std::string rectify = "nearest";
   std::string poses;
   std::string out = "detections";
 };
@@ -43,6 +44,7 @@ DetectionOptions options_of(const DetectArguments& arguments) {
   if (!arguments.rig.empty()) options.rig = rig_path(arguments.rig);
   options.calibration = calibration_options(arguments);
   options.rule = arguments.rule == "paper" ? paper_rule() : robust_rule();
+  options.interpolation = arguments.rectify == "bilinear" ? Interpolation::bilinear : Interpolation::nearest;
   options.poses = arguments.poses;
   options.output_folder = arguments.out;
   return options;
@@ -74,12 +76,16 @@ void add_detect_command(CLI::App& app, Command& chosen) {
                       "rig or calibration: a file, a folder, or a name in models/rigs (default: the EuRoC "
                       "folder's own)");
   add_calibration_options(*command, *arguments);
+  command->add_option("--rectify", arguments->rectify, "raw images to the nearest pixel or bilinear")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"nearest", "bilinear"}));
   command->add_option("--rule", arguments->rule, "paper or robust")
       ->capture_default_str()
       ->check(CLI::IsMember({"paper", "robust"}));
   command
       ->add_option("--set", arguments->options.settings,
-                   "key=value of the detector or the map: pushbroom.least_edge_sum=300, map.max_age_s=10")
+                   "key=value of the detector or the map: depths_m=[10.1,7,5] (several depths at once), "
+                   "pushbroom.least_edge_sum=300, map.max_age_s=10")
       ->allow_extra_args(false)
       ->trigger_on_parse(false);
   command->add_option("--poses", arguments->poses,

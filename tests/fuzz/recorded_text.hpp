@@ -18,15 +18,15 @@ inline void require(bool holds, const char* what) {
   std::abort();
 }
 
-/// Parses; aborts where that ends in anything but a result that `check` takes or one line of complaint.
+/// Parses; aborts where that ends in anything but a result that `check` takes or one line of complaint that
+/// begins with `name`.
 template <typename Parse, typename Check>
-void expect_result_or_complaint(Parse&& parse, Check&& check) {
+void expect_result_or_complaint(Parse&& parse, Check&& check, std::string_view name = "fuzzed") {
   try {
     check(parse());
   } catch (const std::runtime_error& error) {
     const std::string_view line = error.what();
-    require(line.starts_with("fuzzed") && line.find('\n') == std::string_view::npos,
-            "one line naming the file");
+    require(line.starts_with(name) && line.find('\n') == std::string_view::npos, "one line naming the file");
   }
 }
 

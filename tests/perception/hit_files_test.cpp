@@ -17,6 +17,7 @@ std::vector<FrameHits> two_frames() {
   hit.disparity_px = 16;
   hit.score = 0.125;
   hit.edge_sum = 1062;
+  hit.depth = {2.8137, 3.2154};
   return {{0, 1403715273262142976, {hit, hit}}, {7, 1403715273312142976, {hit}}};
 }
 
@@ -44,18 +45,19 @@ std::vector<std::vector<double>> vertices(const std::string& ply, std::size_t pr
 
 TEST(HitFiles, TheCsvHasALinePerHit) {
   EXPECT_EQ(hits_to_csv(two_frames()),
-            "frame,t_ns,x_m,y_m,z_m,row_px,column_px,disparity_px,score,edge_sum\n"
-            "0,1403715273262142976,-0.6635,1.2500,3.0012,45,266,16.00,0.125000,1062\n"
-            "0,1403715273262142976,-0.6635,1.2500,3.0012,45,266,16.00,0.125000,1062\n"
-            "7,1403715273312142976,-0.6635,1.2500,3.0012,45,266,16.00,0.125000,1062\n");
+            "frame,t_ns,x_m,y_m,z_m,row_px,column_px,disparity_px,score,edge_sum,near_m,far_m\n"
+            "0,1403715273262142976,-0.6635,1.2500,3.0012,45,266,16.00,0.125000,1062,2.8137,3.2154\n"
+            "0,1403715273262142976,-0.6635,1.2500,3.0012,45,266,16.00,0.125000,1062,2.8137,3.2154\n"
+            "7,1403715273312142976,-0.6635,1.2500,3.0012,45,266,16.00,0.125000,1062,2.8137,3.2154\n");
 }
 
 TEST(HitFiles, ThePlyCountsItsVertices) {
-  const auto rows = vertices(hits_to_ply(two_frames()), 6);
+  const auto rows = vertices(hits_to_ply(two_frames()), 9);
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_NEAR(rows[2][0], -0.6635, 1e-9);
   EXPECT_NEAR(rows[2][3], 1403715273.312143, 1e-6);
-  EXPECT_EQ(rows[2][5], 7);
+  EXPECT_EQ(std::vector<double>(rows[2].begin() + 4, rows[2].end()),
+            (std::vector<double>{0.125, 1062, 2.8137, 3.2154, 7}));  // what weighs a hit, and its frame
   ObstaclePoint point;
   point.position_world = {12.5, -3, 1e8};
   point.t_ns = 1'500'000'000;

@@ -113,6 +113,12 @@ TEST_F(Recording, RefusesWhatIsNoPairOfGrayImagesOfOneSize) {
                    "empty.png: expected an 8-bit gray image, found an empty file");
   expect_complaint({good, folder.write("text.png", "hello")},
                    "text.png: expected an 8-bit gray image, found no image");
+  // DICOM, a value of which claims 2.8 GB (found by fuzzing): no format of ours, whatever OpenCV can read.
+  const std::string dicom =
+      std::string(128, '\0') + "DICM" + std::string("\x02\0\0\0OB\0\0\xa2\xc1\xbf\xa5", 12);
+  for (const char* beginning : {"\x89PN", "P62", "II*"})
+    expect_complaint({good, folder.write("dicom.png", beginning + dicom.substr(3))},
+                     "dicom.png: expected an 8-bit gray image, found no");
   expect_complaint({good, folder.path() / "none.png"}, "none.png: found no such file");
   expect_complaint({good, folder.path()}, "expected a EuRoC folder, two folders");
   expect_complaint({good}, "good.png: expected a EuRoC folder, two folders");

@@ -73,6 +73,9 @@ TEST_F(DetectReal, HitsLieWhereDenseMatchingPutsThem) {
   const Agreement robust = detect(" --depth 2.2"), paper = detect(" --depth 2.2 --rule paper");
   EXPECT_GT(robust.hits, 100);
   EXPECT_GT(robust.within_a_pixel, 0.9 * robust.hits);
+  const Agreement smooth = detect(" --depth 2.2 --rectify bilinear");
+  EXPECT_GT(smooth.hits, robust.hits);  // less noise between the eyes' rows
+  EXPECT_GT(smooth.within_a_pixel, 0.9 * smooth.hits);
   EXPECT_GT(paper.hits, 200);
   EXPECT_GT(paper.within_a_pixel, 0.609 * paper.hits);  // the paper's share within 0.5 m on its own images
   EXPECT_GT(detect(" --depth 3").hits, 4);

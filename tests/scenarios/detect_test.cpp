@@ -176,6 +176,7 @@ TEST_F(Detect, BadInputIsOneLineAndLeavesNoResult) {
   refuse(detect + " --size 752", "--size 752: expected WIDTHxHEIGHT");
   refuse(detect + " --depth 4000", "depth");
   refuse(detect + " --rule best", "--rule");
+  refuse(detect + " --rectify cubic", "--rectify");
   refuse(detect + " --unit inch", "--unit");
   refuse(detect + " --set pushbroom.edges=3", "pushbroom.edges: expected a known key");
   refuse(detect + " --set depths_m=[4.8,900]",
