@@ -39,6 +39,26 @@ PushbroomConfig robust_rule() {
   return config;
 }
 
+PushbroomConfig tuned_rule(std::string_view rig) {
+  PushbroomConfig config = robust_rule();
+  if (rig == "long") {
+    config.least_edge_sum = 400;
+    config.score_limit = 0.138472;
+    config.uniqueness_ratio = 1.55531;
+    config.uniqueness_least_depth_m = 3.20629;
+    config.isolation_least_points = 6;
+    config.isolation_radius_m = 0.923592;
+  } else if (rig == "paper") {
+    config.least_edge_sum = 186;
+    config.score_limit = 0.430605;
+    config.uniqueness_ratio = 1.2931;
+    config.uniqueness_least_depth_m = 2.93961;
+    config.isolation_least_points = 8;
+    config.isolation_radius_m = 0.54672;
+  }
+  return config;
+}
+
 PushbroomStereo::PushbroomStereo(const StereoRig& rig, const PushbroomConfig& config)
     : rig_(rig), config_(config), infinity_px_(whole(rig.infinity_disparity_px())) {
   std::vector<double> depths_m = config.depths_m;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "perception/obstacle_detector.hpp"
@@ -54,6 +55,10 @@ PushbroomConfig paper_rule();
 /// its precision is 0.94 where the paper's thresholds give 0.37 (computed with one prototype;
 /// docs/benchmarks.md).
 PushbroomConfig robust_rule();
+/// The robust rule with the numbers tuned for a rig of models/rigs by its name, `long` or `paper`: most
+/// recall and trunks found at a precision of 0.98 (docs/tuning.md). Rigs that nobody has tuned for get
+/// robust_rule().
+PushbroomConfig tuned_rule(std::string_view rig);
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, PushbroomConfig& config) {

@@ -19,6 +19,7 @@
 #include "scenarios/flight_computer.hpp"
 #include "scenarios/forest.hpp"
 #include "scenarios/goalposts.hpp"
+#include "scenarios/rule_preset.hpp"
 #include "scenarios/windows.hpp"
 #include "sim/actuators.hpp"
 #include "sim/aircraft.hpp"
@@ -37,7 +38,6 @@ namespace understory {
 enum class Course { forest, goalposts, clear, windows, fence };
 enum class DetectorKind { pushbroom, stereo_bm, stereo_sgbm, true_depth, none };
 enum class StateKind { filter, truth };
-enum class RulePreset { robust, paper };             ///< which numbers perception.pushbroom starts from
 enum class FilterPreset { tuned, original, windy };  ///< which numbers estimation.filter starts from
 
 inline constexpr std::array<std::pair<std::string_view, Course>, 5> course_names{
@@ -54,8 +54,6 @@ inline constexpr std::array<std::pair<std::string_view, DetectorKind>, 5> detect
      {"none", DetectorKind::none}}};
 inline constexpr std::array<std::pair<std::string_view, StateKind>, 2> state_names{
     {{"filter", StateKind::filter}, {"truth", StateKind::truth}}};
-inline constexpr std::array<std::pair<std::string_view, RulePreset>, 2> rule_names{
-    {{"robust", RulePreset::robust}, {"paper", RulePreset::paper}}};
 inline constexpr std::array<std::pair<std::string_view, FilterPreset>, 3> filter_preset_names{
     {{"tuned", FilterPreset::tuned}, {"original", FilterPreset::original}, {"windy", FilterPreset::windy}}};
 inline constexpr std::array<std::pair<std::string_view, SensorGrade>, 4> sensor_grade_names{

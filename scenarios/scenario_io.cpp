@@ -106,7 +106,7 @@ Scenario compose(const Sources& sources, const std::string& name) {
   read_all(sources, first);
   Scenario scenario;
   scenario.sensors.sensors = sensors_of_grade(first.sensors.grade);
-  if (first.perception.rule == RulePreset::paper) scenario.perception.pushbroom = paper_rule();
+  scenario.perception.pushbroom = rule_of(first.perception.rule, first.rig);
   if (first.estimation.preset == FilterPreset::original) scenario.estimation.filter = original_filter();
   if (first.estimation.preset == FilterPreset::windy) scenario.estimation.filter = windy_filter();
   scenario.estimation.filter.distrust.imu_gap_s = 1.5 / first.sensors.sensors.imu_rate_hz;

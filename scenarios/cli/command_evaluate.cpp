@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <thread>
 
@@ -11,6 +12,7 @@
 #include "scenarios/config_reader.hpp"
 #include "scenarios/evaluation/evaluation.hpp"
 #include "scenarios/evaluation/evaluation_files.hpp"
+#include "scenarios/rule_preset.hpp"
 
 namespace understory {
 
@@ -27,6 +29,7 @@ void visit_fields(Visitor& visit, EvaluatedPerception& perception) {
   visit("pushbroom", perception.settings.rule);
   visit("stereo_bm", perception.settings.stereo_bm);
   visit("stereo_sgbm", perception.settings.stereo_sgbm);
+  visit("compute", perception.settings.compute);
 }
 template <typename Visitor>
 void visit_fields(Visitor& visit, EvaluatedAutopilot& autopilot) {
@@ -44,9 +47,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::map<std::string, RulePreset> rules_by_name() { return {rule_names.begin(), rule_names.end()}; }
+
 struct EvaluateArguments {
   std::vector<std::string> inputs;
-  std::string rule = "robust";
+  RulePreset rule = RulePreset::robust;
   std::vector<std::string> settings;
   std::vector<std::string> with;
   std::string out;
@@ -62,9 +67,18 @@ void print_progress(const EvaluationProgress& progress) {
   std::fflush(stdout);
 }
 
-EvaluationSettings settings_of(const EvaluateArguments& arguments) {
+/// The rig that a recording was made with, as its scenario names it; nothing where others recorded.
+std::string rig_named_in(const fs::path& recording) {
+  const fs::path file = recording / "scenario.yaml";
+  if (!fs::exists(file)) return "";
+  const ConfigNode scenario = parse_config_file(file);
+  const auto rig = std::ranges::find(scenario.children, "rig", &ConfigNode::key);
+  return rig == scenario.children.end() ? "" : rig->text;
+}
+
+EvaluationSettings settings_of(const EvaluateArguments& arguments, const std::string& rig) {
   EvaluationSettings settings;
-  settings.rule = arguments.rule == "paper" ? paper_rule() : robust_rule();
+  settings.rule = rule_of(arguments.rule, rig);
   settings.every = arguments.every;
   for (const std::string& file : arguments.with) read_config(parse_config_file(file), settings);
   for (const std::string& setting : arguments.settings) read_config(parse_assignment(setting), settings);
@@ -73,7 +87,7 @@ EvaluationSettings settings_of(const EvaluateArguments& arguments) {
 
 int run_evaluate(const EvaluateArguments& arguments) {
   EvaluationOptions options;
-  options.settings = settings_of(arguments);
+  settings_of(arguments, "");  // what is wrong with them shows before anything is recorded
   options.jobs = arguments.jobs > 0 ? arguments.jobs
                                     : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   fs::path out = arguments.out;
@@ -84,6 +98,7 @@ int run_evaluate(const EvaluateArguments& arguments) {
     options.folders = record_suite(arguments.inputs[0], out / "recordings", options.jobs);
   else
     options.folders.assign(arguments.inputs.begin(), arguments.inputs.end());
+  options.settings = settings_of(arguments, rig_named_in(options.folders.front()));
   const bool terminal = isatty(STDOUT_FILENO) == 1;
   if (terminal) options.on_progress = print_progress;
   Evaluation evaluation;
@@ -109,9 +124,11 @@ void add_evaluate_command(CLI::App& app, Command& chosen) {
       ->add_option("INPUT", arguments->inputs,
                    "EuRoC folders as `record` leaves them; or one file of what to record and evaluate")
       ->required();
-  command->add_option("--rule", arguments->rule, "paper or robust: the rule in the table's first line")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"paper", "robust"}));
+  command
+      ->add_option(
+          "--rule", arguments->rule,
+          "the rule in the table's first line: robust (default), tuned (for the recordings' rig) or paper")
+      ->transform(CLI::CheckedTransformer(rules_by_name()));
   command->add_option("--with", arguments->with, "file of keys to put over the rule, as `tune` leaves it")
       ->allow_extra_args(false)
       ->trigger_on_parse(false);

@@ -94,6 +94,10 @@ void EvaluationSum::add(const RecordingEvaluation& recording) {
     append(cost_ms[i], recording.cost_ms[i]);
     hits[i] += recording.hits[i];
   }
+  for (std::size_t i = 0; i < paced.size(); ++i) {
+    paced[i].looks += recording.paced[i].looks;
+    append(paced[i].sightings, recording.paced[i].sightings);
+  }
   for (std::size_t i = 0; i < published.size(); ++i) published[i].add(recording.published[i]);
   add_invariance(invariance, recording.invariance);
   add_curves(curves, recording.curves);

@@ -29,6 +29,7 @@ struct EvaluationSum {
   double seconds = 0;
   std::array<VisionTally, algorithm_count> tallies;
   std::array<std::vector<ObstacleSighting>, algorithm_count> sightings;
+  std::array<PacedResult, paced_algorithms.size()> paced;
   std::array<std::int64_t, algorithm_count> hits{};
   std::array<std::vector<double>, algorithm_count> cost_ms;
   std::array<PublishedScores, 3> published;

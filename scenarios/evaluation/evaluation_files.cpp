@@ -10,6 +10,7 @@
 #include "scenarios/evaluation/evaluation_pictures.hpp"
 #include "scenarios/evaluation/evaluation_plots.hpp"
 #include "scenarios/evaluation/evaluation_tables.hpp"
+#include "scenarios/evaluation/obstacle_tables.hpp"
 #include "scenarios/file_output.hpp"
 #include "scenarios/picture_folder.hpp"
 #include "scenarios/video_writer.hpp"
@@ -83,6 +84,11 @@ Json sum_json(const EvaluationSum& sum) {
   Json json{
       {"name", sum.name}, {"recordings", sum.recordings}, {"frames", sum.frames}, {"seconds", sum.seconds}};
   for (std::size_t i = 0; i < algorithm_count; ++i) json["algorithms"].push_back(algorithm_json(sum, i));
+  for (std::size_t i = 0; i < paced_algorithms.size(); ++i)
+    json["computer"].push_back({{"name", algorithm_names[paced_algorithms[i]]},
+                                {"looks", sum.paced[i].looks},
+                                {"found_within_1_m", to_json(found_within(sum.paced[i].sightings, 1))},
+                                {"found_within_3_m", to_json(found_within(sum.paced[i].sightings, 3))}});
   for (std::size_t i = 0; i < published_algorithms.size(); ++i)
     json["paper"].push_back({{"name", algorithm_names[published_algorithms[i]]},
                              {"single_frame", to_json(sum.published[i].single_frame)},

@@ -27,6 +27,7 @@ class EvaluationRecording {
   bool has_estimates() const { return !estimates_.empty(); }
   const std::vector<RecordedObject>& objects() const { return objects_; }
   std::size_t frame_count() const { return sequence_.pairs.size(); }
+  std::int64_t t_ns(std::size_t index) const { return sequence_.pairs[index].t_ns; }
   double duration_s() const;
   /// The n-th frame. Throws ScenarioError as above.
   EvaluationFrame frame(std::size_t index);

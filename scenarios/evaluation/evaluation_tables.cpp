@@ -7,22 +7,14 @@
 #include <numeric>
 
 #include "scenarios/detection_result.hpp"
+#include "scenarios/evaluation/obstacle_tables.hpp"
+#include "scenarios/evaluation/share_text.hpp"
 #include "scenarios/statistics/bootstrap.hpp"
-#include "scenarios/statistics/wilson.hpp"
 
 namespace understory {
 namespace {
 
-std::string share_text(const Share& share) {
-  return share.of > 0 ? fmt::format("{:.3f}", share.value()) : "-";
-}
 std::string percent_text(double share) { return fmt::format("{:.1f}", 100 * share); }
-
-std::string wilson_text(const Share& share) {
-  if (share.of == 0) return "-";
-  const Interval interval = wilson_interval(static_cast<int>(share.with), static_cast<int>(share.of));
-  return fmt::format("{:.3f} ({:.3f} to {:.3f})", share.value(), interval.least, interval.greatest);
-}
 
 /// Blocks of one flight resemble each other: the interval comes from drawing recordings anew.
 std::string resampled_text(const Evaluation& evaluation, Share (*of)(const RecordingEvaluation&)) {
@@ -167,33 +159,6 @@ EvaluationTable intervals_table(const Evaluation& evaluation) {
   return table;
 }
 
-EvaluationTable on_the_path_table(const Evaluation& evaluation) {
-  EvaluationTable table{"on_the_path",
-                        "Obstacles that a wing would touch, straight on from where they came into view",
-                        {{"algorithm", "obstacles", "found", "hits each, median", "least tenth",
-                          "first hit at, m, median", "third hit at, m, median"},
-                         {}}};
-  for (std::size_t i = 0; i < algorithm_count; ++i) {
-    Share found;
-    std::vector<double> hits, first_m, third_m;
-    for (const ObstacleSighting& sighting : evaluation.all.sightings[i]) {
-      if (!sighting.on_the_path || sighting.hidden()) continue;
-      found.count(sighting.found());
-      hits.push_back(sighting.hits);
-      if (sighting.hits >= 1) first_m.push_back(sighting.first_hit_m);
-      if (sighting.found()) third_m.push_back(sighting.third_hit_m);
-    }
-    const auto middle = [](const std::vector<double>& values, const char* format) {
-      return values.empty() ? std::string("-") : fmt::format(fmt::runtime(format), quantile(values, 0.5));
-    };
-    table.table.rows.push_back({algorithm_names[i], fmt::format("{}", found.of), share_text(found),
-                                middle(hits, "{:.0f}"),
-                                hits.empty() ? "-" : fmt::format("{:.0f}", quantile(hits, 0.1)),
-                                middle(first_m, "{:.2f}"), middle(third_m, "{:.2f}")});
-  }
-  return table;
-}
-
 EvaluationTable parts_table(const Evaluation& evaluation) {
   EvaluationTable table{"parts",
                         "Our rule by parts, at one pixel",
@@ -256,29 +221,15 @@ std::vector<EvaluationTable> evaluation_tables(const Evaluation& evaluation) {
     tables.push_back(algorithms_table(evaluation));
     tables.push_back(intervals_table(evaluation));
     tables.push_back(scenes_table(evaluation));
-    if (evaluation.has_objects()) tables.push_back(on_the_path_table(evaluation));
+    if (evaluation.has_objects()) {
+      tables.push_back(computer_table(evaluation));
+      tables.push_back(on_the_path_table(evaluation));
+    }
     tables.push_back(parts_table(evaluation));
     tables.push_back(false_hits_table(evaluation));
   }
   tables.push_back(invariance_table(evaluation));
   return tables;
-}
-
-PrintedTable obstacles_table(const Evaluation& evaluation) {
-  PrintedTable table{{"recording", "object", "name", "kind", "miss_m", "on_the_path", "hidden",
-                      "blocks_in_view", "hits", "first_hit_m", "third_hit_m"},
-                     {}};
-  for (const RecordingEvaluation& recording : evaluation.recordings)
-    for (const ObstacleSighting& sighting : recording.sightings[our_rule]) {
-      const auto object = std::ranges::find(recording.objects, sighting.object, &RecordedObject::number);
-      table.rows.push_back({recording.folder.filename().string(), fmt::format("{}", sighting.object),
-                            object->name, object->kind, fmt::format("{:.3f}", sighting.miss_m),
-                            sighting.on_the_path ? "1" : "0", sighting.hidden() ? "1" : "0",
-                            fmt::format("{}", sighting.blocks_in_view), fmt::format("{}", sighting.hits),
-                            fmt::format("{:.3f}", sighting.first_hit_m),
-                            fmt::format("{:.3f}", sighting.third_hit_m)});
-    }
-  return table;
 }
 
 }  // namespace understory

@@ -19,7 +19,4 @@ struct EvaluationTable {
 /// all algorithms, scenes, obstacles passed, parts, false hits, invariance.
 std::vector<EvaluationTable> evaluation_tables(const Evaluation& evaluation);
 
-/// A line per obstacle passed: what each became under our rule.
-PrintedTable obstacles_table(const Evaluation& evaluation);
-
 }  // namespace understory

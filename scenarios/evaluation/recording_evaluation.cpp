@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -45,6 +46,13 @@ std::string scene_of(const fs::path& folder) {
   return numbered ? name.substr(0, hyphen) : name;
 }
 
+/// Of a look, on the aircraft's computer.
+double cost_s(AlgorithmIndex algorithm, const ComputeConfig& compute) {
+  if (algorithm == stereo_bm) return compute.factor * compute.stereo_bm_s;
+  if (algorithm == stereo_sgbm) return compute.factor * compute.stereo_sgbm_s;
+  return compute.factor * compute.pushbroom_s;
+}
+
 PushbroomConfig with_invariance(PushbroomConfig rule, bool on) {
   rule.horizontal_invariance = on;
   return rule;
@@ -59,9 +67,11 @@ struct InvariancePair {
 class Evaluator {
  public:
   Evaluator(const fs::path& folder, const EvaluationSettings& settings);
-  void add(const EvaluationFrame& frame, std::size_t index);
+  /// `next_t_ns`: the moment of the frame after it.
+  void add(const EvaluationFrame& frame, std::size_t index, std::int64_t next_t_ns);
   RecordingEvaluation finish();
   std::size_t frame_count() const { return recording_.frame_count(); }
+  std::int64_t t_ns(std::size_t index) const { return recording_.t_ns(index); }
   EvaluationFrame frame(std::size_t index) { return recording_.frame(index); }
 
  private:
@@ -78,6 +88,7 @@ class Evaluator {
   RandomDetector* random_ = nullptr;         // likewise
   std::vector<PublishedEvaluations> published_;
   std::vector<ObstacleSightings> sightings_;
+  std::vector<PacedSightings> paced_;
   std::vector<InvariancePair> invariance_;
   std::unique_ptr<CurveSweeps> sweeps_;
   std::vector<WorstFrame> bad_frames_;
@@ -105,6 +116,8 @@ Evaluator::Evaluator(const fs::path& folder, const EvaluationSettings& settings)
   for (std::size_t i = 0; i < published_algorithms.size(); ++i)
     published_.emplace_back(rig, grid_, settings.map);
   for (int i = 0; i < algorithm_count; ++i) sightings_.emplace_back(recording_.objects(), rig.baseline_m);
+  for (const AlgorithmIndex i : paced_algorithms)
+    paced_.emplace_back(recording_.objects(), rig.baseline_m, cost_s(i, settings.compute));
   for (const bool on : {false, true}) {
     invariance_.push_back({PushbroomStereo(rig, with_invariance(paper, on)), {"the paper's", on, 0, {}, {}}});
     invariance_.push_back(
@@ -159,7 +172,7 @@ void Evaluator::keep_if_bad(const EvaluationFrame& frame, std::size_t index) {
   bad_frames_.push_back({index, wrong});
 }
 
-void Evaluator::add(const EvaluationFrame& frame, std::size_t index) {
+void Evaluator::add(const EvaluationFrame& frame, std::size_t index, std::int64_t next_t_ns) {
   look(frame);
   DueBlocks due;
   if (recording_.has_depth()) {
@@ -168,6 +181,8 @@ void Evaluator::add(const EvaluationFrame& frame, std::size_t index) {
       tally(frame, grid_, recording_.rig(), kinds_, due, timed_[i].hits, result_.tallies[i]);
       sightings_[i].add(frame, grid_, due[one_pixel], timed_[i].hits);
     }
+    for (std::size_t i = 0; i < paced_.size(); ++i)
+      paced_[i].add(frame, next_t_ns, grid_, due[one_pixel], timed_[paced_algorithms[i]].hits);
     keep_if_bad(frame, index);
     sweeps_->add(frame, due[one_pixel]);
   }
@@ -186,6 +201,7 @@ RecordingEvaluation Evaluator::finish() {
     result_.tallies[i].seconds = result_.seconds;
     if (result_.has_objects) result_.sightings[i] = sightings_[i].passed();
   }
+  for (std::size_t i = 0; i < paced_.size(); ++i) result_.paced[i] = paced_[i].result();
   for (std::size_t i = 0; i < published_.size(); ++i) result_.published[i] = published_[i].scores();
   for (const InvariancePair& pair : invariance_) result_.invariance.push_back(pair.row);
   if (sweeps_) result_.curves = sweeps_->curves();
@@ -213,8 +229,13 @@ FullStereoCrop crop_beside(const PushbroomConfig& rule, const StereoRig& rig) {
 RecordingEvaluation evaluate_recording(const fs::path& folder, const EvaluationSettings& settings,
                                        const std::function<void()>& on_frame) {
   Evaluator evaluator(folder, settings);
-  for (std::size_t i = 0; i < evaluator.frame_count(); i += static_cast<std::size_t>(settings.every)) {
-    evaluator.add(evaluator.frame(i), i);
+  const auto every = static_cast<std::size_t>(settings.every);
+  for (std::size_t i = 0; i < evaluator.frame_count(); i += every) {
+    // Behind the last frame there is none.
+    const std::int64_t next_t_ns = i + every < evaluator.frame_count()
+                                       ? evaluator.t_ns(i + every)
+                                       : std::numeric_limits<std::int64_t>::max();
+    evaluator.add(evaluator.frame(i), i, next_t_ns);
     on_frame();
   }
   return evaluator.finish();

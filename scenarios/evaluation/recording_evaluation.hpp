@@ -13,6 +13,7 @@
 #include "perception/pushbroom_stereo.hpp"
 #include "scenarios/evaluation/evaluation_recording.hpp"
 #include "scenarios/evaluation/obstacle_sightings.hpp"
+#include "scenarios/evaluation/paced_sightings.hpp"
 #include "scenarios/evaluation/published_evaluations.hpp"
 #include "scenarios/evaluation/vision_tally.hpp"
 
@@ -24,7 +25,8 @@ struct EvaluationSettings {
   LocalMapConfig map;        ///< of the evaluations with memory
   StereoBmConfig stereo_bm;  ///< the paper's
   StereoSgbmConfig stereo_sgbm;
-  int every = 1;  ///< every n-th frame only
+  ComputeConfig compute;  ///< the aircraft's computer, for what it finds at its own pace; `enabled` or not
+  int every = 1;          ///< every n-th frame only
 };
 
 /// The algorithms of one table, in its order. All look at the same depths.
@@ -39,6 +41,9 @@ enum AlgorithmIndex {
 };
 inline constexpr std::array<const char*, algorithm_count> algorithm_names{
     "pushbroom, our rule", "pushbroom, the paper's rule", "StereoBM", "StereoSGBM", "true depth", "random"};
+/// Those that a computer has to compute.
+inline constexpr std::array<AlgorithmIndex, 4> paced_algorithms{our_rule, the_papers_rule, stereo_bm,
+                                                                stereo_sgbm};
 
 /// One setting of a threshold, at one pixel.
 struct CurvePoint {
@@ -80,6 +85,7 @@ struct RecordingEvaluation {
   std::array<std::vector<double>, algorithm_count> cost_ms;  ///< per frame, on one thread of this machine
   std::array<std::int64_t, algorithm_count> hits{};
   std::array<std::vector<ObstacleSighting>, algorithm_count> sightings;
+  std::array<PacedResult, paced_algorithms.size()> paced;  ///< of paced_algorithms
   std::vector<RecordedObject> objects;
   std::array<PublishedScores, 3> published;  ///< our rule, the paper's rule, random
   std::vector<InvarianceRow> invariance;

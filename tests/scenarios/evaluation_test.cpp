@@ -11,6 +11,7 @@
 #include "scenarios/evaluation/nearest_distances.hpp"
 #include "scenarios/evaluation/obstacle_sightings.hpp"
 #include "scenarios/evaluation/one_pixel_counts.hpp"
+#include "scenarios/evaluation/paced_sightings.hpp"
 #include "scenarios/evaluation/published_evaluations.hpp"
 #include "scenarios/evaluation/random_detector.hpp"
 #include "scenarios/evaluation/true_depth_hits.hpp"
@@ -208,29 +209,43 @@ TEST(Evaluation, WhatTheRightEyeDoesNotSeeIsNotDue) {
   EXPECT_NE(shared.at<std::uint16_t>(100, from_px + width_px + gap_px), 0);  // what covers it is
 }
 
-TEST(Evaluation, ObstaclesAreFollowedUntilTheyArePassed) {
-  const StereoRig rig = support::house_rig("long.yaml");
-  const DetectionGrid grid(rig, {}, 205);
-  RecordedObject ground{1, "ground", "ground", {}, {}, 0};
-  RecordedObject seen{trunk, "tree_0", "trunk", {20, 1.2, 0}, {20, 1.2, 9}, 0.2};
-  RecordedObject beyond{3, "tree_1", "trunk", {80, 0, 0}, {80, 0, 9}, 0.2};
-  RecordedObject aside{4, "tree_2", "trunk", {20, -0.3, 0}, {20, -0.3, 9}, 0.2};
-  ObstacleSightings sightings({ground, seen, beyond, aside}, 0);
-  for (int i = 0; i <= 300; ++i) {
-    EvaluationFrame frame;
-    frame.truth = plane_truth(rig, 40, 0);
-    frame.T_world_camera = Eigen::Isometry3d::Identity();
-    frame.T_world_camera->translation() = Eigen::Vector3d(0.1 * i, 0, 4);
-    std::vector<StereoHit> hits;
-    if (i >= 98 && i < 102) {  // it stands 10 m ahead: one block of it, and a hit there
-      const cv::Rect block(200, 100, 5, 5);
-      frame.truth.depth_mm(block).setTo(1000 * (20 - 0.1 * i));
-      frame.truth.objects(block).setTo(trunk);
-      frame.truth.shared_depth_mm = frame.truth.depth_mm;
-      hits.push_back(hit_on_block(rig, grid.depths[0], 200, 100));
+/// Straight past a trunk that shows one block, hit each time, for the four frames 98 to 101: at 10 m. Frames
+/// are 8 ms apart.
+struct TrunkPassed {
+  StereoRig rig = support::house_rig("long.yaml");
+  DetectionGrid grid{rig, {}, 205};
+  std::vector<RecordedObject> objects{{1, "ground", "ground", {}, {}, 0},
+                                      {trunk, "tree_0", "trunk", {20, 1.2, 0}, {20, 1.2, 9}, 0.2},
+                                      {3, "tree_1", "trunk", {80, 0, 0}, {80, 0, 9}, 0.2},
+                                      {4, "tree_2", "trunk", {20, -0.3, 0}, {20, -0.3, 9}, 0.2}};
+
+  template <typename Visit>
+  void for_each_frame(Visit&& visit) const {
+    for (int i = 0; i <= 300; ++i) {
+      EvaluationFrame frame;
+      frame.pair.t_ns = std::int64_t{8'000'000} * i;
+      frame.truth = plane_truth(rig, 40, 0);
+      frame.T_world_camera = Eigen::Isometry3d::Identity();
+      frame.T_world_camera->translation() = Eigen::Vector3d(0.1 * i, 0, 4);
+      std::vector<StereoHit> hits;
+      if (i >= 98 && i < 102) {
+        const cv::Rect block(200, 100, 5, 5);
+        frame.truth.depth_mm(block).setTo(1000 * (20 - 0.1 * i));
+        frame.truth.objects(block).setTo(trunk);
+        frame.truth.shared_depth_mm = frame.truth.depth_mm;
+        hits.push_back(hit_on_block(rig, grid.depths[0], 200, 100));
+      }
+      visit(frame, expected_blocks(frame.truth, grid), hits);
     }
-    sightings.add(frame, grid, expected_blocks(frame.truth, grid), hits);
   }
+};
+
+TEST(Evaluation, ObstaclesAreFollowedUntilTheyArePassed) {
+  const TrunkPassed flight;
+  ObstacleSightings sightings(flight.objects, 0);
+  flight.for_each_frame([&](const EvaluationFrame& frame, const auto& due, const auto& hits) {
+    sightings.add(frame, flight.grid, due, hits);
+  });
   const auto passed = sightings.passed();
   ASSERT_EQ(passed.size(), 2u);  // neither the ground nor what lies beyond the path's end
   EXPECT_EQ(passed[0].object, trunk);
@@ -241,6 +256,21 @@ TEST(Evaluation, ObstaclesAreFollowedUntilTheyArePassed) {
   EXPECT_NEAR(passed[0].third_hit_m, 10.0, 1e-6);
   EXPECT_FALSE(passed[0].on_the_path);  // 1 m beside a wing of 0.43 m
   EXPECT_TRUE(passed[1].hidden());      // it never came into view
+}
+
+TEST(Evaluation, ASlowComputerLosesWhatPassesBetweenItsLooks) {
+  const TrunkPassed flight;
+  constexpr double four_frames_s = 0.032;  // frames 0, 4 ... 300: of the trunk's four it looks at 100
+  PacedSightings paced(flight.objects, 0, four_frames_s);
+  flight.for_each_frame([&](const EvaluationFrame& frame, const auto& due, const auto& hits) {
+    paced.add(frame, frame.pair.t_ns + 8'000'000, flight.grid, due, hits);
+  });
+  const PacedResult result = paced.result();
+  EXPECT_EQ(result.looks, 76);
+  ASSERT_EQ(result.sightings.size(), 2u);
+  EXPECT_EQ(result.sightings[0].hits, 1);
+  EXPECT_FALSE(result.sightings[0].found());
+  EXPECT_FALSE(result.sightings[0].hidden());  // it was there to be seen
 }
 
 TEST(Evaluation, NearestDistancesAreThoseOfBruteForce) {

@@ -98,6 +98,20 @@ TEST(Scenario, AGradeIsWhereTheKeysBesideItStart) {
       0);
 }
 
+TEST(Scenario, ARuleIsTheRigsOwnUnderTheKeysBesideIt) {
+  const auto rule = [](const char* text) {
+    return scenario_from_text(text, "rule.yaml").perception.pushbroom;
+  };
+  EXPECT_EQ(rule("name: a").least_edge_sum, robust_rule().least_edge_sum);
+  EXPECT_EQ(rule("perception: {rule: paper}").least_edge_sum, paper_rule().least_edge_sum);
+  const PushbroomConfig tuned =
+      rule("{rig: paper, perception: {rule: tuned, pushbroom: {score_limit: 0.2}}}");
+  EXPECT_EQ(tuned.least_edge_sum, tuned_rule("paper").least_edge_sum);
+  EXPECT_EQ(tuned.score_limit, 0.2);
+  EXPECT_NE(tuned.least_edge_sum, rule("{rig: long, perception: {rule: tuned}}").least_edge_sum);
+  EXPECT_EQ(tuned_rule("somebody's").least_edge_sum, robust_rule().least_edge_sum);
+}
+
 TEST(Scenario, FaultsAreReadWrittenAndChecked) {
   const Scenario scenario = scenario_from_text(
       "faults:\n  - {sensor: pitot, kind: block, at_s: 2}\n  - {sensor: gyro, kind: bias, at_s: 1, "
