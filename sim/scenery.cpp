@@ -148,12 +148,10 @@ SceneryXml scenery_xml(const std::vector<Obstacle>& obstacles, const WorldConfig
 }
 
 void paint_textures(mjModel& model, const WorldConfig& config) {
-  paint(model, "bark", make_texture(bark_request(config)), {1.06, 0.88});
-  paint(model, "litter", make_texture(ground_request(config)), {0.90, 0.72});
-  if (mj_name2id(&model, mjOBJ_TEXTURE, "facade") >= 0)
-    paint(model, "facade", facade_texture(config.texture_seed + 2), {1.04, 0.94});
-  model.vis.quality.shadowsize = 0;
-  model.vis.quality.offsamples = 0;
+  const auto has = [&](const char* texture) { return mj_name2id(&model, mjOBJ_TEXTURE, texture) >= 0; };
+  if (has("bark")) paint(model, "bark", make_texture(bark_request(config)), {1.06, 0.88});
+  if (has("litter")) paint(model, "litter", make_texture(ground_request(config)), {0.90, 0.72});
+  if (has("facade")) paint(model, "facade", facade_texture(config.texture_seed + 2), {1.04, 0.94});
 }
 
 }  // namespace understory

@@ -20,9 +20,8 @@ struct SceneryXml {
 /// "scenery_<number>".
 SceneryXml scenery_xml(const std::vector<Obstacle>& obstacles, const WorldConfig& config);
 
-/// Fills the compiled model's textures (see models/textures/README.md) and turns off what the cameras have no
-/// use for and would pay for: shadow maps and multisampling. Must come before the first StereoCameras of the
-/// model.
+/// Fills those textures that the compiled model has (see models/textures/README.md). Must come before the
+/// first renderer of the model.
 void paint_textures(mjModel& model, const WorldConfig& config);
 
 }  // namespace understory

@@ -9,6 +9,7 @@
 #include "sim/pixel_response.hpp"
 #include "sim/pose_history.hpp"
 #include "sim/scene_renderer.hpp"
+#include "sim/scenery.hpp"
 #include "sim/stereo_optics.hpp"
 
 namespace understory {
@@ -82,8 +83,10 @@ struct StereoCameras::Implementation {
 
 StereoCameras::StereoCameras(const World& world, const StereoRig& rig, const CameraConfig& config,
                              CameraSeeds seeds, const std::optional<StereoCalibration>& raw,
-                             RendererKind renderer)
-    : implementation_(std::make_unique<Implementation>(*world.model, rig, config, seeds, raw, renderer)) {}
+                             RendererKind renderer) {
+  paint_textures(*world.model, world.config);
+  implementation_ = std::make_unique<Implementation>(*world.model, rig, config, seeds, raw, renderer);
+}
 
 StereoCameras::~StereoCameras() = default;
 

@@ -28,7 +28,7 @@ class StereoCameras {
  public:
   /// Throws std::runtime_error in one line where no GL library can be loaded. Not thread safe; create and use
   /// on one thread. `raw`: absent, images come rectified, as `rig` says; present, they come as these cameras
-  /// give them, and `rig` must be rectified_rig(*raw).
+  /// give them, and `rig` must be rectified_rig(*raw). Paints the textures of the world's model.
   StereoCameras(const World& world, const StereoRig& rig, const CameraConfig& config, CameraSeeds seeds,
                 const std::optional<StereoCalibration>& raw = std::nullopt,
                 RendererKind renderer = RendererKind::osmesa);

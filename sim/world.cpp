@@ -130,8 +130,9 @@ World build_world(const fs::path& models_folder, const Airframe& airframe,
     }
   }
   set_inertia(*model, airframe);
-  paint_textures(*model, config);
-  return {std::move(model), obstacles};
+  model->vis.quality.shadowsize = 0;  // what the cameras have no use for and would pay for
+  model->vis.quality.offsamples = 0;
+  return {std::move(model), obstacles, config};
 }
 
 }  // namespace understory

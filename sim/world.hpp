@@ -46,10 +46,12 @@ enum GeomGroup { group_scenery = 0, group_aircraft_skin = 1, group_collision = 3
 
 /// The compiled scene: ground, obstacles and one aircraft, at 1200 Hz with gravity. The aircraft's body is
 /// named "aircraft" (free joint "aircraft_free"), its hinges "left_elevon" and "right_elevon", the ground's
-/// geom "ground".
+/// geom "ground". The textures' pixels are left to the cameras, which paint them (sim/scenery.hpp): physics
+/// has no use for them.
 struct World {
   ModelPointer model;
   std::vector<Obstacle> obstacles;
+  WorldConfig config = {};
 };
 
 /// Composes models/airframe/delta_wing.xml with the obstacles and compiles it. Throws std::runtime_error,

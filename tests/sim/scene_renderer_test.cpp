@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "sim/scenery.hpp"
 #include "tests/sim/camera_scenes.hpp"
 
 namespace understory {
@@ -22,7 +23,10 @@ World wide_forest() {
     trunk.to_world = trunk.from_world + Eigen::Vector3d(0, 0, 9);
     trunk.radius_m = radius(generator);
   }
-  return build_world(std::filesystem::path(UNDERSTORY_SOURCE_DIR) / "models", Airframe{}, obstacles, {});
+  World world =
+      build_world(std::filesystem::path(UNDERSTORY_SOURCE_DIR) / "models", Airframe{}, obstacles, {});
+  paint_textures(*world.model, world.config);
+  return world;
 }
 
 Eigen::Isometry3d flown_pose(int i) {

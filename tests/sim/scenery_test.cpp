@@ -83,6 +83,7 @@ TEST(Scenery, ModelsTexturesHaveTheConfiguredContrast) {
   config.bark_contrast = 0.2;
   config.ground_contrast = 0.4;
   const World world = world_of(config);
+  paint_textures(*world.model, world.config);
   const auto contrast = [&](const char* name) {
     const int id = mj_name2id(world.model.get(), mjOBJ_TEXTURE, name);
     const mjtByte* rgb = world.model->tex_rgb + world.model->tex_adr[id];
