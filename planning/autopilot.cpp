@@ -1,5 +1,6 @@
 #include "planning/autopilot.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace understory {
@@ -43,11 +44,38 @@ void Autopilot::on(const StereoFrame& frame) {
     state_source_.on(
         ResightingSample{again.t_ns, again.earlier_ns, again.discrepancy_world_m, again.covariance_m2});
   map_.insert(hits_, seen.T_world_body * rig_.T_body_camera, frame.t_ns, seen.distance_flown_m);
+  plan_outdated_ = plan_outdated_ || seen_near_the_plan(frame.t_ns);
   map_.forget_passed(state_source_.state().T_world_body, frame.t_ns);
+}
+
+// Whether the frame of that moment put a new point on the map so near the plan in force, or the one on its
+// way, that it can change its cost.
+bool Autopilot::seen_near_the_plan(std::int64_t t_ns) const {
+  const Plan& plan = next_plan_due_ns_ >= 0 ? next_plan_ : plan_;
+  const ObstacleFieldConfig& field = config_.planner.field;
+  const double near_m = config_.planner.trajectory.comfortable_clearance_m + field.half_span_m +
+                        field.wing_radius_m + field.sigma_zero_m + 0.5 * field.cell_m;
+  const auto near_the_plan = [&](const ObstaclePoint& point) {
+    return std::ranges::any_of(plan.points, [&](const PlanPoint& planned) {
+      return (planned.position_world - point.position_world).head<2>().squaredNorm() <= near_m * near_m;
+    });
+  };
+  const std::vector<ObstaclePoint>& points = map_.points();  // new ones come last
+  for (auto point = points.rbegin(); point != points.rend(); ++point) {
+    if (point->t_ns != t_ns || point->sightings != 1) break;
+    if (near_the_plan(*point)) return true;
+  }
+  return false;
 }
 
 void Autopilot::replan(std::int64_t t_ns) {
   if (!in_flight(t_ns) || next_plan_due_ns_ >= 0) return;
+  const double period_s =
+      plan_.origin == PlanOrigin::straight ? config_.straight_period_s : config_.avoiding_period_s;
+  if (!plan_outdated_ && t_ns - planned_ns_ < nanoseconds(period_s)) return;
+  const bool outdated = plan_outdated_ || period_s == 0;
+  planned_ns_ = t_ns;
+  plan_outdated_ = false;
   // A command given now moves the elevons one input delay later, and the plan itself is ready only after its
   // latency: plan from where the aircraft will be then, under what has been commanded until then.
   const std::int64_t effective_ns =
@@ -62,7 +90,7 @@ void Autopilot::replan(std::int64_t t_ns) {
   start.position_world.z() -= ground_m;
   std::vector<ObstaclePoint> points = map_.trusted_points();
   for (ObstaclePoint& point : points) point.position_world.z() -= ground_m;
-  next_plan_ = planner_.plan(start, effective_ns, points, state.distance_flown_m);
+  next_plan_ = planner_.plan(start, effective_ns, points, state.distance_flown_m, outdated);
   next_plan_due_ns_ = t_ns + nanoseconds(config_.plan_latency_s);
 }
 

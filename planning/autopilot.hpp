@@ -20,6 +20,10 @@ struct AutopilotConfig {
       30;  ///< two IMU samples in a row above this along body x: the catapult has fired
   double throttle_delay_s = 0.28;  ///< from then to throttle and control; the rail takes 0.25 s of it
   double plan_latency_s = 0.006;   ///< what computing a plan costs in simulated time, before it takes effect
+  /// Longest between plans while the one in force goes straight and nothing new comes near it; what does is
+  /// planned for at once. 0: plans at every call of replan(), as far as plan_latency_s lets it.
+  double straight_period_s = 0;
+  double avoiding_period_s = 0;  ///< the same while the plan in force goes around something
   LocalMapConfig map;
   ResightingsConfig resightings;
   FlightModelConfig flight_model;
@@ -32,6 +36,8 @@ void visit_fields(Visitor& visit, AutopilotConfig& config) {
   visit("launch_acceleration_mps2", config.launch_acceleration_mps2, 5.0, 500.0);
   visit("throttle_delay_s", config.throttle_delay_s, 0.0, 2.0);
   visit("plan_latency_s", config.plan_latency_s, 0.0, 0.2);
+  visit("straight_period_s", config.straight_period_s, 0.0, 1.0);
+  visit("avoiding_period_s", config.avoiding_period_s, 0.0, 1.0);
   visit("map", config.map);
   visit("resightings", config.resightings);
   visit("flight_model", config.flight_model);
@@ -55,7 +61,8 @@ class Autopilot {
   void on(const GpsSample& sample) { state_source_.on(sample); }
   void on(const StereoFrame& frame);
   /// Plans for the moment at which the plan will take effect; does nothing while one is being computed
-  /// (plan_latency_s long), so that a rate of calls above that changes nothing.
+  /// (plan_latency_s long), so that a rate of calls above that changes nothing, and nothing while the plan in
+  /// force is younger than its period and no new point of the map lies near it.
   void replan(std::int64_t t_ns);
   Controls controls(std::int64_t t_ns);
 
@@ -68,6 +75,8 @@ class Autopilot {
   const PlannerCounts& counts() const { return planner_.counts(); }
 
  private:
+  bool seen_near_the_plan(std::int64_t t_ns) const;
+
   AutopilotConfig config_;
   StereoRig rig_;
   ObstacleDetector& detector_;
@@ -81,6 +90,8 @@ class Autopilot {
   Plan plan_;       ///< in force
   Plan next_plan_;  ///< computed, takes effect at next_plan_due_ns_
   std::int64_t next_plan_due_ns_ = -1;
+  std::int64_t planned_ns_ = 0;  ///< when the newest plan was asked for
+  bool plan_outdated_ = true;    ///< something new lies near it
   std::int64_t launch_ns_ = -1;  ///< when the catapult was felt; -1 before
   int strong_samples_ = 0;
 };

@@ -23,7 +23,8 @@ AvoidancePlanner::AvoidancePlanner(const PlannerConfig& config, const FlightMode
       primitives_(avoidance_primitives(config.search.greatest_bank_rad)) {}
 
 Plan AvoidancePlanner::plan(const FlightState& start, std::int64_t t_ns,
-                            const std::vector<ObstaclePoint>& points, double distance_flown_m) {
+                            const std::vector<ObstaclePoint>& points, double distance_flown_m,
+                            bool outdated) {
   ++replan_index_;
   const double asked_m = greatest_clearance_m(
       config_.trajectory,
@@ -39,7 +40,7 @@ Plan AvoidancePlanner::plan(const FlightState& start, std::int64_t t_ns,
   }
 
   const int flown_on_ompl = counts_.solved + counts_.kept_ompl;
-  const Plan plan = avoid(task, start, t_ns);
+  const Plan plan = avoid(task, start, t_ns, outdated);
   if (!straight.reached_horizon) {
     ++counts_.blocked;
     counts_.blocked_ompl += counts_.solved + counts_.kept_ompl - flown_on_ompl;
@@ -47,16 +48,16 @@ Plan AvoidancePlanner::plan(const FlightState& start, std::int64_t t_ns,
   return plan;
 }
 
-Plan AvoidancePlanner::avoid(const FlightTask& task, const FlightState& start, std::int64_t t_ns) {
+Plan AvoidancePlanner::avoid(const FlightTask& task, const FlightState& start, std::int64_t t_ns,
+                             bool outdated) {
   const Manoeuvre left = remaining(t_ns);
   const TrajectoryConfig& limits = config_.trajectory;
   Rollout kept = fly_out(task, start, left, limits.least_kept_clearance_m, true);
   const bool may_keep = kept.reached_horizon && manoeuvre_origin_ != PlanOrigin::fallback;
-  const bool kept_good = may_keep && kept.cost <= config_.kept_cost_ratio * manoeuvre_cost_ + 1.0;
-  if (kept_good && !left.empty() && replans_kept_ < config_.refresh_replans) {
-    ++replans_kept_;
+  const bool kept_good = !left.empty() && kept.cost <= config_.kept_cost_ratio * manoeuvre_cost_ + 1.0;
+  const double searched_s = 1e-9 * static_cast<double>(t_ns - searched_t_ns_);
+  if (may_keep && (kept_good || !outdated) && searched_s < config_.refresh_s)
     return keep(t_ns, left, std::move(kept));
-  }
   std::optional<Plan> searched;
   if (config_.use_ompl) searched = search(task, start, t_ns, left, may_keep);
   return searched ? std::move(*searched) : fall_back(task, start, t_ns);
@@ -84,7 +85,7 @@ std::optional<Plan> AvoidancePlanner::search(const FlightTask& task, const Fligh
   }
   if (may_keep) kept = improved(left, limits.least_kept_clearance_m);
   if (may_keep && kept.cost <= config_.change_cost_ratio * found.cost) {
-    replans_kept_ = 0;
+    searched_t_ns_ = t_ns;
     return keep(t_ns, kept.manoeuvre, flown_through(task, start, kept.manoeuvre));
   }
   if (!answer) return std::nullopt;
@@ -126,7 +127,7 @@ Plan AvoidancePlanner::adopt(std::int64_t t_ns, const Manoeuvre& manoeuvre, Plan
   if (origin != PlanOrigin::kept) {
     manoeuvre_origin_ = origin;
     manoeuvre_cost_ = rollout.cost;
-    replans_kept_ = 0;
+    searched_t_ns_ = t_ns;
   }
   manoeuvre_ = manoeuvre;
   manoeuvre_t_ns_ = t_ns;

@@ -18,7 +18,7 @@ struct PlannerConfig {
   double kept_cost_ratio = 1.3;
   double change_cost_ratio =
       1.5;                   ///< another way must be this much cheaper than the plan in force: no dithering
-  int refresh_replans = 12;  ///< a kept plan is searched against anew after this many replans
+  double refresh_s = 0.105;  ///< after which a kept plan is searched against anew
   ObstacleFieldConfig field;
   TrajectoryConfig trajectory;
   ManoeuvreSearchConfig search;
@@ -30,7 +30,7 @@ void visit_fields(Visitor& visit, PlannerConfig& config) {
   visit("use_ompl", config.use_ompl);
   visit("kept_cost_ratio", config.kept_cost_ratio, 1.0, 100.0);
   visit("change_cost_ratio", config.change_cost_ratio, 1.0, 100.0);
-  visit("refresh_replans", config.refresh_replans, 1, 1000);
+  visit("refresh_s", config.refresh_s, 0.0, 10.0);
   visit("field", config.field);
   visit("trajectory", config.trajectory);
   visit("search", config.search);
@@ -58,8 +58,10 @@ class AvoidancePlanner {
                    std::uint64_t seed);
 
   /// A plan from `start`, where the aircraft will be at `t_ns` (not now: when the plan takes effect).
+  /// `outdated`: the points are not those of the plan in force. Where they are, it is searched against every
+  /// refresh_s only, as long as it is free.
   Plan plan(const FlightState& start, std::int64_t t_ns, const std::vector<ObstaclePoint>& points,
-            double distance_flown_m);
+            double distance_flown_m, bool outdated = true);
 
   const PlannerCounts& counts() const { return counts_; }
 
@@ -73,7 +75,7 @@ class AvoidancePlanner {
                              const Manoeuvre& left, bool may_keep);
   Plan fall_back(const FlightTask& task, const FlightState& start, std::int64_t t_ns);
   /// The plan where the straight way is not comfortable.
-  Plan avoid(const FlightTask& task, const FlightState& start, std::int64_t t_ns);
+  Plan avoid(const FlightTask& task, const FlightState& start, std::int64_t t_ns, bool outdated);
   /// Puts it in force; `rollout` is the manoeuvre flown from the plan's start, with its points.
   Plan adopt(std::int64_t t_ns, const Manoeuvre& manoeuvre, PlanOrigin origin, Rollout rollout);
 
@@ -88,7 +90,7 @@ class AvoidancePlanner {
   std::int64_t manoeuvre_t_ns_ = 0;
   PlanOrigin manoeuvre_origin_ = PlanOrigin::straight;
   double manoeuvre_cost_ = 0;
-  int replans_kept_ = 0;
+  std::int64_t searched_t_ns_ = 0;  ///< when it was last found, or found to be the best
 };
 
 /// The fallback's choices: level, turns of several banks to either side, held or reversed after a while.

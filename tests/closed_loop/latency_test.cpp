@@ -35,8 +35,12 @@ class OpeningEyes : public ObstacleDetector {
   std::int64_t opens_ns_;
 };
 
+Scenario library_scenario(const std::string& name) {
+  return load_scenario(UNDERSTORY_SOURCE_DIR "/scenarios/library/" + name + ".yaml");
+}
+
 struct Loop {
-  Scenario scenario = load_scenario(UNDERSTORY_SOURCE_DIR "/scenarios/library/clear.yaml");
+  Scenario scenario;
   StereoRig rig = read_rig(UNDERSTORY_SOURCE_DIR "/models/rigs/" + scenario.rig + ".yaml");
   World world = build_world(UNDERSTORY_SOURCE_DIR "/models", scenario.airframe, {}, scenario.world_config());
 
@@ -76,8 +80,7 @@ struct Loop {
 
 TEST(Latency, TheConfiguredDelaysAddUpToLessThanTheLimit) {
   for (const char* name : {"forest", "dense", "paper", "goalposts"}) {
-    const Scenario scenario =
-        load_scenario(std::string(UNDERSTORY_SOURCE_DIR "/scenarios/library/") + name + ".yaml");
+    const Scenario scenario = library_scenario(name);
     const double control_period_s = 1.0 / scenario.sensors.sensors.imu_rate_hz;
     EXPECT_LE(scenario.cameras.latency_s + scenario.autopilot.autopilot.plan_latency_s + control_period_s +
                   scenario.airframe.input_delay_s,
@@ -86,8 +89,11 @@ TEST(Latency, TheConfiguredDelaysAddUpToLessThanTheLimit) {
   }
 }
 
-TEST(Latency, ElevonsAnswerAnImageWithinTheLimit) {
-  Loop loop;
+/// With the autopilot of that scenario.
+class LatencyOf : public testing::TestWithParam<const char*> {};
+
+TEST_P(LatencyOf, ElevonsAnswerAnImageWithinTheLimit) {
+  Loop loop{library_scenario(GetParam())};
   // At 1.7 s the aircraft is some 13 m out, in level flight. A row of trunks crosses its way at the depth
   // that the rig sees, so that whenever the eyes open there is something to avoid, off centre so that one
   // side is better.
@@ -115,6 +121,9 @@ TEST(Latency, ElevonsAnswerAnImageWithinTheLimit) {
   }
   RecordProperty("slowest_us", static_cast<int>(slowest_ns / 1000));
 }
+
+// One plans at every pair of images, the other when something new is seen and seldom else.
+INSTANTIATE_TEST_SUITE_P(Scenarios, LatencyOf, testing::Values("clear", "forest"));
 
 }  // namespace
 }  // namespace understory
