@@ -56,8 +56,11 @@ Plan AvoidancePlanner::avoid(const FlightTask& task, const FlightState& start, s
   const bool may_keep = kept.reached_horizon && manoeuvre_origin_ != PlanOrigin::fallback;
   const bool kept_good = !left.empty() && kept.cost <= config_.kept_cost_ratio * manoeuvre_cost_ + 1.0;
   const double searched_s = 1e-9 * static_cast<double>(t_ns - searched_t_ns_);
-  if (may_keep && (kept_good || !outdated) && searched_s < config_.refresh_s)
+  const bool fresh = replans_kept_ < config_.refresh_replans && searched_s < config_.refresh_s;
+  if (may_keep && (kept_good || !outdated) && fresh) {
+    ++replans_kept_;
     return keep(t_ns, left, std::move(kept));
+  }
   std::optional<Plan> searched;
   if (config_.use_ompl) searched = search(task, start, t_ns, left, may_keep);
   return searched ? std::move(*searched) : fall_back(task, start, t_ns);
@@ -85,6 +88,7 @@ std::optional<Plan> AvoidancePlanner::search(const FlightTask& task, const Fligh
   }
   if (may_keep) kept = improved(left, limits.least_kept_clearance_m);
   if (may_keep && kept.cost <= config_.change_cost_ratio * found.cost) {
+    replans_kept_ = 0;
     searched_t_ns_ = t_ns;
     return keep(t_ns, kept.manoeuvre, flown_through(task, start, kept.manoeuvre));
   }
@@ -127,6 +131,7 @@ Plan AvoidancePlanner::adopt(std::int64_t t_ns, const Manoeuvre& manoeuvre, Plan
   if (origin != PlanOrigin::kept) {
     manoeuvre_origin_ = origin;
     manoeuvre_cost_ = rollout.cost;
+    replans_kept_ = 0;
     searched_t_ns_ = t_ns;
   }
   manoeuvre_ = manoeuvre;

@@ -18,7 +18,8 @@ struct PlannerConfig {
   double kept_cost_ratio = 1.3;
   double change_cost_ratio =
       1.5;                   ///< another way must be this much cheaper than the plan in force: no dithering
-  double refresh_s = 0.105;  ///< after which a kept plan is searched against anew
+  int refresh_replans = 12;  ///< a kept plan is searched against anew after this many replans,
+  double refresh_s = 1;      ///< or after this long
   ObstacleFieldConfig field;
   TrajectoryConfig trajectory;
   ManoeuvreSearchConfig search;
@@ -30,6 +31,7 @@ void visit_fields(Visitor& visit, PlannerConfig& config) {
   visit("use_ompl", config.use_ompl);
   visit("kept_cost_ratio", config.kept_cost_ratio, 1.0, 100.0);
   visit("change_cost_ratio", config.change_cost_ratio, 1.0, 100.0);
+  visit("refresh_replans", config.refresh_replans, 1, 1000);
   visit("refresh_s", config.refresh_s, 0.0, 10.0);
   visit("field", config.field);
   visit("trajectory", config.trajectory);
@@ -58,8 +60,8 @@ class AvoidancePlanner {
                    std::uint64_t seed);
 
   /// A plan from `start`, where the aircraft will be at `t_ns` (not now: when the plan takes effect).
-  /// `outdated`: the points are not those of the plan in force. Where they are, it is searched against every
-  /// refresh_s only, as long as it is free.
+  /// `outdated`: the points are not those of the plan in force. Where they are, and it is free, it is
+  /// searched against only when the refresh is due.
   Plan plan(const FlightState& start, std::int64_t t_ns, const std::vector<ObstaclePoint>& points,
             double distance_flown_m, bool outdated = true);
 
@@ -90,6 +92,7 @@ class AvoidancePlanner {
   std::int64_t manoeuvre_t_ns_ = 0;
   PlanOrigin manoeuvre_origin_ = PlanOrigin::straight;
   double manoeuvre_cost_ = 0;
+  int replans_kept_ = 0;
   std::int64_t searched_t_ns_ = 0;  ///< when it was last found, or found to be the best
 };
 

@@ -89,7 +89,7 @@ TEST(AvoidancePlanner, KeepsItsPlanWhileThatIsGood) {
   const FlightModel model({}, {});
   PlannerConfig config;
   config.kept_cost_ratio = 100;
-  config.refresh_s = 1000;
+  config.refresh_replans = 1000;
   AvoidancePlanner planner(config, model, mission, 1);
   const std::vector<ObstaclePoint> points = points_of({{{9, 0.1}}});
   const Plan first = planner.plan(level_start(mission), 0, points, 0);
