@@ -12,6 +12,7 @@ namespace understory {
 Scenario forest_in(const Air& air, std::uint64_t seed, const std::filesystem::path& root) {
   Scenario scenario =
       load_scenario(root / "scenarios" / "library" / "forest.yaml", {fmt::format("seed={}", seed)});
+  scenario.autopilot = {};
   scenario.wind_world_mps = {0, air.wind_mps, 0};
   if (air.turbulent) scenario.wind.turbulence_wind20_mps = air.wind_mps;
   return scenario;

@@ -13,7 +13,8 @@ struct Air {
   bool turbulent = false;  ///< Dryden turbulence of a wind of this strength at 20 ft
 };
 
-/// scenarios/library/forest.yaml in that air. `root`: the source tree.
+/// scenarios/library/forest.yaml in that air, flown by the default autopilot: how seldom the forest's own
+/// plans is not the filter's affair. `root`: the source tree.
 Scenario forest_in(const Air& air, std::uint64_t seed, const std::filesystem::path& root);
 
 /// Flies `flights` scenarios one after the other and hands each record to `measure` with its number, on a
