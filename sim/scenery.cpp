@@ -54,7 +54,6 @@ struct Tint {
 
 void paint(mjModel& model, const char* name, const GrayTexture& texture, const Tint& tint) {
   const int id = mj_name2id(&model, mjOBJ_TEXTURE, name);
-  if (id < 0) return;
   const auto tinted = [](std::uint8_t gray, double factor) {
     return static_cast<mjtByte>(std::min(255.0, gray * factor));
   };

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
+#include <vector>
 
 #include "tests/perception/rigs.hpp"
 
@@ -56,15 +56,15 @@ struct Flight {
     return counts.straight + counts.solved + counts.kept + counts.fallback;
   }
 
-  /// Sees, at each tick, what `points_world` gives; how many plans that makes.
-  int fly(int ticks, const std::function<std::vector<Eigen::Vector3d>(int)>& points_world) {
+  /// Sees `points_world` at each tick; how many plans that makes.
+  int fly(int ticks, const std::vector<Eigen::Vector3d>& points_world = {}) {
     const int before = plans();
     for (int i = 0; i < ticks; ++i, ++tick) {
       const std::int64_t t_ns = time_of_tick_ns(tick);
       state_source.fly_to(t_ns);
       detector.hits.clear();
       const Eigen::Isometry3d T_world_camera = state_source.state().T_world_body * rig.T_body_camera;
-      for (const Eigen::Vector3d& point : points_world(i)) {
+      for (const Eigen::Vector3d& point : points_world) {
         StereoHit hit;
         hit.position_camera = T_world_camera.inverse() * point;
         detector.hits.push_back(hit);
@@ -74,9 +74,6 @@ struct Flight {
       autopilot.controls(time_of_tick_ns(tick + 1) - 1);  // takes the plan up
     }
     return plans() - before;
-  }
-  int fly(int ticks) {
-    return fly(ticks, [](int) { return std::vector<Eigen::Vector3d>(); });
   }
 
   StereoRig rig = support::house_rig("long.yaml");
@@ -93,7 +90,7 @@ AutopilotConfig seldom() {
   return config;
 }
 
-/// A trunk's points, abreast of the course by that much, 9 m ahead of where the flight begins to look.
+/// A trunk's points, abreast of the course by that much.
 std::vector<Eigen::Vector3d> trunk_at(double x_m, double abreast_m) {
   return {{x_m, abreast_m, 4.2}, {x_m, abreast_m, 4.5}, {x_m, abreast_m, 4.8}};
 }
@@ -112,7 +109,7 @@ TEST(Autopilot, PlansAtOnceForWhatComesNearTheWay) {
   Flight flight(seldom());
   flight.fly(13);  // one tick after a plan
   const double x_m = flight.state_source.state().distance_flown_m + 9;
-  EXPECT_EQ(flight.fly(1, [&](int) { return trunk_at(x_m, 0.1); }), 1);
+  EXPECT_EQ(flight.fly(1, trunk_at(x_m, 0.1)), 1);
   EXPECT_NE(flight.autopilot.plan().origin, PlanOrigin::straight);
 }
 
@@ -120,16 +117,16 @@ TEST(Autopilot, WhatIsKnownOrFarAsideIsNoReasonToPlan) {
   Flight flight(seldom());
   flight.fly(13);
   const double x_m = flight.state_source.state().distance_flown_m + 9;
-  EXPECT_EQ(flight.fly(1, [&](int) { return trunk_at(x_m, 5); }), 0);
-  EXPECT_EQ(flight.fly(1, [&](int) { return trunk_at(x_m, 1.3); }), 1);  // near, if not in the way
-  EXPECT_EQ(flight.fly(1, [&](int) { return trunk_at(x_m, 1.3); }), 0);
+  EXPECT_EQ(flight.fly(1, trunk_at(x_m, 5)), 0);
+  EXPECT_EQ(flight.fly(1, trunk_at(x_m, 1.3)), 1);  // near, if not in the way
+  EXPECT_EQ(flight.fly(1, trunk_at(x_m, 1.3)), 0);
 }
 
 TEST(Autopilot, LooksAfterAManoeuvreMoreOftenThanAfterTheStraightWay) {
   Flight flight(seldom());
   flight.fly(13);
   const double x_m = flight.state_source.state().distance_flown_m + 9;
-  flight.fly(1, [&](int) { return trunk_at(x_m, 0.1); });
+  flight.fly(1, trunk_at(x_m, 0.1));
   EXPECT_EQ(flight.fly(30), 10);
 }
 
