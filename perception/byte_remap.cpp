@@ -16,31 +16,65 @@ namespace understory {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
+using Half = hn::FixedTag<std::uint8_t, ByteRemap::half_px>;
 
-// Of the source, what the load at an offset holds of a chunk.
-template <class D>
-hn::VFromD<D> Gathered(D d, const std::uint8_t* source, std::int32_t offset, const std::uint8_t* indices) {
-  return hn::TableLookupBytesOr0(hn::LoadU(d, source + offset), hn::LoadU(d, indices));
+// Of the source, what the loads at the offsets hold of a chunk's halves.
+#if HWY_MAX_BYTES >= 32 && !HWY_HAVE_SCALABLE
+using Chunk = hn::FixedTag<std::uint8_t, ByteRemap::chunk_px>;
+
+HWY_INLINE hn::Vec<Chunk> Gathered(const std::uint8_t* source, const std::int32_t* offsets,
+                                   const std::uint8_t* indices) {
+  const Chunk d;
+  const Half half;
+  const auto bytes =
+      hn::Combine(d, hn::LoadU(half, source + offsets[1]), hn::LoadU(half, source + offsets[0]));
+  return hn::TableLookupBytesOr0(bytes, hn::LoadU(d, indices));
 }
 
-// One row of chunks, two loads each, the last of which ends with the row.
-void RemapRow(const std::uint8_t* source, const std::int32_t* offsets, const std::uint8_t* indices,
-              int width_px, std::uint8_t* output) {
-  const hn::Full128<std::uint8_t> d;
-  constexpr int px = ByteRemap::chunk_px;
-  for (int u = 0; u < width_px; u += px, offsets += 2, indices += 2 * px)
-    hn::StoreU(
-        hn::Or(Gathered(d, source, offsets[0], indices), Gathered(d, source, offsets[1], indices + px)), d,
-        output + std::min(u, width_px - px));
+HWY_INLINE void RemapChunk(const std::uint8_t* source, const std::int32_t* offsets,
+                           const std::uint8_t* indices, std::uint8_t* output) {
+  hn::StoreU(hn::Or(Gathered(source, offsets, indices),
+                    Gathered(source, offsets + 2, indices + ByteRemap::chunk_px)),
+             Chunk(), output);
 }
+#else
+HWY_INLINE void RemapChunk(const std::uint8_t* source, const std::int32_t* offsets,
+                           const std::uint8_t* indices, std::uint8_t* output) {
+  const Half d;
+  for (int half = 0; half < 2; ++half) {
+    const auto gathered = [&](int load) {
+      const int i = 2 * load + half;
+      return hn::TableLookupBytesOr0(hn::LoadU(d, source + offsets[i]),
+                                     hn::LoadU(d, indices + ByteRemap::half_px * i));
+    };
+    hn::StoreU(hn::Or(gathered(0), gathered(1)), d, output + ByteRemap::half_px * half);
+  }
+}
+#endif
 
-// What a row's chunks still lack.
-void AddLoads(const std::uint8_t* source, const std::int32_t* columns, const std::int32_t* offsets,
-              const std::uint8_t* indices, int count, std::uint8_t* output) {
-  const hn::Full128<std::uint8_t> d;
-  for (int i = 0; i < count; ++i, indices += ByteRemap::chunk_px) {
-    std::uint8_t* chunk = output + columns[i];
-    hn::StoreU(hn::Or(hn::LoadU(d, chunk), Gathered(d, source, offsets[i], indices)), d, chunk);
+void RemapRows(const ByteRemap::Tables& tables, const GrayView& source, int first_row_px, int last_row_px,
+               std::uint8_t* output, std::ptrdiff_t output_stride) {
+  const Half half;
+  constexpr int px = ByteRemap::chunk_px, loads = ByteRemap::chunk_loads;
+  const int chunks = (source.width_px + px - 1) / px, last_px = source.width_px - px;
+  const std::int32_t* offsets = tables.offsets.data() + std::ptrdiff_t{first_row_px} * chunks * loads;
+  const std::uint8_t* indices =
+      tables.indices.data() + std::ptrdiff_t{first_row_px} * chunks * loads * ByteRemap::half_px;
+  std::int32_t more = tables.more_ends[static_cast<std::size_t>(first_row_px)];
+  for (int v = first_row_px; v < last_row_px; ++v) {
+    constexpr int ahead = 12;  // rows: the map's own bend, and as long as memory takes to answer
+    source.prefetch(static_cast<int>(*offsets / source.stride) + ahead, 1);
+    std::uint8_t* row = output + v * output_stride;
+    for (int i = 0; i < chunks; ++i, offsets += loads, indices += loads * ByteRemap::half_px)
+      RemapChunk(source.data, offsets, indices, row + std::min(i * px, last_px));
+    for (; more < tables.more_ends[static_cast<std::size_t>(v) + 1]; ++more) {
+      const auto index = static_cast<std::size_t>(more);
+      std::uint8_t* lacking = row + tables.more_columns[index];
+      const auto found =
+          hn::TableLookupBytesOr0(hn::LoadU(half, source.data + tables.more_offsets[index]),
+                                  hn::LoadU(half, tables.more_indices.data() + ByteRemap::half_px * index));
+      hn::StoreU(hn::Or(hn::LoadU(half, lacking), found), half, lacking);
+    }
   }
 }
 
@@ -52,8 +86,7 @@ HWY_AFTER_NAMESPACE();
 namespace understory {
 namespace {
 
-HWY_EXPORT(RemapRow);
-HWY_EXPORT(AddLoads);
+HWY_EXPORT(RemapRows);
 
 constexpr std::uint8_t none = 0x80;  // an index that gives 0
 
@@ -61,51 +94,65 @@ constexpr std::uint8_t none = 0x80;  // an index that gives 0
 
 ByteRemap::ByteRemap(const std::vector<std::int16_t>& places, int width_px, int height_px)
     : width_px_(width_px), height_px_(height_px) {
-  assert_always(width_px >= chunk_px && height_px > 0, "images must be at least sixteen pixels wide");
+  assert_always(width_px >= chunk_px && height_px > 0, "images must be at least a chunk wide");
   assert_always(places.size() == 2 * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px),
                 "a place is needed for each pixel");
+  tables_.more_ends.push_back(0);
   for (int v = 0; v < height_px; ++v) {
     for (int chunk = 0; chunk < width_px; chunk += chunk_px) {
       const int first = std::min(chunk, width_px - chunk_px);
-      add_chunk(places.data() + 2 * (v * width_px + first), first);
+      for (int half = 0; half < 2; ++half) {
+        const int first_px = first + half * half_px;
+        add_half(places.data() + 2 * (v * width_px + first_px), first_px, half);
+      }
     }
-    more_ends_.push_back(static_cast<std::int32_t>(more_.size()));
+    tables_.more_ends.push_back(static_cast<std::int32_t>(more_.size()));
   }
 }
 
-void ByteRemap::add_chunk(const std::int16_t* places, int first_px) {
-  std::array<bool, chunk_px> done{};
+void ByteRemap::add_half(const std::int16_t* places, int first_px, int half) {
+  std::array<bool, half_px> done{};
   const auto place = [&](int pixel) { return Load{places[2 * pixel], places[2 * pixel + 1]}; };
+  if (half == 0) {  // loads of nothing, from where the chunk before had its own
+    loads_.resize(loads_.size() + chunk_loads, loads_.empty() ? Load() : loads_.back());
+    tables_.indices.resize(tables_.indices.size() + chunk_loads * half_px, none);
+  }
   int loads = 0;
-  for (int i = 0; i < chunk_px; ++i) {
+  for (int i = 0; i < half_px; ++i) {
     const Load wanted = place(i);
     const bool inside = wanted.column_px >= 0 && wanted.column_px < width_px_ && wanted.row_px >= 0 &&
                         wanted.row_px < height_px_;
     if (done[static_cast<std::size_t>(i)] || !inside) continue;
     // The load begins with the leftmost pixel still wanted from this row that it can hold together with i.
     Load load{wanted.column_px, wanted.row_px};
-    for (int j = i + 1; j < chunk_px; ++j) {
+    for (int j = i + 1; j < half_px; ++j) {
       const Load other = place(j);
       if (other.row_px == load.row_px && other.column_px >= 0 &&
-          other.column_px > wanted.column_px - chunk_px)
+          other.column_px > wanted.column_px - half_px)
         load.column_px = std::min(load.column_px, other.column_px);
     }
-    load.column_px = std::min(load.column_px, width_px_ - chunk_px);
-    const bool one_more = loads++ >= 2;
-    if (one_more) more_columns_.push_back(first_px);
-    (one_more ? more_ : loads_).push_back(load);
-    for (int j = 0; j < chunk_px; ++j) {
+    load.column_px = std::min(load.column_px, width_px_ - half_px);
+    std::uint8_t* indices = nullptr;
+    if (loads < chunk_loads / 2) {
+      const std::size_t index = loads_.size() - chunk_loads + static_cast<std::size_t>(2 * loads + half);
+      loads_[index] = load;
+      indices = &tables_.indices[index * half_px];
+    } else {
+      more_.push_back(load);
+      tables_.more_columns.push_back(first_px);
+      tables_.more_indices.resize(tables_.more_indices.size() + half_px, none);
+      indices = &tables_.more_indices[tables_.more_indices.size() - half_px];
+    }
+    ++loads;
+    for (int j = 0; j < half_px; ++j) {
       const Load other = place(j);
       const int within = other.column_px - load.column_px;
       const bool here = !done[static_cast<std::size_t>(j)] && other.row_px == load.row_px && within >= 0 &&
-                        within < chunk_px && other.column_px < width_px_;
-      (one_more ? more_indices_ : indices_).push_back(here ? static_cast<std::uint8_t>(within) : none);
-      if (here) done[static_cast<std::size_t>(j)] = true;
+                        within < half_px && other.column_px < width_px_;
+      if (!here) continue;
+      indices[j] = static_cast<std::uint8_t>(within);
+      done[static_cast<std::size_t>(j)] = true;
     }
-  }
-  for (; loads < 2; ++loads) {  // a load of nothing, from where the one before was
-    loads_.push_back(loads_.empty() ? Load() : loads_.back());
-    indices_.insert(indices_.end(), chunk_px, none);
   }
 }
 
@@ -117,8 +164,8 @@ void ByteRemap::prepare(std::ptrdiff_t stride) {
     for (const Load& load : loads)
       offsets.push_back(static_cast<std::int32_t>(load.row_px * stride + load.column_px));
   };
-  take_offsets(loads_, offsets_);
-  take_offsets(more_, more_offsets_);
+  take_offsets(loads_, tables_.offsets);
+  take_offsets(more_, tables_.more_offsets);
 }
 
 void ByteRemap::apply(const GrayView& source, int first_row_px, int last_row_px, std::uint8_t* output,
@@ -127,19 +174,7 @@ void ByteRemap::apply(const GrayView& source, int first_row_px, int last_row_px,
                 "another size than the map's");
   assert_always(source.stride == stride_, "prepare() was not called for this stride");
   assert_always(first_row_px >= 0 && last_row_px <= height_px_, "rows outside the image");
-  const std::ptrdiff_t loads_per_row = 2 * ((width_px_ + chunk_px - 1) / chunk_px);
-  for (int v = first_row_px; v < last_row_px; ++v) {
-    constexpr int ahead = 12;  // rows: the map's own bend, and as long as memory takes to answer
-    const std::int32_t* offsets = offsets_.data() + v * loads_per_row;
-    source.prefetch(static_cast<int>(*offsets / stride_) + ahead, 1);
-    std::uint8_t* row = output + v * output_stride;
-    HWY_DYNAMIC_DISPATCH(RemapRow)
-    (source.data, offsets, indices_.data() + chunk_px * v * loads_per_row, width_px_, row);
-    const std::int32_t more = v == 0 ? 0 : more_ends_[static_cast<std::size_t>(v) - 1];
-    HWY_DYNAMIC_DISPATCH(AddLoads)
-    (source.data, more_columns_.data() + more, more_offsets_.data() + more,
-     more_indices_.data() + chunk_px * more, more_ends_[static_cast<std::size_t>(v)] - more, row);
-  }
+  HWY_DYNAMIC_DISPATCH(RemapRows)(tables_, source, first_row_px, last_row_px, output, output_stride);
 }
 
 }  // namespace understory

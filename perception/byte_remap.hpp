@@ -9,11 +9,26 @@
 namespace understory {
 
 /// A fixed rearrangement of the pixels of an 8-bit image, as rectification to the nearest pixel is one. What
-/// cv::remap does pixel by pixel, done sixteen at a time with byte shuffles: neighbours in the output lie
-/// near each other in the source, so that a few loads hold them all. Equal to cv::remap bit for bit.
+/// cv::remap does pixel by pixel, done 32 at a time with byte shuffles: neighbours in the output lie near
+/// each other in the source, so that a few loads hold them all. Equal to cv::remap bit for bit.
 class ByteRemap {
  public:
-  static constexpr int chunk_px = 16;
+  static constexpr int half_px = 16;            ///< what a load holds
+  static constexpr int chunk_px = 2 * half_px;  ///< of the output, filled at once
+  static constexpr int chunk_loads = 4;         ///< two for each half
+
+  /// What rows are made from.
+  struct Tables {
+    // Two loads for each half of a chunk, whether it needs them or not: a number that varies costs more in
+    // wrongly foreseen branches. The first of the left and of the right half come first.
+    std::vector<std::int32_t> offsets;  ///< of each load in the source
+    std::vector<std::uint8_t> indices;  ///< half_px for each load: where in it each output pixel lies
+    // What some halves need beyond that is added row by row.
+    std::vector<std::int32_t> more_offsets;
+    std::vector<std::uint8_t> more_indices;
+    std::vector<std::int32_t> more_columns;  ///< of the output, where each one's half begins
+    std::vector<std::int32_t> more_ends;     ///< how many there are above each row, and in all
+  };
 
   /// `places`: for each output pixel, row by row, the column and row of its source pixel; outside the source
   /// (both images are width_px x height_px) the output is 0. Width at least chunk_px.
@@ -28,24 +43,17 @@ class ByteRemap {
              std::ptrdiff_t output_stride) const;
 
  private:
-  /// Pixels of one chunk that one load of the source holds.
+  /// Pixels of half a chunk that one load of the source holds.
   struct Load {
     int column_px = 0, row_px = 0;
   };
 
-  void add_chunk(const std::int16_t* places, int first_px);
+  void add_half(const std::int16_t* places, int first_px, int half);
 
   int width_px_, height_px_;
-  // Two loads for every chunk, whether it needs them or not: a number that varies costs more in wrongly
-  // foreseen branches. What some chunks need beyond that is added row by row.
-  std::vector<Load> loads_;
-  std::vector<std::uint8_t> indices_;  ///< chunk_px for each load: where in it each output pixel lies
-  std::vector<Load> more_;
-  std::vector<std::uint8_t> more_indices_;
-  std::vector<std::int32_t> more_columns_;            ///< of the output, where each one's chunk begins
-  std::vector<std::int32_t> more_ends_;               ///< for each row, how many there are up to its last
-  std::ptrdiff_t stride_ = 0;                         ///< that the offsets are for
-  std::vector<std::int32_t> offsets_, more_offsets_;  ///< of each load in the source
+  std::vector<Load> loads_, more_;
+  std::ptrdiff_t stride_ = 0;  ///< that the offsets are for
+  Tables tables_;
 };
 
 }  // namespace understory

@@ -42,19 +42,19 @@ PushbroomConfig robust_rule() {
 PushbroomConfig tuned_rule(std::string_view rig) {
   PushbroomConfig config = robust_rule();
   if (rig == "long") {
-    config.least_edge_sum = 400;
-    config.score_limit = 0.138472;
-    config.uniqueness_ratio = 1.55531;
-    config.uniqueness_least_depth_m = 3.20629;
-    config.isolation_least_points = 6;
-    config.isolation_radius_m = 0.923592;
-  } else if (rig == "paper") {
-    config.least_edge_sum = 186;
-    config.score_limit = 0.430605;
-    config.uniqueness_ratio = 1.2931;
-    config.uniqueness_least_depth_m = 2.93961;
+    config.least_edge_sum = 418;
+    config.score_limit = 0.317707;
+    config.uniqueness_ratio = 1.21656;
+    config.uniqueness_least_depth_m = 2.14953;
     config.isolation_least_points = 8;
-    config.isolation_radius_m = 0.54672;
+    config.isolation_radius_m = 0.430666;
+  } else if (rig == "paper") {
+    config.least_edge_sum = 406;
+    config.score_limit = 0.200216;
+    config.uniqueness_ratio = 1.19411;
+    config.uniqueness_least_depth_m = 2.15428;
+    config.isolation_least_points = 8;
+    config.isolation_radius_m = 0.621281;
   }
   return config;
 }
