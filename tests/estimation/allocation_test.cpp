@@ -1,34 +1,14 @@
-// The filter allocates nothing once its history is full. A program of its own: it replaces operator new, and
-// is linked with malloc wrapped, which Eigen calls directly.
+// The filter allocates nothing once its history is full.
 #include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <new>
 
 #include "estimation/filter.hpp"
 #include "simulated_flight.hpp"
-
-namespace {
-long allocation_count = 0;
-}
-
-extern "C" {
-void* __real_malloc(std::size_t size);
-void* __wrap_malloc(std::size_t size) {
-  ++allocation_count;
-  return __real_malloc(size);
-}
-}
-
-void* operator new(std::size_t size) {
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+#include "tests/support/counted_allocations.hpp"
 
 namespace understory::test {
 namespace {
+
+using support::allocation_count;
 
 TEST(Allocation, TheFilterAllocatesNothingAfterTheFirstSecond) {
   const std::vector<Moment> flight = fly(dodge(), 3.2);

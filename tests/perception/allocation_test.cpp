@@ -1,27 +1,10 @@
-// A frame allocates nothing once the detector has seen its like. A program of its own: it replaces operator
-// new.
+// A frame allocates nothing once the detector has seen its like.
 #include <gtest/gtest.h>
-
-#include <atomic>
-#include <cstdlib>
-#include <new>
 
 #include "perception/pushbroom_stereo.hpp"
 #include "tests/perception/rigs.hpp"
+#include "tests/support/counted_allocations.hpp"
 #include "tests/support/synthetic_stereo.hpp"
-
-namespace {
-std::atomic<long> allocation_count = 0;
-}
-
-void* operator new(std::size_t size) {
-  ++allocation_count;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-// Not inline: GCC 12 takes one inlined beside a new that is not for a mismatch.
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace understory {
 namespace {
@@ -45,9 +28,9 @@ void expect_no_allocation(PushbroomStereo& detector, const StereoFrame (&frames)
   std::size_t hits = 0;
   for (const StereoFrame& frame : frames) hits += detector.detect(frame).size();
   EXPECT_GT(hits, 300u);
-  const long before = allocation_count;
+  const long before = support::allocation_count;
   for (const StereoFrame& frame : frames) detector.detect(frame);
-  EXPECT_EQ(allocation_count - before, 0);
+  EXPECT_EQ(support::allocation_count - before, 0);
 }
 
 TEST(Allocation, AFrameAllocatesNothingAfterTheFirst) {
