@@ -127,8 +127,7 @@ void ByteRemap::add_half(const std::int16_t* places, int first_px, int half) {
     Load load{wanted.column_px, wanted.row_px};
     for (int j = i + 1; j < half_px; ++j) {
       const Load other = place(j);
-      if (other.row_px == load.row_px && other.column_px >= 0 &&
-          other.column_px > wanted.column_px - half_px)
+      if (other.row_px == load.row_px && other.column_px >= 0 && other.column_px > wanted.column_px - half_px)
         load.column_px = std::min(load.column_px, other.column_px);
     }
     load.column_px = std::min(load.column_px, width_px_ - half_px);
