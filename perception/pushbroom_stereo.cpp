@@ -42,12 +42,12 @@ PushbroomConfig robust_rule() {
 PushbroomConfig tuned_rule(std::string_view rig) {
   PushbroomConfig config = robust_rule();
   if (rig == "long") {
-    config.least_edge_sum = 418;
-    config.score_limit = 0.317707;
-    config.uniqueness_ratio = 1.21656;
-    config.uniqueness_least_depth_m = 2.14953;
-    config.isolation_least_points = 8;
-    config.isolation_radius_m = 0.430666;
+    config.least_edge_sum = 398;
+    config.score_limit = 0.126899;
+    config.uniqueness_ratio = 1.35321;
+    config.uniqueness_least_depth_m = 1.66256;
+    config.isolation_least_points = 6;
+    config.isolation_radius_m = 0.890088;
   } else if (rig == "paper") {
     config.least_edge_sum = 406;
     config.score_limit = 0.200216;

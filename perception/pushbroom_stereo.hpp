@@ -56,7 +56,7 @@ PushbroomConfig paper_rule();
 /// docs/benchmarks.md).
 PushbroomConfig robust_rule();
 /// The robust rule with the numbers tuned for a rig of models/rigs by its name, `long` or `paper`: most
-/// recall at a precision of 0.986 (docs/tuning.md). Rigs that nobody has tuned for get robust_rule().
+/// recall at a precision of 0.985 (docs/tuning.md). Rigs that nobody has tuned for get robust_rule().
 PushbroomConfig tuned_rule(std::string_view rig);
 
 template <typename Visitor>
