@@ -18,10 +18,17 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using Half = hn::FixedTag<std::uint8_t, ByteRemap::half_px>;
 
-// Of the source, what the loads at the offsets hold of a chunk's halves.
+// Of the source, what the load at an offset holds of half a chunk.
+HWY_INLINE hn::Vec<Half> GatheredHalf(const std::uint8_t* source, std::int32_t offset,
+                                      const std::uint8_t* indices) {
+  const Half d;
+  return hn::TableLookupBytesOr0(hn::LoadU(d, source + offset), hn::LoadU(d, indices));
+}
+
 #if HWY_MAX_BYTES >= 32 && !HWY_HAVE_SCALABLE
 using Chunk = hn::FixedTag<std::uint8_t, ByteRemap::chunk_px>;
 
+// The same of both halves, side by side in one register.
 HWY_INLINE hn::Vec<Chunk> Gathered(const std::uint8_t* source, const std::int32_t* offsets,
                                    const std::uint8_t* indices) {
   const Chunk d;
@@ -40,14 +47,11 @@ HWY_INLINE void RemapChunk(const std::uint8_t* source, const std::int32_t* offse
 #else
 HWY_INLINE void RemapChunk(const std::uint8_t* source, const std::int32_t* offsets,
                            const std::uint8_t* indices, std::uint8_t* output) {
-  const Half d;
   for (int half = 0; half < 2; ++half) {
-    const auto gathered = [&](int load) {
-      const int i = 2 * load + half;
-      return hn::TableLookupBytesOr0(hn::LoadU(d, source + offsets[i]),
-                                     hn::LoadU(d, indices + ByteRemap::half_px * i));
+    const auto gathered = [&](int i) {
+      return GatheredHalf(source, offsets[i], indices + ByteRemap::half_px * i);
     };
-    hn::StoreU(hn::Or(gathered(0), gathered(1)), d, output + ByteRemap::half_px * half);
+    hn::StoreU(hn::Or(gathered(half), gathered(2 + half)), Half(), output + ByteRemap::half_px * half);
   }
 }
 #endif
@@ -70,9 +74,8 @@ void RemapRows(const ByteRemap::Tables& tables, const GrayView& source, int firs
     for (; more < tables.more_ends[static_cast<std::size_t>(v) + 1]; ++more) {
       const auto index = static_cast<std::size_t>(more);
       std::uint8_t* lacking = row + tables.more_columns[index];
-      const auto found =
-          hn::TableLookupBytesOr0(hn::LoadU(half, source.data + tables.more_offsets[index]),
-                                  hn::LoadU(half, tables.more_indices.data() + ByteRemap::half_px * index));
+      const auto found = GatheredHalf(source.data, tables.more_offsets[index],
+                                      tables.more_indices.data() + ByteRemap::half_px * index);
       hn::StoreU(hn::Or(hn::LoadU(half, lacking), found), half, lacking);
     }
   }
