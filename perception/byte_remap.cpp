@@ -104,6 +104,9 @@ ByteRemap::ByteRemap(const std::vector<std::int16_t>& places, int width_px, int 
   for (int v = 0; v < height_px; ++v) {
     for (int chunk = 0; chunk < width_px; chunk += chunk_px) {
       const int first = std::min(chunk, width_px - chunk_px);
+      // Loads of nothing, from where the chunk before had its own, until its halves say what they need.
+      loads_.resize(loads_.size() + chunk_loads, loads_.empty() ? Load() : loads_.back());
+      tables_.indices.resize(tables_.indices.size() + chunk_loads * half_px, none);
       for (int half = 0; half < 2; ++half) {
         const int first_px = first + half * half_px;
         add_half(places.data() + 2 * (v * width_px + first_px), first_px, half);
@@ -116,10 +119,6 @@ ByteRemap::ByteRemap(const std::vector<std::int16_t>& places, int width_px, int 
 void ByteRemap::add_half(const std::int16_t* places, int first_px, int half) {
   std::array<bool, half_px> done{};
   const auto place = [&](int pixel) { return Load{places[2 * pixel], places[2 * pixel + 1]}; };
-  if (half == 0) {  // loads of nothing, from where the chunk before had its own
-    loads_.resize(loads_.size() + chunk_loads, loads_.empty() ? Load() : loads_.back());
-    tables_.indices.resize(tables_.indices.size() + chunk_loads * half_px, none);
-  }
   int loads = 0;
   for (int i = 0; i < half_px; ++i) {
     const Load wanted = place(i);
