@@ -25,33 +25,45 @@ HWY_INLINE hn::Vec<Half> GatheredHalf(const std::uint8_t* source, std::int32_t o
   return hn::TableLookupBytesOr0(hn::LoadU(d, source + offset), hn::LoadU(d, indices));
 }
 
+// A chunk's indices say for each pixel which byte of its half's two loads it is, 0 .. 15 of the first, 16 ..
+// 31 of the second; `none` is neither. A shuffle of bytes gives 0 for 128 and more.
+template <class D, class V>
+HWY_INLINE V FromFirst(D d, V indices) {
+  return hn::And(hn::SaturatedAdd(indices, hn::Set(d, 0x70)), hn::Set(d, 0x8F));
+}
+template <class D, class V>
+HWY_INLINE V FromSecond(D d, V indices) {
+  return hn::Sub(indices, hn::Set(d, ByteRemap::half_px));
+}
+
 #if HWY_MAX_BYTES >= 32 && !HWY_HAVE_SCALABLE
 using Chunk = hn::FixedTag<std::uint8_t, ByteRemap::chunk_px>;
 
-// The same of both halves, side by side in one register.
-HWY_INLINE hn::Vec<Chunk> Gathered(const std::uint8_t* source, const std::int32_t* offsets,
-                                   const std::uint8_t* indices) {
-  const Chunk d;
+// What two loads hold, side by side in one register.
+HWY_INLINE hn::Vec<Chunk> Loaded(const std::uint8_t* source, const std::int32_t* offsets) {
   const Half half;
-  const auto bytes =
-      hn::Combine(d, hn::LoadU(half, source + offsets[1]), hn::LoadU(half, source + offsets[0]));
-  return hn::TableLookupBytesOr0(bytes, hn::LoadU(d, indices));
+  return hn::Combine(Chunk(), hn::LoadU(half, source + offsets[1]), hn::LoadU(half, source + offsets[0]));
 }
 
 HWY_INLINE void RemapChunk(const std::uint8_t* source, const std::int32_t* offsets,
                            const std::uint8_t* indices, std::uint8_t* output) {
-  hn::StoreU(hn::Or(Gathered(source, offsets, indices),
-                    Gathered(source, offsets + 2, indices + ByteRemap::chunk_px)),
-             Chunk(), output);
+  const Chunk d;
+  const auto places = hn::LoadU(d, indices);
+  hn::StoreU(hn::Or(hn::TableLookupBytesOr0(Loaded(source, offsets), FromFirst(d, places)),
+                    hn::TableLookupBytesOr0(Loaded(source, offsets + 2), FromSecond(d, places))),
+             d, output);
 }
 #else
 HWY_INLINE void RemapChunk(const std::uint8_t* source, const std::int32_t* offsets,
                            const std::uint8_t* indices, std::uint8_t* output) {
+  const Half d;
   for (int half = 0; half < 2; ++half) {
-    const auto gathered = [&](int i) {
-      return GatheredHalf(source, offsets[i], indices + ByteRemap::half_px * i);
-    };
-    hn::StoreU(hn::Or(gathered(half), gathered(2 + half)), Half(), output + ByteRemap::half_px * half);
+    const auto places = hn::LoadU(d, indices + ByteRemap::half_px * half);
+    const auto first = hn::LoadU(d, source + offsets[half]),
+               second = hn::LoadU(d, source + offsets[2 + half]);
+    hn::StoreU(hn::Or(hn::TableLookupBytesOr0(first, FromFirst(d, places)),
+                      hn::TableLookupBytesOr0(second, FromSecond(d, places))),
+               d, output + ByteRemap::half_px * half);
   }
 }
 #endif
@@ -62,14 +74,13 @@ void RemapRows(const ByteRemap::Tables& tables, const GrayView& source, int firs
   constexpr int px = ByteRemap::chunk_px, loads = ByteRemap::chunk_loads;
   const int chunks = (source.width_px + px - 1) / px, last_px = source.width_px - px;
   const std::int32_t* offsets = tables.offsets.data() + std::ptrdiff_t{first_row_px} * chunks * loads;
-  const std::uint8_t* indices =
-      tables.indices.data() + std::ptrdiff_t{first_row_px} * chunks * loads * ByteRemap::half_px;
+  const std::uint8_t* indices = tables.indices.data() + std::ptrdiff_t{first_row_px} * chunks * px;
   std::int32_t more = tables.more_ends[static_cast<std::size_t>(first_row_px)];
   for (int v = first_row_px; v < last_row_px; ++v) {
     constexpr int ahead = 12;  // rows: the map's own bend, and as long as memory takes to answer
     source.prefetch(static_cast<int>(*offsets / source.stride) + ahead, 1);
     std::uint8_t* row = output + v * output_stride;
-    for (int i = 0; i < chunks; ++i, offsets += loads, indices += loads * ByteRemap::half_px)
+    for (int i = 0; i < chunks; ++i, offsets += loads, indices += px)
       RemapChunk(source.data, offsets, indices, row + std::min(i * px, last_px));
     for (; more < tables.more_ends[static_cast<std::size_t>(v) + 1]; ++more) {
       const auto index = static_cast<std::size_t>(more);
@@ -91,7 +102,7 @@ namespace {
 
 HWY_EXPORT(RemapRows);
 
-constexpr std::uint8_t none = 0x80;  // an index that gives 0
+constexpr std::uint8_t none = 0x90;  // an index that gives 0
 
 }  // namespace
 
@@ -106,7 +117,7 @@ ByteRemap::ByteRemap(const std::vector<std::int16_t>& places, int width_px, int 
       const int first = std::min(chunk, width_px - chunk_px);
       // Loads of nothing, from where the chunk before had its own, until its halves say what they need.
       loads_.resize(loads_.size() + chunk_loads, loads_.empty() ? Load() : loads_.back());
-      tables_.indices.resize(tables_.indices.size() + chunk_loads * half_px, none);
+      tables_.indices.resize(tables_.indices.size() + chunk_px, none);
       for (int half = 0; half < 2; ++half) {
         const int first_px = first + half * half_px;
         add_half(places.data() + 2 * (v * width_px + first_px), first_px, half);
@@ -134,10 +145,12 @@ void ByteRemap::add_half(const std::int16_t* places, int first_px, int half) {
     }
     load.column_px = std::min(load.column_px, width_px_ - half_px);
     std::uint8_t* indices = nullptr;
+    int first_index = 0;
     if (loads < chunk_loads / 2) {
-      const std::size_t index = loads_.size() - chunk_loads + static_cast<std::size_t>(2 * loads + half);
-      loads_[index] = load;
-      indices = &tables_.indices[index * half_px];
+      loads_[loads_.size() - chunk_loads + static_cast<std::size_t>(2 * loads + half)] = load;
+      indices =
+          &tables_.indices[tables_.indices.size() - chunk_px + static_cast<std::size_t>(half * half_px)];
+      first_index = loads * half_px;
     } else {
       more_.push_back(load);
       tables_.more_columns.push_back(first_px);
@@ -151,7 +164,7 @@ void ByteRemap::add_half(const std::int16_t* places, int first_px, int half) {
       const bool here = !done[static_cast<std::size_t>(j)] && other.row_px == load.row_px && within >= 0 &&
                         within < half_px && other.column_px < width_px_;
       if (!here) continue;
-      indices[j] = static_cast<std::uint8_t>(within);
+      indices[j] = static_cast<std::uint8_t>(first_index + within);
       done[static_cast<std::size_t>(j)] = true;
     }
   }
