@@ -73,6 +73,7 @@ std::vector<RecordedObject> parse_recorded_objects(const std::string& text, cons
     object.from_world = {number(3), number(4), number(5)};
     object.to_world = {number(6), number(7), number(8)};
     object.radius_m = number(9);
+    if (object.radius_m < 0) fail_at_line(name, line.number, "expected a radius from 0");
     objects.push_back(object);
   }
   return objects;
