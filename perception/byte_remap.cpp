@@ -102,7 +102,7 @@ namespace {
 
 HWY_EXPORT(RemapRows);
 
-constexpr std::uint8_t none = 0x90;  // an index that gives 0
+constexpr std::uint8_t none = 0x90;  // an index that gives 0: 128 or more from both loads
 
 }  // namespace
 

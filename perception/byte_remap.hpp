@@ -22,8 +22,7 @@ class ByteRemap {
     // Two loads for each half of a chunk, whether it needs them or not: a number that varies costs more in
     // wrongly foreseen branches. The first of the left and of the right half come first.
     std::vector<std::int32_t> offsets;  ///< of each load in the source
-    std::vector<std::uint8_t>
-        indices;  ///< of each pixel: 0 .. 15 in its half's first load, 16 .. 31 in the second
+    std::vector<std::uint8_t> indices;  ///< of each pixel: 0 .. 15 in the first load, 16 .. 31 in the second
     // What some halves need beyond that is added row by row.
     std::vector<std::int32_t> more_offsets;
     std::vector<std::uint8_t> more_indices;
