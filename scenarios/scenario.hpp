@@ -122,8 +122,8 @@ struct SensorSection {
 
 struct PerceptionSection {
   DetectorKind detector = DetectorKind::pushbroom;
-  RulePreset rule = RulePreset::robust;  ///< keys given under pushbroom win over it
-  PushbroomConfig pushbroom = robust_rule();
+  RulePreset rule = RulePreset::tuned;  ///< keys given under pushbroom win over it
+  PushbroomConfig pushbroom = tuned_rule("long");
   StereoBmConfig stereo_bm;
   StereoSgbmConfig stereo_sgbm;
   FullStereoCrop full_stereo;  ///< what of either's depths becomes hits

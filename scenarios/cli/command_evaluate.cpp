@@ -51,7 +51,7 @@ std::map<std::string, RulePreset> rules_by_name() { return {rule_names.begin(), 
 
 struct EvaluateArguments {
   std::vector<std::string> inputs;
-  RulePreset rule = RulePreset::robust;
+  RulePreset rule = RulePreset::tuned;
   std::vector<std::string> settings;
   std::vector<std::string> with;
   std::string out;
@@ -127,7 +127,7 @@ void add_evaluate_command(CLI::App& app, Command& chosen) {
   command
       ->add_option(
           "--rule", arguments->rule,
-          "the rule in the table's first line: robust (default), tuned (for the recordings' rig) or paper")
+          "the rule in the table's first line: tuned (for the recordings' rig; default), robust or paper")
       ->transform(CLI::CheckedTransformer(rules_by_name()));
   command->add_option("--with", arguments->with, "file of keys to put over the rule, as `tune` leaves it")
       ->allow_extra_args(false)

@@ -102,7 +102,8 @@ TEST(Scenario, ARuleIsTheRigsOwnUnderTheKeysBesideIt) {
   const auto rule = [](const char* text) {
     return scenario_from_text(text, "rule.yaml").perception.pushbroom;
   };
-  EXPECT_EQ(rule("name: a").least_edge_sum, robust_rule().least_edge_sum);
+  EXPECT_EQ(rule("name: a").least_edge_sum, tuned_rule("long").least_edge_sum);
+  EXPECT_EQ(rule("perception: {rule: robust}").least_edge_sum, robust_rule().least_edge_sum);
   EXPECT_EQ(rule("perception: {rule: paper}").least_edge_sum, paper_rule().least_edge_sum);
   const PushbroomConfig tuned =
       rule("{rig: paper, perception: {rule: tuned, pushbroom: {score_limit: 0.2}}}");
