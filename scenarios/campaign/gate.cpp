@@ -122,7 +122,7 @@ GateVerdict judge(const Comparison& comparison, const GateRule& rule) {
     verdict.reasons.push_back(fmt::format("{} of the baseline missing in the candidate: {}",
                                           flights(comparison.missing.size()), ids_of(comparison.missing)));
   if (comparison.all.goals.pairs() == 0)
-    verdict.reasons.push_back("no flight of the two campaigns can be compared");
+    verdict.reasons.emplace_back("no flight of the two campaigns can be compared");
   return verdict;
 }
 

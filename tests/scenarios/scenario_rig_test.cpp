@@ -39,7 +39,7 @@ TEST(ScenarioRig, RawCamerasStandWhereTheRigsFileMountsTheRectifiedPair) {
   for (const auto& settings : {std::vector<std::string>{"rig=long"},
                                std::vector<std::string>{"rig=paper", "cameras.raw_unit_m=0.01"}}) {
     std::vector<std::string> with_raw = settings;
-    with_raw.push_back("cameras.raw=true");
+    with_raw.emplace_back("cameras.raw=true");
     const StereoRig mounted = rig_for(settings).rig;
     const CalibratedRig raw = rig_for(with_raw);
     ASSERT_TRUE(raw.calibration.has_value());

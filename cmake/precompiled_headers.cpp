@@ -1,0 +1,1 @@
+// Nothing of its own: the headers of understory_precompiled_headers.cmake are compiled beside it.
