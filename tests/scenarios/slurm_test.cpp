@@ -45,7 +45,9 @@ class Cluster {
   }
   ~Cluster() {
     for (const char* node : {"n1", "n2"}) kill_node(node);
-    run("kill $(cat slurmctld.pid) $(cat munge/pid)");
+    // Gone before their folder is: the controller writes its state until the end.
+    run("for pid in $(cat slurmctld.pid) $(cat munge/pid); do"
+        " kill $pid; for turn in $(seq 100); do kill -0 $pid || break; sleep 0.1; done; done 2>/dev/null");
     unsetenv("SLURM_CONF");
   }
   Cluster(const Cluster&) = delete;
