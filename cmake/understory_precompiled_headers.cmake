@@ -1,5 +1,5 @@
-# What most files include, read once for all of them: it takes a third off the build. Every file still includes what it
-# uses: the preset tsan builds without (CMAKE_DISABLE_PRECOMPILE_HEADERS).
+# What most files include, read once for all of them (docs/decisions/016). Every file includes what it uses all the
+# same: the preset tsan builds the stack without (CMAKE_DISABLE_PRECOMPILE_HEADERS).
 set(common_headers
   <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <limits> <map> <memory> <numbers> <optional>
   <random> <span> <sstream> <stdexcept> <string> <string_view> <utility> <vector> <Eigen/Geometry>)
