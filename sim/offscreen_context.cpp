@@ -13,9 +13,13 @@ namespace {
 constexpr unsigned gl_texture_2d = 0x0DE1;
 constexpr unsigned gl_texture_min_filter = 0x2801;
 constexpr int gl_linear_mipmap_nearest = 0x2701;
+constexpr unsigned gl_rgb = 0x1907;
+constexpr unsigned gl_unsigned_byte = 0x1401;
+constexpr unsigned gl_unpack_alignment = 0x0CF5;
 constexpr unsigned gl_renderer = 0x1F01;
 constexpr unsigned gl_version = 0x1F02;
 
+using BindTexture = void (*)(unsigned target, unsigned texture);
 using Backend = std::unique_ptr<OffscreenBackend>;
 
 /// A GPU, or nothing where the machine shows none or EGL cannot use it.
@@ -66,8 +70,18 @@ OffscreenContext::OffscreenContext(const OffscreenOptions& options) {
   backend_ = backend_of(options.renderer);
 }
 
+void OffscreenContext::upload_level(unsigned texture, int level, int width_px, int height_px,
+                                    const std::uint8_t* rgb) const {
+  using SetPixelStore = void (*)(unsigned name, int value);
+  using TexImage = void (*)(unsigned target, int level, int internal_format, int width, int height,
+                            int border, unsigned format, unsigned type, const void* pixels);
+  as_function<BindTexture>(backend_->function("glBindTexture"))(gl_texture_2d, texture);
+  as_function<SetPixelStore>(backend_->function("glPixelStorei"))(gl_unpack_alignment, 1);
+  as_function<TexImage>(backend_->function("glTexImage2D"))(gl_texture_2d, level, gl_rgb, width_px, height_px,
+                                                            0, gl_rgb, gl_unsigned_byte, rgb);
+}
+
 void OffscreenContext::use_nearest_mipmap(unsigned texture) const {
-  using BindTexture = void (*)(unsigned target, unsigned texture);
   using SetParameter = void (*)(unsigned target, unsigned name, int value);
   as_function<BindTexture>(backend_->function("glBindTexture"))(gl_texture_2d, texture);
   as_function<SetParameter>(backend_->function("glTexParameteri"))(gl_texture_2d, gl_texture_min_filter,

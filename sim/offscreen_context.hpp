@@ -32,6 +32,8 @@ class OffscreenContext {
   /// What was drawn, complete: RGBA, 8 bits each, rows from the bottom up, of the size last made current;
   /// valid until the next call of either. Where nothing was drawn, alpha is 0.
   const std::uint8_t* finished_pixels() { return backend_->finished_pixels(); }
+  /// Makes a level of a 2D texture, 0 the largest: RGB, 8 bits each, row after row without gaps.
+  void upload_level(unsigned texture, int level, int width_px, int height_px, const std::uint8_t* rgb) const;
   /// Textures are looked up in the nearest level of their pyramid, bilinearly: blending two levels doubles
   /// the cost.
   void use_nearest_mipmap(unsigned texture) const;

@@ -1,11 +1,14 @@
 #include "sim/scene_renderer.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "sim/image_sensor.hpp"
+#include "sim/texture_levels.hpp"
 #include "sim/world.hpp"
 
 namespace understory {
@@ -78,11 +81,8 @@ SceneRenderer::SceneRenderer(const mjModel& model, double view_distance_m, int w
                              RendererKind renderer)
     : model_(model), view_distance_m_(view_distance_m), gl_({.renderer = renderer}) {
   gl_.make_current(width_px, height_px);
-  mjr_defaultContext(&context_);
-  mjr_makeContext(&model_, &context_, mjFONTSCALE_100);
+  make_context();
   mjr_setBuffer(mjFB_WINDOW, &context_);
-  for (int i = 0; i < context_.ntexture; ++i)
-    if (context_.textureType[i] == mjTEXTURE_2D) gl_.use_nearest_mipmap(context_.texture[i]);
   mjv_defaultScene(&scene_);
   mjv_makeScene(&model_, &scene_, model_.ngeom + 100);
   plain_rendering(scene_);
@@ -93,6 +93,37 @@ SceneRenderer::~SceneRenderer() {
   gl_.make_current(64, 64);  // MuJoCo deletes its GL objects in the current context
   mjv_freeScene(&scene_);
   mjr_freeContext(&context_);
+}
+
+/// MuJoCo would have the renderer make the textures' smaller copies, which is most of its start. So it is
+/// shown textures of one pixel, sets them up as it likes, and they are filled here.
+void SceneRenderer::make_context() {
+  const auto filled_here = [&](int texture) {
+    return model_.tex_type[texture] == mjTEXTURE_2D &&
+           std::has_single_bit(static_cast<unsigned>(model_.tex_width[texture])) &&
+           std::has_single_bit(static_cast<unsigned>(model_.tex_height[texture]));
+  };
+  std::vector<int> widths_px(model_.tex_width, model_.tex_width + model_.ntex);
+  std::vector<int> heights_px(model_.tex_height, model_.tex_height + model_.ntex);
+  for (int i = 0; i < model_.ntex; ++i)
+    if (filled_here(i)) widths_px[i] = heights_px[i] = 1;
+  mjModel shown = model_;
+  shown.tex_width = widths_px.data();
+  shown.tex_height = heights_px.data();
+  mjr_defaultContext(&context_);
+  mjr_makeContext(&shown, &context_, mjFONTSCALE_100);
+  for (int i = 0; i < model_.ntex; ++i) {
+    const unsigned texture = context_.texture[i];
+    if (filled_here(i)) {
+      const int width_px = model_.tex_width[i], height_px = model_.tex_height[i];
+      const std::uint8_t* rgb = model_.tex_rgb + model_.tex_adr[i];
+      gl_.upload_level(texture, 0, width_px, height_px, rgb);
+      int level = 0;
+      for (const TextureLevel& copy : smaller_copies(width_px, height_px, rgb))
+        gl_.upload_level(texture, ++level, copy.width_px, copy.height_px, copy.rgb.data());
+    }
+    if (context_.textureType[i] == mjTEXTURE_2D) gl_.use_nearest_mipmap(texture);
+  }
 }
 
 /// Scenery stands still: its geoms are made once.

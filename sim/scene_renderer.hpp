@@ -43,6 +43,7 @@ class SceneRenderer {
     GeomBox box;
     bool obstacle;  ///< not drawn beyond the view distance; the ground is
   };
+  void make_context();
   void gather_scenery();
   void update_scene(const mjData& data, bool with_aircraft);
   void fill_scene(const std::array<Eye, 2>& eyes);
