@@ -5,6 +5,8 @@
 
 #include <cstdio>
 #include <fstream>
+#include <map>
+#include <string>
 
 #include "sim/egl_library.hpp"
 #include "tests/sim/camera_scenes.hpp"
@@ -44,12 +46,12 @@ struct Drawn {
   std::string complaint;
 };
 
-/// What draw() leaves in a process of its own, whose environment has `variable` set.
-Drawn drawn(RendererKind renderer, const char* variable = nullptr, const char* value = nullptr) {
+/// What draw() leaves in a process of its own, whose environment has these variables set.
+Drawn drawn(RendererKind renderer, const std::map<std::string, std::string>& variables = {}) {
   const fs::path pictures = fs::path(testing::TempDir()) / ("renderers_" + std::to_string(getpid()));
   const fs::path complaint = pictures.string() + ".txt";
   if (const pid_t child = fork(); child == 0) {
-    if (variable != nullptr) setenv(variable, value, 1);
+    for (const auto& [name, value] : variables) setenv(name.c_str(), value.c_str(), 1);
     try {
       draw(renderer, pictures);
     } catch (const std::runtime_error& error) {
@@ -86,12 +88,34 @@ TEST(Renderers, AutomaticIsSoftwareWhereThereIsNoGpu) {
 }
 
 TEST(Renderers, AMissingLibraryIsOneLineThatNamesThePackage) {
-  const Drawn egl = drawn(RendererKind::egl, "UNDERSTORY_EGL", "/nonexistent/libEGL.so");
+  const Drawn egl = drawn(RendererKind::egl, {{"UNDERSTORY_EGL", "/nonexistent/libEGL.so"}});
   EXPECT_NE(egl.complaint.find("libegl1"), std::string::npos) << egl.complaint;
   EXPECT_EQ(egl.complaint.find('\n'), std::string::npos);
-  const Drawn none = drawn(RendererKind::egl, "UNDERSTORY_EGL", "libz.so.1");
+  const Drawn none = drawn(RendererKind::egl, {{"UNDERSTORY_EGL", "libz.so.1"}});
   EXPECT_NE(none.complaint.find("no EGL"), std::string::npos) << none.complaint;
 }
+
+#ifdef UNDERSTORY_EGL_WITH_GPU
+// No GPU's own driver can be tried in CI: a library that names one in its list of devices stands in.
+TEST(Renderers, EglDrawsOnTheGpuThatTheDriverNames) {
+  const Drawn osmesa = drawn(RendererKind::osmesa);
+  const fs::path log = fs::path(testing::TempDir()) / ("egl_displays_" + std::to_string(getpid()));
+  std::map<std::string, std::string> variables{{"UNDERSTORY_EGL", UNDERSTORY_EGL_WITH_GPU},
+                                               {"EGL_WITH_GPU_LOG", log.string()}};
+  const Drawn gpu = drawn(RendererKind::egl, variables);
+  EXPECT_EQ(gpu.complaint, "");
+  EXPECT_EQ(support::content_of(log), "gpu\n");
+  EXPECT_TRUE(gpu.pictures == osmesa.pictures);  // a stand-in: real ones draw bits of their own
+  fs::remove(log);
+
+  variables["EGL_WITH_GPU_BROKEN"] = "1";
+  const Drawn fallen_back = drawn(RendererKind::egl, variables);
+  EXPECT_EQ(fallen_back.complaint, "");
+  EXPECT_EQ(support::content_of(log), "gpu\nsurfaceless\n");
+  EXPECT_TRUE(fallen_back.pictures == osmesa.pictures);
+  fs::remove(log);
+}
+#endif
 
 TEST(Renderers, AProcessKeepsToItsFirstLibrary) {
   const World world = bare_world("");
