@@ -81,8 +81,7 @@ void Autopilot::replan(std::int64_t t_ns) {
   const std::int64_t effective_ns =
       t_ns + nanoseconds(config_.plan_latency_s) + nanoseconds(model_.airframe().input_delay_s);
   const State& state = state_source_.state();
-  FlightState start =
-      flight_state(state.T_world_body, state.velocity_body_mps, state.angular_rate_body_radps);
+  FlightState start = flight_state(state);
   for (std::int64_t at_ns = state.t_ns; at_ns < effective_ns; at_ns += nanoseconds(predict_step_s))
     start = model_.advance(start, command_at(plan_, at_ns), predict_step_s);
   // The planner thinks in heights over the ground, the map in the odometry's: they drift apart slowly.

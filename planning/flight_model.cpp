@@ -166,7 +166,15 @@ FlightState FlightModel::advance(const FlightState& state, const FlightCommand& 
   next.position_world +=
       distance * Eigen::Vector3d(cos_mean_climb * std::cos(mean_heading),
                                  cos_mean_climb * std::sin(mean_heading), std::sin(mean_climb));
+  next.position_world.head<2>() += dt_s * state.wind_world_mps;
   return next;
+}
+
+double course_rad(const FlightState& state) {
+  if (state.wind_world_mps.isZero(0)) return state.heading_rad;
+  const Eigen::Vector2d over_ground_mps =
+      state.speed_mps * flight_direction_world(state).head<2>() + state.wind_world_mps;
+  return std::atan2(over_ground_mps.y(), over_ground_mps.x());
 }
 
 Eigen::Vector3d flight_direction_world(const FlightState& state) {
@@ -182,15 +190,18 @@ Eigen::Vector3d left_wing_direction_world(const FlightState& state) {
 }
 
 FlightState flight_state(const Eigen::Isometry3d& T_world_body, const Eigen::Vector3d& velocity_body_mps,
-                         const Eigen::Vector3d& angular_rate_body_radps) {
+                         const Eigen::Vector3d& angular_rate_body_radps,
+                         const Eigen::Vector2d& wind_world_mps) {
   FlightState state;
   const Eigen::Matrix3d rotation = T_world_body.linear();
-  const Eigen::Vector3d velocity = rotation * velocity_body_mps;
+  Eigen::Vector3d velocity = rotation * velocity_body_mps;
+  velocity.head<2>() -= wind_world_mps;
+  state.wind_world_mps = wind_world_mps;
   state.position_world = T_world_body.translation();
   state.speed_mps = velocity.norm();
   state.roll_rate_radps = angular_rate_body_radps.x();
   state.yaw_rate_radps = angular_rate_body_radps.z();
-  // At rest the velocity has no direction: take the nose's.
+  // At rest in the air the velocity has no direction: take the nose's.
   const Eigen::Vector3d direction =
       state.speed_mps > 1.0 ? Eigen::Vector3d(velocity / state.speed_mps) : Eigen::Vector3d(rotation.col(0));
   const Eigen::Vector3d in_body = rotation.transpose() * direction;
@@ -202,6 +213,11 @@ FlightState flight_state(const Eigen::Isometry3d& T_world_body, const Eigen::Vec
   const Eigen::Vector3d up = direction.cross(left);
   state.bank_rad = std::atan2(rotation.col(1).dot(up), rotation.col(1).dot(left));
   return state;
+}
+
+FlightState flight_state(const State& state) {
+  return flight_state(state.T_world_body, state.velocity_body_mps, state.angular_rate_body_radps,
+                      state.wind_world_mps + state.gust_world_mps);
 }
 
 }  // namespace understory

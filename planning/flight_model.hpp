@@ -2,18 +2,21 @@
 
 #include <Eigen/Geometry>
 
+#include "estimation/state.hpp"
 #include "planning/airframe.hpp"
 
 namespace understory {
 
-/// Where the aircraft is and how it moves, in wind axes: the state of the reduced model that plans are made
-/// with. Angles follow the house's body frame (x forward, y left, z up): a positive bank has the right wing
-/// down and turns to the right, so that the heading (counted from world x towards world y) falls.
+/// Where the aircraft is and how it moves through the air, in wind axes: the state of the reduced model that
+/// plans are made with. Angles follow the house's body frame (x forward, y left, z up): a positive bank has
+/// the right wing down and turns to the right, so that the heading (counted from world x towards world y)
+/// falls.
 struct FlightState {
   Eigen::Vector3d position_world = Eigen::Vector3d::Zero();
+  Eigen::Vector2d wind_world_mps = Eigen::Vector2d::Zero();  ///< of the air, which carries all of it along
   double speed_mps = 12;
-  double heading_rad = 0;      ///< of the velocity
-  double climb_angle_rad = 0;  ///< of the velocity
+  double heading_rad = 0;      ///< of the velocity through the air
+  double climb_angle_rad = 0;  ///< of the velocity through the air
   double bank_rad = 0;         ///< of the wings about the velocity
   double roll_rate_radps = 0;  ///< about body x
   double angle_of_attack_rad = 0.19;
@@ -109,13 +112,19 @@ class FlightModel {
   double level_thrust_n_;
 };
 
+/// Direction of the velocity over ground, from world x towards world y: the heading where there is no wind.
+double course_rad(const FlightState& state);
 /// Unit vector from the centre to the left wing tip, world frame.
 Eigen::Vector3d left_wing_direction_world(const FlightState& state);
-/// Unit vector of the velocity, world frame.
+/// Unit vector of the velocity through the air, world frame.
 Eigen::Vector3d flight_direction_world(const FlightState& state);
 
-/// The same aircraft in the estimator's words and in the model's.
+/// The same aircraft in the model's words; the velocity is that over ground, as an estimator gives it.
 FlightState flight_state(const Eigen::Isometry3d& T_world_body, const Eigen::Vector3d& velocity_body_mps,
-                         const Eigen::Vector3d& angular_rate_body_radps);
+                         const Eigen::Vector3d& angular_rate_body_radps,
+                         const Eigen::Vector2d& wind_world_mps = Eigen::Vector2d::Zero());
+/// The estimate as it is, in its wind and gust. A gust passes, but not within what is planned ahead: at
+/// flight height some 50 m of air are alike (MIL-F-8785C).
+FlightState flight_state(const State& state);
 
 }  // namespace understory

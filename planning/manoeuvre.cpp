@@ -47,7 +47,7 @@ FlightCommand course_command(const FlightTask& task, const FlightState& state) {
   const double beyond_m = std::max(0.0, std::abs(cross_m) - (task.mission.half_width_m - side_margin_m));
   const double heading = task.mission.heading_rad - std::copysign(std::min(0.6, 0.12 * beyond_m), cross_m);
   FlightCommand command;
-  command.bank_rad = std::clamp(config.heading_gain * (state.heading_rad - heading),
+  command.bank_rad = std::clamp(config.heading_gain * (course_rad(state) - heading),
                                 -config.greatest_course_bank_rad, config.greatest_course_bank_rad);
   command.climb_mps =
       std::clamp(config.altitude_gain_per_s * (task.mission.cruise_altitude_m - state.position_world.z()),
@@ -66,7 +66,7 @@ double cost_rate(const FlightTask& task, const FlightState& state, double cleara
   const double near = std::max(0.0, 1 - clearance_m / config.comfortable_clearance_m);
   const double slow = std::max(0.0, task.model.config().cruise_speed_mps - 1 - state.speed_mps);
   return 1 + config.clearance_weight * square(near) + config.bank_weight * square(state.bank_rad) +
-         config.heading_weight * square(state.heading_rad - mission.heading_rad) +
+         config.heading_weight * square(course_rad(state) - mission.heading_rad) +
          config.altitude_weight * square(altitude - mission.cruise_altitude_m) +
          config.band_weight * (square(below) + square(above)) + square(beside) +
          config.slow_weight * square(slow);
@@ -77,7 +77,7 @@ double greatest_clearance_m(const TrajectoryConfig& config, double least_clearan
 }
 
 double final_cost(const FlightTask& task, const FlightState& state) {
-  return task.config.final_heading_weight * square(state.heading_rad - task.mission.heading_rad) +
+  return task.config.final_heading_weight * square(course_rad(state) - task.mission.heading_rad) +
          task.config.bank_weight * square(state.bank_rad);
 }
 

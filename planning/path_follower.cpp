@@ -19,8 +19,7 @@ Controls follow(const FlightModel& model, const PathFollowerConfig& config, cons
                 const State& state) {
   const Airframe& airframe = model.airframe();
   const Eigen::Vector3d& inertia = airframe.inertia_kgm2;
-  const FlightState now =
-      flight_state(state.T_world_body, state.velocity_body_mps, state.angular_rate_body_radps);
+  const FlightState now = flight_state(state);
   const double speed = std::max(now.speed_mps, 5.0);
   const double pitch_rate = -state.angular_rate_body_radps.y();  // nose up positive; body y points left
 

@@ -11,8 +11,8 @@ struct PlanPoint {
   double t_s = 0;  ///< since the plan's start
   Eigen::Vector3d position_world = Eigen::Vector3d::Zero();
   double speed_mps = 0;
-  double heading_rad = 0;      ///< of the velocity, from world x towards world y
-  double climb_angle_rad = 0;  ///< of the velocity, above the horizon
+  double heading_rad = 0;      ///< of the velocity through the air, from world x towards world y
+  double climb_angle_rad = 0;  ///< of the same, above the horizon
   double bank_rad =
       0;  ///< right wing down positive, so that a positive bank turns to the right (heading falls)
   double angle_of_attack_rad = 0;

@@ -50,8 +50,7 @@ Jog flown_jog(const FreeFlight& air, const Airframe& airframe) {
     }
     if (step % 24 == 0) {
       const State state = state_of(truth);
-      const FlightState now =
-          flight_state(state.T_world_body, state.velocity_body_mps, state.angular_rate_body_radps);
+      const FlightState now = flight_state(state);
       for (Series* series : {&jog.speed, &jog.climbed, &jog.bank, &jog.aside}) series->x.push_back(t_s);
       jog.speed.y.push_back(speed_mps);
       jog.climbed.y.push_back(climbed_m);

@@ -64,8 +64,7 @@ FlightCommand tracking_command(const FlightModel& model, const TrackingConfig& c
   const double gravity_mps2 = model.airframe().gravity_mps2;
   const double upward_mps2 = std::max(least_lift_mps2, gravity_mps2 + wanted.z());
   const double aside_mps2 = wanted.dot(right);
-  const FlightState now =
-      flight_state(state.T_world_body, state.velocity_body_mps, state.angular_rate_body_radps);
+  const FlightState now = flight_state(state);
   FlightCommand command;
   command.bank_rad = std::atan2(aside_mps2, upward_mps2);
   // The follower takes a climb error out over climb_angle_time_s: what it must be for this lift at the bank

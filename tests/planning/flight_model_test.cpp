@@ -149,6 +149,23 @@ TEST(FlightModel, ShortAndLongStepsAgree) {
   EXPECT_LT((coarse.position_world - fine.position_world).norm(), 0.15);  // of 14 m flown
 }
 
+// Moving air is a moving frame: seen from it, the flight is that of still air.
+TEST(FlightModel, WindCarriesTheFlightAlong) {
+  const FlightModel model = model_at(12);
+  FlightState still, carried;
+  carried.wind_world_mps = {-2, 3};
+  for (const FlightCommand& command : {FlightCommand{0.9, 0.5}, {-1.2, 0}})
+    for (int i = 0; i < 20; ++i) {
+      still = model.advance(still, command, 0.02);
+      carried = model.advance(carried, command, 0.02);
+    }
+  EXPECT_NEAR((carried.position_world - still.position_world - 0.8 * Vector3d(-2, 3, 0)).norm(), 0, 1e-9);
+  carried.position_world = still.position_world;
+  EXPECT_EQ(carried.heading_rad, still.heading_rad);
+  EXPECT_EQ(carried.speed_mps, still.speed_mps);
+  EXPECT_EQ(carried.sideslip_rad, still.sideslip_rad);
+}
+
 TEST(FlightState, LeftWingPointsUpOnTheRightEdge) {
   FlightState state;
   state.bank_rad = M_PI / 2;
@@ -179,6 +196,23 @@ TEST(FlightState, ReadsHandMadeAttitudes) {
   const FlightState slipping = flight_state(pose, {10, 1, 0}, Vector3d::Zero());
   EXPECT_NEAR(slipping.sideslip_rad, std::atan(0.1), 1e-12);
   EXPECT_NEAR(slipping.heading_rad, std::atan(0.1), 1e-12);
+}
+
+TEST(FlightState, TellsTheWayThroughTheAirFromThatOverGround) {
+  // Crabbing: along x over ground, in a wind from the right (towards y), the nose in the air's direction.
+  const double crab = std::asin(3.0 / 12.0);
+  State estimate;
+  estimate.T_world_body = AngleAxisd(-crab, Vector3d::UnitZ());
+  estimate.wind_world_mps = {0, 2};
+  estimate.gust_world_mps = {0, 1};
+  estimate.velocity_body_mps =
+      estimate.T_world_body.linear().transpose() * Vector3d(12 * std::cos(crab), 0, 0);
+  const FlightState state = flight_state(estimate);
+  EXPECT_NEAR(state.speed_mps, 12, 1e-12);
+  EXPECT_NEAR(state.heading_rad, -crab, 1e-12);
+  EXPECT_NEAR(state.sideslip_rad, 0, 1e-12);
+  EXPECT_NEAR(course_rad(state), 0, 1e-12);
+  EXPECT_EQ(state.wind_world_mps, Eigen::Vector2d(0, 3));
 }
 
 TEST(FlightState, RoundTripsThroughWindAxes) {
