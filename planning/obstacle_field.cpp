@@ -72,7 +72,9 @@ ObstacleField::ObstacleField(const ObstacleFieldConfig& config, const std::vecto
       radius_m = std::max(radius_m, radii_m[cells[end].index]);
       ++end;
     }
-    columns_.push_back({sum / static_cast<double>(end - first), cells[first].z - config.vertical_reach_m,
+    double bottom_m = cells[first].z - config.vertical_reach_m;
+    if (config.stands_on_ground) bottom_m = std::min(bottom_m, 0.0);
+    columns_.push_back({sum / static_cast<double>(end - first), bottom_m,
                         cells[end - 1].z + config.vertical_reach_m, radius_m + 0.5 * config.cell_m});
     first = end;
   }

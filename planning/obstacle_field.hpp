@@ -14,6 +14,9 @@ struct ObstacleFieldConfig {
   double column_gap_m = 1.2;  ///< points of a cell farther apart in height than this start a new column
   double vertical_reach_m =
       0.4;  ///< a column stands out this far above and below its outermost points: trees go on
+  /// What is seen in the air stands on the ground, as trees and posts do: columns reach down to height 0.
+  /// Else the aircraft passes under the part of a trunk that it saw with its nose up.
+  bool stands_on_ground = true;
   double sigma_zero_m = 0.05;  ///< uncertainty of a point when seen, added to its size (DESIGN section 2)
   double sigma_per_m =
       0.010;  ///< growth with the distance flown since: drift of the estimate (FACTS section 4)
@@ -27,6 +30,7 @@ void visit_fields(Visitor& visit, ObstacleFieldConfig& config) {
   visit("cell_m", config.cell_m, 0.02, 1.0);
   visit("column_gap_m", config.column_gap_m, 0.1, 20.0);
   visit("vertical_reach_m", config.vertical_reach_m, 0.0, 10.0);
+  visit("stands_on_ground", config.stands_on_ground);
   visit("sigma_zero_m", config.sigma_zero_m, 0.0, 2.0);
   visit("sigma_per_m", config.sigma_per_m, 0.0, 0.5);
   visit("sigma_greatest_m", config.sigma_greatest_m, 0.0, 2.0);
@@ -45,7 +49,8 @@ class ObstacleField {
     double radius_m;  ///< half a cell and the points' uncertainty
   };
 
-  /// `greatest_asked_m`: the greatest clearance that it will be asked about; the nearer, the cheaper.
+  /// Points are in heights above the ground. `greatest_asked_m`: the greatest clearance that it will be asked
+  /// about; the nearer, the cheaper.
   ObstacleField(const ObstacleFieldConfig& config, const std::vector<ObstaclePoint>& points,
                 double distance_flown_m, double greatest_asked_m = 3.0);
 
