@@ -14,9 +14,10 @@ struct ObstacleFieldConfig {
   double column_gap_m = 1.2;  ///< points of a cell farther apart in height than this start a new column
   double vertical_reach_m =
       0.4;  ///< a column stands out this far above and below its outermost points: trees go on
-  /// What is seen in the air stands on the ground, as trees and posts do: columns reach down to height 0.
-  /// Else the aircraft passes under the part of a trunk that it saw with its nose up.
-  bool stands_on_ground = true;
+  /// What is seen in the air stands on the ground, as trees and posts do: columns reach down to height 0, and
+  /// the aircraft does not pass under the part of a trunk that it saw with its nose up. What is wrongly seen
+  /// in the air then stands in the way at every height: it pays in wind (docs/decisions/017).
+  bool stands_on_ground = false;
   double sigma_zero_m = 0.05;  ///< uncertainty of a point when seen, added to its size (DESIGN section 2)
   double sigma_per_m =
       0.010;  ///< growth with the distance flown since: drift of the estimate (FACTS section 4)

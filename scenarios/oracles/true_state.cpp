@@ -10,7 +10,6 @@ State state_of(const Truth& truth) {
   state.velocity_body_mps = truth.T_world_body.linear().transpose() * truth.velocity_world_mps;
   state.angular_rate_body_radps = truth.angular_rate_body_radps;
   state.specific_force_body_mps2 = truth.specific_force_body_mps2;
-  state.wind_world_mps = truth.wind_world_mps.head<2>();  // gusts and all: the truth need not tell them apart
   return state;
 }
 

@@ -16,7 +16,11 @@ constexpr int physics_steps_per_step = 24;    // the same in physics steps
 constexpr int physics_steps_per_control = 6;  // 200 Hz
 constexpr int delay_physics_steps = 24;       // the airframe's input delay, 20 ms
 
-FlightState flight_state_of(const Truth& truth) { return flight_state(state_of(truth)); }
+State knowing_the_wind(const Truth& truth) {
+  State state = state_of(truth);
+  state.wind_world_mps = truth.wind_world_mps.head<2>();
+  return state;
+}
 
 struct Command {
   FlightCommand command;
@@ -40,7 +44,7 @@ class Tracking {
     fly(aircraft, {0, 0}, 50 * physics_steps_per_step);  // a second to settle
 
     // A command acts one input delay later: until then the aircraft flies on under the last one.
-    FlightState predicted = flight_state_of(aircraft.truth());
+    FlightState predicted = flight_state(knowing_the_wind(aircraft.truth()));
     predicted = model_.advance(predicted, {0, 0}, step_s);
     int physics_steps = delay_physics_steps, to_go = static_cast<int>(std::lround(after_s / step_s));
     while (to_go > 0) {
@@ -73,7 +77,7 @@ class Tracking {
     Controls controls;
     for (int i = 0; i < physics_steps; ++i) {
       if (i % physics_steps_per_control == 0)
-        controls = follow(model_, PathFollowerConfig{}, command, state_of(aircraft.truth()));
+        controls = follow(model_, PathFollowerConfig{}, command, knowing_the_wind(aircraft.truth()));
       aircraft.step(controls);
     }
   }

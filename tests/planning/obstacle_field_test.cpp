@@ -91,8 +91,9 @@ TEST(ObstacleField, ABankedWingPassesWhereALevelOneDoesNot) {
   EXPECT_GT(field.clearance_m(state, 3), 0);
 }
 
-TEST(ObstacleField, WhatIsSeenInTheAirStandsOnTheGround) {
+TEST(ObstacleField, WhatIsSeenInTheAirStandsOnTheGroundWhereAsked) {
   ObstacleFieldConfig config;
+  config.stands_on_ground = true;
   std::vector<ObstaclePoint> points = points_of({{{5, 0}}});
   std::erase_if(points, [](const ObstaclePoint& point) { return point.position_world.z() < 6; });
   ASSERT_FALSE(points.empty());
