@@ -49,12 +49,10 @@ Jog flown_jog(const FreeFlight& air, const Airframe& airframe) {
       controls = follow(model, {}, {bank, std::clamp(-climb_per_s * climbed_m, -2.0, 2.0)}, state_of(truth));
     }
     if (step % 24 == 0) {
-      const State state = state_of(truth);
-      const FlightState now = flight_state(state);
       for (Series* series : {&jog.speed, &jog.climbed, &jog.bank, &jog.aside}) series->x.push_back(t_s);
       jog.speed.y.push_back(speed_mps);
       jog.climbed.y.push_back(climbed_m);
-      jog.bank.y.push_back(now.bank_rad / degree);
+      jog.bank.y.push_back(flight_state(state_of(truth)).bank_rad / degree);
       jog.aside.y.push_back(-truth.T_world_body.translation().y());
     }
     jog.speed_lost_mps = std::max(jog.speed_lost_mps, jog_speed_mps - speed_mps);

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "planning/flight_model.hpp"
+#include "scenarios/oracles/true_state.hpp"
 #include "scenarios/validation/line_plot.hpp"
 #include "scenarios/validation/page.hpp"
 #include "sim/aerodynamics.hpp"
@@ -38,10 +39,7 @@ Roll roll(const FreeFlight& air, const Airframe& airframe, const AirborneStart& 
     controls.left_elevon_rad += share * (left_rad - controls.left_elevon_rad);
     controls.right_elevon_rad += share * (right_rad - controls.right_elevon_rad);
     aircraft.step(controls);
-    const Truth& truth = aircraft.truth();
-    const Eigen::Vector3d velocity_body = truth.T_world_body.linear().transpose() * truth.velocity_world_mps;
-    const FlightState state = flight_state(truth.T_world_body, velocity_body, truth.angular_rate_body_radps);
-    if (state.bank_rad < wanted_bank_rad) continue;
+    if (flight_state(state_of(aircraft.truth())).bank_rad < wanted_bank_rad) continue;
     result.time_to_60_s = static_cast<double>(step) / physics_rate_hz;
     return result;
   }
