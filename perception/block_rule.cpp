@@ -28,6 +28,22 @@ EdgeColumns edge_columns(const BlockRule& rule) {
   return columns;
 }
 
+ReadColumns read_columns(const BlockRule& rule) {
+  const EdgeColumns edges = edge_columns(rule);
+  // A pixel's edge depends on those beside it, and BlockRule::neighbours looks a pixel further.
+  ReadColumns columns{edges.left_first_px - 1, rule.width_px, edges.right_first_px - 1,
+                      edges.right_last_px + 1};
+  if (rule.uniqueness) {
+    columns.right_first_px = 0;
+    for (const DisparityRule& one : rule.disparities)
+      columns.right_last_px = std::max(columns.right_last_px,
+                                       rule.width_px - std::min(one.disparity_px, rule.least_disparity_px));
+  }
+  for (int* column_px : {&columns.left_first_px, &columns.right_first_px, &columns.right_last_px})
+    *column_px = std::clamp(*column_px, 0, rule.width_px);
+  return columns;
+}
+
 int row_count(const BlockRule& rule) { return std::min(rule.last_row_px, rule.height_px - block_px) + 1; }
 
 void assert_sound(const BlockRule& rule) {

@@ -58,6 +58,12 @@ struct EdgeColumns {
 };
 EdgeColumns edge_columns(const BlockRule& rule);
 
+/// The columns of the images that have a part in the answer: left_first_px .. left_last_px - 1 of the left.
+struct ReadColumns {
+  int left_first_px = 0, left_last_px = 0, right_first_px = 0, right_last_px = 0;
+};
+ReadColumns read_columns(const BlockRule& rule);
+
 /// Rows at which blocks may begin: 0 .. this - 1.
 int row_count(const BlockRule& rule);
 

@@ -72,23 +72,30 @@ void RemapRows(const ByteRemap::Tables& tables, const GrayView& source, int firs
                std::uint8_t* output, std::ptrdiff_t output_stride) {
   const Half half;
   constexpr int px = ByteRemap::chunk_px, loads = ByteRemap::chunk_loads;
-  const int chunks = (source.width_px + px - 1) / px, last_px = source.width_px - px;
+  const int chunks = tables.chunks, last_px = tables.last_column_px - px;
+  // Copies: for all the compiler knows, the bytes written might be those of `source` and `tables`.
+  const std::uint8_t* const pixels = source.data;
   const std::int32_t* offsets = tables.offsets.data() + std::ptrdiff_t{first_row_px} * chunks * loads;
   const std::uint8_t* indices = tables.indices.data() + std::ptrdiff_t{first_row_px} * chunks * px;
-  std::int32_t more = tables.more_ends[static_cast<std::size_t>(first_row_px)];
+  // The map's own bend, and as long as memory takes to answer. What lies beyond the image is only asked for.
+  const std::ptrdiff_t ahead = 12 * source.stride;
   for (int v = first_row_px; v < last_row_px; ++v) {
-    constexpr int ahead = 12;  // rows: the map's own bend, and as long as memory takes to answer
-    source.prefetch(static_cast<int>(*offsets / source.stride) + ahead, 1);
-    std::uint8_t* row = output + v * output_stride;
-    for (int i = 0; i < chunks; ++i, offsets += loads, indices += px)
-      RemapChunk(source.data, offsets, indices, row + std::min(i * px, last_px));
-    for (; more < tables.more_ends[static_cast<std::size_t>(v) + 1]; ++more) {
-      const auto index = static_cast<std::size_t>(more);
-      std::uint8_t* lacking = row + tables.more_columns[index];
-      const auto found = GatheredHalf(source.data, tables.more_offsets[index],
-                                      tables.more_indices.data() + ByteRemap::half_px * index);
-      hn::StoreU(hn::Or(hn::LoadU(half, lacking), found), half, lacking);
+    std::uint8_t* row = output + v * output_stride + tables.first_column_px;
+    for (int i = 1; i < chunks; ++i, offsets += loads, indices += px, row += px) {
+      __builtin_prefetch(pixels + *offsets + ahead);
+      RemapChunk(pixels, offsets, indices, row);
     }
+    RemapChunk(pixels, offsets, indices, output + v * output_stride + last_px);
+    offsets += loads, indices += px;
+  }
+  // All rows' in one loop: how many a row lacks could not be foreseen.
+  const auto more_begin = static_cast<std::size_t>(tables.more_ends[static_cast<std::size_t>(first_row_px)]),
+             more_end = static_cast<std::size_t>(tables.more_ends[static_cast<std::size_t>(last_row_px)]);
+  for (std::size_t i = more_begin; i < more_end; ++i) {
+    std::uint8_t* lacking = output + tables.more_rows[i] * output_stride + tables.more_columns[i];
+    const auto found =
+        GatheredHalf(pixels, tables.more_offsets[i], tables.more_indices.data() + ByteRemap::half_px * i);
+    hn::StoreU(hn::Or(hn::LoadU(half, lacking), found), half, lacking);
   }
 }
 
@@ -106,28 +113,34 @@ constexpr std::uint8_t none = 0x90;  // an index that gives 0: 128 or more from 
 
 }  // namespace
 
-ByteRemap::ByteRemap(const std::vector<std::int16_t>& places, int width_px, int height_px)
+ByteRemap::ByteRemap(const std::vector<std::int16_t>& places, int width_px, int height_px,
+                     int first_column_px, int last_column_px)
     : width_px_(width_px), height_px_(height_px) {
   assert_always(width_px >= chunk_px && height_px > 0, "images must be at least a chunk wide");
   assert_always(places.size() == 2 * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px),
                 "a place is needed for each pixel");
+  assert_always(0 <= first_column_px && first_column_px < last_column_px && last_column_px <= width_px,
+                "columns outside the image");
+  tables_.last_column_px = std::max(last_column_px, chunk_px);
+  tables_.first_column_px = std::min(first_column_px, tables_.last_column_px - chunk_px);
+  tables_.chunks = (tables_.last_column_px - tables_.first_column_px + chunk_px - 1) / chunk_px;
   tables_.more_ends.push_back(0);
   for (int v = 0; v < height_px; ++v) {
-    for (int chunk = 0; chunk < width_px; chunk += chunk_px) {
-      const int first = std::min(chunk, width_px - chunk_px);
+    for (int i = 0; i < tables_.chunks; ++i) {
+      const int first = std::min(tables_.first_column_px + i * chunk_px, tables_.last_column_px - chunk_px);
       // Loads of nothing, from where the chunk before had its own, until its halves say what they need.
       loads_.resize(loads_.size() + chunk_loads, loads_.empty() ? Load() : loads_.back());
       tables_.indices.resize(tables_.indices.size() + chunk_px, none);
       for (int half = 0; half < 2; ++half) {
         const int first_px = first + half * half_px;
-        add_half(places.data() + 2 * (v * width_px + first_px), first_px, half);
+        add_half(places.data() + 2 * (v * width_px + first_px), first_px, v, half);
       }
     }
     tables_.more_ends.push_back(static_cast<std::int32_t>(more_.size()));
   }
 }
 
-void ByteRemap::add_half(const std::int16_t* places, int first_px, int half) {
+void ByteRemap::add_half(const std::int16_t* places, int first_px, int row_px, int half) {
   std::array<bool, half_px> done{};
   const auto place = [&](int pixel) { return Load{places[2 * pixel], places[2 * pixel + 1]}; };
   int loads = 0;
@@ -154,6 +167,7 @@ void ByteRemap::add_half(const std::int16_t* places, int first_px, int half) {
     } else {
       more_.push_back(load);
       tables_.more_columns.push_back(first_px);
+      tables_.more_rows.push_back(row_px);
       tables_.more_indices.resize(tables_.more_indices.size() + half_px, none);
       indices = &tables_.more_indices[tables_.more_indices.size() - half_px];
     }

@@ -19,20 +19,24 @@ class ByteRemap {
 
   /// What rows are made from.
   struct Tables {
+    int first_column_px = 0, last_column_px = 0;  ///< of the output
+    int chunks = 0;                               ///< in a row; the last one ends with the last column
     // Two loads for each half of a chunk, whether it needs them or not: a number that varies costs more in
     // wrongly foreseen branches. The first of the left and of the right half come first.
     std::vector<std::int32_t> offsets;  ///< of each load in the source
     std::vector<std::uint8_t> indices;  ///< of each pixel: 0 .. 15 in the first load, 16 .. 31 in the second
-    // What some halves need beyond that is added row by row.
+    // What some halves need beyond that is added afterwards.
     std::vector<std::int32_t> more_offsets;
     std::vector<std::uint8_t> more_indices;
-    std::vector<std::int32_t> more_columns;  ///< of the output, where each one's half begins
-    std::vector<std::int32_t> more_ends;     ///< how many there are above each row, and in all
+    std::vector<std::int32_t> more_columns, more_rows;  ///< of the output, where each one's half begins
+    std::vector<std::int32_t> more_ends;                ///< how many there are above each row, and in all
   };
 
   /// `places`: for each output pixel, row by row, the column and row of its source pixel; outside the source
-  /// (both images are width_px x height_px) the output is 0. Width at least chunk_px.
-  ByteRemap(const std::vector<std::int16_t>& places, int width_px, int height_px);
+  /// (both images are width_px x height_px) the output is 0. Width at least chunk_px. Of the output, the
+  /// columns first_column_px .. last_column_px - 1 are filled, and more where they are fewer than chunk_px.
+  ByteRemap(const std::vector<std::int16_t>& places, int width_px, int height_px, int first_column_px,
+            int last_column_px);
 
   /// To be called before apply() for a source whose rows are `stride` bytes apart.
   void prepare(std::ptrdiff_t stride);
@@ -48,7 +52,7 @@ class ByteRemap {
     int column_px = 0, row_px = 0;
   };
 
-  void add_half(const std::int16_t* places, int first_px, int half);
+  void add_half(const std::int16_t* places, int first_px, int row_px, int half);
 
   int width_px_, height_px_;
   std::vector<Load> loads_, more_;

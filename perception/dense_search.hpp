@@ -25,23 +25,27 @@ class DenseSearch {
     SearchColumns columns;
     CandidateTest test;
     RunningSums sums;                 ///< of the differences
-    EdgeMap differences;              ///< the last rows, by row modulo its height
+    EdgeMap differences;              ///< the last five rows, by row modulo five
     std::vector<std::uint64_t> best;  ///< of each cell of a row of cells, packed (dense_search.cpp)
   };
-  /// Takes a row into the sums, and the row five above it out of them.
-  void take_row_in(const GrayView& left, const GrayView& right, int row_px, bool is_first_window,
-                   EdgeMap& right_edges);
-  void take_candidates(int row_px, std::size_t disparity);
-  void take_best(int first_row_px, std::vector<BlockMatch>& matches);
+  /// Takes `count` rows into the sums, and those five above them out.
+  void take_rows_in(const GrayView& left, const GrayView& right, int row_px, int count, int first_row_px,
+                    EdgeMap& right_edges);
+  void take_candidates(Search& search, int window_row);
+  void take_best(const Search& search, int row_px, int disparity, std::vector<BlockMatch>& matches);
+  /// The image's columns where a search begins, among the sums' columns.
+  ColumnSumRow left_sums(const Search& search, int window_row) const;
+  ColumnSumRow right_sums(const Search& search, int window_row) const;
 
   BlockRule rule_;
   EdgeColumns edge_columns_;
   std::vector<Search> searches_;
-  EdgeMap left_edges_;
+  EdgeMap left_edges_;  ///< the last five rows, by row modulo five
   RunningSums left_running_, right_running_;
   StripReader left_reader_, right_reader_;
-  std::vector<std::uint16_t> left_sums_, right_sums_, sads_;
-  std::vector<std::uint64_t> candidates_;
+  std::vector<std::uint8_t> nothing_;  ///< a row of zeros
+  WindowRow windows_;
+  std::vector<int> cells_;
 };
 
 }  // namespace understory

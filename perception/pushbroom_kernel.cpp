@@ -4,7 +4,8 @@
 
 namespace understory {
 
-PushbroomKernel::PushbroomKernel(const BlockRule& rule) : rule_(rule) {
+PushbroomKernel::PushbroomKernel(const BlockRule& rule)
+    : rule_(rule), self_similarity_(rule.window, rule.infinity_px) {
   assert_sound(rule);
   if (rule.every_pixel) {
     rule_.stride_px = block_px;  // of the cells
@@ -21,7 +22,7 @@ PushbroomKernel::PushbroomKernel(const BlockRule& rule) : rule_(rule) {
 int PushbroomKernel::strip_count() const { return (row_count(rule_) - 1) / rule_.stride_px + 1; }
 
 const std::vector<BlockMatch>& PushbroomKernel::search(const GrayView& left, const GrayView& right,
-                                                       int first_strip, int last_strip) {
+                                                       int first_strip, int last_strip, bool from_afar) {
   matches_.clear();
   if (first_strip >= last_strip) return matches_;
   const int first_row = first_strip * rule_.stride_px, last_row = (last_strip - 1) * rule_.stride_px;
@@ -30,7 +31,8 @@ const std::vector<BlockMatch>& PushbroomKernel::search(const GrayView& left, con
                    matches_);
   } else {
     for (int row = first_row; row <= last_row; row += rule_.stride_px)
-      strips_->search(left, right, row, rule_.horizontal_invariance ? &right_edges_ : nullptr, matches_);
+      strips_->search(left, right, row, from_afar, rule_.horizontal_invariance ? &right_edges_ : nullptr,
+                      matches_);
   }
   if (rule_.horizontal_invariance && !matches_.empty())
     fill_right_edges(right, first_row, std::min(last_row + block_px, rule_.height_px));
@@ -69,15 +71,14 @@ void PushbroomKernel::look_beside(const GrayView& left, const GrayView& right) {
 }
 
 void PushbroomKernel::drop_unlike_the_rule(const GrayView& left, const GrayView& right) {
-  const GrayView right_edges = right_edges_.view();
-  const auto fails = [&](const BlockMatch& match) {
-    UniquenessTest& uniqueness = uniqueness_[static_cast<std::size_t>(match.disparity)];
-    if (rule_.uniqueness && !uniqueness.unique(left, right, match.column_px, match.row_px)) return true;
-    return rule_.horizontal_invariance &&
-           self_similar(left, right, right_edges, match.column_px, match.row_px,
-                        match.column_px - rule_.infinity_px, match.left_edge_sum, rule_.window);
-  };
-  matches_.erase(std::remove_if(matches_.begin(), matches_.end(), fails), matches_.end());
+  if (rule_.uniqueness) {
+    const auto fails = [&](const BlockMatch& match) {
+      UniquenessTest& uniqueness = uniqueness_[static_cast<std::size_t>(match.disparity)];
+      return !uniqueness.unique(left, right, match.column_px, match.row_px);
+    };
+    matches_.erase(std::remove_if(matches_.begin(), matches_.end(), fails), matches_.end());
+  }
+  if (rule_.horizontal_invariance) self_similarity_.drop_similar(left, right, right_edges_.view(), matches_);
 }
 
 }  // namespace understory

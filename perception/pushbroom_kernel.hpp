@@ -22,9 +22,11 @@ class PushbroomKernel {
   int strip_count() const;
 
   /// The matches of the strips first_strip .. last_strip - 1, by strip, then disparity, then column. The
-  /// images have the rule's size. The answer holds until the next call.
+  /// images have the rule's size. Rows are asked for before they are needed where the images come
+  /// `from_afar`, out of no cache; where they were just written, that would cost a twentieth more. The answer
+  /// holds until the next call.
   const std::vector<BlockMatch>& search(const GrayView& left, const GrayView& right, int first_strip,
-                                        int last_strip);
+                                        int last_strip, bool from_afar = true);
 
  private:
   void fill_right_edges(const GrayView& right, int first_row_px, int end_row_px);
@@ -35,6 +37,7 @@ class PushbroomKernel {
   std::optional<StripSearch> strips_;  ///< one of the two
   std::optional<DenseSearch> dense_;
   std::vector<UniquenessTest> uniqueness_;  ///< one for each disparity
+  SelfSimilarityFilter self_similarity_;
   StripReader right_reader_;
   EdgeMap right_edges_;
   std::vector<BlockMatch> matches_;

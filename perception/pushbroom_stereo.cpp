@@ -79,8 +79,11 @@ PushbroomStereo::PushbroomStereo(const StereoCalibration& calibration, double de
                                  const PushbroomConfig& config)
     : PushbroomStereo(rectified_rig(calibration, detection_depth_m), config) {
   const int width = calibration.width_px, height = calibration.height_px;
-  maps_.emplace(Maps{{nearest_places(calibration.left, width, height), width, height},
-                     {nearest_places(calibration.right, width, height), width, height}});
+  const ReadColumns columns = read_columns(block_rule());
+  maps_.emplace(Maps{{nearest_places(calibration.left, width, height), width, height, columns.left_first_px,
+                      columns.left_last_px},
+                     {nearest_places(calibration.right, width, height), width, height, columns.right_first_px,
+                      columns.right_last_px}});
   for (Band& band : bands_)
     for (auto* image : {&band.left, &band.right})
       image->resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
@@ -139,7 +142,7 @@ void PushbroomStereo::search(const GrayView& left, const GrayView& right, int in
   const int strips = band.kernel.strip_count(), bands = static_cast<int>(bands_.size());
   const int first = strips * index / bands, last = strips * (index + 1) / bands;
   if (!maps_) {
-    band.matches = &band.kernel.search(left, right, first, last);
+    band.matches = &band.kernel.search(left, right, first, last, true);
     return;
   }
   // The edge map looks one row beyond the blocks, and the invariance window's beyond its own.
@@ -149,9 +152,9 @@ void PushbroomStereo::search(const GrayView& left, const GrayView& right, int in
   const int last_row = std::min(rig_.height_px, (last - 1) * stride_px + 2 * block_px + beyond);
   maps_->left.apply(left, first_row, last_row, band.left.data(), rig_.width_px);
   maps_->right.apply(right, first_row, last_row, band.right.data(), rig_.width_px);
-  band.matches =
-      &band.kernel.search({band.left.data(), rig_.width_px, rig_.width_px, rig_.height_px},
-                          {band.right.data(), rig_.width_px, rig_.width_px, rig_.height_px}, first, last);
+  band.matches = &band.kernel.search({band.left.data(), rig_.width_px, rig_.width_px, rig_.height_px},
+                                     {band.right.data(), rig_.width_px, rig_.width_px, rig_.height_px}, first,
+                                     last, false);
 }
 
 StereoHit PushbroomStereo::hit_of(const BlockMatch& match) const {

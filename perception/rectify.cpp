@@ -32,7 +32,7 @@ Rectifier::Rectifier(const StereoCalibration& calibration, Interpolation interpo
   const auto prepare = [&](const CameraCalibration& camera, Eye& eye) {
     eye.image.create(height_px_, width_px_, CV_8UC1);
     if (nearest && width_px_ >= ByteRemap::chunk_px) {
-      eye.remap.emplace(nearest_places(camera, width_px_, height_px_), width_px_, height_px_);
+      eye.remap.emplace(nearest_places(camera, width_px_, height_px_), width_px_, height_px_, 0, width_px_);
     } else {
       make_maps(camera, {width_px_, height_px_}, nearest, eye.places, eye.fractions);
     }

@@ -1,5 +1,8 @@
 #include "perception/self_similarity.hpp"
 
+#include <cstring>
+
+#include "perception/block_rule.hpp"
 #include "perception/block_score.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -17,29 +20,26 @@ namespace understory {
 inline constexpr int shift_count = 8;
 inline constexpr int group_bytes = 8;
 inline constexpr int load_bytes = 16;
+inline constexpr std::uint64_t row_of_block = 0xFF'FFFF'FFFF;  // the five bytes of a group that hold it
 
-// Byte indices that put the five bytes of a row into groups; 128 gives zero.
+// Byte indices that put the five bytes from g on into group g; 128 gives zero.
 struct ShiftIndices {
-  std::uint8_t same[shift_count * group_bytes];     // shift 0 in every group
-  std::uint8_t shifted[shift_count * group_bytes];  // shift g in group g
+  std::uint8_t shifted[shift_count * group_bytes];
   ShiftIndices() {
     for (int group = 0; group < shift_count; ++group)
       for (int i = 0; i < group_bytes; ++i) {
         const bool used = i < block_px;
-        same[group * group_bytes + i] = used ? static_cast<std::uint8_t>(i) : 0x80;
         shifted[group * group_bytes + i] = used ? static_cast<std::uint8_t>(group + i) : 0x80;
       }
   }
 };
 
-struct WindowTask {
-  const std::uint8_t* block = nullptr;  // the left block
-  std::ptrdiff_t left_stride = 0;
-  const std::uint8_t* right = nullptr;  // the right image, at the window's first column and row
-  std::ptrdiff_t right_stride = 0;
-  const std::uint8_t* right_edges = nullptr;  // its edge map, at the same place
-  std::ptrdiff_t right_edges_stride = 0;
-  int left_edge_sum = 0;
+using WindowTask = SelfSimilarityFilter::Task;
+
+// What all tasks have in common.
+struct WindowSearch {
+  std::ptrdiff_t left_stride = 0, right_stride = 0, right_edges_stride = 0;
+  SelfSimilarityWindow window;
 };
 
 }  // namespace understory
@@ -52,31 +52,37 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using Bytes = hn::CappedTag<std::uint8_t, shift_count * group_bytes>;
 using Sums = hn::Repartition<std::uint64_t, Bytes>;
-using Halves = hn::Repartition<std::uint32_t, Bytes>;
 
 HWY_INLINE hn::Vec<Sums> SumsOfDifferences(hn::Vec<Bytes> a, hn::Vec<Bytes> b) {
   return hn::SumsOf8(hn::Or(hn::SaturatedSub(a, b), hn::SaturatedSub(b, a)));
 }
 
-// Whether a block of the window that begins at `row` is similar.
-HWY_INLINE bool RowIsSimilar(const WindowTask& task, const hn::Vec<Bytes>* block, int row,
-                             const SelfSimilarityWindow& window, const ShiftIndices& indices) {
+// Whether a block of the window that begins at `row` is similar. No branch that depends on the images.
+HWY_INLINE bool RowIsSimilar(const WindowSearch& search, const WindowTask& task, int row,
+                             const ShiftIndices& indices) {
   const Bytes d;
   const Sums d64;
   const hn::Repartition<std::uint32_t, Bytes> d32;
   const hn::RebindToSigned<Sums> signed64;
   const int groups = static_cast<int>(hn::Lanes(d)) / group_bytes;
-  const int shifts = 2 * window.columns_each_side_px + 1;
+  const int shifts = 2 * search.window.columns_each_side_px + 1;
+  const auto block_row = hn::BitCast(d, hn::Set(d64, row_of_block));
+  const std::uint8_t* right = task.right + row * search.right_stride;
+  const std::uint8_t* right_edges = task.right_edges + row * search.right_edges_stride;
+  auto similar = hn::MaskFromVec(hn::Zero(signed64));
   for (int first = 0; first < shifts; first += groups) {
     const int column = first / shift_count * shift_count;
     const auto shifted = hn::LoadU(d, indices.shifted + (first - column) * group_bytes);
     auto sad = hn::Zero(d64), edges = hn::Zero(d64);
     for (int v = 0; v < block_px; ++v) {
-      const auto other = hn::TableLookupBytesOr0(
-          hn::LoadDup128(d, task.right + (row + v) * task.right_stride + column), shifted);
+      std::uint64_t group = 0;
+      std::memcpy(&group, task.block + v * search.left_stride, group_bytes);
+      const auto block = hn::And(hn::BitCast(d, hn::Set(d64, group)), block_row);
+      const auto other =
+          hn::TableLookupBytesOr0(hn::LoadDup128(d, right + v * search.right_stride + column), shifted);
       const auto other_edges = hn::TableLookupBytesOr0(
-          hn::LoadDup128(d, task.right_edges + (row + v) * task.right_edges_stride + column), shifted);
-      sad = hn::Add(sad, SumsOfDifferences(block[v], other));
+          hn::LoadDup128(d, right_edges + v * search.right_edges_stride + column), shifted);
+      sad = hn::Add(sad, SumsOfDifferences(block, other));
       edges = hn::Add(edges, hn::SumsOf8(other_edges));
     }
     // SAD / (both edge sums) < limit, as block_score.hpp has it; 64 bits hold every product.
@@ -84,32 +90,26 @@ HWY_INLINE bool RowIsSimilar(const WindowTask& task, const hn::Vec<Bytes>* block
     const auto scaled_sad =
         hn::MulEven(hn::BitCast(d32, sad), hn::Set(d32, static_cast<std::uint32_t>(score_unit)));
     const auto limit = hn::MulEven(hn::BitCast(d32, both_edges),
-                                   hn::Set(d32, static_cast<std::uint32_t>(window.limit_units)));
+                                   hn::Set(d32, static_cast<std::uint32_t>(search.window.limit_units)));
     const auto scores = hn::Lt(hn::BitCast(signed64, scaled_sad), hn::BitCast(signed64, limit));
-    const auto textured =
-        hn::Gt(hn::BitCast(signed64, edges), hn::Set(signed64, std::int64_t{window.least_edge_sum} - 1));
+    const auto textured = hn::Gt(hn::BitCast(signed64, edges),
+                                 hn::Set(signed64, std::int64_t{search.window.least_edge_sum} - 1));
     const auto inside = hn::FirstN(signed64, static_cast<std::size_t>(shifts - first));
-    if (!hn::AllFalse(signed64, hn::And(hn::And(scores, textured), inside))) return true;
+    similar = hn::Or(similar, hn::And(hn::And(scores, textured), inside));
   }
-  return false;
+  return !hn::AllFalse(signed64, similar);
 }
 
-bool WindowIsSimilar(const WindowTask& task, const SelfSimilarityWindow& window,
-                     const ShiftIndices& indices) {
-  const Bytes d;
-  hn::Vec<Bytes> block[block_px];
-  for (int v = 0; v < block_px; ++v)
-    block[v] = hn::TableLookupBytesOr0(hn::LoadDup128(d, task.block + v * task.left_stride),
-                                       hn::LoadU(d, indices.same));
-  const int row_count = 2 * window.rows_each_side_px / window.row_step_px + 1;
-  // What repeats usually does so near the block's own row: from the middle outwards.
-  const int middle = row_count / 2;
-  for (int i = 0; i < 2 * row_count; ++i) {
-    const int index = middle + (i % 2 == 0 ? i / 2 : -(i + 1) / 2);
-    if (index < 0 || index >= row_count) continue;
-    if (RowIsSimilar(task, block, index * window.row_step_px, window, indices)) return true;
+// Keeps, in their order, the tasks without a similar block in the window's row `row`; says how many.
+std::size_t DropSimilar(const WindowSearch& search, int row, const ShiftIndices& indices, WindowTask* tasks,
+                        std::size_t count) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const WindowTask task = tasks[i];
+    tasks[kept] = task;
+    kept += RowIsSimilar(search, task, row, indices) ? 0 : 1;
   }
-  return false;
+  return kept;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -120,7 +120,7 @@ HWY_AFTER_NAMESPACE();
 namespace understory {
 namespace {
 
-HWY_EXPORT(WindowIsSimilar);
+HWY_EXPORT(DropSimilar);
 
 bool window_inside(const GrayView& image, int column_px, int row_px, const SelfSimilarityWindow& window) {
   return column_px - window.columns_each_side_px >= 0 && row_px - window.rows_each_side_px >= 0 &&
@@ -128,13 +128,14 @@ bool window_inside(const GrayView& image, int column_px, int row_px, const SelfS
          row_px + window.rows_each_side_px + block_px <= image.height_px;
 }
 
-bool similar_one_by_one(const WindowTask& task, const SelfSimilarityWindow& window) {
+bool similar_one_by_one(const WindowSearch& search, const WindowTask& task) {
+  const SelfSimilarityWindow& window = search.window;
   for (int v = 0; v <= 2 * window.rows_each_side_px; v += window.row_step_px)
     for (int u = 0; u <= 2 * window.columns_each_side_px; ++u) {
-      const int sad =
-          block_sad(task.block, task.left_stride, task.right + v * task.right_stride + u, task.right_stride);
+      const int sad = block_sad(task.block, search.left_stride, task.right + v * search.right_stride + u,
+                                search.right_stride);
       const int edges =
-          block_sum(task.right_edges + v * task.right_edges_stride + u, task.right_edges_stride);
+          block_sum(task.right_edges + v * search.right_edges_stride + u, search.right_edges_stride);
       if (edges >= window.least_edge_sum && scores_below(sad, task.left_edge_sum + edges, window.limit_units))
         return true;
     }
@@ -143,26 +144,51 @@ bool similar_one_by_one(const WindowTask& task, const SelfSimilarityWindow& wind
 
 }  // namespace
 
-bool self_similar(const GrayView& left, const GrayView& right, const GrayView& right_edges, int column_px,
-                  int row_px, int infinity_column_px, int left_edge_sum, const SelfSimilarityWindow& window) {
-  if (!window_inside(right, infinity_column_px, row_px, window)) return true;
+SelfSimilarityFilter::SelfSimilarityFilter(const SelfSimilarityWindow& window, int infinity_px)
+    : window_(window), infinity_px_(infinity_px) {}
+
+void SelfSimilarityFilter::drop_similar(const GrayView& left, const GrayView& right,
+                                        const GrayView& right_edges, std::vector<BlockMatch>& matches) {
   static const ShiftIndices indices;
-  const int first_column = infinity_column_px - window.columns_each_side_px;
-  const int first_row = row_px - window.rows_each_side_px;
-  WindowTask task;
-  task.block = left.row(row_px) + column_px;
-  task.left_stride = left.stride;
-  task.right = right.row(first_row) + first_column;
-  task.right_stride = right.stride;
-  task.right_edges = right_edges.row(first_row) + first_column;
-  task.right_edges_stride = right_edges.stride;
-  task.left_edge_sum = left_edge_sum;
-  const int last_row = row_px + window.rows_each_side_px + block_px - 1;
-  const int bytes = 2 * window.columns_each_side_px + load_bytes;
-  if (!left.can_read(column_px, row_px + block_px - 1, load_bytes) ||
-      !right.can_read(first_column, last_row, bytes) || !right_edges.can_read(first_column, last_row, bytes))
-    return similar_one_by_one(task, window);
-  return HWY_DYNAMIC_DISPATCH(WindowIsSimilar)(task, window, indices);
+  const WindowSearch search{left.stride, right.stride, right_edges.stride, window_};
+  tasks_.clear();
+  unlike_.assign(matches.size(), 0);
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    const BlockMatch& match = matches[i];
+    const int column_px = match.column_px - infinity_px_;
+    if (!window_inside(right, column_px, match.row_px, window_)) continue;
+    const int first_column = column_px - window_.columns_each_side_px;
+    const int first_row = match.row_px - window_.rows_each_side_px;
+    const WindowTask task{left.row(match.row_px) + match.column_px, right.row(first_row) + first_column,
+                          right_edges.row(first_row) + first_column, match.left_edge_sum,
+                          static_cast<int>(i)};
+    const int last_row = match.row_px + window_.rows_each_side_px + block_px - 1;
+    const int bytes = 2 * window_.columns_each_side_px + load_bytes;
+    if (left.can_read(match.column_px, match.row_px + block_px - 1, group_bytes) &&
+        right.can_read(first_column, last_row, bytes) &&
+        right_edges.can_read(first_column, last_row, bytes)) {
+      tasks_.push_back(task);
+    } else {
+      unlike_[i] = !similar_one_by_one(search, task);
+    }
+  }
+  // A row of the windows for all blocks, then the next: a block at a time, when it is found similar could not
+  // be foreseen. What repeats usually does so near the block's own row: from the middle outwards.
+  std::size_t count = tasks_.size();
+  const int row_count = 2 * window_.rows_each_side_px / window_.row_step_px + 1, middle = row_count / 2;
+  for (int i = 0; i < 2 * row_count && count > 0; ++i) {
+    const int index = middle + (i % 2 == 0 ? i / 2 : -(i + 1) / 2);
+    if (index < 0 || index >= row_count) continue;
+    count =
+        HWY_DYNAMIC_DISPATCH(DropSimilar)(search, index * window_.row_step_px, indices, tasks_.data(), count);
+  }
+  for (std::size_t i = 0; i < count; ++i) unlike_[static_cast<std::size_t>(tasks_[i].match)] = 1;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    matches[kept] = matches[i];
+    kept += unlike_[i];
+  }
+  matches.resize(kept);
 }
 
 }  // namespace understory

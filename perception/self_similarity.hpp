@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "perception/gray_view.hpp"
 
@@ -16,10 +17,32 @@ struct SelfSimilarityWindow {
   std::int64_t limit_units = 0;  ///< reject at a score below this (see score_limit_units)
 };
 
-/// True where the left block at (column, row), whose edges sum to `left_edge_sum`, also matches a right block
-/// of the window around (infinity_column, row). A window that leaves the image counts as similar: nothing can
-/// be said there.
-bool self_similar(const GrayView& left, const GrayView& right, const GrayView& right_edges, int column_px,
-                  int row_px, int infinity_column_px, int left_edge_sum, const SelfSimilarityWindow& window);
+struct BlockMatch;
+
+/// Drops matches whose left block also matches a right block of the window around its place at infinity. A
+/// window that leaves the image counts as similar: nothing can be said there.
+class SelfSimilarityFilter {
+ public:
+  SelfSimilarityFilter(const SelfSimilarityWindow& window, int infinity_px);
+
+  /// `right_edges` is the right image's edge map. The matches left keep their order.
+  void drop_similar(const GrayView& left, const GrayView& right, const GrayView& right_edges,
+                    std::vector<BlockMatch>& matches);
+
+  /// A left block, its window's first column and row in the right image and its edge map, its match.
+  struct Task {
+    const std::uint8_t* block = nullptr;
+    const std::uint8_t* right = nullptr;
+    const std::uint8_t* right_edges = nullptr;
+    int left_edge_sum = 0;
+    int match = 0;  ///< index
+  };
+
+ private:
+  SelfSimilarityWindow window_;
+  int infinity_px_;
+  std::vector<Task> tasks_;
+  std::vector<std::uint8_t> unlike_;  ///< of each match: nothing similar was found
+};
 
 }  // namespace understory

@@ -27,11 +27,13 @@ StripSearch::StripSearch(const BlockRule& rule) : rule_(rule), edge_columns_(edg
   candidates_.resize(padded / 64 + 1);
 }
 
-void StripSearch::search(const GrayView& left, const GrayView& right, int row_px, EdgeMap* right_edges,
-                         std::vector<BlockMatch>& matches) {
-  constexpr int ahead = 4;  // strips: about as long as memory takes to answer
-  left.prefetch(row_px + ahead * rule_.stride_px, rule_.stride_px);
-  right.prefetch(row_px + ahead * rule_.stride_px, rule_.stride_px);
+void StripSearch::search(const GrayView& left, const GrayView& right, int row_px, bool from_afar,
+                         EdgeMap* right_edges, std::vector<BlockMatch>& matches) {
+  if (from_afar) {
+    constexpr int ahead = 4;  // strips: about as long as memory takes to answer
+    left.prefetch(row_px + ahead * rule_.stride_px, rule_.stride_px);
+    right.prefetch(row_px + ahead * rule_.stride_px, rule_.stride_px);
+  }
   const StripRows left_rows = left_reader_.rows(left, row_px), right_rows = right_reader_.rows(right, row_px);
   strip_edge_sums(left_rows, edge_columns_.left_first_px, rule_.width_px, rule_.width_px, column_scratch_,
                   left_sums_.data(), nullptr, 0);

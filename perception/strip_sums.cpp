@@ -3,52 +3,17 @@
 #include <algorithm>
 #include <cstring>
 
-#include "perception/block_score.hpp"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "perception/strip_sums.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target, which decides what highway.h means.
 #include <hwy/highway.h>
 
+#include "perception/edges-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace understory {
 namespace HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using Bytes = hn::ScalableTag<std::uint8_t>;
-using Words = hn::ScalableTag<std::uint16_t>;
-using ByteVector = hn::Vec<Bytes>;
-
-// Half of a row's share of the four corners: the mean of the pixels to the left and right, rounded up, and
-// whether it was rounded.
-struct Corners {
-  ByteVector mean, rounded;
-};
-
-HWY_INLINE Corners corners_at(const std::uint8_t* pixel) {
-  const Bytes d;
-  const ByteVector a = hn::LoadU(d, pixel - 1), b = hn::LoadU(d, pixel + 1);
-  return {hn::AverageRound(a, b), hn::And(hn::Xor(a, b), hn::Set(d, 1))};
-}
-
-// The Laplacian in bytes, exactly. With M the mean of the two rows' means and e what the three roundings
-// added, the four corners sum to 4 M - e, so the response is 2 (4 (M - c) - e). Where M <= c it is negative
-// or zero, which is stored as 0; where M - c >= 64 it is stored as 255, and saturation keeps it there.
-HWY_INLINE ByteVector edges_of(const Corners& above, ByteVector here, const Corners& below) {
-  const Bytes d;
-  const ByteVector mean = hn::AverageRound(above.mean, below.mean);
-  const ByteVector rounded = hn::And(hn::Xor(above.mean, below.mean), hn::Set(d, 1));
-  const ByteVector error = hn::Add(hn::Add(above.rounded, below.rounded), hn::Add(rounded, rounded));
-  const ByteVector rise = hn::SaturatedSub(mean, here);
-  const ByteVector twice = hn::SaturatedAdd(rise, rise);
-  const ByteVector half = hn::SaturatedSub(hn::SaturatedAdd(twice, twice), error);
-  return hn::SaturatedAdd(half, half);
-}
-
-HWY_INLINE ByteVector difference(ByteVector a, ByteVector b) {
-  return hn::Or(hn::SaturatedSub(a, b), hn::SaturatedSub(b, a));
-}
 
 // even[i], odd[i]: sums of the five rows' edges in the columns first + 2 i and first + 2 i + 1. Bytes widen
 // most cheaply to 16 bits in this order.
@@ -58,21 +23,20 @@ void StripColumnSums(const StripRows& rows, int first_px, int last_px, std::uint
   const Bytes d;
   const Words d16;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const auto low = hn::Set(d16, 0xFF);
   for (int u = first_px; u < last_px; u += lanes) {
     Corners before = corners_at(rows.row[0] + u), here = corners_at(rows.row[1] + u);
-    auto even_sum = hn::Zero(d16), odd_sum = hn::Zero(d16);
+    auto pair_sum = hn::Zero(d16), odd_sum = hn::Zero(d16);  // of even + 256 odd, modulo 2^16
     for (int v = 0; v < block_px; ++v) {
       const Corners after = corners_at(rows.row[v + 2] + u);
       const ByteVector edge = edges_of(before, hn::LoadU(d, rows.row[v + 1] + u), after);
       if (keep_edges) hn::StoreU(edge, d, edges + v * edge_stride + u);
       const auto pairs = hn::BitCast(d16, edge);
-      even_sum = hn::Add(even_sum, hn::And(pairs, low));
+      pair_sum = hn::Add(pair_sum, pairs);
       odd_sum = hn::Add(odd_sum, hn::ShiftRight<8>(pairs));
       before = here;
       here = after;
     }
-    hn::StoreU(even_sum, d16, even + (u - first_px) / 2);
+    hn::StoreU(hn::Sub(pair_sum, hn::ShiftLeft<8>(odd_sum)), d16, even + (u - first_px) / 2);
     hn::StoreU(odd_sum, d16, odd + (u - first_px) / 2);
   }
 }
@@ -136,19 +100,11 @@ void SumColumns(const std::uint8_t* column_sads, int count, std::uint16_t* sads)
 void TestBlocks(const std::uint16_t* sads, const std::uint16_t* left_sums, const std::uint16_t* right_sums,
                 int count, const CandidateTest& test, std::uint8_t* candidates) {
   const Words d16;
-  // All sums are below 2^15, and AVX-512 lacks comparisons of unsigned words here.
-  const hn::RebindToSigned<Words> signed16;
-  const auto less_than_edges = hn::Set(signed16, static_cast<std::int16_t>(test.least_edge_sum - 1));
-  const auto share = hn::Set(d16, test.limit_share);
-  const auto slack = hn::Set(d16, test.any_score ? std::uint16_t{largest_edge_sum} : std::uint16_t{0});
+  const VectorTest vectors = vector_test(test);
   for (int x = 0; x < count; x += static_cast<int>(hn::Lanes(d16))) {
     const auto left = hn::LoadU(d16, left_sums + x), right = hn::LoadU(d16, right_sums + x);
-    const auto limit = hn::Add(hn::MulHigh(hn::ShiftLeft<2>(hn::Add(left, right)), share), slack);
-    const auto edges_pass = hn::And(hn::Gt(hn::BitCast(signed16, left), less_than_edges),
-                                    hn::Gt(hn::BitCast(signed16, right), less_than_edges));
-    const auto too_different =
-        hn::Gt(hn::BitCast(signed16, hn::LoadU(d16, sads + x)), hn::BitCast(signed16, limit));
-    hn::StoreMaskBits(signed16, hn::AndNot(too_different, edges_pass), candidates + x / 8);
+    const auto pass = may_pass(vectors, hn::LoadU(d16, sads + x), left, right, hn::Add(left, right));
+    hn::StoreMaskBits(hn::RebindToSigned<Words>(), pass, candidates + x / 8);
   }
 }
 
@@ -166,13 +122,6 @@ HWY_EXPORT(EdgeRow);
 HWY_EXPORT(ColumnSads);
 HWY_EXPORT(SumColumns);
 HWY_EXPORT(TestBlocks);
-
-// The outermost column has both corners of a side on the column next to it.
-std::uint8_t outermost_edge(const std::uint8_t* above, const std::uint8_t* here, const std::uint8_t* below,
-                            int column_px, int inner_px) {
-  return static_cast<std::uint8_t>(
-      std::clamp(4 * (above[inner_px] + below[inner_px]) - 8 * here[column_px], 0, 255));
-}
 
 }  // namespace
 
@@ -210,30 +159,24 @@ void strip_edge_sums(const StripRows& rows, int first_px, int last_px, int width
   HWY_DYNAMIC_DISPATCH(ColumnSums)(rows, first_px, last_px, even, odd, edge_rows, edge_stride);
   for (const int column_px : {0, width_px - 1}) {
     if (column_px < first_px || column_px >= last_px) continue;
-    const int inner_px = column_px == 0 ? 1 : width_px - 2;
     int sum = 0;
     for (int v = 0; v < block_px; ++v) {
       const std::uint8_t edge =
-          outermost_edge(rows.row[v], rows.row[v + 1], rows.row[v + 2], column_px, inner_px);
+          outermost_edge(rows.row[v], rows.row[v + 1], rows.row[v + 2], column_px, width_px);
       if (edge_rows != nullptr) edge_rows[v * edge_stride + column_px] = edge;
       sum += edge;
     }
     const int x = column_px - first_px;
     (x % 2 == 0 ? even : odd)[x / 2] = static_cast<std::uint16_t>(sum);
   }
-  block_sums(even, odd, last_px - first_px, sums + first_px);
-}
-
-void block_sums(const std::uint16_t* even, const std::uint16_t* odd, int count, std::uint16_t* sums) {
-  HWY_DYNAMIC_DISPATCH(BlockSums)(even, odd, count, sums);
+  HWY_DYNAMIC_DISPATCH(BlockSums)(even, odd, last_px - first_px, sums + first_px);
 }
 
 void edge_row(const std::uint8_t* above, const std::uint8_t* here, const std::uint8_t* below, int first_px,
               int last_px, int width_px, std::uint8_t* edges) {
   HWY_DYNAMIC_DISPATCH(EdgeRow)(above, here, below, first_px, last_px, edges);
-  if (first_px == 0) edges[0] = outermost_edge(above, here, below, 0, 1);
-  if (last_px == width_px)
-    edges[width_px - 1] = outermost_edge(above, here, below, width_px - 1, width_px - 2);
+  if (first_px == 0) edges[0] = outermost_edge(above, here, below, 0, width_px);
+  if (last_px == width_px) edges[width_px - 1] = outermost_edge(above, here, below, width_px - 1, width_px);
 }
 
 CandidateTest candidate_test(int least_edge_sum, std::int64_t limit_units) {

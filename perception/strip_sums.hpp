@@ -1,8 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
+#include "perception/aligned_vector.hpp"
+#include "perception/block_score.hpp"
 #include "perception/gray_view.hpp"
 
 /// The detector's inner loops in portable SIMD (Highway, dispatched at run time): everything that must be
@@ -38,14 +41,15 @@ class EdgeMap {
   EdgeMap(int width_px, int height_px)
       : width_px_(width_px),
         height_px_(height_px),
-        bytes_(static_cast<std::size_t>(width_px + over_read_px) * static_cast<std::size_t>(height_px)) {}
+        stride_(whole_lines(width_px + over_read_px)),
+        bytes_(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height_px)) {}
   std::uint8_t* row(int row_px) { return bytes_.data() + row_px * stride(); }
-  std::ptrdiff_t stride() const { return width_px_ + over_read_px; }
+  std::ptrdiff_t stride() const { return stride_; }
   GrayView view() const { return {bytes_.data(), stride(), width_px_, height_px_}; }
 
  private:
-  int width_px_ = 0, height_px_ = 0;
-  std::vector<std::uint8_t> bytes_;
+  int width_px_ = 0, height_px_ = 0, stride_ = 0;
+  AlignedVector<std::uint8_t> bytes_;
 };
 
 /// Edge sums of every 5x5 block of a strip: sums[u] = sum of the edge map over (u .. u + 4, v .. v + 4), for
@@ -56,12 +60,17 @@ void strip_edge_sums(const StripRows& rows, int first_px, int last_px, int width
                      std::vector<std::uint16_t>& column_scratch, std::uint16_t* sums, EdgeMap* edges,
                      int row_px);
 
-/// sums[x] = the five columns from x on, where even[i] and odd[i] hold the columns 2 i and 2 i + 1.
-void block_sums(const std::uint16_t* even, const std::uint16_t* odd, int count, std::uint16_t* sums);
-
 /// One row of the edge map, columns first_px .. last_px - 1, from the rows above, here and below.
 void edge_row(const std::uint8_t* above, const std::uint8_t* here, const std::uint8_t* below, int first_px,
               int last_px, int width_px, std::uint8_t* edges);
+
+/// The edge at an outermost column, which has both corners of a side on the column next to it.
+inline std::uint8_t outermost_edge(const std::uint8_t* above, const std::uint8_t* here,
+                                   const std::uint8_t* below, int column_px, int width_px) {
+  const int inner_px = column_px == 0 ? 1 : width_px - 2;
+  return static_cast<std::uint8_t>(
+      std::clamp(4 * (above[inner_px] + below[inner_px]) - 8 * here[column_px], 0, 255));
+}
 
 /// What a candidate must pass. limit_share is the score limit in 1/16384, rounded up; any_score lets every
 /// score pass (limits too large for 16 bits).

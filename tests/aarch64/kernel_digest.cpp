@@ -53,7 +53,7 @@ std::vector<std::int16_t> bent_places() {
 
 bool remaps_rightly(const std::vector<std::uint8_t>& image) {
   const std::vector<std::int16_t> places = bent_places();
-  ByteRemap remap(places, width_px, height_px);
+  ByteRemap remap(places, width_px, height_px, 0, width_px);
   remap.prepare(width_px);
   std::vector<std::uint8_t> output(image.size());
   remap.apply({image.data(), width_px, width_px, height_px}, 0, height_px, output.data(), width_px);
