@@ -18,22 +18,11 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using Half = hn::FixedTag<std::uint8_t, ByteRemap::half_px>;
 
-// Of the source, what the load at an offset holds of half a chunk.
-HWY_INLINE hn::Vec<Half> GatheredHalf(const std::uint8_t* source, std::int32_t offset,
-                                      const std::uint8_t* indices) {
-  const Half d;
-  return hn::TableLookupBytesOr0(hn::LoadU(d, source + offset), hn::LoadU(d, indices));
-}
-
-// A chunk's indices say for each pixel which byte of its half's two loads it is, 0 .. 15 of the first, 16 ..
-// 31 of the second; `none` is neither. A shuffle of bytes gives 0 for 128 and more.
-template <class D, class V>
-HWY_INLINE V FromFirst(D d, V indices) {
-  return hn::And(hn::SaturatedAdd(indices, hn::Set(d, 0x70)), hn::Set(d, 0x8F));
-}
+// A chunk's indices say for each pixel which byte of its half's first load it is, or, plus 128, of the
+// second. A shuffle of bytes gives 0 for 128 and more.
 template <class D, class V>
 HWY_INLINE V FromSecond(D d, V indices) {
-  return hn::Sub(indices, hn::Set(d, ByteRemap::half_px));
+  return hn::Xor(indices, hn::Set(d, ByteRemap::second_load));
 }
 
 #if HWY_MAX_BYTES >= 32 && !HWY_HAVE_SCALABLE
@@ -49,7 +38,7 @@ HWY_INLINE void RemapChunk(const std::uint8_t* source, const std::int32_t* offse
                            const std::uint8_t* indices, std::uint8_t* output) {
   const Chunk d;
   const auto places = hn::LoadU(d, indices);
-  hn::StoreU(hn::Or(hn::TableLookupBytesOr0(Loaded(source, offsets), FromFirst(d, places)),
+  hn::StoreU(hn::Or(hn::TableLookupBytesOr0(Loaded(source, offsets), places),
                     hn::TableLookupBytesOr0(Loaded(source, offsets + 2), FromSecond(d, places))),
              d, output);
 }
@@ -61,7 +50,7 @@ HWY_INLINE void RemapChunk(const std::uint8_t* source, const std::int32_t* offse
     const auto places = hn::LoadU(d, indices + ByteRemap::half_px * half);
     const auto first = hn::LoadU(d, source + offsets[half]),
                second = hn::LoadU(d, source + offsets[2 + half]);
-    hn::StoreU(hn::Or(hn::TableLookupBytesOr0(first, FromFirst(d, places)),
+    hn::StoreU(hn::Or(hn::TableLookupBytesOr0(first, places),
                       hn::TableLookupBytesOr0(second, FromSecond(d, places))),
                d, output + ByteRemap::half_px * half);
   }
@@ -82,7 +71,7 @@ void RemapRows(const ByteRemap::Tables& tables, const GrayView& source, int firs
   for (int v = first_row_px; v < last_row_px; ++v) {
     std::uint8_t* row = output + v * output_stride + tables.first_column_px;
     for (int i = 1; i < chunks; ++i, offsets += loads, indices += px, row += px) {
-      __builtin_prefetch(pixels + *offsets + ahead);
+      __builtin_prefetch(pixels + *offsets + ahead, 0, 1);
       RemapChunk(pixels, offsets, indices, row);
     }
     RemapChunk(pixels, offsets, indices, output + v * output_stride + last_px);
@@ -93,9 +82,10 @@ void RemapRows(const ByteRemap::Tables& tables, const GrayView& source, int firs
              more_end = static_cast<std::size_t>(tables.more_ends[static_cast<std::size_t>(last_row_px)]);
   for (std::size_t i = more_begin; i < more_end; ++i) {
     std::uint8_t* lacking = output + tables.more_rows[i] * output_stride + tables.more_columns[i];
-    const auto found =
-        GatheredHalf(pixels, tables.more_offsets[i], tables.more_indices.data() + ByteRemap::half_px * i);
-    hn::StoreU(hn::Or(hn::LoadU(half, lacking), found), half, lacking);
+    const auto places = hn::LoadU(half, tables.more_indices.data() + ByteRemap::half_px * i);
+    const auto found = hn::TableLookupBytesOr0(hn::LoadU(half, pixels + tables.more_offsets[i]), places);
+    const auto kept = hn::Eq(places, hn::Set(half, ByteRemap::as_it_is));
+    hn::StoreU(hn::IfThenElse(kept, hn::LoadU(half, lacking), found), half, lacking);
   }
 }
 
@@ -108,8 +98,6 @@ namespace understory {
 namespace {
 
 HWY_EXPORT(RemapRows);
-
-constexpr std::uint8_t none = 0x90;  // an index that gives 0: 128 or more from both loads
 
 }  // namespace
 
@@ -130,7 +118,7 @@ ByteRemap::ByteRemap(const std::vector<std::int16_t>& places, int width_px, int 
       const int first = std::min(tables_.first_column_px + i * chunk_px, tables_.last_column_px - chunk_px);
       // Loads of nothing, from where the chunk before had its own, until its halves say what they need.
       loads_.resize(loads_.size() + chunk_loads, loads_.empty() ? Load() : loads_.back());
-      tables_.indices.resize(tables_.indices.size() + chunk_px, none);
+      tables_.indices.resize(tables_.indices.size() + chunk_px);
       for (int half = 0; half < 2; ++half) {
         const int first_px = first + half * half_px;
         add_half(places.data() + 2 * (v * width_px + first_px), first_px, v, half);
@@ -143,12 +131,22 @@ ByteRemap::ByteRemap(const std::vector<std::int16_t>& places, int width_px, int 
 void ByteRemap::add_half(const std::int16_t* places, int first_px, int row_px, int half) {
   std::array<bool, half_px> done{};
   const auto place = [&](int pixel) { return Load{places[2 * pixel], places[2 * pixel + 1]}; };
+  const auto inside = [&](const Load& at) {
+    return at.column_px >= 0 && at.column_px < width_px_ && at.row_px >= 0 && at.row_px < height_px_;
+  };
+  const auto more = [&](const Load& load) {
+    more_.push_back(load);
+    tables_.more_columns.push_back(first_px);
+    tables_.more_rows.push_back(row_px);
+    tables_.more_indices.resize(tables_.more_indices.size() + half_px, as_it_is);
+    return &tables_.more_indices[tables_.more_indices.size() - half_px];
+  };
   int loads = 0;
+  bool some_outside = false;
   for (int i = 0; i < half_px; ++i) {
     const Load wanted = place(i);
-    const bool inside = wanted.column_px >= 0 && wanted.column_px < width_px_ && wanted.row_px >= 0 &&
-                        wanted.row_px < height_px_;
-    if (done[static_cast<std::size_t>(i)] || !inside) continue;
+    if (!inside(wanted)) some_outside = true;
+    if (done[static_cast<std::size_t>(i)] || !inside(wanted)) continue;
     // The load begins with the leftmost pixel still wanted from this row that it can hold together with i.
     Load load{wanted.column_px, wanted.row_px};
     for (int j = i + 1; j < half_px; ++j) {
@@ -158,30 +156,28 @@ void ByteRemap::add_half(const std::int16_t* places, int first_px, int row_px, i
     }
     load.column_px = std::min(load.column_px, width_px_ - half_px);
     std::uint8_t* indices = nullptr;
-    int first_index = 0;
     if (loads < chunk_loads / 2) {
       loads_[loads_.size() - chunk_loads + static_cast<std::size_t>(2 * loads + half)] = load;
       indices =
           &tables_.indices[tables_.indices.size() - chunk_px + static_cast<std::size_t>(half * half_px)];
-      first_index = loads * half_px;
     } else {
-      more_.push_back(load);
-      tables_.more_columns.push_back(first_px);
-      tables_.more_rows.push_back(row_px);
-      tables_.more_indices.resize(tables_.more_indices.size() + half_px, none);
-      indices = &tables_.more_indices[tables_.more_indices.size() - half_px];
+      indices = more(load);
     }
-    ++loads;
     for (int j = 0; j < half_px; ++j) {
       const Load other = place(j);
       const int within = other.column_px - load.column_px;
       const bool here = !done[static_cast<std::size_t>(j)] && other.row_px == load.row_px && within >= 0 &&
                         within < half_px && other.column_px < width_px_;
       if (!here) continue;
-      indices[j] = static_cast<std::uint8_t>(first_index + within);
+      indices[j] = static_cast<std::uint8_t>(loads == 1 ? second_load + within : within);
       done[static_cast<std::size_t>(j)] = true;
     }
+    ++loads;
   }
+  if (!some_outside) return;
+  std::uint8_t* const indices = more(Load());
+  for (int i = 0; i < half_px; ++i)
+    if (!inside(place(i))) indices[i] = second_load;  // of a single load: nothing
 }
 
 void ByteRemap::prepare(std::ptrdiff_t stride) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "perception/aligned_vector.hpp"
 #include "perception/gray_view.hpp"
 
 namespace understory {
@@ -13,9 +14,10 @@ namespace understory {
 /// each other in the source, so that a few loads hold them all. Equal to cv::remap bit for bit.
 class ByteRemap {
  public:
-  static constexpr int half_px = 16;            ///< what a load holds
-  static constexpr int chunk_px = 2 * half_px;  ///< of the output, filled at once
-  static constexpr int chunk_loads = 4;         ///< two for each half
+  static constexpr int half_px = 16;                                  ///< what a load holds
+  static constexpr int chunk_px = 2 * half_px;                        ///< of the output, filled at once
+  static constexpr int chunk_loads = 4;                               ///< two for each half
+  static constexpr std::uint8_t second_load = 0x80, as_it_is = 0xFF;  ///< in indices
 
   /// What rows are made from.
   struct Tables {
@@ -23,11 +25,11 @@ class ByteRemap {
     int chunks = 0;                               ///< in a row; the last one ends with the last column
     // Two loads for each half of a chunk, whether it needs them or not: a number that varies costs more in
     // wrongly foreseen branches. The first of the left and of the right half come first.
-    std::vector<std::int32_t> offsets;  ///< of each load in the source
-    std::vector<std::uint8_t> indices;  ///< of each pixel: 0 .. 15 in the first load, 16 .. 31 in the second
+    std::vector<std::int32_t> offsets;    ///< of each load in the source
+    AlignedVector<std::uint8_t> indices;  ///< of each pixel: 0 .. 15 in the first load, or plus second_load
     // What some halves need beyond that is added afterwards.
     std::vector<std::int32_t> more_offsets;
-    std::vector<std::uint8_t> more_indices;
+    std::vector<std::uint8_t> more_indices;             ///< in that load; as_it_is; or second_load for 0
     std::vector<std::int32_t> more_columns, more_rows;  ///< of the output, where each one's half begins
     std::vector<std::int32_t> more_ends;                ///< how many there are above each row, and in all
   };

@@ -147,11 +147,14 @@ void PushbroomStereo::search(const GrayView& left, const GrayView& right, int in
   }
   // The edge map looks one row beyond the blocks, and the invariance window's beyond its own.
   const int stride_px = config_.every_pixel ? block_px : config_.stride_px;
-  const int beyond = 1 + (config_.horizontal_invariance ? config_.invariance_rows_px : 0);
-  const int first_row = std::max(0, first * stride_px - beyond);
-  const int last_row = std::min(rig_.height_px, (last - 1) * stride_px + 2 * block_px + beyond);
-  maps_->left.apply(left, first_row, last_row, band.left.data(), rig_.width_px);
-  maps_->right.apply(right, first_row, last_row, band.right.data(), rig_.width_px);
+  const int rows_end = (last - 1) * stride_px + (config_.every_pixel ? 2 * block_px - 1 : block_px);
+  const auto rectify = [&](const ByteRemap& map, const GrayView& raw, int beyond, std::uint8_t* output) {
+    map.apply(raw, std::max(0, first * stride_px - beyond), std::min(rig_.height_px, rows_end + beyond),
+              output, rig_.width_px);
+  };
+  rectify(maps_->left, left, 1, band.left.data());
+  rectify(maps_->right, right, 1 + (config_.horizontal_invariance ? config_.invariance_rows_px : 0),
+          band.right.data());
   band.matches = &band.kernel.search({band.left.data(), rig_.width_px, rig_.width_px, rig_.height_px},
                                      {band.right.data(), rig_.width_px, rig_.width_px, rig_.height_px}, first,
                                      last, false);

@@ -151,30 +151,29 @@ void SelfSimilarityFilter::drop_similar(const GrayView& left, const GrayView& ri
                                         const GrayView& right_edges, std::vector<BlockMatch>& matches) {
   static const ShiftIndices indices;
   const WindowSearch search{left.stride, right.stride, right_edges.stride, window_};
-  tasks_.clear();
+  tasks_.resize(matches.size());
   unlike_.assign(matches.size(), 0);
+  std::size_t count = 0;
+  const int columns = window_.columns_each_side_px, rows = window_.rows_each_side_px;
+  // Loads overshoot a row by less than load_bytes, which the rows that follow must hold.
+  const int last_safe_row = right.height_px - rows - block_px - 1 - load_bytes / right.width_px;
   for (std::size_t i = 0; i < matches.size(); ++i) {
     const BlockMatch& match = matches[i];
     const int column_px = match.column_px - infinity_px_;
     if (!window_inside(right, column_px, match.row_px, window_)) continue;
-    const int first_column = column_px - window_.columns_each_side_px;
-    const int first_row = match.row_px - window_.rows_each_side_px;
-    const WindowTask task{left.row(match.row_px) + match.column_px, right.row(first_row) + first_column,
-                          right_edges.row(first_row) + first_column, match.left_edge_sum,
-                          static_cast<int>(i)};
-    const int last_row = match.row_px + window_.rows_each_side_px + block_px - 1;
-    const int bytes = 2 * window_.columns_each_side_px + load_bytes;
-    if (left.can_read(match.column_px, match.row_px + block_px - 1, group_bytes) &&
-        right.can_read(first_column, last_row, bytes) &&
-        right_edges.can_read(first_column, last_row, bytes)) {
-      tasks_.push_back(task);
+    const std::ptrdiff_t first_column = column_px - columns, first_row = match.row_px - rows;
+    WindowTask& task = tasks_[count];
+    task = {left.row(match.row_px) + match.column_px, right.data + first_row * right.stride + first_column,
+            right_edges.data + first_row * right_edges.stride + first_column, match.left_edge_sum,
+            static_cast<int>(i)};
+    if (match.row_px <= last_safe_row) {
+      ++count;
     } else {
       unlike_[i] = !similar_one_by_one(search, task);
     }
   }
   // A row of the windows for all blocks, then the next: a block at a time, when it is found similar could not
   // be foreseen. What repeats usually does so near the block's own row: from the middle outwards.
-  std::size_t count = tasks_.size();
   const int row_count = 2 * window_.rows_each_side_px / window_.row_step_px + 1, middle = row_count / 2;
   for (int i = 0; i < 2 * row_count && count > 0; ++i) {
     const int index = middle + (i % 2 == 0 ? i / 2 : -(i + 1) / 2);
