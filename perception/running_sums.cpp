@@ -162,6 +162,14 @@ HWY_EXPORT(TakeEdges);
 HWY_EXPORT(TakeDifferences);
 HWY_EXPORT(TestWindows);
 
+SumRows sum_rows(std::uint16_t* sums, std::ptrdiff_t half_width, int last) {
+  SumRows rows;
+  for (int v = 0; v < block_px; ++v)
+    rows.after[v] = {sums + 2 * v * half_width, sums + (2 * v + 1) * half_width};
+  rows.before = {rows.after[last].even, rows.after[last].odd};
+  return rows;
+}
+
 }  // namespace
 
 RunningSums::RunningSums(int width)
@@ -171,14 +179,6 @@ RunningSums::RunningSums(int width)
 void RunningSums::clear() {
   std::fill(sums_.begin(), sums_.end(), std::uint16_t{0});
   last_ = 0;
-}
-
-static SumRows sum_rows(std::uint16_t* sums, std::ptrdiff_t half_width, int last) {
-  SumRows rows;
-  for (int v = 0; v < block_px; ++v)
-    rows.after[v] = {sums + 2 * v * half_width, sums + (2 * v + 1) * half_width};
-  rows.before = {rows.after[last].even, rows.after[last].odd};
-  return rows;
 }
 
 void RunningSums::take_edges(const StripRows& rows, int first_px, int last_px, int width_px,

@@ -70,7 +70,8 @@ struct WindowRow {
   explicit WindowRow(int width);
 };
 
-/// Sums the windows at x = 0 .. count - 5 and tests them; the answer is how many candidates there are.
+/// Sums the windows at x = 0 .. count - 5 and tests them; the answer is how many candidates there are. Each
+/// row starts with column 0 of the windows.
 int test_windows(const ColumnSumRow& sads, const ColumnSumRow& left_edges, const ColumnSumRow& right_edges,
                  int count, const CandidateTest& test, WindowRow& windows);
 
