@@ -145,8 +145,11 @@ void ByteRemap::add_half(const std::int16_t* places, int first_px, int row_px, i
   bool some_outside = false;
   for (int i = 0; i < half_px; ++i) {
     const Load wanted = place(i);
-    if (!inside(wanted)) some_outside = true;
-    if (done[static_cast<std::size_t>(i)] || !inside(wanted)) continue;
+    if (!inside(wanted)) {
+      some_outside = true;
+      continue;
+    }
+    if (done[static_cast<std::size_t>(i)]) continue;
     // The load begins with the leftmost pixel still wanted from this row that it can hold together with i.
     Load load{wanted.column_px, wanted.row_px};
     for (int j = i + 1; j < half_px; ++j) {

@@ -1,5 +1,5 @@
-// The Laplacian of bytes and the test of candidates, for the files that Highway builds once for each
-// instruction set. Included again for each, so the guard switches (Highway's convention).
+// The Laplacian of bytes, sums of windows and the test of candidates, for the files that Highway builds once
+// for each instruction set. Included again for each, so the guard switches (Highway's convention).
 #if defined(UNDERSTORY_EDGES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef UNDERSTORY_EDGES_INL_HPP
 #undef UNDERSTORY_EDGES_INL_HPP
@@ -50,6 +50,21 @@ HWY_INLINE ByteVector edges_of(const Corners& above, ByteVector here, const Corn
 
 HWY_INLINE ByteVector difference(ByteVector a, ByteVector b) {
   return hn::Or(hn::SaturatedSub(a, b), hn::SaturatedSub(b, a));
+}
+
+// Sums of five columns: those from the columns 2 i and 2 i + 1 on, where even[i] and odd[i] hold these.
+struct WindowSums {
+  WordVector even, odd;
+};
+
+HWY_INLINE WindowSums window_sums(const std::uint16_t* even, const std::uint16_t* odd, int i) {
+  const Words d16;
+  const auto even_0 = hn::LoadU(d16, even + i), even_1 = hn::LoadU(d16, even + i + 1),
+             even_2 = hn::LoadU(d16, even + i + 2);
+  const auto odd_0 = hn::LoadU(d16, odd + i), odd_1 = hn::LoadU(d16, odd + i + 1),
+             odd_2 = hn::LoadU(d16, odd + i + 2);
+  const auto shared = hn::Add(hn::Add(odd_0, even_1), hn::Add(odd_1, even_2));
+  return {hn::Add(even_0, shared), hn::Add(shared, odd_2)};
 }
 
 // CandidateTest in vectors.

@@ -86,20 +86,6 @@ void TakeDifferences(const StripRows& left, int left_px, const StripRows& right,
   }
 }
 
-// The windows that begin at the columns 2 i and 2 i + 1.
-struct WindowSums {
-  WordVector even, odd;
-};
-HWY_INLINE WindowSums window_sums(const ColumnSumRow& row, int i) {
-  const Words d16;
-  const auto even_0 = hn::LoadU(d16, row.even + i), even_1 = hn::LoadU(d16, row.even + i + 1),
-             even_2 = hn::LoadU(d16, row.even + i + 2);
-  const auto odd_0 = hn::LoadU(d16, row.odd + i), odd_1 = hn::LoadU(d16, row.odd + i + 1),
-             odd_2 = hn::LoadU(d16, row.odd + i + 2);
-  const auto shared = hn::Add(hn::Add(odd_0, even_1), hn::Add(odd_1, even_2));
-  return {hn::Add(even_0, shared), hn::Add(shared, odd_2)};
-}
-
 // Appends the bits' numbers, times two and `parity`, to `list`, and up to four more that mean nothing. Four
 // at a time without asking, since how many there are cannot be foreseen.
 HWY_INLINE std::uint16_t* ListBits(std::uint64_t bits, int first, int parity, std::uint16_t* list) {
@@ -126,8 +112,9 @@ int TestWindows(const ColumnSumRow& sads, const ColumnSumRow& left_edges, const 
   auto* odd_bits = reinterpret_cast<std::uint8_t*>(windows.bits[1].data());
   const ColumnSumRow sad_row = sads, left_row = left_edges, right_row = right_edges;
   for (int i = 0; 2 * i < count; i += static_cast<int>(hn::Lanes(d16))) {
-    const WindowSums sad = window_sums(sad_row, i), left = window_sums(left_row, i),
-                     right = window_sums(right_row, i);
+    const WindowSums sad = window_sums(sad_row.even, sad_row.odd, i),
+                     left = window_sums(left_row.even, left_row.odd, i),
+                     right = window_sums(right_row.even, right_row.odd, i);
     const auto even_both = hn::Add(left.even, right.even), odd_both = hn::Add(left.odd, right.odd);
     hn::StoreU(sad.even, d16, even_sads + i);
     hn::StoreU(sad.odd, d16, odd_sads + i);

@@ -15,8 +15,7 @@ class StripSearch {
   explicit StripSearch(const BlockRule& rule);
 
   /// Appends the matches of the blocks that begin at row_px, by disparity, then column. `from_afar`: see
-  /// PushbroomKernel::search. Where `right_edges`
-  /// is given, the right image's edges go there, five rows.
+  /// PushbroomKernel::search. Where `right_edges` is given, the right image's edges go there, five rows.
   void search(const GrayView& left, const GrayView& right, int row_px, bool from_afar, EdgeMap* right_edges,
               std::vector<BlockMatch>& matches);
 

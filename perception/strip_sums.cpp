@@ -55,12 +55,8 @@ void BlockSums(const std::uint16_t* even, const std::uint16_t* odd, int count, s
   const Words d16;
   const int lanes = static_cast<int>(hn::Lanes(d16));
   for (int i = 0; 2 * i < count; i += lanes) {
-    const auto even_0 = hn::LoadU(d16, even + i), even_1 = hn::LoadU(d16, even + i + 1),
-               even_2 = hn::LoadU(d16, even + i + 2);
-    const auto odd_0 = hn::LoadU(d16, odd + i), odd_1 = hn::LoadU(d16, odd + i + 1),
-               odd_2 = hn::LoadU(d16, odd + i + 2);
-    const auto shared = hn::Add(hn::Add(odd_0, even_1), hn::Add(odd_1, even_2));
-    hn::StoreInterleaved2(hn::Add(even_0, shared), hn::Add(shared, odd_2), d16, sums + 2 * i);
+    const WindowSums windows = window_sums(even, odd, i);
+    hn::StoreInterleaved2(windows.even, windows.odd, d16, sums + 2 * i);
   }
 }
 
