@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "perception/byte_remap.hpp"
+#include "perception/pushbroom/byte_remap.hpp"
 #include "perception/stereo_calibration.hpp"
 #include "perception/stereo_frame.hpp"
 

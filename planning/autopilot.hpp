@@ -5,9 +5,9 @@
 
 #include "estimation/samples.hpp"
 #include "estimation/state_source.hpp"
-#include "perception/local_map.hpp"
+#include "perception/map/local_map.hpp"
+#include "perception/map/resightings.hpp"
 #include "perception/obstacle_detector.hpp"
-#include "perception/resightings.hpp"
 #include "perception/stereo_rig.hpp"
 #include "planning/avoidance_planner.hpp"
 #include "planning/controls.hpp"

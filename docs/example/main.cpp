@@ -6,8 +6,8 @@
 #include "estimation/filter.hpp"
 #include "perception/io/calibration_file.hpp"
 #include "perception/io/stereo_recording.hpp"
-#include "perception/local_map.hpp"
-#include "perception/pushbroom_stereo.hpp"
+#include "perception/map/local_map.hpp"
+#include "perception/pushbroom/pushbroom_stereo.hpp"
 
 using namespace understory;
 

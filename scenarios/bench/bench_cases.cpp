@@ -5,8 +5,8 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "perception/full_stereo_detector.hpp"
-#include "perception/pushbroom_stereo.hpp"
+#include "perception/full_stereo/full_stereo_detector.hpp"
+#include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "perception/rectify.hpp"
 
 namespace understory {

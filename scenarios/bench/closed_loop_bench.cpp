@@ -6,7 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "scenarios/file_output.hpp"
+#include "scenarios/output/file_output.hpp"
 
 namespace understory {
 

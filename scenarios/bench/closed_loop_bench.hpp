@@ -10,11 +10,12 @@ namespace understory {
 /// One flight of the program, from its process's start to its end.
 struct TimedFlight {
   double simulated_s = 0;
-  double wall_s = 0;                      ///< the process's own, loading of libraries included
-  double frames = 0;                      ///< stereo pairs
-  std::map<std::string, double> stage_s;  ///< wall time per stage of the loop (scenarios/stopwatch.hpp)
-  double peak_memory_mb = 0;              ///< greatest resident set
-  double cpu_s = 0;                       ///< the process's own
+  double wall_s = 0;  ///< the process's own, loading of libraries included
+  double frames = 0;  ///< stereo pairs
+  std::map<std::string, double>
+      stage_s;                ///< wall time per stage of the loop (scenarios/flight/stopwatch.hpp)
+  double peak_memory_mb = 0;  ///< greatest resident set
+  double cpu_s = 0;           ///< the process's own
 };
 
 /// The stages whose shares are told; what is left of the wall time is "other". "setup" is the world,

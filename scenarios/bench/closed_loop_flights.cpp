@@ -7,9 +7,9 @@
 #include <map>
 
 #include "scenarios/bench/flight_processes.hpp"
-#include "scenarios/config_tree.hpp"
-#include "scenarios/elapsed.hpp"
-#include "scenarios/file_output.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/flight/elapsed.hpp"
+#include "scenarios/output/file_output.hpp"
 
 namespace understory {
 namespace {

@@ -9,8 +9,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "scenarios/file_output.hpp"
-#include "scenarios/this_program.hpp"
+#include "scenarios/output/file_output.hpp"
+#include "scenarios/output/this_program.hpp"
 
 namespace understory {
 

@@ -19,7 +19,7 @@ struct Campaign {
   std::vector<Condition> conditions;
   std::vector<std::uint64_t> seeds;
   std::string renderer = "osmesa";  ///< renderer_kind.hpp's word: the machine's, given with the command
-  double timeout_s = 300;  ///< of wall time: a flight that takes longer hangs
+  double timeout_s = 300;           ///< of wall time: a flight that takes longer hangs
 };
 
 /// One flight to be flown.

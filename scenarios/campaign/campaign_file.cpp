@@ -6,8 +6,8 @@
 #include <charconv>
 #include <set>
 
-#include "scenarios/config_keys.hpp"
-#include "scenarios/scenario_io.hpp"
+#include "scenarios/config/config_keys.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 namespace {

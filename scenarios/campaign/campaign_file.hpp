@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scenarios/campaign/campaign.hpp"
-#include "scenarios/config_tree.hpp"
+#include "scenarios/config/config_tree.hpp"
 
 namespace understory {
 

@@ -6,10 +6,10 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "scenarios/config_tree.hpp"
-#include "scenarios/file_output.hpp"
-#include "scenarios/program_digest.hpp"
-#include "scenarios/versions.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/output/file_output.hpp"
+#include "scenarios/output/program_digest.hpp"
+#include "scenarios/output/versions.hpp"
 
 namespace understory {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "scenarios/campaign/flight_row.hpp"
-#include "scenarios/validation/line_plot.hpp"
+#include "scenarios/report/line_plot.hpp"
 
 namespace understory {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "scenarios/campaign/flight_row.hpp"
-#include "scenarios/campaign/printed_table.hpp"
+#include "scenarios/report/printed_table.hpp"
 #include "scenarios/statistics/survival.hpp"
 
 namespace understory {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "scenarios/config_tree.hpp"
+#include "scenarios/config/config_tree.hpp"
 
 namespace understory {
 namespace {

@@ -12,7 +12,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "scenarios/config_tree.hpp"
+#include "scenarios/config/config_tree.hpp"
 
 namespace understory {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "scenarios/campaign/flight_row.hpp"
-#include "scenarios/flight_result.hpp"
-#include "scenarios/scenario.hpp"
+#include "scenarios/flight/flight_result.hpp"
+#include "scenarios/scenario/scenario.hpp"
 
 namespace understory {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenarios/campaign/printed_table.hpp"
+#include "scenarios/report/printed_table.hpp"
 #include "scenarios/statistics/wilson.hpp"
 
 namespace understory {

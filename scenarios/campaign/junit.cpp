@@ -6,7 +6,7 @@
 #include <pugixml.hpp>
 #include <sstream>
 
-#include "scenarios/versions.hpp"
+#include "scenarios/output/versions.hpp"
 
 namespace understory {
 namespace {

@@ -17,10 +17,10 @@
 #include <map>
 #include <thread>
 
-#include "scenarios/campaign/stop_signals.hpp"
-#include "scenarios/config_tree.hpp"
-#include "scenarios/file_output.hpp"
-#include "scenarios/this_program.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/output/file_output.hpp"
+#include "scenarios/output/stop_signals.hpp"
+#include "scenarios/output/this_program.hpp"
 
 namespace understory {
 namespace {

@@ -9,8 +9,8 @@
 #include <cstdio>
 #include <thread>
 
-#include "scenarios/campaign/stop_signals.hpp"
-#include "scenarios/file_output.hpp"
+#include "scenarios/output/file_output.hpp"
+#include "scenarios/output/stop_signals.hpp"
 
 namespace understory {
 namespace {

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/config_tree.hpp"
+#include "scenarios/config/config_tree.hpp"
 
 namespace understory {
 

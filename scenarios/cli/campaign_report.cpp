@@ -6,7 +6,7 @@
 #include "scenarios/campaign/campaign_summary.hpp"
 #include "scenarios/campaign/junit.hpp"
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/file_output.hpp"
+#include "scenarios/output/file_output.hpp"
 
 namespace understory {
 

@@ -5,7 +5,7 @@
 
 #include "scenarios/bench/closed_loop_flights.hpp"
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/file_output.hpp"
+#include "scenarios/output/file_output.hpp"
 
 namespace understory {
 

@@ -9,8 +9,8 @@
 #include "scenarios/bench/bench.hpp"
 #include "scenarios/bench/stereo_scenes.hpp"
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/config_tree.hpp"
-#include "scenarios/file_output.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/output/file_output.hpp"
 
 namespace understory {
 namespace {

@@ -12,11 +12,11 @@
 #include "scenarios/campaign/slurm_engine.hpp"
 #include "scenarios/cli/campaign_report.hpp"
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/cli/progress_line.hpp"
-#include "scenarios/config_tree.hpp"
-#include "scenarios/file_output.hpp"
-#include "scenarios/scenario_io.hpp"
-#include "scenarios/scenario_rig.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/output/file_output.hpp"
+#include "scenarios/output/progress_line.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
 
 namespace understory {
 namespace {

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/detection_run.hpp"
+#include "scenarios/detect/detection_run.hpp"
 
 namespace understory {
 namespace {

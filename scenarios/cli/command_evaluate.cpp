@@ -9,10 +9,10 @@
 #include <thread>
 
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/config_reader.hpp"
+#include "scenarios/config/config_reader.hpp"
 #include "scenarios/evaluation/evaluation.hpp"
 #include "scenarios/evaluation/evaluation_files.hpp"
-#include "scenarios/rule_preset.hpp"
+#include "scenarios/scenario/rule_preset.hpp"
 
 namespace understory {
 

@@ -10,9 +10,9 @@
 #include "scenarios/campaign/junit.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/cli/flight_terminal.hpp"
-#include "scenarios/file_output.hpp"
-#include "scenarios/fly.hpp"
-#include "scenarios/scenario_io.hpp"
+#include "scenarios/flight/fly.hpp"
+#include "scenarios/output/file_output.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 namespace {

@@ -7,8 +7,8 @@
 #include "scenarios/campaign/gate.hpp"
 #include "scenarios/campaign/junit.hpp"
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/config_tree.hpp"
-#include "scenarios/file_output.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/output/file_output.hpp"
 
 namespace understory {
 namespace {

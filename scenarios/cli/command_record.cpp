@@ -8,7 +8,7 @@
 #include "scenarios/cli/flight_terminal.hpp"
 #include "scenarios/recording/path_file.hpp"
 #include "scenarios/recording/record.hpp"
-#include "scenarios/scenario_io.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 namespace {

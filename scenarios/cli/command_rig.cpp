@@ -6,10 +6,10 @@
 #include "perception/io/calibration_file.hpp"
 #include "perception/io/picture_codecs.hpp"
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/config_tree.hpp"
-#include "scenarios/file_output.hpp"
-#include "scenarios/rig_figures.hpp"
-#include "scenarios/rig_picture.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/detect/rig_figures.hpp"
+#include "scenarios/detect/rig_picture.hpp"
+#include "scenarios/output/file_output.hpp"
 
 namespace understory {
 namespace {

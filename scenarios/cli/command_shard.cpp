@@ -7,8 +7,8 @@
 #include "scenarios/campaign/local_engine.hpp"
 #include "scenarios/campaign/slurm_engine.hpp"
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/config_tree.hpp"
-#include "scenarios/file_output.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/output/file_output.hpp"
 
 namespace understory {
 namespace {

@@ -5,12 +5,12 @@
 #include <memory>
 #include <thread>
 
-#include "scenarios/campaign/stop_signals.hpp"
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/cli/progress_line.hpp"
-#include "scenarios/config_tree.hpp"
-#include "scenarios/file_output.hpp"
-#include "scenarios/scenario_rig.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/output/file_output.hpp"
+#include "scenarios/output/progress_line.hpp"
+#include "scenarios/output/stop_signals.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
 #include "scenarios/tuning/flight_judge.hpp"
 #include "scenarios/tuning/tune_report.hpp"
 #include "scenarios/tuning/vision_judge.hpp"

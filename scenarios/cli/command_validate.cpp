@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/config_tree.hpp"
-#include "scenarios/file_output.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/output/file_output.hpp"
 #include "scenarios/validation/aircraft_page.hpp"
 #include "scenarios/validation/estimator_page.hpp"
 #include "scenarios/validation/mismatch_page.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "perception/io/calibration_file.hpp"
-#include "sim/renderer_kind.hpp"
+#include "sim/render/renderer_kind.hpp"
 
 namespace CLI {
 class App;

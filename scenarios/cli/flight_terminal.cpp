@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "scenarios/scenario_io.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 

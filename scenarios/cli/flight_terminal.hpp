@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/fly.hpp"
+#include "scenarios/flight/fly.hpp"
 
 namespace understory {
 

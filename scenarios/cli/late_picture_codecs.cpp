@@ -1,7 +1,7 @@
 #include <dlfcn.h>
 
 #include "perception/io/picture_codecs.hpp"
-#include "scenarios/file_output.hpp"
+#include "scenarios/output/file_output.hpp"
 
 namespace understory {
 namespace {

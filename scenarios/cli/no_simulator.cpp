@@ -1,7 +1,7 @@
 #include <CLI/CLI.hpp>
 
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/config_tree.hpp"
+#include "scenarios/config/config_tree.hpp"
 
 /// The commands of a build without the simulator (UNDERSTORY_SIM=OFF).
 namespace understory {

@@ -4,8 +4,8 @@
 #include <cstdlib>
 
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/config_tree.hpp"
-#include "scenarios/file_output.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/output/file_output.hpp"
 
 namespace understory {
 

@@ -5,11 +5,11 @@
 
 #include "scenarios/bench/flight_processes.hpp"
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/config_tree.hpp"
+#include "scenarios/config/config_tree.hpp"
 #include "scenarios/evaluation/evaluation_suite.hpp"
-#include "scenarios/file_output.hpp"
-#include "scenarios/scenario_io.hpp"
-#include "scenarios/scenario_rig.hpp"
+#include "scenarios/output/file_output.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
 
 namespace understory {
 namespace {

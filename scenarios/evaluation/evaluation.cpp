@@ -10,9 +10,9 @@
 #include <opencv2/core/utility.hpp>
 #include <thread>
 
-#include "scenarios/config_tree.hpp"
-#include "scenarios/elapsed.hpp"
-#include "scenarios/quiet_standard_error.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/config/quiet_standard_error.hpp"
+#include "scenarios/flight/elapsed.hpp"
 
 namespace understory {
 namespace {

@@ -6,14 +6,14 @@
 #include <string_view>
 #include <vector>
 
-#include "scenarios/detection_result.hpp"
+#include "scenarios/detect/detection_result.hpp"
 #include "scenarios/evaluation/evaluation_pictures.hpp"
 #include "scenarios/evaluation/evaluation_plots.hpp"
 #include "scenarios/evaluation/evaluation_tables.hpp"
 #include "scenarios/evaluation/obstacle_tables.hpp"
-#include "scenarios/file_output.hpp"
-#include "scenarios/picture_folder.hpp"
-#include "scenarios/video_writer.hpp"
+#include "scenarios/output/file_output.hpp"
+#include "scenarios/report/picture_folder.hpp"
+#include "scenarios/report/video_writer.hpp"
 
 namespace understory {
 namespace {

@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "scenarios/picture_folder.hpp"
+#include "scenarios/report/picture_folder.hpp"
 
 namespace understory {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "scenarios/validation/line_plot.hpp"
+#include "scenarios/report/line_plot.hpp"
 
 namespace understory {
 namespace {

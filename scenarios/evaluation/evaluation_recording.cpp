@@ -11,7 +11,7 @@
 #include "perception/io/image_file.hpp"
 #include "perception/io/picture_codecs.hpp"
 #include "perception/io/text_table.hpp"
-#include "scenarios/config_tree.hpp"
+#include "scenarios/config/config_tree.hpp"
 
 namespace understory {
 namespace {

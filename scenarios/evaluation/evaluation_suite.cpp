@@ -5,7 +5,7 @@
 #include <set>
 #include <string_view>
 
-#include "scenarios/config_keys.hpp"
+#include "scenarios/config/config_keys.hpp"
 
 namespace understory {
 namespace {

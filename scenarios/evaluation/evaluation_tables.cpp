@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "scenarios/detection_result.hpp"
+#include "scenarios/detect/detection_result.hpp"
 #include "scenarios/evaluation/obstacle_tables.hpp"
 #include "scenarios/evaluation/share_text.hpp"
 #include "scenarios/statistics/bootstrap.hpp"

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/campaign/printed_table.hpp"
 #include "scenarios/evaluation/evaluation.hpp"
+#include "scenarios/report/printed_table.hpp"
 
 namespace understory {
 

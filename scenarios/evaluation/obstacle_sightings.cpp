@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "scenarios/clearance.hpp"
+#include "scenarios/flight/clearance.hpp"
 
 namespace understory {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "scenarios/detection_result.hpp"
+#include "scenarios/detect/detection_result.hpp"
 #include "scenarios/evaluation/share_text.hpp"
 
 namespace understory {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "scenarios/evaluation/obstacle_sightings.hpp"
-#include "scenarios/flight_computer.hpp"
+#include "scenarios/flight/flight_computer.hpp"
 
 namespace understory {
 

@@ -1,6 +1,6 @@
 #include "scenarios/evaluation/precision_recall_curves.hpp"
 
-#include "perception/full_stereo_detector.hpp"
+#include "perception/full_stereo/full_stereo_detector.hpp"
 #include "scenarios/evaluation/one_pixel_counts.hpp"
 
 namespace understory {

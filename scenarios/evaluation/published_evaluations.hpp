@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "perception/local_map.hpp"
+#include "perception/map/local_map.hpp"
 #include "perception/stereo_rig.hpp"
 #include "scenarios/evaluation/detection_grid.hpp"
 #include "scenarios/evaluation/distance_histogram.hpp"

@@ -6,13 +6,13 @@
 #include <memory>
 #include <utility>
 
-#include "perception/full_stereo_detector.hpp"
-#include "scenarios/detection_depths.hpp"
-#include "scenarios/elapsed.hpp"
+#include "perception/full_stereo/full_stereo_detector.hpp"
 #include "scenarios/evaluation/one_pixel_counts.hpp"
 #include "scenarios/evaluation/precision_recall_curves.hpp"
 #include "scenarios/evaluation/random_detector.hpp"
 #include "scenarios/evaluation/true_depth_hits.hpp"
+#include "scenarios/flight/elapsed.hpp"
+#include "scenarios/scenario/detection_depths.hpp"
 
 namespace understory {
 namespace {

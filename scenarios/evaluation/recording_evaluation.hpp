@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "perception/full_stereo.hpp"
-#include "perception/full_stereo_detector.hpp"
-#include "perception/local_map.hpp"
-#include "perception/pushbroom_stereo.hpp"
+#include "perception/full_stereo/full_stereo.hpp"
+#include "perception/full_stereo/full_stereo_detector.hpp"
+#include "perception/map/local_map.hpp"
+#include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "scenarios/evaluation/evaluation_recording.hpp"
 #include "scenarios/evaluation/obstacle_sightings.hpp"
 #include "scenarios/evaluation/paced_sightings.hpp"

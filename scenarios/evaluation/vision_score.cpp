@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "scenarios/config_tree.hpp"
+#include "scenarios/config/config_tree.hpp"
 #include "scenarios/evaluation/one_pixel_counts.hpp"
 
 namespace understory {

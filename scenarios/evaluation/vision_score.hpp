@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "perception/local_map.hpp"
-#include "perception/pushbroom_stereo.hpp"
+#include "perception/map/local_map.hpp"
+#include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "scenarios/evaluation/evaluation_recording.hpp"
 #include "scenarios/evaluation/obstacle_sightings.hpp"
 #include "scenarios/evaluation/share.hpp"

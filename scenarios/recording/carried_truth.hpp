@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "sim/truth.hpp"
+#include "sim/aircraft/truth.hpp"
 
 namespace understory {
 

@@ -2,12 +2,12 @@
 
 #include <limits>
 
-#include "scenarios/due.hpp"
-#include "scenarios/named_seed.hpp"
+#include "scenarios/config/named_seed.hpp"
+#include "scenarios/flight/due.hpp"
+#include "scenarios/flight/run_record.hpp"
+#include "scenarios/flight/simulated_parts.hpp"
+#include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/recording/euroc_recording.hpp"
-#include "scenarios/run_record.hpp"
-#include "scenarios/simulated_parts.hpp"
-#include "scenarios/stopwatch.hpp"
 
 namespace understory {
 

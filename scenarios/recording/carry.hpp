@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "perception/io/calibration_file.hpp"
-#include "scenarios/fly.hpp"
-#include "scenarios/scenario.hpp"
-#include "sim/obstacle.hpp"
-#include "sim/truth.hpp"
+#include "scenarios/flight/fly.hpp"
+#include "scenarios/scenario/scenario.hpp"
+#include "sim/aircraft/truth.hpp"
+#include "sim/scene/obstacle.hpp"
 
 namespace understory {
 

@@ -6,12 +6,12 @@
 #include <limits>
 #include <opencv2/core.hpp>
 
-#include "scenarios/config_tree.hpp"
-#include "scenarios/due.hpp"
-#include "scenarios/file_output.hpp"
-#include "scenarios/named_seed.hpp"
-#include "scenarios/scenario_io.hpp"
-#include "scenarios/video_writer.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/config/named_seed.hpp"
+#include "scenarios/flight/due.hpp"
+#include "scenarios/output/file_output.hpp"
+#include "scenarios/report/video_writer.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 namespace {

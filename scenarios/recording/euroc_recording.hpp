@@ -10,9 +10,9 @@
 #include "estimation/state.hpp"
 #include "perception/stereo_frame.hpp"
 #include "scenarios/recording/euroc_texts.hpp"
-#include "scenarios/scenario.hpp"
-#include "sim/stereo_cameras.hpp"
-#include "sim/truth.hpp"
+#include "scenarios/scenario/scenario.hpp"
+#include "sim/aircraft/truth.hpp"
+#include "sim/cameras/stereo_cameras.hpp"
 
 namespace understory {
 

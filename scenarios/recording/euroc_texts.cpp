@@ -6,7 +6,7 @@
 #include <iterator>
 #include <opencv2/core/eigen.hpp>
 
-#include "scenarios/versions.hpp"
+#include "scenarios/output/versions.hpp"
 
 namespace understory {
 namespace {

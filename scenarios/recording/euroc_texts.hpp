@@ -8,8 +8,8 @@
 
 #include "estimation/samples.hpp"
 #include "perception/io/calibration_file.hpp"
-#include "sim/imu.hpp"
-#include "sim/obstacle.hpp"
+#include "sim/scene/obstacle.hpp"
+#include "sim/sensors/imu.hpp"
 
 namespace understory {
 

@@ -2,7 +2,7 @@
 
 #include "scenarios/recording/euroc_recording.hpp"
 #include "scenarios/recording/record.hpp"
-#include "scenarios/scenario_rig.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
 
 namespace understory {
 namespace {

@@ -5,8 +5,8 @@
 #include "scenarios/recording/path_file.hpp"
 #include "scenarios/recording/record.hpp"
 #include "scenarios/recording/smooth_path.hpp"
-#include "scenarios/scenario_io.hpp"
-#include "scenarios/scenario_rig.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
 
 namespace understory {
 

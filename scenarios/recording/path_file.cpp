@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "perception/io/text_table.hpp"
-#include "scenarios/bad_input.hpp"
+#include "scenarios/config/bad_input.hpp"
 
 namespace understory {
 namespace {

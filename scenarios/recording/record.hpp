@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "perception/io/pose_file.hpp"
-#include "scenarios/fly.hpp"
+#include "scenarios/flight/fly.hpp"
 #include "scenarios/recording/carry.hpp"
 #include "scenarios/recording/walk.hpp"
-#include "scenarios/scenario.hpp"
+#include "scenarios/scenario/scenario.hpp"
 
 namespace understory {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scenarios/require.hpp"
+#include "scenarios/output/require.hpp"
 
 namespace understory {
 

@@ -7,9 +7,9 @@
 #include <limits>
 #include <random>
 
-#include "scenarios/clearance.hpp"
-#include "scenarios/config_tree.hpp"
-#include "scenarios/named_seed.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/config/named_seed.hpp"
+#include "scenarios/flight/clearance.hpp"
 #include "scenarios/recording/carried_truth.hpp"
 
 namespace understory {

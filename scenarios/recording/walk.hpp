@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "perception/stereo_rig.hpp"
-#include "scenarios/scenario.hpp"
-#include "sim/obstacle.hpp"
-#include "sim/truth.hpp"
+#include "scenarios/scenario/scenario.hpp"
+#include "sim/aircraft/truth.hpp"
+#include "sim/scene/obstacle.hpp"
 
 namespace understory {
 

@@ -3,8 +3,8 @@
 
 #include "scenarios/recording/carry.hpp"
 #include "scenarios/recording/record.hpp"
-#include "scenarios/scenario_io.hpp"
-#include "scenarios/scenario_rig.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
 
 namespace understory {
 

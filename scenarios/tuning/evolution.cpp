@@ -5,7 +5,7 @@
 #include <pagmo/population.hpp>
 #include <pagmo/problem.hpp>
 
-#include "scenarios/named_seed.hpp"
+#include "scenarios/config/named_seed.hpp"
 #include "scenarios/tuning/search.hpp"
 
 namespace understory {

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "scenarios/file_output.hpp"
-#include "scenarios/scenario_io.hpp"
+#include "scenarios/output/file_output.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 namespace {

@@ -12,8 +12,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "scenarios/config_tree.hpp"
-#include "scenarios/file_output.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/output/file_output.hpp"
 
 namespace understory {
 namespace {

@@ -8,8 +8,8 @@
 #include <iterator>
 #include <set>
 
-#include "scenarios/config_keys.hpp"
-#include "scenarios/scenario_io.hpp"
+#include "scenarios/config/config_keys.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/tuning/flight_judge.hpp"
 #include "scenarios/tuning/numeric_keys.hpp"
 #include "scenarios/tuning/vision_judge.hpp"

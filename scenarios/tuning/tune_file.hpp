@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scenarios/campaign/campaign_file.hpp"
-#include "scenarios/scenario.hpp"
+#include "scenarios/scenario/scenario.hpp"
 #include "scenarios/tuning/search.hpp"
 
 namespace understory {

@@ -5,12 +5,12 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/campaign/flight_row_io.hpp"
-#include "scenarios/config_tree.hpp"
-#include "scenarios/file_output.hpp"
-#include "scenarios/program_digest.hpp"
-#include "scenarios/scenario_io.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/output/file_output.hpp"
+#include "scenarios/output/program_digest.hpp"
+#include "scenarios/output/versions.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/tuning/tuning.hpp"
-#include "scenarios/versions.hpp"
 
 namespace understory {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/report/line_plot.hpp"
 #include "scenarios/tuning/tuning.hpp"
-#include "scenarios/validation/line_plot.hpp"
 
 namespace understory {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenarios/file_output.hpp"
+#include "scenarios/output/file_output.hpp"
 #include "scenarios/tuning/tune_comparison.hpp"
 #include "scenarios/tuning/tune_plots.hpp"
 

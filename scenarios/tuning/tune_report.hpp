@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "scenarios/campaign/printed_table.hpp"
+#include "scenarios/report/printed_table.hpp"
 #include "scenarios/tuning/judge.hpp"
 #include "scenarios/tuning/tuning.hpp"
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "scenarios/config_tree.hpp"
-#include "scenarios/scenario_io.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 namespace {

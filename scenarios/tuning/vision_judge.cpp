@@ -6,8 +6,8 @@
 #include <atomic>
 #include <thread>
 
-#include "scenarios/config_tree.hpp"
-#include "scenarios/detection_depths.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/scenario/detection_depths.hpp"
 
 namespace understory {
 namespace {

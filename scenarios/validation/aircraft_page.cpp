@@ -21,7 +21,8 @@ ValidationPage aircraft_page(const std::filesystem::path& root) {
   page.file = "flight_model";
   page.title = "The flight model";
   page.introduction =
-      "The simulated delta wing (`sim/aerodynamics`, `sim/aircraft`) beside what is known of the real one. "
+      "The simulated delta wing (`sim/aircraft/aerodynamics`, `sim/aircraft/aircraft`) beside what is known "
+      "of the real one. "
       "`understory validate --out docs` writes this page and its figures, and ends with status 1 where one "
       "of its tolerances is broken. FACTS: the figures that the project was given, from the flight records "
       "of the original aircraft (2014 to 2017) or computed from its identified model.\n";

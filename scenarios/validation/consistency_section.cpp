@@ -6,9 +6,9 @@
 #include <optional>
 #include <random>
 
+#include "scenarios/report/line_plot.hpp"
 #include "scenarios/validation/consistency.hpp"
 #include "scenarios/validation/flight_series.hpp"
-#include "scenarios/validation/line_plot.hpp"
 #include "scenarios/validation/page.hpp"
 
 namespace understory {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "sim/aerodynamics.hpp"
+#include "sim/aircraft/aerodynamics.hpp"
 
 namespace understory {
 namespace {

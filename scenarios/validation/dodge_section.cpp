@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "planning/path_follower.hpp"
-#include "scenarios/oracles/true_state.hpp"
+#include "scenarios/flight/oracles/true_state.hpp"
+#include "scenarios/report/line_plot.hpp"
 #include "scenarios/validation/dodge.hpp"
-#include "scenarios/validation/line_plot.hpp"
 #include "scenarios/validation/page.hpp"
 
 namespace understory {

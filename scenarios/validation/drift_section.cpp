@@ -7,12 +7,12 @@
 #include <functional>
 #include <optional>
 
+#include "scenarios/report/line_plot.hpp"
 #include "scenarios/validation/drift_tally.hpp"
 #include "scenarios/validation/estimator_trial.hpp"
 #include "scenarios/validation/flight_series.hpp"
-#include "scenarios/validation/line_plot.hpp"
 #include "scenarios/validation/page.hpp"
-#include "sim/sensor_grades.hpp"
+#include "sim/sensors/sensor_grades.hpp"
 
 namespace understory {
 namespace {

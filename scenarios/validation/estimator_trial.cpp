@@ -5,8 +5,8 @@
 #include <deque>
 #include <limits>
 
-#include "scenarios/onboard_sensors.hpp"
-#include "scenarios/oracles/true_depth.hpp"
+#include "scenarios/flight/onboard_sensors.hpp"
+#include "scenarios/flight/oracles/true_depth.hpp"
 
 namespace understory {
 namespace {

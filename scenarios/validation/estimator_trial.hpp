@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "estimation/filter.hpp"
-#include "perception/resightings.hpp"
+#include "perception/map/resightings.hpp"
 #include "scenarios/validation/recorded_flight.hpp"
 
 namespace understory {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "scenarios/config_tree.hpp"
+#include "scenarios/config/config_tree.hpp"
 
 namespace understory {
 namespace {

@@ -7,9 +7,9 @@
 #include <functional>
 #include <numbers>
 
-#include "scenarios/validation/line_plot.hpp"
+#include "scenarios/report/line_plot.hpp"
 #include "scenarios/validation/page.hpp"
-#include "sim/ellipsoid_fluid.hpp"
+#include "sim/aircraft/ellipsoid_fluid.hpp"
 
 namespace understory {
 namespace {
@@ -116,7 +116,8 @@ Section fluid_section(const Airframe& airframe) {
   section.markdown =
       fmt::format(
           "MuJoCo 2.2 has a fluid model of its own (geom `fluidshape=\"ellipsoid\"`; documentation, "
-          "Computation, Fluid forces). `sim/ellipsoid_fluid` gives it the same plates as flat ellipsoids "
+          "Computation, Fluid forces). `sim/aircraft/ellipsoid_fluid` gives it the same plates as flat "
+          "ellipsoids "
           "of the same area, place and proportion, 10 mm thick, in the same air, and reads `qfrc_passive` "
           "at a given velocity ({:g} m/s, elevons neutral, no rotation). Lift / drag / pitching moment "
           "(nose up) coefficients:\n\n",

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "planning/airframe.hpp"
-#include "sim/aircraft.hpp"
+#include "sim/aircraft/aircraft.hpp"
 
 namespace understory {
 

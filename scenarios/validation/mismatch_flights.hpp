@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "scenarios/flight_result.hpp"
-#include "scenarios/scenario.hpp"
+#include "scenarios/flight/flight_result.hpp"
+#include "scenarios/scenario/scenario.hpp"
 #include "scenarios/statistics/wilson.hpp"
 #include "scenarios/validation/drift_tally.hpp"
 

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "scenarios/scenario_io.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/validation/mismatch_sections.hpp"
-#include "sim/trim.hpp"
+#include "sim/aircraft/trim.hpp"
 
 namespace understory {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/validation/line_plot.hpp"
+#include "scenarios/report/line_plot.hpp"
 #include "scenarios/validation/mismatch_conditions.hpp"
 #include "scenarios/validation/mismatch_flights.hpp"
 #include "scenarios/validation/section.hpp"

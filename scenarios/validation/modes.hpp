@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scenarios/validation/steady_flight.hpp"
-#include "sim/aerodynamics.hpp"
+#include "sim/aircraft/aerodynamics.hpp"
 
 namespace understory {
 

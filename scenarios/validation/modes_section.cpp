@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenarios/validation/line_plot.hpp"
+#include "scenarios/report/line_plot.hpp"
 #include "scenarios/validation/modes.hpp"
 #include "scenarios/validation/page.hpp"
 

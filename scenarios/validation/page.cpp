@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "scenarios/file_output.hpp"
-#include "scenarios/require.hpp"
+#include "scenarios/output/file_output.hpp"
+#include "scenarios/output/require.hpp"
 
 namespace understory {
 namespace {

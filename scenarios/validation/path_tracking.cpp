@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenarios/oracles/true_state.hpp"
+#include "scenarios/flight/oracles/true_state.hpp"
 
 namespace understory {
 namespace {

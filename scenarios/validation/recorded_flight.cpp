@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "scenarios/fly.hpp"
-#include "scenarios/scenario_io.hpp"
-#include "scenarios/scenario_rig.hpp"
+#include "scenarios/flight/fly.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
 
 namespace understory {
 

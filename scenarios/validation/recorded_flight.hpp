@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "perception/stereo_rig.hpp"
-#include "scenarios/flight_result.hpp"
-#include "scenarios/scenario.hpp"
-#include "sim/obstacle.hpp"
-#include "sim/truth.hpp"
+#include "scenarios/flight/flight_result.hpp"
+#include "scenarios/scenario/scenario.hpp"
+#include "sim/aircraft/truth.hpp"
+#include "sim/scene/obstacle.hpp"
 
 namespace understory {
 

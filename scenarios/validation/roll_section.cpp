@@ -7,10 +7,10 @@
 #include <numbers>
 
 #include "planning/flight_model.hpp"
-#include "scenarios/oracles/true_state.hpp"
-#include "scenarios/validation/line_plot.hpp"
+#include "scenarios/flight/oracles/true_state.hpp"
+#include "scenarios/report/line_plot.hpp"
 #include "scenarios/validation/page.hpp"
-#include "sim/aerodynamics.hpp"
+#include "sim/aircraft/aerodynamics.hpp"
 
 namespace understory {
 namespace {

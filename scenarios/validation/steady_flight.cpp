@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "sim/aerodynamics.hpp"
+#include "sim/aircraft/aerodynamics.hpp"
 
 namespace understory {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scenarios/validation/line_plot.hpp"
+#include "scenarios/report/line_plot.hpp"
 #include "scenarios/validation/path_tracking.hpp"
 
 namespace understory {

@@ -6,9 +6,9 @@
 #include <limits>
 #include <numbers>
 
-#include "scenarios/validation/line_plot.hpp"
+#include "scenarios/report/line_plot.hpp"
 #include "scenarios/validation/page.hpp"
-#include "sim/trim.hpp"
+#include "sim/aircraft/trim.hpp"
 
 namespace understory {
 namespace {
@@ -110,7 +110,8 @@ Section trim_section(const Airframe& airframe) {
   }
   section.markdown =
       fmt::format(
-          "Newton's method on the three longitudinal equations (`sim/trim`). Level flight reaches from "
+          "Newton's method on the three longitudinal equations (`sim/aircraft/trim`). Level flight reaches "
+          "from "
           "{:.2f} m/s, where the angle of attack comes to 25 deg, to {:.2f} m/s, where the motor gives all "
           "it has; faster only descending.\n\n",
           slowest, fastest) +

@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "perception/byte_remap.hpp"
-#include "perception/pushbroom_kernel.hpp"
+#include "perception/pushbroom/byte_remap.hpp"
+#include "perception/pushbroom/pushbroom_kernel.hpp"
 #include "tests/support/plain_pushbroom.hpp"
 
 using namespace understory;

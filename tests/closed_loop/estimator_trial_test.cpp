@@ -6,7 +6,7 @@
 #include "scenarios/validation/consistency_section.hpp"
 #include "scenarios/validation/estimator_trial.hpp"
 #include "scenarios/validation/flight_series.hpp"
-#include "sim/sensor_grades.hpp"
+#include "sim/sensors/sensor_grades.hpp"
 
 /// The estimator along recorded forest flights: a small set of what `understory validate --only estimator`
 /// does with hundreds.

@@ -4,8 +4,8 @@
 #include <random>
 
 #include "planning/path_follower.hpp"
-#include "scenarios/oracles/true_state.hpp"
-#include "sim/aircraft.hpp"
+#include "scenarios/flight/oracles/true_state.hpp"
+#include "sim/aircraft/aircraft.hpp"
 
 /// The reduced model that plans are made with, against MuJoCo flying the follower's elevons.
 namespace understory {

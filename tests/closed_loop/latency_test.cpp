@@ -5,12 +5,12 @@
 
 #include "perception/io/rig_file.hpp"
 #include "planning/autopilot.hpp"
-#include "scenarios/due.hpp"
-#include "scenarios/named_seed.hpp"
-#include "scenarios/oracles/true_depth.hpp"
-#include "scenarios/oracles/true_state.hpp"
-#include "scenarios/scenario_io.hpp"
-#include "sim/sensors.hpp"
+#include "scenarios/config/named_seed.hpp"
+#include "scenarios/flight/due.hpp"
+#include "scenarios/flight/oracles/true_depth.hpp"
+#include "scenarios/flight/oracles/true_state.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
+#include "sim/sensors/sensors.hpp"
 
 /// From an image that shows something new to elevons that move: at most 50 ms.
 namespace understory {
@@ -44,8 +44,8 @@ struct Loop {
   StereoRig rig = read_rig(UNDERSTORY_SOURCE_DIR "/models/rigs/" + scenario.rig + ".yaml");
   World world = build_world(UNDERSTORY_SOURCE_DIR "/models", scenario.airframe, {}, scenario.world_config());
 
-  /// The surfaces at every physics step up to `end_ns`, by the loop of scenarios/fly.cpp at the scenario's
-  /// own rates, among `obstacles` that are seen, and not felt, from `opens_ns` on.
+  /// The surfaces at every physics step up to `end_ns`, by the loop of scenarios/flight/fly.cpp at the
+  /// scenario's own rates, among `obstacles` that are seen, and not felt, from `opens_ns` on.
   std::vector<double> left_elevon(const std::vector<Obstacle>& obstacles, std::int64_t opens_ns,
                                   std::int64_t end_ns) {
     Aircraft aircraft(*world.model, scenario.airframe, scenario.launch, scenario.wind_world_mps);

@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
 
-#include "scenarios/scenario_io.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/validation/mismatch_conditions.hpp"
 #include "scenarios/validation/mismatch_flights.hpp"
 #include "scenarios/validation/recorded_flight.hpp"
-#include "sim/trim.hpp"
+#include "sim/aircraft/trim.hpp"
 #include "tests/closed_loop/flown.hpp"
 
 /// What the page on model mismatch is made from.

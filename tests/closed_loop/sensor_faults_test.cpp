@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "perception/io/rig_file.hpp"
-#include "scenarios/onboard_sensors.hpp"
-#include "scenarios/oracles/no_detector.hpp"
-#include "scenarios/scenario_io.hpp"
+#include "scenarios/flight/onboard_sensors.hpp"
+#include "scenarios/flight/oracles/no_detector.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 #include "tests/closed_loop/flown.hpp"
 
 /// What sensors and their faults do to a flight.

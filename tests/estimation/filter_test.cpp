@@ -73,8 +73,8 @@ TEST(Filter, WithoutNoiseFollowsADodgeNearlyExactly) {
   Filter filter(config);
   Sensors sensors(SensorErrors::none(), 1);
   double worst_position = 0, worst_velocity = 0, worst_attitude = 0;
-  // The catapult fires, and lets go, midway between two samples: where it does not, up to half a sample of its
-  // push, 0.12 m/s, is lost or counted twice at either end, which is no fault of the filter.
+  // The catapult fires, and lets go, midway between two samples: where it does not, up to half a sample of
+  // its push, 0.12 m/s, is lost or counted twice at either end, which is no fault of the filter.
   Launch midway;
   midway.rest_s = 0.2525;
   for (const Moment& moment : fly(dodge(), 3.2, midway)) {

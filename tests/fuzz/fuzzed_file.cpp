@@ -7,7 +7,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "perception/pushbroom_stereo.hpp"
+#include "perception/pushbroom/pushbroom_stereo.hpp"
 
 namespace understory::fuzz {
 namespace {

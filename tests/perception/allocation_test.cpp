@@ -1,7 +1,7 @@
 // A frame allocates nothing once the detector has seen its like.
 #include <gtest/gtest.h>
 
-#include "perception/pushbroom_stereo.hpp"
+#include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "tests/perception/rigs.hpp"
 #include "tests/support/counted_allocations.hpp"
 #include "tests/support/synthetic_stereo.hpp"

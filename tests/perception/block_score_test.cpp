@@ -1,4 +1,4 @@
-#include "perception/block_score.hpp"
+#include "perception/pushbroom/block_score.hpp"
 
 #include <gtest/gtest.h>
 

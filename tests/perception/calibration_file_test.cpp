@@ -5,7 +5,7 @@
 #include <opencv2/core/persistence.hpp>
 #include <string>
 
-#include "perception/pushbroom_stereo.hpp"
+#include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "tests/perception/rigs.hpp"
 #include "tests/support/euroc_text.hpp"
 #include "tests/support/shared_data.hpp"

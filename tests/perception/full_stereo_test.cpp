@@ -1,4 +1,4 @@
-#include "perception/full_stereo.hpp"
+#include "perception/full_stereo/full_stereo.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "perception/full_stereo_detector.hpp"
+#include "perception/full_stereo/full_stereo_detector.hpp"
 #include "tests/perception/rigs.hpp"
 #include "tests/support/synthetic_stereo.hpp"
 

@@ -1,4 +1,4 @@
-#include "perception/isolation.hpp"
+#include "perception/pushbroom/isolation.hpp"
 
 #include <gtest/gtest.h>
 

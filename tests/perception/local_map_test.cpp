@@ -1,4 +1,4 @@
-#include "perception/local_map.hpp"
+#include "perception/map/local_map.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
-#include "perception/pushbroom_stereo.hpp"
+#include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "tests/perception/rigs.hpp"
 #include "tests/support/synthetic_stereo.hpp"
 

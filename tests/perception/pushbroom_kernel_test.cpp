@@ -1,14 +1,14 @@
 // The fast kernel against the plain one, bit for bit, on every instruction set of this machine: real kinds of
 // texture, flat, striped and saturated images, odd and tiny sizes, and rules drawn at random.
-#include "perception/pushbroom_kernel.hpp"
+#include "perception/pushbroom/pushbroom_kernel.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
 #include <random>
 
-#include "perception/block_score.hpp"
 #include "perception/io/stereo_recording.hpp"
+#include "perception/pushbroom/block_score.hpp"
 #include "tests/support/instruction_sets.hpp"
 #include "tests/support/plain_pushbroom.hpp"
 #include "tests/support/shared_data.hpp"

@@ -1,4 +1,4 @@
-#include "perception/pushbroom_stereo.hpp"
+#include "perception/pushbroom/pushbroom_stereo.hpp"
 
 #include <gtest/gtest.h>
 

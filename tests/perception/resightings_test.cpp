@@ -1,4 +1,4 @@
-#include "perception/resightings.hpp"
+#include "perception/map/resightings.hpp"
 
 #include <gtest/gtest.h>
 
@@ -102,7 +102,8 @@ TEST(Resightings, OfPolesThatCouldBeTakenForEachOtherAreNone) {
   course.poles_world = {{20, -2.0}, {20, 2.0}};
   const std::vector<Resighting> seen = fly(course, two_depths());
   ASSERT_EQ(seen.size(), 2u);
-  for (const Resighting& one : seen) EXPECT_LT((one.discrepancy_world_m - Eigen::Vector2d(2.2, 0)).norm(), 0.25);
+  for (const Resighting& one : seen)
+    EXPECT_LT((one.discrepancy_world_m - Eigen::Vector2d(2.2, 0)).norm(), 0.25);
 }
 
 TEST(Resightings, OfFewHitsAreNone) {

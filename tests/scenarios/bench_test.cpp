@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
-#include "perception/pushbroom_stereo.hpp"
+#include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "perception/rectify.hpp"
 #include "scenarios/bench/closed_loop_bench.hpp"
 #include "scenarios/bench/stereo_scenes.hpp"

@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "scenarios/campaign/campaign_folder.hpp"
-#include "scenarios/config_tree.hpp"
-#include "scenarios/scenario_io.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 namespace {

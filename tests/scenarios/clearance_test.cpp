@@ -1,4 +1,4 @@
-#include "scenarios/clearance.hpp"
+#include "scenarios/flight/clearance.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "scenarios/config_tree.hpp"
+#include "scenarios/config/config_tree.hpp"
 #include "tests/support/flight_rows.hpp"
 
 namespace understory {

@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
-#include "scenarios/config_reader.hpp"
-#include "scenarios/config_writer.hpp"
+#include "scenarios/config/config_reader.hpp"
+#include "scenarios/config/config_writer.hpp"
 
 namespace understory {
 namespace {

@@ -4,11 +4,11 @@
 #include <bit>
 #include <cmath>
 
-#include "scenarios/fence.hpp"
-#include "scenarios/forest.hpp"
-#include "scenarios/goalposts.hpp"
-#include "scenarios/named_seed.hpp"
-#include "scenarios/windows.hpp"
+#include "scenarios/config/named_seed.hpp"
+#include "scenarios/scenario/fence.hpp"
+#include "scenarios/scenario/forest.hpp"
+#include "scenarios/scenario/goalposts.hpp"
+#include "scenarios/scenario/windows.hpp"
 
 namespace understory {
 namespace {

@@ -8,7 +8,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "perception/io/hit_files.hpp"
-#include "perception/pushbroom_stereo.hpp"
+#include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "tests/perception/rigs.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"

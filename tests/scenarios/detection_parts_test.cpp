@@ -2,10 +2,10 @@
 
 #include <opencv2/core.hpp>
 
-#include "scenarios/config_tree.hpp"
-#include "scenarios/detection_result.hpp"
-#include "scenarios/picture_folder.hpp"
-#include "scenarios/posed_map.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/detect/detection_result.hpp"
+#include "scenarios/detect/posed_map.hpp"
+#include "scenarios/report/picture_folder.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace understory {

@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <random>
 
-#include "perception/pushbroom_stereo.hpp"
+#include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "scenarios/evaluation/distance_histogram.hpp"
 #include "scenarios/evaluation/evaluation_frame.hpp"
 #include "scenarios/evaluation/nearest_distances.hpp"

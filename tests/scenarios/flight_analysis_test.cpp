@@ -9,7 +9,7 @@
 #include "scenarios/validation/free_flight.hpp"
 #include "scenarios/validation/modes.hpp"
 #include "scenarios/validation/steady_flight.hpp"
-#include "sim/trim.hpp"
+#include "sim/aircraft/trim.hpp"
 
 /// What the flight model's page is computed with, against closed forms and the simulator.
 namespace understory {

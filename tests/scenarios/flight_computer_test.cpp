@@ -1,11 +1,11 @@
-#include "scenarios/flight_computer.hpp"
+#include "scenarios/flight/flight_computer.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 #include <vector>
 
-#include "scenarios/scenario_io.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 namespace {

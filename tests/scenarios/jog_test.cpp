@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scenarios/config_tree.hpp"
+#include "scenarios/config/config_tree.hpp"
 #include "scenarios/validation/path_tracking.hpp"
 #include "scenarios/validation/replay_fit.hpp"
 #include "tests/support/temporary_folder.hpp"

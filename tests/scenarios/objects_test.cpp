@@ -12,12 +12,12 @@
 #include <vector>
 
 #include "perception/io/pose_file.hpp"
-#include "scenarios/oracles/true_depth.hpp"
+#include "scenarios/flight/oracles/true_depth.hpp"
 #include "scenarios/recording/euroc_texts.hpp"
 #include "scenarios/recording/path_file.hpp"
 #include "scenarios/recording/record.hpp"
-#include "scenarios/scenario_io.hpp"
-#include "scenarios/scenario_rig.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 /// The recorded images of objects, read back, against rays sent at the course.

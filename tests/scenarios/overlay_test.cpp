@@ -1,4 +1,4 @@
-#include "scenarios/overlay.hpp"
+#include "scenarios/report/overlay.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "scenarios/video_writer.hpp"
+#include "scenarios/report/video_writer.hpp"
 
 namespace understory {
 namespace {

@@ -13,7 +13,7 @@
 #include "scenarios/recording/path_file.hpp"
 #include "scenarios/recording/record.hpp"
 #include "scenarios/recording/smooth_path.hpp"
-#include "scenarios/scenario_io.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 /// Paths that cameras are carried along, and what they leave.

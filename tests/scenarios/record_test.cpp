@@ -8,10 +8,10 @@
 #include <set>
 #include <sstream>
 
-#include "scenarios/config_tree.hpp"
-#include "scenarios/file_output.hpp"
-#include "scenarios/flight_result.hpp"
-#include "scenarios/run_digest.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/flight/flight_result.hpp"
+#include "scenarios/flight/run_digest.hpp"
+#include "scenarios/output/file_output.hpp"
 
 namespace understory {
 namespace {

@@ -15,9 +15,9 @@ TEST(RecordedObjects, AreReadOrRefusedInOneLine) {
   EXPECT_FALSE(objects[0].is_obstacle());
   EXPECT_EQ(objects[1].kind, "trunk");
   EXPECT_EQ(objects[1].to_world, Eigen::Vector3d(1, 2, 8));
-  for (const char* text : {"2,tree,trunk,1,2,0,1,2,8\n", "0,tree,trunk,1,2,0,1,2,8,0.1\n",
-                           "x,tree,trunk,1,2,0,1,2,8,0.1\n", "2,tree,trunk,1,nan,0,1,2,8,0.1\n",
-                           "2,tree,trunk,1,2,0,1,2,8,-0.1\n"}) {
+  for (const char* text :
+       {"2,tree,trunk,1,2,0,1,2,8\n", "0,tree,trunk,1,2,0,1,2,8,0.1\n", "x,tree,trunk,1,2,0,1,2,8,0.1\n",
+        "2,tree,trunk,1,nan,0,1,2,8,0.1\n", "2,tree,trunk,1,2,0,1,2,8,-0.1\n"}) {
     try {
       parse_recorded_objects(text, "objects.csv");
       FAIL() << text;

@@ -1,11 +1,11 @@
-#include "scenarios/rig_figures.hpp"
+#include "scenarios/detect/rig_figures.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "scenarios/rig_picture.hpp"
+#include "scenarios/detect/rig_picture.hpp"
 
 namespace understory {
 namespace {

@@ -1,4 +1,4 @@
-#include "scenarios/scenario_rig.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "perception/io/rig_file.hpp"
-#include "scenarios/scenario_io.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace understory {

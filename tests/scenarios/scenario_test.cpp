@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "scenarios/scenario_io.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 namespace {

@@ -1,11 +1,11 @@
-#include "scenarios/oracles/true_depth.hpp"
+#include "scenarios/flight/oracles/true_depth.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "scenarios/forest.hpp"
+#include "scenarios/scenario/forest.hpp"
 
 namespace understory {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "scenarios/scenario_io.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/tuning/vision_judge.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"

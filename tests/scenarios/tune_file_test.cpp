@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "scenarios/config_tree.hpp"
-#include "scenarios/scenario_io.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/tuning/numeric_keys.hpp"
 #include "tests/scenarios/tuning_cases.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "scenarios/config_tree.hpp"
-#include "scenarios/scenario_io.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/tuning/tune_comparison.hpp"
 #include "scenarios/tuning/tune_report.hpp"
 #include "tests/scenarios/tuning_cases.hpp"

@@ -6,7 +6,7 @@
 #include <regex>
 #include <sstream>
 
-#include "scenarios/validation/line_plot.hpp"
+#include "scenarios/report/line_plot.hpp"
 #include "scenarios/validation/page.hpp"
 #include "tests/support/temporary_folder.hpp"
 

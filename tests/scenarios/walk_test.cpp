@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "perception/io/pose_file.hpp"
-#include "scenarios/clearance.hpp"
+#include "scenarios/flight/clearance.hpp"
 #include "scenarios/recording/euroc_texts.hpp"
 #include "scenarios/recording/record.hpp"
-#include "scenarios/scenario_io.hpp"
-#include "scenarios/scenario_rig.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace understory {

@@ -1,11 +1,11 @@
-#include "sim/actuators.hpp"
+#include "sim/aircraft/actuators.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "sim/aircraft.hpp"
+#include "sim/aircraft/aircraft.hpp"
 
 namespace understory {
 namespace {

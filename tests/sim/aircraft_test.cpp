@@ -1,11 +1,11 @@
-#include "sim/aircraft.hpp"
+#include "sim/aircraft/aircraft.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "sim/trim.hpp"
+#include "sim/aircraft/trim.hpp"
 
 namespace understory {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/barometer.hpp"
+#include "sim/sensors/barometer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/stereo_cameras.hpp"
+#include "sim/cameras/stereo_cameras.hpp"
 
 /// Small worlds to point cameras at, and where things stand in their images.
 namespace understory {

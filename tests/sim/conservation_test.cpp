@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sim/aircraft.hpp"
+#include "sim/aircraft/aircraft.hpp"
 
 /// What the integrator must keep, and how what it does not keep falls with the step. MuJoCo's own scheme,
 /// semi-implicit Euler, is of first order: errors halve with the step.

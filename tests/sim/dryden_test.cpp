@@ -1,4 +1,4 @@
-#include "sim/dryden.hpp"
+#include "sim/aircraft/dryden.hpp"
 
 #include <gtest/gtest.h>
 

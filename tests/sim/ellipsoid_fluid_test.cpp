@@ -1,4 +1,4 @@
-#include "sim/ellipsoid_fluid.hpp"
+#include "sim/aircraft/ellipsoid_fluid.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/faults.hpp"
+#include "sim/sensors/faults.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/gps.hpp"
+#include "sim/sensors/gps.hpp"
 
 #include <gtest/gtest.h>
 

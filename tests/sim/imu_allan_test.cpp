@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sim/sensor_grades.hpp"
+#include "sim/sensors/sensor_grades.hpp"
 #include "tests/sim/allan_deviation.hpp"
 
 /// The consumer grade's Allan deviation against docs/sensors.md.

@@ -1,11 +1,11 @@
-#include "sim/imu.hpp"
+#include "sim/sensors/imu.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "sim/sensor_grades.hpp"
+#include "sim/sensors/sensor_grades.hpp"
 #include "tests/sim/sensor_statistics.hpp"
 
 namespace understory {

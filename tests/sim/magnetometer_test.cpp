@@ -1,4 +1,4 @@
-#include "sim/magnetometer.hpp"
+#include "sim/sensors/magnetometer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "sim/model_mismatch.hpp"
+#include "sim/aircraft/model_mismatch.hpp"
 
 #include <gtest/gtest.h>
 
-#include "sim/aircraft.hpp"
-#include "sim/trim.hpp"
+#include "sim/aircraft/aircraft.hpp"
+#include "sim/aircraft/trim.hpp"
 
 namespace understory {
 namespace {

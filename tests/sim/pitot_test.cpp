@@ -1,4 +1,4 @@
-#include "sim/pitot.hpp"
+#include "sim/sensors/pitot.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,10 +6,10 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "perception/full_stereo_detector.hpp"
+#include "perception/full_stereo/full_stereo_detector.hpp"
 #include "perception/io/calibration_file.hpp"
 #include "perception/io/rig_file.hpp"
-#include "perception/pushbroom_stereo.hpp"
+#include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "perception/rectify.hpp"
 #include "perception/rectifying_detector.hpp"
 #include "tests/sim/camera_scenes.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/aircraft.hpp"
+#include "sim/aircraft/aircraft.hpp"
 
 // The real aircraft against the simulated one, open loop: tests/data/flight/left_jog.csv (2015-10-08).
 namespace understory {

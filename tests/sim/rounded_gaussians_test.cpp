@@ -1,4 +1,4 @@
-#include "sim/rounded_gaussians.hpp"
+#include "sim/cameras/rounded_gaussians.hpp"
 
 #include <gtest/gtest.h>
 

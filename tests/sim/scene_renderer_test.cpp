@@ -1,11 +1,11 @@
-#include "sim/scene_renderer.hpp"
+#include "sim/render/scene_renderer.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "sim/scenery.hpp"
+#include "sim/scene/scenery.hpp"
 #include "tests/sim/camera_scenes.hpp"
 
 namespace understory {

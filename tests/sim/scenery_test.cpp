@@ -1,4 +1,4 @@
-#include "sim/scenery.hpp"
+#include "sim/scene/scenery.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <numbers>
 #include <string>
 
-#include "sim/facade.hpp"
-#include "sim/trunk_mesh.hpp"
+#include "sim/scene/facade.hpp"
+#include "sim/scene/trunk_mesh.hpp"
 
 namespace understory {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "sim/truth.hpp"
-#include "sim/world.hpp"
+#include "sim/aircraft/truth.hpp"
+#include "sim/scene/world.hpp"
 
 namespace understory {
 

@@ -1,4 +1,4 @@
-#include "sim/sensors.hpp"
+#include "sim/sensors/sensors.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "sim/sensor_grades.hpp"
+#include "sim/sensors/sensor_grades.hpp"
 #include "tests/sim/sensor_statistics.hpp"
 
 namespace understory {

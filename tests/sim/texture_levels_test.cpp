@@ -1,4 +1,4 @@
-#include "sim/texture_levels.hpp"
+#include "sim/scene/texture_levels.hpp"
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "sim/offscreen_context.hpp"
+#include "sim/render/offscreen_context.hpp"
 
 namespace understory {
 namespace {

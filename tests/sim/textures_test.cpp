@@ -1,4 +1,4 @@
-#include "sim/textures.hpp"
+#include "sim/scene/textures.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/trim.hpp"
+#include "sim/aircraft/trim.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/wind.hpp"
+#include "sim/aircraft/wind.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/world.hpp"
+#include "sim/scene/world.hpp"
 
 namespace understory {
 namespace {

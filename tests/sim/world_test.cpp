@@ -1,4 +1,4 @@
-#include "sim/world.hpp"
+#include "sim/scene/world.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/aircraft.hpp"
+#include "sim/aircraft/aircraft.hpp"
 
 namespace understory {
 namespace {

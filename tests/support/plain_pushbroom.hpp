@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "perception/gray_view.hpp"
-#include "perception/pushbroom_kernel.hpp"
+#include "perception/pushbroom/gray_view.hpp"
+#include "perception/pushbroom/pushbroom_kernel.hpp"
 
 /// The detector's rule written plainly, one block after the other: what the fast kernel must equal bit for
 /// bit. No image library, so that it runs wherever the kernel does.

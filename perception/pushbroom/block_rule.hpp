@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "perception/pushbroom/block_score.hpp"
+#include "perception/pushbroom/self_similarity.hpp"
+
+namespace understory {
+
+/// One disparity the detector looks at.
+struct DisparityRule {
+  int disparity_px = 0;          ///< x_left - x_right, whole pixels, inside the image
+  int least_edge_sum = 0;        ///< of each image's block by itself; at most largest_edge_sum
+  std::int64_t limit_units = 0;  ///< a hit scores below this (see score_limit_units)
+};
+
+/// The detector's rule in whole numbers: everything that is decided in pixels.
+struct BlockRule {
+  int width_px = 0, height_px = 0;
+  int stride_px = block_px;  ///< from block to block, both ways
+  /// Dense: a window at every pixel, and of each cell of 5x5 windows the one of least score (the first of
+  /// equals, by row, then column) goes on to the filters. The stride has no part in it.
+  bool every_pixel = false;
+  int last_row_px = 0;  ///< top edge of the lowest blocks that may be looked at
+  std::vector<DisparityRule> disparities;
+
+  bool horizontal_invariance = false;
+  int infinity_px = 0;  ///< disparity of the infinitely distant
+  SelfSimilarityWindow window;
+
+  bool uniqueness = false;
+  int least_disparity_px = 0, greatest_disparity_px = 0;  ///< range searched, widened to hold the disparity
+  double uniqueness_ratio = 2;
+
+  bool neighbours = false;  ///< whether matches say how well the disparities one pixel away would do
+};
+
+/// A block of the left image that passed.
+struct BlockMatch {
+  int column_px = 0, row_px = 0;  ///< top left pixel
+  int disparity = 0;              ///< index into BlockRule::disparities
+  int sad = 0;
+  int left_edge_sum = 0, right_edge_sum = 0;
+  /// SAD at the disparity one pixel less and more; -1 where nobody asked or the block there leaves the image.
+  int sad_below = -1, sad_above = -1;
+};
+
+/// Where the blocks of one disparity lie: column x of a search is left_px + x and right_px + x, x < count.
+struct SearchColumns {
+  int left_px = 0, right_px = 0, count = 0;
+};
+SearchColumns search_columns(const BlockRule& rule, const DisparityRule& disparity);
+
+/// The columns whose edges the rule looks at: from left_first_px on, and right_first_px .. right_last_px - 1.
+struct EdgeColumns {
+  int left_first_px = 0, right_first_px = 0, right_last_px = 0;
+};
+EdgeColumns edge_columns(const BlockRule& rule);
+
+/// The columns of the images that have a part in the answer: left_first_px .. left_last_px - 1 of the left.
+struct ReadColumns {
+  int left_first_px = 0, left_last_px = 0, right_first_px = 0, right_last_px = 0;
+};
+ReadColumns read_columns(const BlockRule& rule);
+
+/// Rows at which blocks may begin: 0 .. this - 1.
+int row_count(const BlockRule& rule);
+
+/// Asserts that the rule makes sense: images of at least one block, disparities inside them, a stride.
+void assert_sound(const BlockRule& rule);
+
+}  // namespace understory

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "perception/pushbroom/block_rule.hpp"
+#include "perception/pushbroom/dense_search.hpp"
+#include "perception/pushbroom/strip_search.hpp"
+#include "perception/pushbroom/uniqueness.hpp"
+
+namespace understory {
+
+/// Finds the blocks that pass a rule: pointer and stride in, whole numbers out, no image library. The same
+/// matches, bit for bit, on every instruction set. Owns the buffers it needs: for several threads, one kernel
+/// each, over strips of their own. Allocates nothing once it has seen as many matches as it will.
+class PushbroomKernel {
+ public:
+  /// Asserts that the rule is sound.
+  explicit PushbroomKernel(const BlockRule& rule);
+
+  /// Rows of blocks in an image; dense, rows of cells.
+  int strip_count() const;
+
+  /// The matches of the strips first_strip .. last_strip - 1, by strip, then disparity, then column. The
+  /// images have the rule's size. Rows are asked for before they are needed where the images come
+  /// `from_afar`, out of no cache; where they were just written, that would cost a twentieth more. The answer
+  /// holds until the next call.
+  const std::vector<BlockMatch>& search(const GrayView& left, const GrayView& right, int first_strip,
+                                        int last_strip, bool from_afar = true);
+
+ private:
+  void fill_right_edges(const GrayView& right, int first_row_px, int end_row_px);
+  void drop_unlike_the_rule(const GrayView& left, const GrayView& right);
+  void look_beside(const GrayView& left, const GrayView& right);
+
+  BlockRule rule_;
+  std::optional<StripSearch> strips_;  ///< one of the two
+  std::optional<DenseSearch> dense_;
+  std::vector<UniquenessTest> uniqueness_;  ///< one for each disparity
+  SelfSimilarityFilter self_similarity_;
+  StripReader right_reader_;
+  EdgeMap right_edges_;
+  std::vector<BlockMatch> matches_;
+};
+
+}  // namespace understory

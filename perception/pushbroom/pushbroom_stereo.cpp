@@ -1,0 +1,180 @@
+#include "perception/pushbroom/pushbroom_stereo.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "perception/assertion.hpp"
+#include "perception/pushbroom/block_score.hpp"
+#include "perception/pushbroom/frame_views.hpp"
+#include "perception/pushbroom/isolation.hpp"
+
+namespace understory {
+namespace {
+
+int whole(double pixels) { return static_cast<int>(std::lround(pixels)); }
+
+/// Where the parabola through a match's SAD and those beside it is least, in pixels of disparity; 0 where the
+/// neighbours are not known or one of them is better.
+double vertex_px(const BlockMatch& match) {
+  if (match.sad_below < match.sad || match.sad_above < match.sad) return 0;
+  const int bend = match.sad_below - 2 * match.sad + match.sad_above;
+  return bend > 0 ? 0.5 * (match.sad_below - match.sad_above) / bend : 0;
+}
+
+}  // namespace
+
+int last_row_px_of(int height_px) { return whole(PushbroomConfig().last_row_px * height_px / 240.0); }
+
+PushbroomConfig paper_rule() { return {}; }
+
+PushbroomConfig robust_rule() {
+  PushbroomConfig config;
+  config.least_edge_sum = 215;
+  config.score_limit = 0.25;
+  config.horizontal_invariance = false;
+  config.uniqueness = true;
+  config.isolation = true;
+  return config;
+}
+
+PushbroomConfig tuned_rule(std::string_view rig) {
+  PushbroomConfig config = robust_rule();
+  if (rig == "long") {
+    config.least_edge_sum = 398;
+    config.score_limit = 0.126899;
+    config.uniqueness_ratio = 1.35321;
+    config.uniqueness_least_depth_m = 1.66256;
+    config.isolation_least_points = 6;
+    config.isolation_radius_m = 0.890088;
+  } else if (rig == "paper") {
+    config.least_edge_sum = 406;
+    config.score_limit = 0.200216;
+    config.uniqueness_ratio = 1.19411;
+    config.uniqueness_least_depth_m = 2.15428;
+    config.isolation_least_points = 8;
+    config.isolation_radius_m = 0.621281;
+  }
+  return config;
+}
+
+PushbroomStereo::PushbroomStereo(const StereoRig& rig, const PushbroomConfig& config)
+    : rig_(rig), config_(config), infinity_px_(whole(rig.infinity_disparity_px())) {
+  std::vector<double> depths_m = config.depths_m;
+  if (depths_m.empty()) depths_m.push_back(rig.detection_depth_m);
+  for (const double asked_m : depths_m) {
+    const int px = whole(rig.disparity_px(asked_m));
+    assert_always(px > rig.infinity_disparity_px() + 1, "detection depth within a pixel of infinity");
+    depths_.push_back({px, rig.depth_m(px), {rig.depth_m(px + 1), rig.depth_m(px - 1)}});
+  }
+  for (const auto* thresholds : {&config.depths_least_edge_sum, &config.depths_score_limit})
+    assert_always(thresholds->empty() || thresholds->size() == depths_.size(),
+                  "expected a threshold for each depth, or none");
+  assert_always(config.stride_px > 0 && config.invariance_row_step_px > 0, "strides must be positive");
+  for (int i = 0; i < config.threads; ++i) bands_.push_back({PushbroomKernel(block_rule()), {}, {}});
+}
+
+PushbroomStereo::PushbroomStereo(const StereoCalibration& calibration, double detection_depth_m,
+                                 const PushbroomConfig& config)
+    : PushbroomStereo(rectified_rig(calibration, detection_depth_m), config) {
+  const int width = calibration.width_px, height = calibration.height_px;
+  const ReadColumns columns = read_columns(block_rule());
+  maps_.emplace(Maps{{nearest_places(calibration.left, width, height), width, height, columns.left_first_px,
+                      columns.left_last_px},
+                     {nearest_places(calibration.right, width, height), width, height, columns.right_first_px,
+                      columns.right_last_px}});
+  for (Band& band : bands_)
+    for (auto* image : {&band.left, &band.right})
+      image->resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+}
+
+BlockRule PushbroomStereo::block_rule() const {
+  BlockRule rule;
+  rule.width_px = rig_.width_px;
+  rule.height_px = rig_.height_px;
+  rule.stride_px = config_.stride_px;
+  rule.last_row_px = config_.last_row_px;
+  rule.every_pixel = config_.every_pixel;
+  for (std::size_t i = 0; i < depths_.size(); ++i) {
+    const double edges =
+        config_.depths_least_edge_sum.empty() ? config_.least_edge_sum : config_.depths_least_edge_sum[i];
+    const double limit =
+        config_.depths_score_limit.empty() ? config_.score_limit : config_.depths_score_limit[i];
+    rule.disparities.push_back({depths_[i].disparity_px, whole(edges), score_limit_units(limit)});
+  }
+  rule.horizontal_invariance = config_.horizontal_invariance;
+  rule.infinity_px = infinity_px_;
+  rule.window = {config_.invariance_columns_px, config_.invariance_rows_px, config_.invariance_row_step_px,
+                 config_.least_edge_sum, score_limit_units(config_.invariance_score_limit)};
+  rule.neighbours = config_.subpixel;
+  rule.uniqueness = config_.uniqueness;
+  rule.uniqueness_ratio = config_.uniqueness_ratio;
+  rule.least_disparity_px = infinity_px_;
+  rule.greatest_disparity_px =
+      static_cast<int>(std::floor(rig_.disparity_px(config_.uniqueness_least_depth_m)));
+  return rule;
+}
+
+const std::vector<StereoHit>& PushbroomStereo::detect(const StereoFrame& frame) {
+  const GrayView left = view_of(frame.left, rig_), right = view_of(frame.right, rig_);
+  if (maps_) {
+    maps_->left.prepare(left.stride);
+    maps_->right.prepare(right.stride);
+  }
+  const int threads = static_cast<int>(bands_.size());
+  if (threads == 1) {
+    search(left, right, 0);
+  } else {
+    tbb::parallel_for(
+        0, threads, [&](int index) { search(left, right, index); }, tbb::static_partitioner());
+  }
+  all_hits_.clear();
+  for (const Band& band : bands_)
+    for (const BlockMatch& match : *band.matches) all_hits_.push_back(hit_of(match));
+  if (!config_.isolation) return all_hits_;
+  without_isolated(all_hits_, config_.isolation_least_points, config_.isolation_radius_m, hits_);
+  return hits_;
+}
+
+void PushbroomStereo::search(const GrayView& left, const GrayView& right, int index) {
+  Band& band = bands_[static_cast<std::size_t>(index)];
+  const int strips = band.kernel.strip_count(), bands = static_cast<int>(bands_.size());
+  const int first = strips * index / bands, last = strips * (index + 1) / bands;
+  if (!maps_) {
+    band.matches = &band.kernel.search(left, right, first, last, true);
+    return;
+  }
+  // The edge map looks one row beyond the blocks, and the invariance window's beyond its own.
+  const int stride_px = config_.every_pixel ? block_px : config_.stride_px;
+  const int rows_end = (last - 1) * stride_px + (config_.every_pixel ? 2 * block_px - 1 : block_px);
+  const auto rectify = [&](const ByteRemap& map, const GrayView& raw, int beyond, std::uint8_t* output) {
+    map.apply(raw, std::max(0, first * stride_px - beyond), std::min(rig_.height_px, rows_end + beyond),
+              output, rig_.width_px);
+  };
+  rectify(maps_->left, left, 1, band.left.data());
+  rectify(maps_->right, right, 1 + (config_.horizontal_invariance ? config_.invariance_rows_px : 0),
+          band.right.data());
+  band.matches = &band.kernel.search({band.left.data(), rig_.width_px, rig_.width_px, rig_.height_px},
+                                     {band.right.data(), rig_.width_px, rig_.width_px, rig_.height_px}, first,
+                                     last, false);
+}
+
+StereoHit PushbroomStereo::hit_of(const BlockMatch& match) const {
+  const Depth& depth = depths_[static_cast<std::size_t>(match.disparity)];
+  const double center_px = 0.5 * (block_px - 1);
+  StereoHit hit;
+  hit.column_px = match.column_px;
+  hit.row_px = match.row_px;
+  hit.disparity_px = depth.disparity_px + vertex_px(match);
+  hit.edge_sum = match.left_edge_sum + match.right_edge_sum;
+  hit.score = match.sad / hit.edge_sum;
+  hit.depth = depth.interval;
+  const double depth_m =
+      hit.disparity_px == depth.disparity_px ? depth.depth_m : rig_.depth_m(hit.disparity_px);
+  hit.position_camera = {(match.column_px + center_px - rig_.center_left_x_px) * depth_m / rig_.focal_px,
+                         (match.row_px + center_px - rig_.center_y_px) * depth_m / rig_.focal_px, depth_m};
+  return hit;
+}
+
+}  // namespace understory

@@ -1,0 +1,67 @@
+#include "scenarios/config/config_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+namespace understory {
+namespace {
+
+template <typename Number>
+Number parsed(const ConfigNode& node, const std::string& key, Number least, Number greatest,
+              const char* what) {
+  Number value{};
+  const char* const end = node.text.data() + node.text.size();
+  const auto [stop, error] = std::from_chars(node.text.data(), end, value);
+  const bool is_number =
+      node.kind == ConfigNode::Kind::scalar && !node.quoted && error == std::errc() && stop == end;
+  if (!is_number || !(value >= least && value <= greatest))  // written so that nan is refused
+    refuse_key(node, key, fmt::format("{} from {} to {}", what, least, greatest));
+  return value;
+}
+
+}  // namespace
+
+void refuse_key(const ConfigNode& node, const std::string& key, const std::string& expected) {
+  throw ScenarioError(fmt::format("{}: {}: expected {}", node.origin, key, expected));
+}
+
+const ConfigNode* find_child(const ConfigNode& map, std::string_view key) {
+  const auto found = std::ranges::find(map.children, key, &ConfigNode::key);
+  return found == map.children.end() ? nullptr : &*found;
+}
+
+void require_known_keys(const ConfigNode& map, const std::vector<std::string>& known,
+                        const std::string& within) {
+  for (const ConfigNode& node : map.children) {
+    if (std::ranges::find(known, node.key) != known.end()) continue;
+    const std::string near = nearest_name(node.key, known);
+    refuse_key(node, within + node.key,
+               near.empty() ? fmt::format("one of {}", fmt::join(known, ", "))
+                            : fmt::format("a known key (did you mean {}?)", near));
+  }
+}
+
+std::vector<std::string> words_of(const ConfigNode& node, const std::string& key,
+                                  const std::string& expected) {
+  std::vector<std::string> words;
+  if (node.kind == ConfigNode::Kind::scalar && !node.text.empty()) words.push_back(node.text);
+  if (node.kind == ConfigNode::Kind::list)
+    for (const ConfigNode& entry : node.children) {
+      if (entry.kind != ConfigNode::Kind::scalar) refuse_key(entry, key, expected);
+      words.push_back(entry.text);
+    }
+  if (words.empty()) refuse_key(node, key, expected);
+  return words;
+}
+
+double number_of(const ConfigNode& node, const std::string& key, double least, double greatest) {
+  return parsed(node, key, least, greatest, "a number");
+}
+
+int whole_number_of(const ConfigNode& node, const std::string& key, int least, int greatest) {
+  return parsed(node, key, least, greatest, "a whole number");
+}
+
+}  // namespace understory

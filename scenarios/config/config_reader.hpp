@@ -1,0 +1,156 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <charconv>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "scenarios/config/config_tree.hpp"
+
+namespace understory {
+
+/// The visitor that fills a config struct from a ConfigNode map: keys that are absent leave their fields
+/// alone. Throws ScenarioError for a wrong type or a value out of range, and, in finish(), for keys the
+/// struct has not.
+class ConfigReader {
+ public:
+  ConfigReader(const ConfigNode& map, std::string path) : map_(map), path_(std::move(path)) {}
+
+  template <typename T>
+  void operator()(std::string_view name, T& field) {
+    const ConfigNode* node = take(name);
+    if (node == nullptr) return;
+    if constexpr (std::is_same_v<T, bool>) {
+      if (node->text != "true" && node->text != "false") refuse(*node, name, "true or false");
+      field = node->text == "true";
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      if (node->kind != ConfigNode::Kind::scalar) refuse(*node, name, "a word");
+      field = node->text;
+    } else if constexpr (is_vector<T>::value) {  // of structs; of numbers, which have bounds, below
+      if (node->kind != ConfigNode::Kind::list) refuse(*node, name, "a list of groups [{...}, ...]");
+      field.assign(node->children.size(), {});  // a list is given whole: no entry outlives an earlier one
+      for (std::size_t i = 0; i < field.size(); ++i) {
+        read_group(node->children[i], fmt::format("{}[{}]", name, i), field[i]);
+      }
+    } else {
+      read_group(*node, name, field);
+    }
+  }
+
+  template <typename T, typename Least, typename Greatest>
+  void operator()(std::string_view name, T& field, Least least, Greatest greatest) {
+    const ConfigNode* node = take(name);
+    if (node == nullptr) return;
+    if constexpr (std::is_arithmetic_v<T>) {
+      field = number<T>(*node, name, static_cast<T>(least), static_cast<T>(greatest));
+    } else {  // Eigen::Vector3d, std::vector<double>
+      constexpr bool fixed = std::is_same_v<T, Eigen::Vector3d>;
+      if (node->kind != ConfigNode::Kind::list || (fixed && node->children.size() != 3)) {
+        refuse(*node, name, fixed ? "a list of three numbers [x, y, z]" : "a list of numbers [a, b, ...]");
+      }
+      if constexpr (!fixed) field.resize(node->children.size());
+      for (std::size_t i = 0; i < node->children.size(); ++i) {
+        const double bound[] = {static_cast<double>(least), static_cast<double>(greatest)};
+        field[static_cast<typename std::conditional_t<fixed, Eigen::Index, std::size_t>>(i)] =
+            number<double>(node->children[i], name, bound[0], bound[1]);
+      }
+    }
+  }
+
+  template <typename T, std::size_t N>
+  void operator()(std::string_view name, T& field,
+                  const std::array<std::pair<std::string_view, T>, N>& names) {
+    const ConfigNode* node = take(name);
+    if (node == nullptr) return;
+    std::string expected;
+    for (const auto& [word, value] : names) {
+      if (node->kind == ConfigNode::Kind::scalar && node->text == word) {
+        field = value;
+        return;
+      }
+      expected += (expected.empty() ? "" : " | ") + std::string(word);
+    }
+    refuse(*node, name, expected);
+  }
+
+  /// To be called after the last visit.
+  void finish() const {
+    for (const ConfigNode& child : map_.children) {
+      bool is_known = false;
+      for (const std::string& name : known_) is_known = is_known || name == child.key;
+      if (is_known) continue;
+      const std::string near = nearest_name(child.key, known_);
+      throw ScenarioError(
+          fmt::format("{}: {}: expected a known key{}", child.origin, full(child.key),
+                      near.empty() ? std::string() : fmt::format(" (did you mean {}?)", near)));
+    }
+  }
+
+ private:
+  template <typename T>
+  struct is_vector : std::false_type {};
+  template <typename T>
+  struct is_vector<std::vector<T>> : std::true_type {};
+
+  template <typename T>
+  void read_group(const ConfigNode& node, std::string_view name, T& field) {
+    if (node.kind != ConfigNode::Kind::map) refuse(node, name, "a group of keys");
+    ConfigReader nested(node, full(name));
+    visit_fields(nested, field);
+    nested.finish();
+  }
+
+  const ConfigNode* take(std::string_view name) {
+    known_.emplace_back(name);
+    for (const ConfigNode& child : map_.children) {
+      if (child.key == name) return &child;
+    }
+    return nullptr;
+  }
+
+  std::string full(std::string_view name) const {
+    return path_.empty() ? std::string(name) : fmt::format("{}.{}", path_, name);
+  }
+
+  template <typename T>
+  T number(const ConfigNode& node, std::string_view name, T least, T greatest) const {
+    T value{};
+    const char* end = node.text.data() + node.text.size();
+    const auto [stop, error] = std::from_chars(node.text.data(), end, value);
+    const bool is_number =
+        node.kind == ConfigNode::Kind::scalar && !node.quoted && error == std::errc() && stop == end;
+    if (!is_number || !(value >= least && value <= greatest)) {  // written so that nan is refused
+      constexpr std::string_view what = std::is_integral_v<T> ? "a whole number" : "a number";
+      refuse(node, name, fmt::format("{} from {} to {}", what, least, greatest));
+    }
+    return value;
+  }
+
+  [[noreturn]] void refuse(const ConfigNode& node, std::string_view name, std::string_view expected) const {
+    std::string got = node.text;
+    if (node.kind == ConfigNode::Kind::nothing) got = "nothing";
+    if (node.kind == ConfigNode::Kind::list) got = fmt::format("a list of {}", node.children.size());
+    if (node.kind == ConfigNode::Kind::map) got = "a group of keys";
+    throw ScenarioError(fmt::format("{}: {}: expected {}, got {}", node.origin, full(name), expected, got));
+  }
+
+  const ConfigNode& map_;
+  std::string path_;
+  std::vector<std::string> known_;
+};
+
+/// Fills `config` from `map`, all keys checked.
+template <typename Config>
+void read_config(const ConfigNode& map, Config& config) {
+  ConfigReader reader(map, "");
+  visit_fields(reader, config);
+  reader.finish();
+}
+
+}  // namespace understory

@@ -1,0 +1,90 @@
+#include "scenarios/flight/clearance.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace understory {
+
+double segment_distance_m(const Segment& a, const Segment& b) {
+  const Eigen::Vector3d along_a = a.to - a.from;
+  const Eigen::Vector3d along_b = b.to - b.from;
+  const Eigen::Vector3d between = a.from - b.from;
+  const double aa = along_a.squaredNorm();
+  const double bb = along_b.squaredNorm();
+  const double ab = along_a.dot(along_b);
+  const double a_between = along_a.dot(between);
+  const double b_between = along_b.dot(between);
+  constexpr double tiny = 1e-12;
+  const double denominator = aa * bb - ab * ab;
+  double s = 0;  // along a; where the segments are parallel any s will do
+  if (denominator > tiny * aa * bb) s = std::clamp((ab * b_between - a_between * bb) / denominator, 0.0, 1.0);
+  double t = bb > tiny ? (ab * s + b_between) / bb : 0;
+  if (t < 0 || t > 1 ||
+      bb <= tiny) {  // the nearest point of b is an end: take that, then the best point of a
+    t = std::clamp(t, 0.0, 1.0);
+    s = aa > tiny ? std::clamp((ab * t - a_between) / aa, 0.0, 1.0) : 0;
+  }
+  return (between + s * along_a - t * along_b).norm();
+}
+
+namespace {
+
+/// Between a segment and an upright rectangle, given by its diagonal: 0 where it goes through; otherwise an
+/// edge of the rectangle is nearest, or an end of the segment is that lies over its face.
+double rectangle_distance_m(const Segment& segment, const Segment& diagonal) {
+  const Eigen::Vector3d across = diagonal.to - diagonal.from;
+  const Eigen::Vector3d side(across.x(), across.y(), 0), up(0, 0, across.z());
+  const Eigen::Vector3d normal = side.cross(up).normalized();
+  const Eigen::Vector3d corners[] = {diagonal.from, diagonal.from + side, diagonal.to, diagonal.from + up};
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 4; ++i)
+    least = std::min(least, segment_distance_m(segment, {corners[i], corners[(i + 1) % 4]}));
+  const auto is_over_face = [&](const Eigen::Vector3d& point) {
+    const Eigen::Vector3d from_corner = point - diagonal.from;
+    const double along = from_corner.dot(side) / side.squaredNorm(), height = from_corner.z() / across.z();
+    return along >= 0 && along <= 1 && height >= 0 && height <= 1;
+  };
+  const double a = normal.dot(segment.from - diagonal.from), b = normal.dot(segment.to - diagonal.from);
+  if (is_over_face(segment.from)) least = std::min(least, std::abs(a));
+  if (is_over_face(segment.to)) least = std::min(least, std::abs(b));
+  if (a * b < 0 && is_over_face(segment.from + a / (a - b) * (segment.to - segment.from))) return 0;
+  return least;
+}
+
+}  // namespace
+
+double obstacle_distance_m(const Segment& segment, const Obstacle& obstacle) {
+  const Segment extent{obstacle.from_world, obstacle.to_world};
+  return (obstacle.kind == ObstacleKind::wall ? rectangle_distance_m(segment, extent)
+                                              : segment_distance_m(segment, extent)) -
+         obstacle.radius_m;
+}
+
+double clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airframe,
+                   const std::vector<Obstacle>& obstacles) {
+  const double tail_x = airframe.elevon_hinge_x_m - airframe.elevon_chord_m;
+  const double nose_x = tail_x + 2 * airframe.chord_m;
+  const double tip_y = airframe.span_m / 2;
+  const std::array<Segment, 2> parts{
+      Segment{T_world_body * Eigen::Vector3d(airframe.winglet_x_m, tip_y, 0),
+              T_world_body * Eigen::Vector3d(airframe.winglet_x_m, -tip_y, 0)},
+      Segment{T_world_body * Eigen::Vector3d(nose_x, 0, 0), T_world_body * Eigen::Vector3d(tail_x, 0, 0)}};
+  Eigen::AlignedBox3d around;
+  for (const Segment& part : parts) around.extend(part.from).extend(part.to);
+  constexpr double rounding_m = 1e-9;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Obstacle& bar : obstacles) {
+    // The boxes' distance tells most bars of a forest from the nearest.
+    Eigen::AlignedBox3d box(bar.from_world.cwiseMin(bar.to_world), bar.from_world.cwiseMax(bar.to_world));
+    const double matters_m = least + bar.radius_m + rounding_m;
+    if (matters_m < 0 || around.squaredExteriorDistance(box) > matters_m * matters_m) continue;
+    for (const Segment& part : parts) {
+      least = std::min(least, obstacle_distance_m(part, bar));
+    }
+  }
+  return least;
+}
+
+}  // namespace understory

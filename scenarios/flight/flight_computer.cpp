@@ -1,0 +1,35 @@
+#include "scenarios/flight/flight_computer.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace understory {
+
+bool FlightComputer::will_take(std::int64_t arrival_ns, std::int64_t next_arrival_ns) {
+  const std::int64_t start_ns = std::max(arrival_ns, planned_free_ns_);
+  if (cost_ns_ > 0 && next_arrival_ns <= start_ns) return false;
+  planned_free_ns_ = start_ns + cost_ns_;
+  return true;
+}
+
+void FlightComputer::send(StereoFrame frame, std::int64_t arrival_ns) {
+  arrivals_.push_back({std::move(frame), arrival_ns});
+}
+
+std::optional<StereoFrame> FlightComputer::looked_at(std::int64_t t_ns) {
+  if (!busy_) {
+    if (arrivals_.empty()) return std::nullopt;
+    const std::int64_t start_ns = std::max(free_ns_, arrivals_.front().t_ns);
+    if (start_ns > t_ns) return std::nullopt;
+    while (cost_ns_ > 0 && arrivals_.size() > 1 && arrivals_[1].t_ns <= start_ns) arrivals_.pop_front();
+    busy_ = true;
+    free_ns_ = start_ns + cost_ns_;
+  }
+  if (free_ns_ > t_ns) return std::nullopt;
+  busy_ = false;
+  StereoFrame frame = std::move(arrivals_.front().frame);
+  arrivals_.pop_front();
+  return frame;
+}
+
+}  // namespace understory

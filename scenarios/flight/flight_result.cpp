@@ -1,0 +1,118 @@
+#include "scenarios/flight/flight_result.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <opencv2/core/version.hpp>
+
+#include "scenarios/output/versions.hpp"
+
+namespace understory {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON has no infinity.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+std::string clearance_text(double clearance_m) {
+  return std::isfinite(clearance_m) ? fmt::format("{:.2f} m", clearance_m) : "no obstacles";
+}
+
+}  // namespace
+
+std::string_view word_for(Ending ending) {
+  switch (ending) {
+    case Ending::goal:
+      return "goal";
+    case Ending::collision:
+      return "collision";
+    case Ending::ground:
+      return "ground";
+    case Ending::out_of_bounds:
+      return "out_of_bounds";
+    case Ending::time:
+      return "time";
+  }
+  return "unknown";
+}
+
+std::string to_json(const FlightResult& result) {
+  Json json;
+  json["outcome"] = word_for(result.ending);
+  json["scenario"] = result.scenario;
+  json["seed"] = result.seed;
+  json["sensor_seed"] = result.sensor_seed;
+  json["detector"] = result.detector;
+  json["state_source"] = result.state_source;
+  if (!result.touched.empty()) json["touched"] = result.touched;
+  json["simulated_s"] = result.simulated_s;
+  json["wall_s"] = result.wall_s;
+  json["distance_m"] = result.distance_m;
+  json["progress_m"] = result.progress_m;
+  json["mean_speed_mps"] = result.mean_speed_mps;
+  json["min_clearance_m"] = number(result.min_clearance_m);
+  json["estimation"] = {{"position_error_mean_m", result.position_error_mean_m},
+                        {"position_error_max_m", result.position_error_max_m},
+                        {"position_error_end_m", result.position_error_end_m},
+                        {"attitude_error_max_rad", result.attitude_error_max_rad},
+                        {"velocity_error_mean_mps", result.velocity_error_mean_mps}};
+  json["frames"] = result.frames;
+  json["detections"] = result.detections;
+  json["remembered_points"] = result.remembered_points;
+  json["replans"] = {{"count", result.replans},
+                     {"straight", result.replans_straight},
+                     {"solved", result.replans_solved},
+                     {"kept", result.replans_kept},
+                     {"kept_ompl", result.replans_kept_ompl},
+                     {"fallback", result.replans_fallback},
+                     {"searches", result.searches},
+                     {"searches_found", result.searches_found},
+                     {"obstacle_ahead", result.replans_blocked},
+                     {"obstacle_ahead_ompl", result.replans_blocked_ompl}};
+  if (!result.points_on_obstacles.empty()) {
+    for (const auto& [name, count] : result.points_on_obstacles) json["points_on_obstacles"][name] = count;
+  }
+  for (const StageTiming& timing : result.timings) {
+    json["timings"][timing.stage] = {
+        {"count", timing.count},
+        {"mean_ms", timing.count > 0 ? 1e3 * timing.total_s / timing.count : 0.0},
+        {"greatest_ms", 1e3 * timing.greatest_s},
+        {"total_s", timing.total_s}};
+  }
+  json["versions"] = {{"understory", understory_version}, {"opencv", CV_VERSION}, {"compiler", __VERSION__}};
+  if (!result.renderer.empty()) json["versions"]["renderer"] = result.renderer;
+  json["digest"] = result.digest;
+  return json.dump(2) + "\n";
+}
+
+std::string to_report(const FlightResult& result) {
+  std::string text;
+  const auto line = [&](std::string_view name, const std::string& value) {
+    text += fmt::format("  {:<18}{}\n", name, value);
+  };
+  text += fmt::format("{} (scenario {}, seed {}, {}, {})\n", word_for(result.ending), result.scenario,
+                      result.seed, result.detector, result.state_source);
+  if (!result.touched.empty()) line("touched", result.touched);
+  line("flown", fmt::format("{:.1f} m in {:.2f} s, {:.1f} m/s on average", result.distance_m,
+                            result.simulated_s, result.mean_speed_mps));
+  line("least clearance", clearance_text(result.min_clearance_m));
+  line("estimator error",
+       fmt::format("{:.2f} m on average, {:.2f} m at most, {:.1f} deg at most", result.position_error_mean_m,
+                   result.position_error_max_m, result.attitude_error_max_rad * 57.29577951308232));
+  line("detections", fmt::format("{} in {} frames, {} points remembered", result.detections, result.frames,
+                                 result.remembered_points));
+  line("replans", fmt::format("{}: {} straight, {} solved by OMPL, {} kept ({} of OMPL's), {} fallback",
+                              result.replans, result.replans_straight, result.replans_solved,
+                              result.replans_kept, result.replans_kept_ompl, result.replans_fallback));
+  line("obstacle ahead", fmt::format("in {} replans, {} of them flown on OMPL's answer",
+                                     result.replans_blocked, result.replans_blocked_ompl));
+  line("real-time factor",
+       fmt::format("{:.2f} ({:.1f} s of wall time)",
+                   result.wall_s > 0 ? result.simulated_s / result.wall_s : 0.0, result.wall_s));
+  line("digest", result.digest);
+  return text;
+}
+
+}  // namespace understory

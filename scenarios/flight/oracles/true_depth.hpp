@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "perception/obstacle_detector.hpp"
+#include "perception/stereo_rig.hpp"
+#include "scenarios/flight/oracles/truth_history.hpp"
+#include "sim/scene/obstacle.hpp"
+
+namespace understory {
+
+/// Perfect vision with the pushbroom's sight: a hit for every 5x5 block of the left image (rows 0..205, the
+/// original detector's) whose centre ray meets a bar or wall first at a depth within one pixel of disparity
+/// of the detection depth. The depth is analytic (ray against round bar or box); the images are not looked
+/// at. Hits carry the true point.
+class TrueDepth : public ObstacleDetector {
+ public:
+  /// Keeps a reference to the history, which must hold the moment of every frame it is given.
+  TrueDepth(const StereoRig& rig, std::vector<Obstacle> obstacles, const TruthHistory& history);
+  const std::vector<StereoHit>& detect(const StereoFrame& frame) override;
+
+  /// The depths between which a block counts, m: one pixel either way of the nearest whole disparity.
+  double least_depth_m() const { return least_depth_m_; }
+  double greatest_depth_m() const { return greatest_depth_m_; }
+
+ private:
+  StereoRig rig_;
+  std::vector<Obstacle> obstacles_;
+  const TruthHistory& history_;
+  double least_depth_m_ = 0;
+  double greatest_depth_m_ = 0;
+  std::vector<StereoHit> hits_;
+};
+
+/// Where a ray first meets a wall, in the world, in the same measure.
+double ray_meets_wall(const Eigen::Vector3d& origin_world, const Eigen::Vector3d& direction_world,
+                      const Obstacle& wall);
+
+/// Where a ray first meets a bar's side: the multiple of `direction` from `origin`; +infinity where it does
+/// not. All in one frame. From inside the bar the answer is +infinity.
+double ray_meets_bar(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                     const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius_m);
+
+}  // namespace understory

@@ -1,0 +1,270 @@
+#include "scenarios/report/line_plot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "scenarios/output/require.hpp"
+
+namespace understory {
+namespace {
+
+// Okabe & Ito 2008: eight colours that people with any colour vision can tell apart; yellow, too faint for a
+// line on white, is darkened.
+constexpr std::array<const char*, 8> palette{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                             "#56b4e9", "#e69f00", "#b8a800", "#000000"};
+
+constexpr double panel_width = 460, plot_height = 250;
+constexpr double left = 62, right = 14, top = 30, below_axis = 46, legend_line = 17;
+constexpr double character_width = 6.3;  // of the 11 px sans-serif face, on the wide side
+
+std::string escaped(const std::string& text) {
+  std::string safe;
+  for (const char letter : text) {
+    if (letter == '&')
+      safe += "&amp;";
+    else if (letter == '<')
+      safe += "&lt;";
+    else if (letter == '>')
+      safe += "&gt;";
+    else
+      safe += letter;
+  }
+  return safe;
+}
+
+/// UTF-8 text's width: continuation bytes take none.
+double text_width(const std::string& text) {
+  const auto letters = std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; });
+  return character_width * static_cast<double>(letters);
+}
+
+AxisRange covering(const LinePlot& plot, bool vertical_axis) {
+  AxisRange range{HUGE_VAL, -HUGE_VAL};
+  for (const Series& series : plot.series) {
+    for (const double value : vertical_axis ? series.y : series.x) include(range, value);
+    if (!vertical_axis) continue;
+    for (const double value : series.low) include(range, value);
+    for (const double value : series.high) include(range, value);
+  }
+  for (const ReferenceLine& line : plot.references)
+    if (line.vertical != vertical_axis) include(range, line.at);
+  return padded(range);
+}
+
+/// One panel: where numbers lie on the paper.
+class Panel {
+ public:
+  Panel(const LinePlot& plot, int number) : plot_(plot), number_(number) {
+    x_ = plot.x_range.value_or(covering(plot, false));
+    y_ = plot.y_range.value_or(covering(plot, true));
+    if (plot.equal_scale) make_scales_equal();
+  }
+
+  double height() const { return top + plot_height + below_axis + legend_line * legend_rows() + 6; }
+
+  std::string svg() const {
+    std::string text;
+    draw_axes(text);
+    text +=
+        fmt::format("<clipPath id=\"c{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
+                    number_, left, top, width(), plot_height);
+    text += fmt::format("<g clip-path=\"url(#c{})\">\n", number_);
+    for (std::size_t i = 0; i < plot_.series.size(); ++i) draw_spread(text, plot_.series[i], colour(i));
+    for (const ReferenceLine& line : plot_.references) draw_reference(text, line);
+    for (std::size_t i = 0; i < plot_.series.size(); ++i) draw_series(text, plot_.series[i], colour(i));
+    text += "</g>\n";
+    draw_legend(text);
+    return text;
+  }
+
+ private:
+  static double width() { return panel_width - left - right; }
+  double at_x(double x) const { return left + (x - x_.least) / (x_.greatest - x_.least) * width(); }
+  double at_y(double y) const {
+    return top + plot_height - (y - y_.least) / (y_.greatest - y_.least) * plot_height;
+  }
+
+  void make_scales_equal() {
+    const double per_px =
+        std::max((x_.greatest - x_.least) / width(), (y_.greatest - y_.least) / plot_height);
+    const auto widen = [](AxisRange& range, double length) {
+      const double more = 0.5 * (length - (range.greatest - range.least));
+      range = {range.least - more, range.greatest + more};
+    };
+    widen(x_, per_px * width());
+    widen(y_, per_px * plot_height);
+  }
+
+  const char* colour(std::size_t i) const {
+    const int own = plot_.series[i].colour;
+    return palette[(own >= 0 ? static_cast<std::size_t>(own) : i) % palette.size()];
+  }
+
+  void draw_axes(std::string& text) const {
+    constexpr int wanted_x = 7, wanted_y = 6;
+    const int x_decimals = decimals(tick_step(x_, wanted_x)), y_decimals = decimals(tick_step(y_, wanted_y));
+    text +=
+        fmt::format("<text x=\"{:.1f}\" y=\"18\" class=\"title\">{}</text>\n", left, escaped(plot_.title));
+    for (const double tick : tick_positions(x_, wanted_x)) {
+      const double x = at_x(tick);
+      text += fmt::format("<path d=\"M{0:.1f} {1}V{2}\" class=\"grid\"/>", x, top, top + plot_height);
+      text += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:.{}f}</text>\n", x,
+                          top + plot_height + 15, tick, x_decimals);
+    }
+    for (const double tick : tick_positions(y_, wanted_y)) {
+      const double y = at_y(tick);
+      text += fmt::format("<path d=\"M{0} {1:.1f}H{2}\" class=\"grid\"/>", left, y, left + width());
+      text += fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{:.{}f}</text>\n", left - 6, y + 4,
+                          tick, y_decimals);
+    }
+    text += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" class=\"frame\"/>\n", left, top,
+                        width(), plot_height);
+    text += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
+                        left + 0.5 * width(), top + plot_height + 34, escaped(plot_.x_label));
+    text +=
+        fmt::format("<text transform=\"translate(14 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
+                    top + 0.5 * plot_height, escaped(plot_.y_label));
+  }
+
+  void draw_reference(std::string& text, const ReferenceLine& line) const {
+    const double at = line.vertical ? at_x(line.at) : at_y(line.at);
+    if (line.vertical) {
+      text += fmt::format("<path d=\"M{:.1f} {}V{}\" class=\"reference\"/>", at, top, top + plot_height);
+      text += fmt::format("<text x=\"{:.1f}\" y=\"{}\" class=\"note\">{}</text>\n", at + 4, top + 13,
+                          escaped(line.label));
+    } else {
+      text += fmt::format("<path d=\"M{} {:.1f}H{}\" class=\"reference\"/>", left, at, left + width());
+      text += fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\" class=\"note\">{}</text>\n",
+                          left + width() - 4, at < top + 16 ? at + 12 : at - 4, escaped(line.label));
+    }
+  }
+
+  bool shown(const Series& series, std::size_t i) const {
+    return std::isfinite(series.x[i]) && std::isfinite(series.y[i]);
+  }
+
+  void draw_spread(std::string& text, const Series& series, const char* colour) const {
+    if (series.low.empty()) return;
+    if (series.band) {
+      std::string points;
+      for (std::size_t i = 0; i < series.x.size(); ++i)
+        points += fmt::format("{:.1f},{:.1f} ", at_x(series.x[i]), at_y(series.high[i]));
+      for (std::size_t i = series.x.size(); i-- > 0;)
+        points += fmt::format("{:.1f},{:.1f} ", at_x(series.x[i]), at_y(series.low[i]));
+      text += fmt::format("<polygon points=\"{}\" fill=\"{}\" opacity=\"0.2\"/>\n", points, colour);
+      return;
+    }
+    for (std::size_t i = 0; i < series.x.size(); ++i) {
+      const double x = at_x(series.x[i]), low = at_y(series.low[i]), high = at_y(series.high[i]);
+      text += fmt::format(
+          "<path d=\"M{0:.1f} {1:.1f}V{2:.1f}M{3:.1f} {1:.1f}H{4:.1f}M{3:.1f} {2:.1f}H{4:.1f}\" "
+          "stroke=\"{5}\" fill=\"none\"/>\n",
+          x, low, high, x - 3, x + 3, colour);
+    }
+  }
+
+  void draw_series(std::string& text, const Series& series, const char* colour) const {
+    if (series.mark != Mark::dots) {
+      std::string path;
+      bool pen_down = false;
+      for (std::size_t i = 0; i < series.x.size(); ++i) {
+        const bool visible = shown(series, i);
+        if (visible)
+          path += fmt::format("{}{:.1f} {:.1f}", pen_down ? "L" : "M", at_x(series.x[i]), at_y(series.y[i]));
+        pen_down = visible;
+      }
+      text += fmt::format("<path d=\"{}\" stroke=\"{}\" class=\"line\"{}/>\n", path, colour,
+                          series.mark == Mark::dashes ? " stroke-dasharray=\"6 4\"" : "");
+    }
+    if (series.mark == Mark::line || series.mark == Mark::dashes) return;
+    for (std::size_t i = 0; i < series.x.size(); ++i)
+      if (shown(series, i))
+        text += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.2\" fill=\"{}\"/>\n",
+                            at_x(series.x[i]), at_y(series.y[i]), colour);
+  }
+
+  /// Calls place(series number, x, row) for every legend entry; returns the rows taken.
+  template <typename Place>
+  int lay_out_legend(Place&& place) const {
+    double x = left;
+    int row = 0;
+    bool any = false;
+    for (std::size_t i = 0; i < plot_.series.size(); ++i) {
+      if (plot_.series[i].name.empty()) continue;
+      const double length = 34 + text_width(plot_.series[i].name);
+      if (any && x + length > panel_width) {
+        x = left;
+        ++row;
+      }
+      place(i, x, row);
+      x += length;
+      any = true;
+    }
+    return any ? row + 1 : 0;
+  }
+
+  int legend_rows() const {
+    return lay_out_legend([](std::size_t, double, int) {});
+  }
+
+  void draw_legend(std::string& text) const {
+    lay_out_legend([&](std::size_t i, double x, int row) {
+      const Series& series = plot_.series[i];
+      const double y = top + plot_height + below_axis + legend_line * row + 6;
+      if (series.mark != Mark::dots)
+        text += fmt::format("<path d=\"M{:.1f} {:.1f}h20\" stroke=\"{}\" class=\"line\"{}/>", x, y, colour(i),
+                            series.mark == Mark::dashes ? " stroke-dasharray=\"6 4\"" : "");
+      if (series.mark == Mark::dots || series.mark == Mark::line_and_dots)
+        text +=
+            fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.2\" fill=\"{}\"/>", x + 10, y, colour(i));
+      text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + 25, y + 4, escaped(series.name));
+    });
+  }
+
+  const LinePlot& plot_;
+  int number_;
+  AxisRange x_;
+  AxisRange y_;
+};
+
+void require_well_formed(const LinePlot& plot) {
+  for (const Series& series : plot.series) {
+    require(series.x.size() == series.y.size(), "a series has as many x as y");
+    require(series.low.size() == series.high.size(), "a series has as many lower ends as upper ends");
+    require(series.low.empty() || series.low.size() == series.x.size(), "a series has ends for every point");
+  }
+}
+
+}  // namespace
+
+std::string to_svg(const std::vector<LinePlot>& panels, int columns) {
+  std::string drawn;
+  double y = 0, row_height = 0;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    require_well_formed(panels[i]);
+    const std::size_t column = i % static_cast<std::size_t>(columns);
+    if (column == 0) {
+      y += row_height;
+      row_height = 0;
+    }
+    const Panel panel(panels[i], static_cast<int>(i));
+    drawn += fmt::format("<g transform=\"translate({} {})\">\n{}</g>\n",
+                         panel_width * static_cast<double>(column), y, panel.svg());
+    row_height = std::max(row_height, panel.height());
+  }
+  const double width = panel_width * static_cast<double>(std::min<std::size_t>(
+                                         panels.size(), static_cast<std::size_t>(columns)));
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
+      "font-family=\"DejaVu Sans, Helvetica, sans-serif\" font-size=\"11\">\n"
+      "<style>.title{{font-size:13px;font-weight:bold}}.grid{{stroke:#e4e4e4}}.frame{{fill:none;stroke:#444}}"
+      ".line{{fill:none;stroke-width:1.8}}.reference{{stroke:#777;stroke-dasharray:2 3;fill:none}}"
+      ".note{{fill:#555;font-size:10px}}</style>\n"
+      "<rect width=\"{0}\" height=\"{1}\" fill=\"#ffffff\"/>\n{2}</svg>\n",
+      width, y + row_height, drawn);
+}
+
+}  // namespace understory

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/report/plot_axis.hpp"
+
+namespace understory {
+
+enum class Mark { line, dashes, dots, line_and_dots };
+
+/// Numbers over numbers, of equal length. A value that is not finite interrupts the line.
+struct Series {
+  std::string name = {};  ///< in the legend; empty: not there
+  std::vector<double> x = {};
+  std::vector<double> y = {};
+  Mark mark = Mark::line;
+  int colour = -1;                ///< place in the palette (0 to 7); -1: the series' own place
+  std::vector<double> low = {};   ///< empty, or the lower and upper ends of error bars
+  std::vector<double> high = {};  ///< as `low`
+  bool band = false;              ///< shade between low and high instead of drawing bars
+};
+
+/// A straight line across the plot: a limit, a figure from elsewhere.
+struct ReferenceLine {
+  double at = 0;
+  std::string label = {};
+  bool vertical = false;
+};
+
+/// Axes with ticks, series and a legend beneath. Labels carry their units. Without a range an axis covers
+/// what is drawn, and a little more.
+struct LinePlot {
+  std::string title = {};
+  std::string x_label = {};
+  std::string y_label = {};
+  std::vector<Series> series = {};
+  std::vector<ReferenceLine> references = {};
+  std::optional<AxisRange> x_range = {};
+  std::optional<AxisRange> y_range = {};
+  bool equal_scale = false;  ///< a metre is as long upwards as sideways: for paths
+};
+
+/// The panels side by side, `columns` to a row, as one SVG document. Text is escaped; no script, no links, no
+/// fonts of its own.
+std::string to_svg(const std::vector<LinePlot>& panels, int columns = 1);
+
+}  // namespace understory

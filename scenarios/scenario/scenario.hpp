@@ -1,0 +1,303 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "estimation/filter_config.hpp"
+#include "perception/full_stereo/full_stereo_detector.hpp"
+#include "perception/pushbroom/pushbroom_stereo.hpp"
+#include "planning/airframe.hpp"
+#include "planning/autopilot.hpp"
+#include "planning/mission.hpp"
+#include "scenarios/flight/flight_computer.hpp"
+#include "scenarios/scenario/fence.hpp"
+#include "scenarios/scenario/forest.hpp"
+#include "scenarios/scenario/goalposts.hpp"
+#include "scenarios/scenario/rule_preset.hpp"
+#include "scenarios/scenario/windows.hpp"
+#include "sim/aircraft/actuators.hpp"
+#include "sim/aircraft/aircraft.hpp"
+#include "sim/aircraft/model_mismatch.hpp"
+#include "sim/aircraft/wind.hpp"
+#include "sim/cameras/stereo_cameras.hpp"
+#include "sim/scene/world.hpp"
+#include "sim/sensors/faults.hpp"
+#include "sim/sensors/sensor_grades.hpp"
+#include "sim/sensors/sensors.hpp"
+
+/// Everything a flight depends on. Each part is its module's own config struct, so that a field is named,
+/// bounded and explained once; the sections here only add what the composition itself decides.
+namespace understory {
+
+enum class Course { forest, goalposts, clear, windows, fence };
+enum class DetectorKind { pushbroom, stereo_bm, stereo_sgbm, true_depth, none };
+enum class StateKind { filter, truth };
+enum class FilterPreset { tuned, original, windy };  ///< which numbers estimation.filter starts from
+
+inline constexpr std::array<std::pair<std::string_view, Course>, 5> course_names{
+    {{"forest", Course::forest},
+     {"goalposts", Course::goalposts},
+     {"clear", Course::clear},
+     {"windows", Course::windows},
+     {"fence", Course::fence}}};
+inline constexpr std::array<std::pair<std::string_view, DetectorKind>, 5> detector_names{
+    {{"pushbroom", DetectorKind::pushbroom},
+     {"stereo_bm", DetectorKind::stereo_bm},
+     {"stereo_sgbm", DetectorKind::stereo_sgbm},
+     {"true_depth", DetectorKind::true_depth},
+     {"none", DetectorKind::none}}};
+inline constexpr std::array<std::pair<std::string_view, StateKind>, 2> state_names{
+    {{"filter", StateKind::filter}, {"truth", StateKind::truth}}};
+inline constexpr std::array<std::pair<std::string_view, FilterPreset>, 3> filter_preset_names{
+    {{"tuned", FilterPreset::tuned}, {"original", FilterPreset::original}, {"windy", FilterPreset::windy}}};
+inline constexpr std::array<std::pair<std::string_view, SensorGrade>, 4> sensor_grade_names{
+    {{"ideal", SensorGrade::ideal},
+     {"plain", SensorGrade::plain},
+     {"consumer", SensorGrade::consumer},
+     {"rough", SensorGrade::rough}}};
+
+/// The word a scenario uses for a value.
+inline std::string_view word_for(DetectorKind kind) {
+  return detector_names[static_cast<std::size_t>(kind)].first;
+}
+/// Whether a detector looks at images. Oracles and the blind aircraft do not.
+inline bool looks(DetectorKind kind) {
+  return kind != DetectorKind::true_depth && kind != DetectorKind::none;
+}
+inline std::string_view word_for(StateKind kind) { return state_names[static_cast<std::size_t>(kind)].first; }
+
+/// Forwards a visitor past names that another key of the scenario stands for.
+template <typename Visitor, std::size_t N>
+struct VisitorWithout {
+  Visitor& visit;
+  std::array<std::string_view, N> left_out;
+
+  template <typename... Arguments>
+  void operator()(std::string_view name, Arguments&&... arguments) {
+    for (const std::string_view other : left_out) {
+      if (name == other) return;
+    }
+    visit(name, std::forward<Arguments>(arguments)...);
+  }
+};
+
+/// Altitudes the flight must keep to once it has climbed into them; leaving ends it. Flying over the trees or
+/// along the ground would prove nothing.
+struct BandConfig {
+  double least_altitude_m = 1;
+  double greatest_altitude_m = 6;
+  double cruise_altitude_m = 4.5;  ///< what the stack is told to hold
+};
+
+/// How the scene looks. Whether obstacles are seen or felt is the course's business: forest.invisible,
+/// .intangible.
+struct WorldSection {
+  WorldConfig world;
+};
+
+struct CameraSection {
+  CameraConfig cameras;
+  int rate_hz = 120;  ///< divides 1200 (Barry & Tedrake 2015: 120 Hz)
+  /// From the end of the exposure to the stack, a parameter and never a measurement. A frame bears the middle
+  /// of its left image's exposure, cameras.exposure_s / 2 + right_delay_s earlier.
+  double latency_s = 0.008;
+  double drop_probability = 0;  ///< of a frame never to arrive, each by itself, 0 .. 1
+  /// Images come as the rig's raw cameras give them, distorted and turned, and the stack rectifies them; the
+  /// calibration is raw/NAME.xml beside the rig's file (models/rigs/raw).
+  bool raw = false;
+  double raw_unit_m = 1;  ///< of that file's translations, 0.0001 .. 1000; 0.01 for the paper's rig: cm
+};
+
+struct SensorSection {
+  std::uint64_t seed = 0;  ///< of every sensor's noise, the cameras' too; 0: the scenario's seed
+  SensorGrade grade = SensorGrade::plain;  ///< what the keys beside it start from (docs/sensors.md)
+  SensorsConfig sensors;
+};
+
+struct PerceptionSection {
+  DetectorKind detector = DetectorKind::pushbroom;
+  RulePreset rule = RulePreset::tuned;  ///< keys given under pushbroom win over it
+  PushbroomConfig pushbroom = tuned_rule("long");
+  StereoBmConfig stereo_bm;
+  StereoSgbmConfig stereo_sgbm;
+  FullStereoCrop full_stereo;  ///< what of either's depths becomes hits
+  ComputeConfig compute;
+
+  /// What one pair costs the aircraft's computer, simulated seconds; 0 for what is not computed there.
+  double cost_s() const {
+    if (!compute.enabled) return 0;
+    switch (detector) {
+      case DetectorKind::pushbroom:
+        return compute.factor * compute.pushbroom_s;
+      case DetectorKind::stereo_bm:
+        return compute.factor * compute.stereo_bm_s;
+      case DetectorKind::stereo_sgbm:
+        return compute.factor * compute.stereo_sgbm_s;
+      case DetectorKind::true_depth:
+      case DetectorKind::none:
+        break;
+    }
+    return 0;
+  }
+};
+
+struct EstimationSection {
+  StateKind source = StateKind::filter;
+  FilterPreset preset = FilterPreset::tuned;  ///< keys given under filter win over it
+  FilterConfig filter;
+};
+
+struct AutopilotSection {
+  int replan_rate_hz = 120;  ///< divides 1200
+  AutopilotConfig autopilot;
+};
+
+struct Scenario {
+  std::string name = "unnamed";
+  std::uint64_t seed = 1000;  ///< of the course, and of everything else unless said otherwise
+  std::string rig = "long";   ///< a name in models/rigs, or a path to a rig file
+  Course course = Course::forest;
+  double time_limit_s = 30;                                  ///< of simulated time
+  Eigen::Vector3d wind_world_mps = Eigen::Vector3d::Zero();  ///< mean, at wind.reference_height_m
+  WindConfig wind;                                           ///< shear, turbulence, a gust, shelter
+  BandConfig band;
+  ForestConfig forest;
+  GoalpostsConfig goalposts;
+  WindowsConfig windows;
+  FenceConfig fence;
+  LaunchConfig launch;
+  Airframe airframe;        ///< what the stack believes in
+  MismatchConfig mismatch;  ///< how far the aircraft that flies is from it
+  ActuatorsConfig actuators;
+  WorldSection world;
+  CameraSection cameras;
+  SensorSection sensors;
+  std::vector<FaultConfig> faults;  ///< of sensors and cameras, by schedule
+  PerceptionSection perception;
+  EstimationSection estimation;
+  AutopilotSection autopilot;
+
+  /// What the stack is told of its task.
+  Mission mission() const {
+    return {0,
+            goal_x_m(),
+            forest.half_width_m,
+            band.least_altitude_m,
+            band.greatest_altitude_m,
+            band.cruise_altitude_m};
+  }
+  /// The airframe of the simulator, mismatch included. The stack is never shown it.
+  Airframe flown_airframe() const { return mismatched(airframe, mismatch); }
+  /// Where the trees stand that wind.shelter_factor is about.
+  ForestStand stand() const {
+    if (course != Course::forest) return {};
+    return {forest.clear_m, goal_x_m(), forest.half_width_m, forest.trunk_height_m};
+  }
+  /// The scene's settings with the course's switches in them.
+  WorldConfig world_config() const {
+    WorldConfig config = world.world;
+    config.obstacles_visible = !forest.invisible;
+    config.obstacles_tangible = !forest.intangible;
+    return config;
+  }
+  double goal_x_m() const { return forest.clear_m + forest.length_m; }
+  /// Frames that are looked at in a second.
+  double frame_rate_hz() const { return 1 / std::max(1.0 / cameras.rate_hz, perception.cost_s()); }
+  /// Whether every frame reaches the stack, so that it can be told beforehand which will be looked at.
+  bool every_frame_arrives() const {
+    return cameras.drop_probability == 0 && std::ranges::none_of(faults, [](const FaultConfig& fault) {
+             return fault.sensor == FaultySensor::camera;
+           });
+  }
+  std::uint64_t sensor_seed() const { return sensors.seed == 0 ? seed : sensors.seed; }
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, BandConfig& band) {
+  visit("least_altitude_m", band.least_altitude_m, -10.0, 100.0);
+  visit("greatest_altitude_m", band.greatest_altitude_m, 0.0, 500.0);
+  visit("cruise_altitude_m", band.cruise_altitude_m, 0.0, 500.0);
+}
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, WorldSection& section) {
+  VisitorWithout<Visitor, 2> without{visit, {"obstacles_visible", "obstacles_tangible"}};
+  visit_fields(without, section.world);
+}
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, CameraSection& section) {
+  visit_fields(visit, section.cameras);
+  visit("rate_hz", section.rate_hz, 1, 1200);
+  visit("latency_s", section.latency_s, 0.0, 0.4);
+  visit("drop_probability", section.drop_probability, 0.0, 1.0);
+  visit("raw", section.raw);
+  visit("raw_unit_m", section.raw_unit_m, 0.0001, 1000.0);
+}
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, SensorSection& section) {
+  visit("seed", section.seed, std::uint64_t{0}, std::uint64_t{1} << 32);
+  visit("grade", section.grade, sensor_grade_names);
+  visit_fields(visit, section.sensors);
+}
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, PerceptionSection& section) {
+  visit("detector", section.detector, detector_names);
+  visit("rule", section.rule, rule_names);
+  visit("depths_m", section.pushbroom.depths_m, 0.1, 1000.0);  // to look at; empty: the rig's own
+  visit("pushbroom", section.pushbroom);
+  visit("stereo_bm", section.stereo_bm);
+  visit("stereo_sgbm", section.stereo_sgbm);
+  visit("full_stereo", section.full_stereo);
+  visit("compute", section.compute);
+}
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, EstimationSection& section) {
+  visit("source", section.source, state_names);
+  visit("preset", section.preset, filter_preset_names);
+  visit("filter", section.filter);
+}
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, AutopilotSection& section) {
+  visit("replan_rate_hz", section.replan_rate_hz, 1, 1200);
+  visit_fields(visit, section.autopilot);
+}
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, Scenario& scenario) {
+  visit("name", scenario.name);
+  visit("seed", scenario.seed, std::uint64_t{0}, std::uint64_t{1} << 32);
+  visit("rig", scenario.rig);
+  visit("course", scenario.course, course_names);
+  visit("time_limit_s", scenario.time_limit_s, 0.1, 600.0);
+  visit("wind_world_mps", scenario.wind_world_mps, -20.0, 20.0);
+  visit("wind", scenario.wind);
+  visit("band", scenario.band);
+  visit("forest", scenario.forest);
+  visit("goalposts", scenario.goalposts);
+  visit("windows", scenario.windows);
+  visit("fence", scenario.fence);
+  visit("launch", scenario.launch);
+  visit("airframe", scenario.airframe);
+  visit("mismatch", scenario.mismatch);
+  visit("actuators", scenario.actuators);
+  visit("world", scenario.world);
+  visit("cameras", scenario.cameras);
+  visit("sensors", scenario.sensors);
+  visit("faults", scenario.faults);
+  visit("perception", scenario.perception);
+  visit("estimation", scenario.estimation);
+  visit("autopilot", scenario.autopilot);
+}
+
+}  // namespace understory

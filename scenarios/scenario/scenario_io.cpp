@@ -1,0 +1,162 @@
+#include "scenarios/scenario/scenario_io.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "scenarios/config/config_reader.hpp"
+#include "scenarios/config/config_writer.hpp"
+
+namespace understory {
+namespace {
+
+using Sources = std::vector<ConfigNode>;  ///< the file, then every --with, then every --set
+
+/// The run folder's name by default, so no more than a plain word.
+bool is_plain_word(const std::string& name) {
+  const auto is_plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
+  };
+  return !name.empty() && name.size() <= 100 && name.front() != '.' &&
+         std::all_of(name.begin(), name.end(), is_plain);
+}
+
+/// What single ranges cannot say.
+void check(const Scenario& scenario, const Sources& sources, const std::string& name) {
+  const auto expect = [&](bool holds, const std::string& what) {
+    if (holds) return;
+    const std::string origin = origin_of(sources, what.substr(0, what.find(':')));
+    throw ScenarioError(fmt::format("{}: {}", origin.empty() ? name : origin, what));
+  };
+  expect(is_plain_word(scenario.name),
+         "name: expected letters, digits, '-', '_' and '.', at most 100, no '.' first");
+  const auto divides = [](int rate_hz) { return physics_rate_hz % rate_hz == 0; };
+  expect(scenario.forest.radius_min_m <= scenario.forest.radius_max_m,
+         "forest.radius_min_m: expected at most forest.radius_max_m");
+  expect(scenario.band.least_altitude_m < scenario.band.greatest_altitude_m,
+         "band.least_altitude_m: expected less than band.greatest_altitude_m");
+  expect(scenario.goalposts.pass_least_m <= scenario.goalposts.pass_greatest_m,
+         "goalposts.pass_least_m: expected at most goalposts.pass_greatest_m");
+  expect(scenario.fence.gate_m < 2 * scenario.fence.reach_m,
+         "fence.gate_m: expected less than twice fence.reach_m");
+  expect(scenario.actuators.pitch_speed_mps == 0 ||
+             scenario.actuators.pitch_speed_mps > scenario.actuators.thrust_speed_mps,
+         "actuators.pitch_speed_mps: expected 0 or more than actuators.thrust_speed_mps");
+  expect(divides(scenario.autopilot.replan_rate_hz),
+         "autopilot.replan_rate_hz: expected a rate that divides 1200");
+  expect(divides(scenario.cameras.rate_hz), "cameras.rate_hz: expected a rate that divides 1200");
+  expect(divides(scenario.sensors.sensors.imu_rate_hz),
+         "sensors.imu_rate_hz: expected a rate that divides 1200");
+  expect(divides(scenario.sensors.sensors.pitot_rate_hz),
+         "sensors.pitot_rate_hz: expected a rate that divides 1200");
+  expect(divides(scenario.sensors.sensors.barometer_rate_hz),
+         "sensors.barometer_rate_hz: expected a rate that divides 1200");
+  expect(divides(scenario.sensors.sensors.magnetometer_rate_hz),
+         "sensors.magnetometer_rate_hz: expected a rate that divides 1200");
+  expect(divides(scenario.sensors.sensors.gps_rate_hz),
+         "sensors.gps_rate_hz: expected a rate that divides 1200");
+  const PerceptionSection& perception = scenario.perception;
+  expect(perception.stereo_bm.window_px % 2 == 1, "perception.stereo_bm.window_px: expected an odd number");
+  expect(perception.stereo_sgbm.window_px % 2 == 1,
+         "perception.stereo_sgbm.window_px: expected an odd number");
+  expect(perception.stereo_bm.prefilter_size_px % 2 == 1,
+         "perception.stereo_bm.prefilter_size_px: expected an odd number");
+  expect(perception.stereo_bm.disparities % 16 == 0,
+         "perception.stereo_bm.disparities: expected a multiple of 16");
+  expect(perception.stereo_sgbm.disparities % 16 == 0,
+         "perception.stereo_sgbm.disparities: expected a multiple of 16");
+  expect(perception.stereo_sgbm.smoothness_1 < perception.stereo_sgbm.smoothness_2,
+         "perception.stereo_sgbm.smoothness_1: expected less than smoothness_2");
+  expect(perception.full_stereo.least_depth_m < perception.full_stereo.greatest_depth_m,
+         "perception.full_stereo.least_depth_m: expected less than greatest_depth_m");
+  // The estimator remembers where it was for a second, and waits for no older frame than half of it.
+  const double cost_s = perception.cost_s();
+  expect(scenario.cameras.latency_s + cost_s + std::min(cost_s, 1.0 / scenario.cameras.rate_hz) <= 0.5,
+         "perception.compute.factor: expected a frame to be looked at within 0.5 s of its exposure");
+  for (std::size_t i = 0; i < scenario.faults.size(); ++i) {
+    const FaultConfig& fault = scenario.faults[i];
+    expect(can_have(fault.sensor, fault.kind),
+           fmt::format("faults[{}].kind: expected, for this sensor, {}", i, fault_kinds_of(fault.sensor)));
+  }
+}
+
+/// Where the catapult holds the aircraft: known to whoever sets it up, so the filter may start from it.
+Eigen::Vector3d rail_start_world(const LaunchConfig& launch) {
+  return {-launch.rail_length_m * std::cos(launch.climb_angle_rad), 0,
+          launch.altitude_m - launch.rail_length_m * std::sin(launch.climb_angle_rad)};
+}
+
+Sources sources_of(ConfigNode file, const std::vector<std::string>& settings,
+                   const std::vector<std::filesystem::path>& with = {}) {
+  Sources sources{std::move(file)};
+  for (const std::filesystem::path& more : with) sources.push_back(parse_config_file(more));
+  for (const std::string& setting : settings) sources.push_back(parse_assignment(setting));
+  return sources;
+}
+
+void read_all(const Sources& sources, Scenario& scenario) {
+  for (const ConfigNode& source : sources) read_config(source, scenario);
+}
+
+/// Twice: the first reading learns the presets and the launch, the second puts the written keys over them.
+Scenario compose(const Sources& sources, const std::string& name) {
+  Scenario first;
+  read_all(sources, first);
+  Scenario scenario;
+  scenario.sensors.sensors = sensors_of_grade(first.sensors.grade);
+  scenario.perception.pushbroom = rule_of(first.perception.rule, first.rig);
+  if (first.estimation.preset == FilterPreset::original) scenario.estimation.filter = original_filter();
+  if (first.estimation.preset == FilterPreset::windy) scenario.estimation.filter = windy_filter();
+  scenario.estimation.filter.distrust.imu_gap_s = 1.5 / first.sensors.sensors.imu_rate_hz;
+  scenario.estimation.filter.start.position_world_m = rail_start_world(first.launch);
+  scenario.estimation.filter.start.pitch_rad = first.launch.climb_angle_rad;
+  read_all(sources, scenario);
+  check(scenario, sources, name);
+  return scenario;
+}
+
+}  // namespace
+
+Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& settings,
+                       const std::vector<std::filesystem::path>& with) {
+  return compose(sources_of(parse_config_file(file), settings, with), file.string());
+}
+
+Scenario load_changed_scenario(const std::filesystem::path& file, const std::vector<ConfigNode>& changes) {
+  Sources sources{parse_config_file(file)};
+  sources.insert(sources.end(), changes.begin(), changes.end());
+  return compose(sources, file.string());
+}
+
+Scenario scenario_from_text(const std::string& text, const std::string& name,
+                            const std::vector<std::string>& settings) {
+  return compose(sources_of(parse_config_text(text, name), settings), name);
+}
+
+std::string where_given(const std::filesystem::path& file, const std::vector<std::string>& settings,
+                        std::string_view key, const std::vector<std::filesystem::path>& with) {
+  const std::string origin = origin_of(sources_of(parse_config_file(file), settings, with), key);
+  return origin.empty() ? file.string() : origin;
+}
+
+std::string scenario_to_text(const Scenario& scenario) { return write_config(scenario); }
+
+std::vector<Obstacle> course_obstacles(const Scenario& scenario) {
+  switch (scenario.course) {
+    case Course::forest:
+      return poisson_forest(scenario.forest, scenario.seed);
+    case Course::goalposts:
+      return goalposts(scenario.goalposts, scenario.seed);
+    case Course::windows:
+      return windows(scenario.windows, scenario.goal_x_m());
+    case Course::fence:
+      return fence(scenario.fence, scenario.goal_x_m());
+    case Course::clear:
+      break;
+  }
+  return {};
+}
+
+}  // namespace understory

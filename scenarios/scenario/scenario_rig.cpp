@@ -1,0 +1,67 @@
+#include "scenarios/scenario/scenario_rig.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "perception/io/rig_file.hpp"
+#include "scenarios/config/config_tree.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Both describe one pair of cameras: another unit of length or another rig's file shows here.
+void require_alike(const StereoRig& rectified, const StereoRig& rig, const fs::path& file) {
+  const auto alike = [](double a, double b) { return std::abs(a - b) < 0.01 * b; };
+  if (!alike(rectified.focal_px, rig.focal_px) || !alike(rectified.baseline_m, rig.baseline_m) ||
+      rectified.width_px != rig.width_px || rectified.height_px != rig.height_px)
+    throw std::runtime_error(fmt::format(
+        "{}: expected the cameras of rig {}, {}x{} px, focal length {:.4g} px, baseline {:.4g} m, found "
+        "{}x{} px, {:.4g} px, {:.4g} m",
+        file.string(), rig.name, rig.width_px, rig.height_px, rig.focal_px, rig.baseline_m,
+        rectified.width_px, rectified.height_px, rectified.focal_px, rectified.baseline_m));
+}
+
+CalibratedRig raw_rig(const fs::path& rig_file, const StereoRig& rig, double meters_per_unit) {
+  const fs::path file = rig_file.parent_path() / "raw" / (rig_file.stem().string() + ".xml");
+  if (!fs::exists(file)) throw std::runtime_error("expected the rig's calibration in " + file.string());
+  CalibrationOptions options;
+  options.meters_per_unit = meters_per_unit;
+  options.detection_depth_m = rig.detection_depth_m;
+  CalibratedRig raw = read_calibrated_rig(file, options);
+  require_alike(raw.rig, rig, file);
+  Eigen::Matrix3d rectified_of_raw;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) rectified_of_raw(i, j) = raw.calibration->left.rectification(i, j);
+  raw.calibration->T_body_left = rig.T_body_camera;
+  raw.calibration->T_body_left.linear() = rig.T_body_camera.linear() * rectified_of_raw;
+  return {rectified_rig(*raw.calibration, rig.detection_depth_m), raw.calibration};
+}
+
+}  // namespace
+
+CalibratedRig rig_of(const Scenario& scenario, const fs::path& models_folder) {
+  const fs::path named = models_folder / "rigs" / (scenario.rig + ".yaml");
+  const bool is_named = fs::exists(named);
+  if (!is_named && !fs::exists(scenario.rig)) {
+    throw ScenarioError(fmt::format("rig: expected a name in {} or a rig file, got {}",
+                                    named.parent_path().string(), scenario.rig));
+  }
+  const fs::path file = is_named ? named : fs::path(scenario.rig);
+  try {
+    const StereoRig rig = read_rig(file);
+    if (!scenario.cameras.raw) return {rig, std::nullopt};
+    try {
+      return raw_rig(file, rig, scenario.cameras.raw_unit_m);
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(fmt::format("cameras.raw: {} (unit: cameras.raw_unit_m)", error.what()));
+    }
+  } catch (const std::runtime_error& error) {
+    throw ScenarioError(error.what());
+  }
+}
+
+}  // namespace understory

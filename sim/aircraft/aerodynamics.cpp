@@ -1,0 +1,94 @@
+#include "sim/aircraft/aerodynamics.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace understory {
+namespace {
+
+/// Lift and drag of one flat plate in the plane of its flow.
+struct PlateForce {
+  double along;   ///< along the plate's reference line (body x)
+  double across;  ///< along the second axis of the plane (records' z, or y)
+};
+
+/// Reference line at the angle `flow` to the air, the plate itself at `flow - deflection`. Lift stands on the
+/// local velocity, drag runs against it.
+PlateForce plate_force(double along_mps, double across_mps, double deflection_rad, double area_m2,
+                       double density, double lift_factor, double drag_factor) {
+  const double flow = std::atan2(across_mps, along_mps);
+  const double attack = flow - deflection_rad;
+  const double pressure_area = 0.5 * density * area_m2 * (along_mps * along_mps + across_mps * across_mps);
+  const double lift = lift_factor * pressure_area * 2 * std::sin(attack) * std::cos(attack);
+  const double drag = drag_factor * pressure_area * 2 * std::sin(attack) * std::sin(attack);
+  return {lift * std::sin(flow) - drag * std::cos(flow), -lift * std::cos(flow) - drag * std::sin(flow)};
+}
+
+// From here on in the records' axes: x forward, y right, z down.
+
+struct RecordsFlow {
+  Eigen::Vector3d velocity;
+  Eigen::Vector3d rate;
+  Eigen::Vector3d at(const Eigen::Vector3d& position) const { return velocity + rate.cross(position); }
+};
+
+void add(Wrench& sum, const Eigen::Vector3d& position, const Eigen::Vector3d& force) {
+  sum.force_body_n += force;
+  sum.moment_body_nm += position.cross(force);
+}
+
+void add_elevon(Wrench& sum, const Airframe& airframe, const RecordsFlow& flow, double y, double deflection,
+                double wash_mps) {
+  const double arm =
+      0.5 * airframe.elevon_chord_m;  // mid-chord of the deflected surface; trailing edge up is -z
+  const Eigen::Vector3d position(airframe.elevon_hinge_x_m - arm * std::cos(deflection), y,
+                                 -arm * std::sin(deflection));
+  const Eigen::Vector3d local = flow.at(position) + Eigen::Vector3d(wash_mps, 0, 0);
+  const PlateForce plate =
+      plate_force(local.x(), local.z(), deflection, airframe.elevon_area_m2, airframe.air_density_kgpm3,
+                  airframe.elevon_lift_factor, airframe.elevon_drag_factor);
+  add(sum, position, {plate.along, 0, plate.across});
+}
+
+void add_winglet(Wrench& sum, const Airframe& airframe, const RecordsFlow& flow, double y) {
+  const Eigen::Vector3d position(airframe.winglet_x_m, y, -airframe.winglet_z_m);
+  const Eigen::Vector3d local = flow.at(position);
+  const PlateForce plate =
+      plate_force(local.x(), local.y(), 0, airframe.winglet_area_m2, airframe.air_density_kgpm3, 1, 1);
+  add(sum, position, {plate.along, plate.across, 0});
+}
+
+}  // namespace
+
+Wrench aerodynamic_wrench(const Airframe& airframe, const AirState& air) {
+  const RecordsFlow flow{flip_yz(air.air_velocity_body_mps), flip_yz(air.angular_rate_body_radps)};
+  Wrench sum;
+
+  const PlateForce wing =
+      plate_force(flow.velocity.x(), flow.velocity.z(), 0, airframe.wing_area_m2, airframe.air_density_kgpm3,
+                  airframe.wing_lift_factor, airframe.wing_drag_factor);
+  sum.force_body_n += Eigen::Vector3d(wing.along, 0, wing.across);  // at the centre of mass: no moment
+
+  const double forward_mps = flow.velocity.x();
+  sum.force_body_n.x() += air.thrust_n - airframe.body_drag_area_m2 * 0.5 * airframe.air_density_kgpm3 *
+                                             forward_mps * std::abs(forward_mps);
+  sum.moment_body_nm -= airframe.rate_damping_nmspr.cwiseProduct(flow.rate);
+  sum.moment_body_nm.x() -= air.motor_torque_nm;
+
+  add_elevon(sum, airframe, flow, -airframe.elevon_y_m, air.left_elevon_rad, air.elevon_wash_mps);
+  add_elevon(sum, airframe, flow, airframe.elevon_y_m, air.right_elevon_rad, air.elevon_wash_mps);
+  add_winglet(sum, airframe, flow, -airframe.winglet_y_m);
+  add_winglet(sum, airframe, flow, airframe.winglet_y_m);
+
+  return {flip_yz(sum.force_body_n), flip_yz(sum.moment_body_nm)};
+}
+
+double angle_of_attack_rad(const Eigen::Vector3d& air_velocity_body_mps) {
+  return std::atan2(-air_velocity_body_mps.z(), air_velocity_body_mps.x());
+}
+
+double sideslip_rad(const Eigen::Vector3d& air_velocity_body_mps) {
+  return std::atan2(air_velocity_body_mps.y(), air_velocity_body_mps.x());
+}
+
+}  // namespace understory

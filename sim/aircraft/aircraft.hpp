@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "planning/airframe.hpp"
+#include "planning/controls.hpp"
+#include "sim/aircraft/actuators.hpp"
+#include "sim/aircraft/aerodynamics.hpp"
+#include "sim/aircraft/truth.hpp"
+#include "sim/aircraft/wind.hpp"
+#include "sim/scene/world.hpp"
+
+namespace understory {
+
+/// How a flight begins: held on a catapult, then released with the wings level.
+struct LaunchConfig {
+  double speed_mps = 12.0;        ///< release speed along the catapult (FACTS: 12 m/s)
+  double altitude_m = 1.5;        ///< height of the release point
+  double climb_angle_rad = 0.20;  ///< inclination of the catapult's rail
+  double rail_length_m = 1.5;     ///< accelerated over this length from rest: a = v^2 / 2 s = 48 m/s^2
+  double rest_s = 0.25;           ///< standstill on the rail before, so that sensors see rest
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, LaunchConfig& config) {
+  visit("speed_mps", config.speed_mps, 5.0, 20.0);
+  visit("altitude_m", config.altitude_m, 0.3, 10.0);
+  visit("climb_angle_rad", config.climb_angle_rad, -0.2, 0.6);
+  visit("rail_length_m", config.rail_length_m, 0.2, 10.0);
+  visit("rest_s", config.rest_s, 0.0, 5.0);
+}
+
+enum class Contact { none, ground, obstacle };
+
+/// The delta wing in the world: MuJoCo integrates its body at 1200 Hz under the identified flat-plate
+/// aerodynamics, in the air that `wind` makes.
+///
+/// On the rail the body is at rest for rest_s, then accelerates evenly from rail_length_m before the release
+/// point, pitched above the rail by the level trim's angle of attack at the release speed: it leaves with the
+/// lift that carries it and no rotation. Elevons and motor follow their commands after the input delay, as
+/// `actuators` says: by default at once and in full.
+class Aircraft {
+ public:
+  /// Keeps a reference to the model. The launch rail points along world x; the release point is the world's
+  /// (0, 0). Throws std::runtime_error where the rail would begin underground. A step is the model's own
+  /// (1/1200 s from build_world; tests of convergence set others, whole numbers of hertz).
+  Aircraft(const mjModel& model, const Airframe& airframe, const LaunchConfig& launch, Wind wind,
+           const ActuatorsConfig& actuators = {});
+  /// In a steady wind.
+  Aircraft(const mjModel& model, const Airframe& airframe, const LaunchConfig& launch,
+           const Eigen::Vector3d& wind_world_mps)
+      : Aircraft(model, airframe, launch, Wind(wind_world_mps)) {}
+
+  /// Advances one physics step. Controls act one input delay later, cut to the airframe's limits.
+  /// While on the rail the body follows the rail whatever the controls. Kinematics and contacts in data()
+  /// belong to the new moment afterwards. Throws std::logic_error on controls that are not finite.
+  void step(const Controls& controls);
+
+  /// The acceleration in truth() is the mean over the step just taken.
+  const Truth& truth() const { return truth_; }
+  bool launched() const { return step_ >= release_step_; }  ///< has left the rail
+  Contact contact() const;  ///< by MuJoCo's own contacts at this step, aircraft against anything
+  const mjData& data() const { return *data_; }
+  mjData& data() { return *data_; }
+
+  /// Puts the body, already launched, somewhere in flight with its surfaces and delayed commands at
+  /// `controls`: for tests and experiments that start in the air. Time runs on.
+  void place(const Eigen::Isometry3d& T_world_body, const Eigen::Vector3d& velocity_world_mps,
+             const Eigen::Vector3d& angular_rate_body_radps, const Controls& controls);
+
+ private:
+  /// An obstacle's collision capsule.
+  struct Bar {
+    Eigen::Vector3d centre_world;
+    Eigen::Vector3d axis_world;
+    double half_length_m;
+    double radius_m;
+  };
+
+  std::int64_t t_ns() const { return step_ * 1'000'000'000 / rate_hz_; }
+  void read_outline();
+  bool anything_near() const;
+  void update_moment();
+  Controls delayed(const Controls& controls);
+  void follow_rail();
+  AirState air() const;
+  void fly();
+  void set_body(const Eigen::Isometry3d& T_world_body, const Eigen::Vector3d& velocity_world_mps,
+                const Eigen::Vector3d& angular_rate_body_radps);
+  void set_elevons();
+  void read_truth(const Eigen::Vector3d& rail_acceleration_world_mps2);
+
+  const mjModel& model_;
+  DataPointer data_;
+  Airframe airframe_;
+  LaunchConfig launch_;
+  Wind wind_;
+  Actuators actuators_;
+  std::int64_t rate_hz_;
+  double step_s_;
+  Eigen::Quaterniond rail_attitude_ = Eigen::Quaterniond::Identity();
+  std::vector<Controls> delay_line_;  ///< a ring, one entry a step
+  std::int64_t step_ = 0;
+  std::int64_t rest_steps_ = 0;
+  std::int64_t release_step_ = 0;
+  int body_ = 0;
+  int ground_geom_ = 0;
+  double reach_m_ = 0;  ///< from the centre of mass to the farthest corner of the collision boxes
+  std::vector<Bar> bars_;
+  Truth truth_;
+};
+
+}  // namespace understory

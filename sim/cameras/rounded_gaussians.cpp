@@ -1,0 +1,70 @@
+#include "sim/cameras/rounded_gaussians.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace understory {
+namespace {
+
+/// std::generate_canonical<double, 53> to the bit: the compiler's conversion of 64 bits without sign branches
+/// on the highest, which is a coin.
+double drawn(std::mt19937_64& generator) {
+  const std::uint64_t bits = generator();
+  const auto high = static_cast<double>(static_cast<std::int64_t>(bits >> 32));
+  const auto low = static_cast<double>(static_cast<std::int64_t>(bits & 0xffffffffu));
+  const double value = (high * 0x1p32 + low) * 0x1p-64;
+  return value < 1.0 ? value : std::nextafter(1.0, 0.0);
+}
+
+/// What Marsaglia's polar method multiplies a point of the unit disc with, by its squared distance.
+double stretch(double square) { return std::sqrt(-2 * std::log(square) / square); }
+
+/// Bounds of stretch() between two steps of the squared distance, a little wide for its rounding.
+struct StretchBounds {
+  double least, greatest;
+};
+constexpr int bound_count = 1024;
+
+std::array<StretchBounds, bound_count> stretch_bounds() {
+  std::array<StretchBounds, bound_count> bounds;
+  const auto at = [](int step) { return stretch(static_cast<double>(step) / bound_count); };  // it falls
+  for (int i = 0; i < bound_count; ++i)
+    bounds[static_cast<std::size_t>(i)] = {at(i + 1) * (1 - 1e-12), at(std::max(i, 1)) * (1 + 1e-12)};
+  bounds[0].greatest = 1e100;  // without bound, but times zero still zero
+  return bounds;
+}
+
+}  // namespace
+
+std::vector<std::int8_t> rounded_gaussians(std::size_t count, double deviation, std::mt19937_64& generator) {
+  const auto bounds = stretch_bounds();
+  const auto exact = [deviation](double value) {
+    return static_cast<std::int8_t>(std::clamp(std::lround(value * deviation), -127L, 127L));
+  };
+  const auto size_at = [deviation](double coordinate, double stretched) {
+    return static_cast<int>(std::min(std::abs(coordinate) * stretched * deviation, 127.0) + 0.5);
+  };
+  std::vector<std::int8_t> values(count);
+  for (std::size_t i = 0; i + 1 < count; i += 2) {
+    double x, y, square;
+    do {
+      x = 2.0 * drawn(generator) - 1.0;
+      y = 2.0 * drawn(generator) - 1.0;
+      square = x * x + y * y;
+    } while (square > 1.0 || square == 0.0);
+    // Where both bounds round alike, what lies between them does too: most logarithms need not be known.
+    const auto step = static_cast<std::size_t>(std::min(square * bound_count, bound_count - 1.0));
+    const int size_x = size_at(x, bounds[step].least), size_y = size_at(y, bounds[step].least);
+    if (size_x == size_at(x, bounds[step].greatest) && size_y == size_at(y, bounds[step].greatest)) {
+      values[i] = static_cast<std::int8_t>(y < 0 ? -size_y : size_y);
+      values[i + 1] = static_cast<std::int8_t>(x < 0 ? -size_x : size_x);
+    } else {
+      values[i] = exact(y * stretch(square));
+      values[i + 1] = exact(x * stretch(square));
+    }
+  }
+  return values;
+}
+
+}  // namespace understory

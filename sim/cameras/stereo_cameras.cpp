@@ -1,0 +1,147 @@
+#include "sim/cameras/stereo_cameras.hpp"
+
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <stdexcept>
+
+#include "sim/cameras/camera_frustum.hpp"
+#include "sim/cameras/image_sensor.hpp"
+#include "sim/cameras/pixel_response.hpp"
+#include "sim/cameras/pose_history.hpp"
+#include "sim/cameras/stereo_optics.hpp"
+#include "sim/render/scene_renderer.hpp"
+#include "sim/scene/scenery.hpp"
+
+namespace understory {
+namespace {
+
+Eigen::Isometry3d aircraft_pose(const mjModel& model, const mjData& data) {
+  const int joint = mj_name2id(&model, mjOBJ_JOINT, "aircraft_free");
+  if (joint < 0) throw std::runtime_error("the model has no joint \"aircraft_free\" to carry the cameras");
+  const mjtNum* q = data.qpos + model.jnt_qposadr[joint];  // newer than data.xpos, which lags one step
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = Eigen::Vector3d(q[0], q[1], q[2]);
+  pose.linear() = Eigen::Quaterniond(q[3], q[4], q[5], q[6]).normalized().toRotationMatrix();
+  return pose;
+}
+
+std::array<cv::Mat, 2> falloff_of(const StereoOptics& optics, const CameraConfig& config) {
+  if (config.vignetting_power <= 0) return {};
+  return {optics.falloff(0, config.vignetting_power), optics.falloff(1, config.vignetting_power)};
+}
+
+}  // namespace
+
+struct StereoCameras::Implementation {
+  const mjModel& model;
+  StereoRig rig;
+  CameraConfig config;
+  StereoOptics optics;
+  SceneRenderer scene;
+  PixelResponse response;
+  ImageNoise noise;
+  std::int64_t exposure_ns, right_delay_ns;
+  PoseHistory poses;
+
+  Implementation(const mjModel& model_, const StereoRig& rig_, const CameraConfig& config_, CameraSeeds seeds,
+                 const std::optional<StereoCalibration>& raw, RendererKind renderer)
+      : model(model_),
+        rig(rig_),
+        config(config_),
+        optics(rig, config, raw),
+        scene(model, config.view_distance_m, 2 * rig.width_px, rig.height_px, renderer),
+        response(config, falloff_of(optics, config), seeds.shot),
+        noise(config.noise_gray, seeds.noise),
+        exposure_ns(config.exposure_ns()),
+        right_delay_ns(config.right_delay_ns()),
+        poses(exposure_ns + right_delay_ns) {}
+
+  bool takes_time() const { return exposure_ns > 0 || right_delay_ns > 0; }
+
+  /// Both images of an exposure that ends now: the mean of views spread evenly over it.
+  std::array<cv::Mat, 2> exposed(const mjData& data, std::int64_t t_ns) {
+    const Eigen::Isometry3d now = aircraft_pose(model, data);
+    std::array<cv::Mat, 2> views, sums;
+    if (!takes_time()) {
+      views = scene.gray_pair(optics.eyes(now, now));
+    } else {
+      poses.observe(now, t_ns);
+      const int count = exposure_ns > 0 ? config.exposure_views : 1;
+      for (int i = 0; i < count; ++i) {
+        const std::int64_t right_ns = t_ns - exposure_ns + (2 * i + 1) * exposure_ns / (2 * count);
+        views = scene.gray_pair(optics.eyes(poses.at(right_ns - right_delay_ns), poses.at(right_ns)));
+        for (std::size_t eye = 0; eye < 2; ++eye) {
+          if (sums[eye].empty()) sums[eye] = cv::Mat::zeros(views[eye].size(), CV_32SC1);
+          cv::add(sums[eye], views[eye], sums[eye], cv::noArray(), CV_32SC1);
+        }
+      }
+      for (std::size_t eye = 0; eye < 2; ++eye) sums[eye].convertTo(views[eye], CV_8UC1, 1.0 / count);
+    }
+    return {optics.image(0, views[0]), optics.image(1, views[1])};
+  }
+};
+
+StereoCameras::StereoCameras(const World& world, const StereoRig& rig, const CameraConfig& config,
+                             CameraSeeds seeds, const std::optional<StereoCalibration>& raw,
+                             RendererKind renderer) {
+  paint_textures(*world.model, world.config);
+  implementation_ = std::make_unique<Implementation>(*world.model, rig, config, seeds, raw, renderer);
+}
+
+StereoCameras::~StereoCameras() = default;
+
+void StereoCameras::observe(const mjData& data, std::int64_t t_ns) {
+  if (!implementation_->takes_time()) return;
+  implementation_->poses.observe(aircraft_pose(implementation_->model, data), t_ns);
+}
+
+StereoFrame StereoCameras::capture(const mjData& data, std::int64_t t_ns) {
+  Implementation& self = *implementation_;
+  StereoFrame frame{t_ns - self.config.exposure_lag_ns(), {}, {}};
+  if (self.config.lens_cap) {
+    const cv::Size size(self.rig.width_px, self.rig.height_px);
+    frame.left = cv::Mat::zeros(size, CV_8UC1);
+    frame.right = cv::Mat::zeros(size, CV_8UC1);
+  } else {
+    const auto images = self.exposed(data, t_ns);
+    frame.left = images[0];
+    frame.right = images[1];
+  }
+  self.response.apply(0, frame.left);
+  self.response.apply(1, frame.right);
+  self.noise.add_to(frame.left);
+  self.noise.add_to(frame.right);
+  return frame;
+}
+
+cv::Mat StereoCameras::depth(const mjData& data) {
+  return depth(aircraft_pose(implementation_->model, data));
+}
+
+cv::Mat StereoCameras::depth(const Eigen::Isometry3d& T_world_body) {
+  return implementation_->scene.left_depth(eyes_of(implementation_->rig, T_world_body));
+}
+
+TrueView StereoCameras::true_view(const Eigen::Isometry3d& T_world_body) {
+  return implementation_->scene.true_left_view(eyes_of(implementation_->rig, T_world_body));
+}
+
+cv::Mat StereoCameras::chase_view(const mjData& data, int width_px, int height_px) {
+  const Eigen::Isometry3d aircraft = aircraft_pose(implementation_->model, data);
+  const Eigen::Vector3d forward = aircraft.linear().col(0);
+  const double yaw_rad = std::atan2(forward.y(), forward.x());
+  constexpr double behind_m = 3.2, above_m = 1.1, down_rad = 0.20;
+  Eye eye{Eigen::Isometry3d::Identity(), 0.8 * width_px, 0.5 * (width_px - 1),
+          0.5 * (height_px - 1),         width_px,       height_px};
+  const Eigen::Vector3d ahead(std::cos(yaw_rad), std::sin(yaw_rad), 0);
+  eye.T_world_camera.translation() =
+      aircraft.translation() - behind_m * ahead + above_m * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d gaze = std::cos(down_rad) * ahead - std::sin(down_rad) * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d right = gaze.cross(Eigen::Vector3d::UnitZ()).normalized();
+  eye.T_world_camera.linear() << right, gaze.cross(right), gaze;
+  return implementation_->scene.colour_with_aircraft(data, eye);
+}
+
+std::string StereoCameras::renderer() const { return implementation_->scene.name(); }
+
+}  // namespace understory

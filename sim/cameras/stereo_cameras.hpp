@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <string>
+
+#include "perception/stereo_calibration.hpp"
+#include "perception/stereo_frame.hpp"
+#include "perception/stereo_rig.hpp"
+#include "sim/cameras/camera_config.hpp"
+#include "sim/cameras/true_view.hpp"
+#include "sim/render/renderer_kind.hpp"
+#include "sim/scene/world.hpp"
+
+namespace understory {
+
+/// Of the generators that a pair of cameras owns.
+struct CameraSeeds {
+  std::uint64_t noise = 0;
+  std::uint64_t shot = 0;
+};
+
+/// Renders both eyes of a rig offscreen (OSMesa or EGL, loaded at run time; in software bit-reproducible on
+/// one machine).
+class StereoCameras {
+ public:
+  /// Throws std::runtime_error in one line where no GL library can be loaded. Not thread safe; create and use
+  /// on one thread. `raw`: absent, images come rectified, as `rig` says; present, they come as these cameras
+  /// give them, and `rig` must be rectified_rig(*raw). Paints the textures of the world's model.
+  StereoCameras(const World& world, const StereoRig& rig, const CameraConfig& config, CameraSeeds seeds,
+                const std::optional<StereoCalibration>& raw = std::nullopt,
+                RendererKind renderer = RendererKind::osmesa);
+  ~StereoCameras();
+
+  /// Where the body is, at every physics step: what an image that takes time is made of.
+  void observe(const mjData& data, std::int64_t t_ns);
+  /// Both images, gray 8-bit with noise, of the world of `data`, with the exposure's end now, at t_ns; the
+  /// frame's own time lies CameraConfig::exposure_lag_ns() before.
+  StereoFrame capture(const mjData& data, std::int64_t t_ns);
+  /// Depth in the left image, rectified, at the moment of `data`: CV_32FC1, metres along the optical axis.
+  cv::Mat depth(const mjData& data);
+  /// The same from where the body was at another moment.
+  cv::Mat depth(const Eigen::Isometry3d& T_world_body);
+  /// What is where in the left image, rectified, with the body there: the same depth, and the objects.
+  TrueView true_view(const Eigen::Isometry3d& T_world_body);
+  /// What a camera following the aircraft sees, BGR 8-bit, for people.
+  cv::Mat chase_view(const mjData& data, int width_px, int height_px);
+  /// The renderer's own name and version, for records.
+  std::string renderer() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace understory

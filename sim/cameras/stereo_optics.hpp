@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+
+#include "perception/stereo_calibration.hpp"
+#include "sim/cameras/camera_config.hpp"
+#include "sim/cameras/camera_frustum.hpp"
+
+namespace understory {
+
+/// What the two lenses do to rays: which pinhole view has to be rendered for each eye, and how that view
+/// becomes the camera's image. The truth beside what the stack believes: a misaligned or bent rig differs
+/// here, in the right eye.
+class StereoOptics {
+ public:
+  /// `raw`: absent, the images are the rectified pair that `rig` describes and the views are the images.
+  /// Present, they are those of the raw cameras before rectification, distorted and turned; `rig` is then
+  /// rectified_rig(*raw). Throws std::runtime_error where no raw pixel has a ray.
+  StereoOptics(const StereoRig& rig, const CameraConfig& config,
+               const std::optional<StereoCalibration>& raw = std::nullopt);
+
+  /// The views to render, left first, for a body that need not have stood still between the two. Of equal
+  /// size.
+  std::array<Eye, 2> eyes(const Eigen::Isometry3d& T_world_body_left,
+                          const Eigen::Isometry3d& T_world_body_right) const;
+  /// The camera's image of a rendered view, CV_8UC1; 0 where a raw pixel sees nothing that its calibration
+  /// explains. eye: 0 left, 1 right.
+  cv::Mat image(int eye, const cv::Mat& view) const;
+  /// cos^power of the angle between each pixel's ray and its camera's own axis, CV_32FC1.
+  cv::Mat falloff(int eye, double power) const;
+
+ private:
+  /// A raw camera's pixels as rays, and the pinhole view along its axis that holds them all.
+  struct RawCamera {
+    Eigen::Matrix3d R_rectified_raw;
+    cv::Mat rays;                     ///< CV_64FC2: x/z, y/z of each raw pixel; NaN where there is none
+    double center_x_px, center_y_px;  ///< of the view
+    cv::Mat places, fractions;        ///< of the view for each raw pixel: cv::convertMaps' form
+  };
+  void make_views();
+
+  StereoRig rig_;
+  Eigen::Isometry3d T_believed_true_right_ = Eigen::Isometry3d::Identity();
+  double vertical_misalignment_px_;
+  std::optional<std::array<RawCamera, 2>> raw_;
+  double view_focal_px_ = 0;
+  cv::Size view_size_;
+};
+
+}  // namespace understory

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+
+#include "sim/render/renderer_kind.hpp"
+
+namespace understory {
+
+/// One OpenGL context of one of the libraries that give contexts without a window. The library stays open for
+/// the life of the process: MuJoCo keeps pointers into it.
+class OffscreenBackend {
+ public:
+  virtual ~OffscreenBackend() = default;
+
+  /// Which of the two libraries: osmesa or egl.
+  virtual RendererKind kind() const = 0;
+  /// Makes the context current on this thread unless it is already, its default framebuffer a picture of this
+  /// size: RGBA, 8 bits each, and 24 bits of depth. Throws std::runtime_error where the library refuses.
+  virtual void make_current(int width_px, int height_px) = 0;
+  /// What was drawn, complete: RGBA, rows from the bottom up, of the size last made current; valid until the
+  /// next call of either function.
+  virtual const std::uint8_t* finished_pixels() = 0;
+  /// The OpenGL function of this name; the context must be current.
+  virtual void* function(const char* name) const = 0;
+};
+
+/// A function of a library as a pointer of its type.
+template <typename Function>
+Function as_function(void* address) {
+  return reinterpret_cast<Function>(address);
+}
+
+}  // namespace understory

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "sim/render/offscreen_backend.hpp"
+#include "sim/render/renderer_kind.hpp"
+
+namespace understory {
+
+/// Which way the GL library works on this machine.
+struct OffscreenOptions {
+  RendererKind renderer = RendererKind::osmesa;
+  /// Threads llvmpipe rasterises with beside the caller's; 0: none. One process flies one flight and a
+  /// campaign runs one process a core, so helpers would only get into each other's way. An LP_NUM_THREADS set
+  /// outside wins. The images are the same whatever the choice.
+  int raster_threads = 0;
+};
+
+/// An OpenGL context that draws into memory, without a window: of OSMesa or EGL, opened with dlopen so that
+/// nothing links GL and the stack runs where it is missing. At most one should be current per thread. A
+/// process draws through one library: the first context's.
+class OffscreenContext {
+ public:
+  /// Throws std::runtime_error in one line, naming the Debian package, where the library or a context cannot
+  /// be had, or where this process already draws through the other library.
+  explicit OffscreenContext(const OffscreenOptions& options = {});
+
+  /// Makes the context current on this thread unless it is already, drawing into a picture of this size.
+  void make_current(int width_px, int height_px) { backend_->make_current(width_px, height_px); }
+  /// What was drawn, complete: RGBA, 8 bits each, rows from the bottom up, of the size last made current;
+  /// valid until the next call of either. Where nothing was drawn, alpha is 0.
+  const std::uint8_t* finished_pixels() { return backend_->finished_pixels(); }
+  /// Makes a level of a 2D texture, 0 the largest: RGB, 8 bits each, row after row without gaps.
+  void upload_level(unsigned texture, int level, int width_px, int height_px, const std::uint8_t* rgb) const;
+  /// Textures are looked up in the nearest level of their pyramid, bilinearly: blending two levels doubles
+  /// the cost.
+  void use_nearest_mipmap(unsigned texture) const;
+  /// The OpenGL implementation's own name and version.
+  std::string renderer() const;
+
+ private:
+  std::unique_ptr<OffscreenBackend> backend_;
+};
+
+}  // namespace understory

@@ -1,0 +1,224 @@
+#include "sim/render/scene_renderer.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "sim/cameras/image_sensor.hpp"
+#include "sim/scene/texture_levels.hpp"
+#include "sim/scene/world.hpp"
+
+namespace understory {
+namespace {
+
+/// One sun, no shadows: shaded trunks, evenly lit ground. Lighting is computed per vertex and costs next to
+/// nothing.
+void light(mjvScene& scene) {
+  scene.nlight = 1;
+  mjvLight& sun = scene.lights[0];
+  sun = mjvLight{};
+  sun.directional = 1;
+  const Eigen::Vector3f shining = Eigen::Vector3f(0.45f, -0.46f, -0.766f).normalized();
+  std::copy_n(shining.data(), 3, sun.dir);
+  sun.attenuation[0] = 1;
+  std::fill_n(sun.ambient, 3, 0.70f);
+  std::fill_n(sun.diffuse, 3, 0.30f);
+}
+
+/// Sky boxes, shadows, reflections, fog and haze are all off: their cost is large and the detector gains
+/// nothing.
+void plain_rendering(mjvScene& scene) {
+  std::fill(std::begin(scene.flags), std::end(scene.flags), mjtByte{0});
+  scene.flags[mjRND_CULL_FACE] = 1;
+}
+
+/// MuJoCo draws segid + 1 as red + 256 green + 65536 blue, and nothing, where there is nothing, as black.
+cv::Mat object_numbers(const std::uint8_t* pixels, int row_px, const Eye& eye) {
+  cv::Mat objects(eye.height_px, eye.width_px, CV_16UC1);
+  for (int row = 0; row < objects.rows; ++row) {
+    const std::uint8_t* from = pixels + std::size_t{4} * (objects.rows - 1 - row) * row_px;
+    auto* to = objects.ptr<std::uint16_t>(row);
+    for (int column = 0; column < objects.cols; ++column, from += 4)
+      to[column] = static_cast<std::uint16_t>(from[3] == 0 ? object_nothing : from[0] + 256 * from[1]);
+  }
+  return objects;
+}
+
+/// As images of objects number it, from its geom's name.
+int object_of(const std::string& geom_name) {
+  constexpr std::string_view prefix = "scenery_";
+  if (geom_name == "scenery_ground") return object_ground;
+  if (geom_name.rfind(prefix, 0) != 0) return object_nothing;  // a test's own scenery
+  return object_first_obstacle + std::stoi(geom_name.substr(prefix.size()));
+}
+
+/// A geom's own box, from its mesh; geoms of other types are boxed by their bounding sphere.
+GeomBox box_of(const mjModel& model, const mjvGeom& geom) {
+  GeomBox box;
+  const Eigen::Matrix3d turn =
+      Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(geom.mat).cast<double>();
+  box.T_world_box.linear() = turn;
+  box.T_world_box.translation() = Eigen::Map<const Eigen::Vector3f>(geom.pos).cast<double>();
+  const double radius = model.geom_rbound[geom.objid] > 0 ? model.geom_rbound[geom.objid] : 1e6;
+  box.half_size.setConstant(radius);
+  const int mesh = model.geom_dataid[geom.objid];
+  if (geom.type != mjGEOM_MESH || mesh < 0) return box;
+  Eigen::AlignedBox3d extent;
+  for (int i = 0; i < model.mesh_vertnum[mesh]; ++i)
+    extent.extend(Eigen::Map<const Eigen::Vector3f>(model.mesh_vert + 3 * (model.mesh_vertadr[mesh] + i))
+                      .cast<double>());
+  box.T_world_box = box.T_world_box * Eigen::Translation3d(extent.center());
+  box.half_size = 0.5 * extent.sizes();
+  return box;
+}
+
+}  // namespace
+
+SceneRenderer::SceneRenderer(const mjModel& model, double view_distance_m, int width_px, int height_px,
+                             RendererKind renderer)
+    : model_(model), view_distance_m_(view_distance_m), gl_({.renderer = renderer}) {
+  gl_.make_current(width_px, height_px);
+  make_context();
+  mjr_setBuffer(mjFB_WINDOW, &context_);
+  mjv_defaultScene(&scene_);
+  mjv_makeScene(&model_, &scene_, model_.ngeom + 100);
+  plain_rendering(scene_);
+  gather_scenery();
+}
+
+SceneRenderer::~SceneRenderer() {
+  gl_.make_current(64, 64);  // MuJoCo deletes its GL objects in the current context
+  mjv_freeScene(&scene_);
+  mjr_freeContext(&context_);
+}
+
+/// MuJoCo would have the renderer make the textures' smaller copies, which is most of its start. So it is
+/// shown textures of one pixel, sets them up as it likes, and they are filled here.
+void SceneRenderer::make_context() {
+  const auto filled_here = [&](int texture) {
+    return model_.tex_type[texture] == mjTEXTURE_2D &&
+           std::has_single_bit(static_cast<unsigned>(model_.tex_width[texture])) &&
+           std::has_single_bit(static_cast<unsigned>(model_.tex_height[texture]));
+  };
+  std::vector<int> widths_px(model_.tex_width, model_.tex_width + model_.ntex);
+  std::vector<int> heights_px(model_.tex_height, model_.tex_height + model_.ntex);
+  for (int i = 0; i < model_.ntex; ++i)
+    if (filled_here(i)) widths_px[i] = heights_px[i] = 1;
+  mjModel shown = model_;
+  shown.tex_width = widths_px.data();
+  shown.tex_height = heights_px.data();
+  mjr_defaultContext(&context_);
+  mjr_makeContext(&shown, &context_, mjFONTSCALE_100);
+  for (int i = 0; i < model_.ntex; ++i) {
+    const unsigned texture = context_.texture[i];
+    if (filled_here(i)) {
+      const int width_px = model_.tex_width[i], height_px = model_.tex_height[i];
+      const std::uint8_t* rgb = model_.tex_rgb + model_.tex_adr[i];
+      gl_.upload_level(texture, 0, width_px, height_px, rgb);
+      int level = 0;
+      for (const TextureLevel& copy : smaller_copies(width_px, height_px, rgb))
+        gl_.upload_level(texture, ++level, copy.width_px, copy.height_px, copy.rgb.data());
+    }
+    if (context_.textureType[i] == mjTEXTURE_2D) gl_.use_nearest_mipmap(texture);
+  }
+}
+
+/// Scenery stands still: its geoms are made once.
+void SceneRenderer::gather_scenery() {
+  const DataPointer data(mj_makeData(&model_));
+  mj_kinematics(&model_, data.get());
+  update_scene(*data, false);
+  for (int i = 0; i < scene_.ngeom; ++i) {
+    mjvGeom geom = scene_.geoms[i];
+    const char* name = mj_id2name(&model_, mjOBJ_GEOM, geom.objid);
+    const int object = object_of(name != nullptr ? name : "");
+    geom.segid = object - 1;
+    scenery_.push_back({geom, box_of(model_, geom), object != object_ground});
+  }
+}
+
+void SceneRenderer::update_scene(const mjData& data, bool with_aircraft) {
+  mjvOption option;
+  mjv_defaultOption(&option);
+  std::fill(std::begin(option.geomgroup), std::end(option.geomgroup), mjtByte{0});
+  std::fill(std::begin(option.sitegroup), std::end(option.sitegroup), mjtByte{0});
+  option.geomgroup[group_scenery] = 1;
+  option.geomgroup[group_aircraft_skin] = with_aircraft;
+  mjvCamera camera;
+  mjv_defaultCamera(&camera);
+  // mjv_updateScene takes mutable data and writes none of it.
+  mjv_updateScene(&model_, const_cast<mjData*>(&data), &option, nullptr, &camera,
+                  mjCAT_STATIC | mjCAT_DYNAMIC, &scene_);
+  light(scene_);
+}
+
+/// Nearest first, so that what is hidden is not shaded; what no eye sees is not given to MuJoCo at all.
+void SceneRenderer::fill_scene(const std::array<Eye, 2>& eyes) {
+  std::vector<std::pair<double, const SceneryGeom*>> seen;
+  for (const SceneryGeom& item : scenery_) {
+    const double range_m = distance_m(eyes[0].T_world_camera.translation(), item.box);
+    if (culls_ && item.obstacle && range_m > view_distance_m_) continue;
+    if (!culls_ || may_see(eyes[0], item.box) || may_see(eyes[1], item.box))
+      seen.emplace_back(item.obstacle ? range_m : far_m, &item);
+  }
+  std::stable_sort(seen.begin(), seen.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  scene_.ngeom = 0;
+  for (const auto& [range_m, item] : seen) scene_.geoms[scene_.ngeom++] = item->geom;
+  scene_.camera[0] = to_gl(eyes[0]);
+  scene_.camera[1] = to_gl(eyes[1]);
+  light(scene_);
+}
+
+const std::uint8_t* SceneRenderer::render(const std::array<Eye, 2>& eyes) {
+  // Another renderer may have drawn since.
+  gl_.make_current(2 * eyes[0].width_px, eyes[0].height_px);
+  fill_scene(eyes);
+  scene_.stereo = mjSTEREO_SIDEBYSIDE;
+  mjr_render({0, 0, 2 * eyes[0].width_px, eyes[0].height_px}, &scene_, &context_);
+  return gl_.finished_pixels();
+}
+
+std::array<cv::Mat, 2> SceneRenderer::gray_pair(const std::array<Eye, 2>& eyes) {
+  const std::uint8_t* pixels = render(eyes);
+  const int width_px = eyes[0].width_px;
+  return {gray_with_sky(pixels, 2 * width_px, eyes[0]),
+          gray_with_sky(pixels + 4 * width_px, 2 * width_px, eyes[1])};
+}
+
+cv::Mat SceneRenderer::left_depth(const std::array<Eye, 2>& eyes) {
+  render(eyes);
+  return read_depth(eyes[0]);
+}
+
+TrueView SceneRenderer::true_left_view(const std::array<Eye, 2>& eyes) {
+  scene_.flags[mjRND_SEGMENT] = scene_.flags[mjRND_IDCOLOR] = 1;  // flat: a geom's number for its colour
+  const std::uint8_t* pixels = render(eyes);
+  scene_.flags[mjRND_SEGMENT] = scene_.flags[mjRND_IDCOLOR] = 0;
+  return {read_depth(eyes[0]), object_numbers(pixels, 2 * eyes[0].width_px, eyes[0])};
+}
+
+cv::Mat SceneRenderer::read_depth(const Eye& eye) {
+  cv::Mat depth(eye.height_px, eye.width_px, CV_32FC1);
+  std::vector<float> values(depth.total());
+  mjr_readPixels(nullptr, values.data(), {0, 0, depth.cols, depth.rows}, &context_);
+  for (int row = 0; row < depth.rows; ++row) {
+    const float* source = values.data() + static_cast<std::size_t>(depth.rows - 1 - row) * depth.cols;
+    std::transform(source, source + depth.cols, depth.ptr<float>(row),
+                   [](float value) { return static_cast<float>(depth_of_gl(value)); });
+  }
+  return depth;
+}
+
+cv::Mat SceneRenderer::colour_with_aircraft(const mjData& data, const Eye& eye) {
+  update_scene(data, true);
+  scene_.camera[0] = scene_.camera[1] = to_gl(eye);
+  scene_.stereo = mjSTEREO_NONE;
+  gl_.make_current(eye.width_px, eye.height_px);
+  mjr_render({0, 0, eye.width_px, eye.height_px}, &scene_, &context_);
+  return colour_with_sky(gl_.finished_pixels(), eye);
+}
+
+}  // namespace understory

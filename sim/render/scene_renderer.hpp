@@ -1,0 +1,64 @@
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <array>
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
+
+#include "sim/cameras/camera_frustum.hpp"
+#include "sim/cameras/true_view.hpp"
+#include "sim/render/offscreen_context.hpp"
+
+namespace understory {
+
+/// Draws the model's scenery through pinhole eyes, offscreen. Not thread safe; create and use on one thread.
+class SceneRenderer {
+ public:
+  /// Keeps a reference to the model. The size is that of the first picture; others may follow. Throws
+  /// std::runtime_error in one line where no GL library can be loaded.
+  SceneRenderer(const mjModel& model, double view_distance_m, int width_px, int height_px,
+                RendererKind renderer);
+  ~SceneRenderer();
+  SceneRenderer(const SceneRenderer&) = delete;
+  SceneRenderer& operator=(const SceneRenderer&) = delete;
+
+  /// Both eyes' views, CV_8UC1; the eyes must be of one size.
+  std::array<cv::Mat, 2> gray_pair(const std::array<Eye, 2>& eyes);
+  /// Depth in the left eye's view: CV_32FC1, metres along the optical axis.
+  cv::Mat left_depth(const std::array<Eye, 2>& eyes);
+  /// The same depth, and what is seen at it, from one drawing.
+  TrueView true_left_view(const std::array<Eye, 2>& eyes);
+  /// One eye's view of everything, the aircraft's skin too: BGR, 8 bits, for people.
+  cv::Mat colour_with_aircraft(const mjData& data, const Eye& eye);
+  /// To compare with: from now on all scenery is drawn, however far and wherever it is.
+  void stop_culling() { culls_ = false; }
+  /// The renderer's own name and version.
+  std::string name() const { return gl_.renderer(); }
+
+ private:
+  struct SceneryGeom {
+    mjvGeom geom;
+    GeomBox box;
+    bool obstacle;  ///< not drawn beyond the view distance; the ground is
+  };
+  void make_context();
+  void gather_scenery();
+  void update_scene(const mjData& data, bool with_aircraft);
+  void fill_scene(const std::array<Eye, 2>& eyes);
+  /// RGBA of both eyes side by side, as OffscreenContext::finished_pixels.
+  const std::uint8_t* render(const std::array<Eye, 2>& eyes);
+  /// Of the left eye's view as last rendered.
+  cv::Mat read_depth(const Eye& eye);
+
+  const mjModel& model_;
+  double view_distance_m_;
+  bool culls_ = true;
+  OffscreenContext gl_;
+  mjrContext context_{};
+  mjvScene scene_{};
+  std::vector<SceneryGeom> scenery_;
+};
+
+}  // namespace understory

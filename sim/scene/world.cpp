@@ -1,0 +1,138 @@
+#include "sim/scene/world.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <locale>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "sim/scene/scenery.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+
+// MuJoCo's own handlers write a log file and wait for Enter.
+[[noreturn]] void raise_error(const char* message) {
+  throw std::runtime_error(std::string("MuJoCo: ") + message);
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw std::runtime_error(file.string() + ": cannot be read (the aircraft's MuJoCo model)");
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Files that mj_loadXML finds in memory. The structure is large: it lives on the heap.
+class MemoryFiles {
+ public:
+  MemoryFiles() { mj_defaultVFS(files_.get()); }
+  ~MemoryFiles() { mj_deleteVFS(files_.get()); }
+  MemoryFiles(const MemoryFiles&) = delete;
+  MemoryFiles& operator=(const MemoryFiles&) = delete;
+
+  void add(const std::string& name, const std::string& content) {
+    if (mj_makeEmptyFileVFS(files_.get(), name.c_str(), static_cast<int>(content.size())) != 0) {
+      throw std::runtime_error("MuJoCo: no room for " + name + " in its table of files");
+    }
+    std::memcpy(files_->filedata[files_->nfile - 1], content.data(), content.size());
+  }
+  const mjVFS* get() const { return files_.get(); }
+
+ private:
+  std::unique_ptr<mjVFS> files_ = std::make_unique_for_overwrite<mjVFS>();
+};
+
+void write_wall(std::ostream& xml, std::size_t number, const Obstacle& wall) {
+  const Eigen::Vector3d middle = 0.5 * (wall.from_world + wall.to_world), half = wall.to_world - middle;
+  const Eigen::Vector3d along = Eigen::Vector3d(half.x(), half.y(), 0);
+  const Eigen::Vector3d across(-along.y(), along.x(), 0);
+  xml << "<geom name='obstacle_" << number << "' type='box' group='3' contype='0' conaffinity='1' condim='1'"
+      << " size='" << along.norm() << ' ' << wall.radius_m << ' ' << std::abs(half.z()) << "' pos='"
+      << middle.transpose() << "' xyaxes='" << along.transpose() << ' ' << across.transpose() << "'/>\n";
+}
+
+/// Bars are capsules: MuJoCo has exact routines for a capsule against the aircraft's boxes, none for a
+/// cylinder.
+void write_collisions(std::ostream& xml, const std::vector<Obstacle>& obstacles) {
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    const Obstacle& bar = obstacles[i];
+    if (bar.kind == ObstacleKind::wall) {
+      write_wall(xml, i, bar);
+      continue;
+    }
+    xml << "<geom name='obstacle_" << i << "' type='capsule' group='3' contype='0' conaffinity='1' condim='1'"
+        << " rgba='.4 .3 .2 1' size='" << bar.radius_m << "' fromto='" << bar.from_world.transpose() << ' '
+        << bar.to_world.transpose() << "'/>\n";
+  }
+}
+
+/// The extent is fixed, since the near and far planes hang on it and one more tree would otherwise move them:
+/// 0.1 m and 120 m. No multisampling: it ruins depth. Nothing is drawn into MuJoCo's own offscreen buffer: a
+/// pixel will do. A contact (condim 1) is one row of constraints and there are no other rows: room for more
+/// is memory that MuJoCo writes over in every mjData, four times a flight (53 MB each with room for a
+/// thousand).
+std::string scene_xml(const Airframe& airframe, const std::vector<Obstacle>& obstacles,
+                      const WorldConfig& config) {
+  const SceneryXml scenery = scenery_xml(obstacles, config);
+  std::ostringstream xml;
+  xml.imbue(std::locale::classic());
+  xml.precision(17);
+  xml << "<mujoco model='understory'>\n"
+      << "<include file='delta_wing.xml'/>\n"
+      << "<size nconmax='200' njmax='200'/>\n"
+      << "<option timestep='" << 1.0 / physics_rate_hz << "' gravity='0 0 " << -airframe.gravity_mps2
+      << "'/>\n"
+      << "<statistic extent='50' center='0 0 0'/>\n"
+      << "<visual><map znear='0.002' zfar='2.4'/><quality offsamples='0' shadowsize='1024'/>"
+      << "<global offwidth='1' offheight='1'/></visual>\n"
+      << "<asset>" << scenery.assets << "</asset>\n<worldbody>\n"
+      << "<geom name='ground' type='plane' size='0 0 1' group='3' contype='0' conaffinity='1' condim='1'/>\n";
+  if (config.obstacles_tangible) write_collisions(xml, obstacles);
+  xml << scenery.bodies << "\n</worldbody>\n</mujoco>\n";
+  return xml.str();
+}
+
+/// One place for mass and inertia: the model file's are replaced. The elevons' share (a millionth of a gram
+/// each) is inside the body's, so what MuJoCo sums is the airframe's to one part in 10^8.
+void set_inertia(mjModel& model, const Airframe& airframe) {
+  const int body = mj_name2id(&model, mjOBJ_BODY, "aircraft");
+  model.body_mass[body] = airframe.mass_kg;
+  for (int axis = 0; axis < 3; ++axis) model.body_inertia[3 * body + axis] = airframe.inertia_kgm2[axis];
+  const mjStatistic pinned = model.stat;  // mj_setConst measures the extent anew; the view hangs on ours
+  const DataPointer data(mj_makeData(&model));
+  mj_setConst(&model, data.get());
+  model.stat = pinned;
+}
+
+}  // namespace
+
+World build_world(const fs::path& models_folder, const Airframe& airframe,
+                  const std::vector<Obstacle>& obstacles, const WorldConfig& config) {
+  mju_user_error = raise_error;
+  mju_user_warning = raise_error;
+
+  const fs::path aircraft_file = models_folder / "airframe" / "delta_wing.xml";
+  MemoryFiles files;
+  files.add("delta_wing.xml", text_of(aircraft_file));
+  files.add("scene.xml", scene_xml(airframe, obstacles, config));
+
+  char message[1000] = "";
+  ModelPointer model(mj_loadXML("scene.xml", files.get(), message, sizeof message));
+  if (!model) throw std::runtime_error(aircraft_file.string() + ": MuJoCo refuses the scene: " + message);
+  for (const char* name : {"aircraft", "left_elevon", "right_elevon"}) {
+    if (mj_name2id(model.get(), mjOBJ_BODY, name) < 0) {
+      throw std::runtime_error(aircraft_file.string() + ": expected a body named \"" + name + "\"");
+    }
+  }
+  set_inertia(*model, airframe);
+  model->vis.quality.shadowsize = 0;  // what the cameras have no use for and would pay for
+  model->vis.quality.offsamples = 0;
+  return {std::move(model), obstacles, config};
+}
+
+}  // namespace understory

@@ -1,0 +1,128 @@
+#include "sim/sensors/faults.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace understory {
+namespace {
+
+bool in_force(const FaultConfig& fault, std::int64_t t_ns) {
+  const std::int64_t from_ns = std::llround(fault.at_s * 1e9);
+  return t_ns >= from_ns && t_ns < from_ns + std::llround(fault.duration_s * 1e9);
+}
+
+/// As far as `limit` either way.
+double cut(double reading, double limit) { return std::clamp(reading, -limit, limit); }
+Eigen::Vector3d cut(const Eigen::Vector3d& reading, double limit) {
+  return reading.cwiseMax(-limit).cwiseMin(limit);
+}
+
+double shifted(double reading, double by) { return reading + by; }
+Eigen::Vector3d shifted(const Eigen::Vector3d& reading, double by) { return reading.array() + by; }
+
+void set(double& reading, double value) { reading = value; }
+void set(Eigen::Vector3d& reading, double value) { reading.setConstant(value); }
+
+}  // namespace
+
+std::string_view fault_kinds_of(FaultySensor sensor) {
+  switch (sensor) {
+    case FaultySensor::imu:
+    case FaultySensor::camera:
+      return "freeze | dropout";
+    case FaultySensor::gps:
+      return "freeze | dropout | bias";
+    case FaultySensor::pitot:
+      return "freeze | dropout | bias | saturate | block";
+    default:
+      return "freeze | dropout | bias | saturate";
+  }
+}
+
+bool can_have(FaultySensor sensor, FaultKind kind) {
+  const std::string_view word = fault_kind_names[static_cast<std::size_t>(kind)].first;
+  return fault_kinds_of(sensor).find(word) != std::string_view::npos;
+}
+
+bool Faults::has(FaultySensor sensor, FaultKind kind, std::int64_t t_ns) const {
+  return std::any_of(schedule_.begin(), schedule_.end(), [&](const FaultConfig& fault) {
+    return fault.sensor == sensor && fault.kind == kind && in_force(fault, t_ns);
+  });
+}
+
+template <typename Reading>
+Reading Faults::altered(FaultySensor sensor, std::int64_t t_ns, Reading reading) const {
+  for (const FaultConfig& fault : schedule_) {
+    if (fault.sensor != sensor || !in_force(fault, t_ns)) continue;
+    if (fault.kind == FaultKind::bias) reading = shifted(reading, fault.value);
+    if (fault.kind == FaultKind::saturate) reading = cut(reading, std::abs(fault.value));
+    if (fault.kind == FaultKind::block) set(reading, fault.value);
+  }
+  return reading;
+}
+
+template <typename Reading>
+Reading Faults::held(bool frozen, Reading reading, std::optional<Reading>& last) const {
+  if (!frozen || !last) last = std::move(reading);  // frozen from the first sample on: that one
+  return *last;
+}
+
+bool Faults::pass(ImuSample& sample) {
+  using enum FaultySensor;
+  const auto any = [&](FaultySensor part, FaultKind kind) {
+    return has(imu, kind, sample.t_ns) || has(part, kind, sample.t_ns);
+  };
+  if (any(gyro, FaultKind::dropout) || any(accelerometer, FaultKind::dropout)) return false;
+  sample.angular_rate_body_radps =
+      held(any(gyro, FaultKind::freeze), altered(gyro, sample.t_ns, sample.angular_rate_body_radps),
+           last_.angular_rate_body_radps);
+  sample.specific_force_body_mps2 = held(any(accelerometer, FaultKind::freeze),
+                                         altered(accelerometer, sample.t_ns, sample.specific_force_body_mps2),
+                                         last_.specific_force_body_mps2);
+  return true;
+}
+
+bool Faults::pass(PitotSample& sample) {
+  using enum FaultySensor;
+  if (has(pitot, FaultKind::dropout, sample.t_ns)) return false;
+  sample.airspeed_mps = held(has(pitot, FaultKind::freeze, sample.t_ns),
+                             altered(pitot, sample.t_ns, sample.airspeed_mps), last_.airspeed_mps);
+  return true;
+}
+
+bool Faults::pass(BarometerSample& sample) {
+  using enum FaultySensor;
+  if (has(barometer, FaultKind::dropout, sample.t_ns)) return false;
+  sample.altitude_m = held(has(barometer, FaultKind::freeze, sample.t_ns),
+                           altered(barometer, sample.t_ns, sample.altitude_m), last_.altitude_m);
+  return true;
+}
+
+bool Faults::pass(MagnetometerSample& sample) {
+  using enum FaultySensor;
+  if (has(magnetometer, FaultKind::dropout, sample.t_ns)) return false;
+  sample.field_body_ut = held(has(magnetometer, FaultKind::freeze, sample.t_ns),
+                              altered(magnetometer, sample.t_ns, sample.field_body_ut), last_.field_body_ut);
+  return true;
+}
+
+bool Faults::pass(GpsSample& sample) {
+  using enum FaultySensor;
+  const std::int64_t t_ns = sample.t_ns;
+  if (has(gps, FaultKind::dropout, t_ns)) return false;
+  sample.position_world_m = altered(gps, t_ns, sample.position_world_m);
+  sample = held(has(gps, FaultKind::freeze, t_ns), sample, last_.fix);
+  sample.t_ns = t_ns;
+  return true;
+}
+
+bool Faults::pass(StereoFrame& frame) {
+  using enum FaultySensor;
+  const std::int64_t t_ns = frame.t_ns;
+  if (has(camera, FaultKind::dropout, t_ns)) return false;
+  frame = held(has(camera, FaultKind::freeze, t_ns), std::move(frame), last_.frame);
+  frame.t_ns = t_ns;
+  return true;
+}
+
+}  // namespace understory
