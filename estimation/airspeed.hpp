@@ -7,8 +7,7 @@ namespace understory {
 
 /// The pitot tube measures the aircraft's speed through the air along body x, and a bias that zeroing left.
 struct AirspeedConfig {
-  double usable_mps =
-      6.0;  ///< m/s, 0..20: slower readings are ignored (FACTS section 4: poor below flight speed)
+  double usable_mps = 6.0;  ///< m/s, 0..20: slower readings are ignored, being poor
   /// m/s, 0.01..10: of one reading at 12 m/s; pressure grows with the square of the speed, so that slower
   /// readings are worse by as much. 1.5 Pa of noise are 0.11 m/s; the bias is a state.
   double sigma_mps = 0.15;

@@ -10,8 +10,8 @@ namespace understory {
 
 /// What the states of rate_block are.
 enum class FilterModel {
-  gyro_bias,     ///< the gyro is an input; its bias is estimated (FACTS section 4)
-  angular_rate,  ///< the paper's: angular rate is a state which the gyro measures (after Bry et al. 2012)
+  gyro_bias,     ///< the gyro is an input; its bias is estimated
+  angular_rate,  ///< the paper's: angular rate is a state which the gyro measures (docs/sources.md [4])
 };
 
 /// Derivative of the angular rate by the rate block: a gyro bias is subtracted, an angular rate is itself.

@@ -29,7 +29,7 @@ struct StartConfig {
   Eigen::Vector3d velocity_body_mps{0, 0, 0};  ///< m/s, -50..50
   double tilt_sigma_rad = 0.02;                ///< rad, 0..1
   double yaw_sigma_rad = 0.02;                 ///< rad, 0..3: the catapult is aimed within a degree
-  double velocity_sigma_mps = 0.15;            ///< m/s, 0..10 (FACTS section 4)
+  double velocity_sigma_mps = 0.15;            ///< m/s, 0..10 (docs/sources.md [2] sigma0.vb)
   double horizontal_sigma_m = 0.01;  ///< m, 0..100: the catapult's place is the frame's origin by definition
   double vertical_sigma_m = 0.01;    ///< m, 0..100
   double gyro_bias_sigma_radps = 0.0087;  ///< rad/s, 0..1: consumer MEMS after factory calibration, 0.5 deg/s
@@ -65,7 +65,7 @@ struct DistrustConfig {
 };
 
 /// The error-state Kalman filter. Defaults fit a consumer IMU at 200 Hz, a 1 psi pitot and a barometer, tuned
-/// for little drift of the relative position over 10 m of flight (docs: FACTS section 4's table).
+/// for little drift of the relative position over 10 m of flight (docs/estimator.md).
 struct FilterConfig {
   FilterModel model = FilterModel::gyro_bias;
   StartConfig start;
@@ -95,7 +95,7 @@ struct FilterConfig {
   RestConfig rest;
 };
 
-/// The original's filter (FACTS section 4, flight software 2014 to 2015): the paper's 12 states, gyro 0.5
+/// The original's filter (docs/sources.md [2], config/plane.cfg): the paper's 12 states, gyro 0.5
 /// deg/s and accelerometer 0.2 m/s^2 of process noise, variances 15 (airspeed), 5 (v_y = 0) and 5
 /// (altimeter), initial sigma 0.15 m/s, 3 deg, 0.5 m and 1 m. Every correction moves the position, as in a
 /// textbook. Without catapult knowledge it had none of the rest either; the rest is kept, as the simulated

@@ -9,7 +9,7 @@ namespace understory {
 /// say how the velocity changed, so that corrections made meanwhile are not made twice.
 struct GroundVelocityConfig {
   bool enabled = true;     ///< whether samples, where there are any, are used
-  double sigma_mps = 0.2;  ///< m/s, 0.01..10, per axis (FACTS section 4: 0.2 m/s, 0.2 s late)
+  double sigma_mps = 0.2;  ///< m/s, 0.01..10, per axis (docs/sources.md [15])
 };
 
 template <typename Visitor>

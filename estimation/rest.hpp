@@ -19,9 +19,9 @@ struct RestConfig {
   double position_sigma_m = 0.01;         ///< m, 1e-4..1
   double force_sigma_mps2 = 0.1;          ///< m/s^2, 0.001..10: one reading's noise as a level
   double accelerometer_bias_mps2 = 0.05;  ///< m/s^2, 0..1: as a tilt it stays, however long the rest
-  double launch_threshold_mps2 =
-      30.0;  ///< m/s^2, 5..150: a_x of two samples running. The original waited for 45
-             ///< (FACTS section 3); a 1.5 m rail to 12 m/s gives 48 and a share of gravity
+  /// m/s^2, 5..150: a_x of two samples running. The original waited for 45 (docs/sources.md [2],
+  /// accel_threshold_x); a 1.5 m rail to 12 m/s gives 48 and a share of gravity.
+  double launch_threshold_mps2 = 30.0;
   /// m/s, 0..5: when in the sample interval the catapult fired, and when it let go, is unknown: each 48 m/s^2
   /// over 5 ms, evenly spread.
   double launch_speed_sigma_mps = 0.1;

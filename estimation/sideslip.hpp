@@ -11,24 +11,23 @@ namespace understory {
 
 enum class SideslipModel {
   lateral_force,  ///< the winglets' side force tells the sideslip
-  zero,           ///< v_y = 0, the original's: false by up to 2.6 m/s in dodges (FACTS section 4)
+  zero,           ///< v_y = 0, the original's: false by up to 2.6 m/s in dodges (docs/sources.md [15])
   off,
 };
 
 /// Sideslip from lateral specific force. Only the winglets push sideways: as flat plates of area S together
 /// (two) their force is normal to them, rho/2 V^2 S 2 sin(beta), with V and sin(beta) = v/V of the air in the
-/// body's x-y plane at the winglets, so that a_y = -k V v with k = rho S / m (FACTS section 3: identified
+/// body's x-y plane at the winglets, so that a_y = -k V v with k = rho S / m (docs/sources.md [3]: identified
 /// flat-plate model).
 struct SideslipConfig {
   SideslipModel model = SideslipModel::lateral_force;
   double air_density_kgpm3 = 1.204;    ///< kg/m^3, 0.1..2
-  double winglets_area_m2 = 0.038882;  ///< m^2, 1e-4..2: both together (FACTS section 3: 2 x 0.019441)
+  double winglets_area_m2 = 0.038882;  ///< m^2, 1e-4..2: both together (docs/sources.md [3]: 2 x 0.019441)
   double mass_kg = 0.648412;           ///< kg, 0.05..20
   Eigen::Vector3d winglets_body_m{-0.08, 0.0,
                                   0.081954};  ///< m, -5..5: mean position (y cancels between the two)
   double sigma_mps2 = 0.2;                    ///< m/s^2, 0.01..50: noise 0.05, and what the plates leave out
-  double model_error =
-      0.15;  ///< fraction of the force, 0..1 (FACTS section 4: 15 % wrong costs about 0.16 m)
+  double model_error = 0.15;  ///< fraction of the force, 0..1 (docs/sources.md [15]: 15 % costs about 0.16 m)
   double zero_sigma_mps =
       2.236;  ///< m/s, 0.01..50: of v_y = 0, where that is the model (the original's variance 5)
 };

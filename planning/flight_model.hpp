@@ -36,7 +36,7 @@ struct FlightCommand {
 struct FlightModelConfig {
   double cruise_speed_mps = 12.0;  ///< held by the throttle
   double greatest_angle_of_attack_rad =
-      0.4363;  ///< 25 deg: flat plates never stall, real wings do (FACTS section 3)
+      0.4363;  ///< 25 deg: flat plates never stall, real wings do (our assumption)
   double least_angle_of_attack_rad = -0.05;
   double least_speed_mps = 8.0;  ///< level flight ends here: below it the nose is not pulled up further
   double bank_gain_per_s = 9.0;  ///< roll rate asked for per radian of bank error

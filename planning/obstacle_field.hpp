@@ -18,9 +18,9 @@ struct ObstacleFieldConfig {
   /// the aircraft does not pass under the part of a trunk that it saw with its nose up. What is wrongly seen
   /// in the air then stands in the way at every height: it pays in wind (docs/decisions/017).
   bool stands_on_ground = false;
-  double sigma_zero_m = 0.05;  ///< uncertainty of a point when seen, added to its size (DESIGN section 2)
+  double sigma_zero_m = 0.05;  ///< uncertainty of a point when seen, added to its size
   double sigma_per_m =
-      0.010;  ///< growth with the distance flown since: drift of the estimate (FACTS section 4)
+      0.010;  ///< growth with the distance flown since: drift of the estimate (docs/sources.md [15])
   double sigma_greatest_m = 0.3;  ///< growth ends here
   double half_span_m = 0.4318;    ///< of the wing that must pass
   double wing_radius_m = 0.09;    ///< half the thickness of wing and winglets, as a capsule about the span

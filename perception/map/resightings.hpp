@@ -50,10 +50,11 @@ struct Resighting {
   Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Identity();
 };
 
-/// The displacement measurement that a pushbroom with several depths gives (FACTS section 4): an obstacle
-/// crosses the farther depth, then a nearer one; by as much as the second place misses the first, the
-/// estimate has drifted meanwhile. Trunks and posts stand upright, so only the level part counts. Hits of one
-/// depth are gathered in clusters, whose mean place over the crossing leaves little of the depth interval.
+/// The displacement measurement that a pushbroom with several depths gives (docs/sources.md [15]): an
+/// obstacle crosses the farther depth, then a nearer one; by as much as the second place misses the first,
+/// the estimate has drifted meanwhile. Trunks and posts stand upright, so only the level part counts. Hits of
+/// one depth are gathered in clusters, whose mean place over the crossing leaves little of the depth
+/// interval.
 class Resightings {
  public:
   /// Nothing comes out with fewer than two depths. A hit belongs to the nearest.

@@ -9,8 +9,8 @@ namespace understory {
 
 /// Whether one disparity stands out along the row: its SAD is a local minimum, and no other disparity of the
 /// range comes within `ratio` times it. Neighbours one pixel away share most of the match, so they only have
-/// to be no better. (The idea is StereoBM's uniqueness ratio; the figures are FACTS' prototype on rendered
-/// forests.)
+/// to be no better. (The idea is StereoBM's uniqueness ratio; the figures are those of docs/sources.md [16]
+/// on rendered forests.)
 class UniquenessTest {
  public:
   /// Range in whole pixels, both ends included, with the detection's disparity inside; ratio >= 1.

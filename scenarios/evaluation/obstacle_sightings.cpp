@@ -9,7 +9,7 @@
 namespace understory {
 namespace {
 
-constexpr double half_span_m = 0.4318;  // FACTS: span 0.8636 m
+constexpr double half_span_m = 0.4318;  // span 0.8636 m: docs/sources.md [3]
 constexpr double straight_on_m = 15;    // farther than any depth looked at
 constexpr double passed_by_m = 0.5;     // the path goes on at least this far beyond
 

@@ -13,7 +13,7 @@
 
 namespace understory {
 
-/// The three evaluations of Barry & Tedrake 2015 (FACTS section 1), which have StereoBM for truth.
+/// The three evaluations of the paper (docs/sources.md [1]), which have StereoBM for truth.
 struct PublishedScores {
   DistanceHistogram single_frame;     ///< 1: from each hit to StereoBM's points near the detection depth
   DistanceHistogram false_positives;  ///< 2: from each remembered point in view to StereoBM's points

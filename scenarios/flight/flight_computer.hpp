@@ -16,7 +16,7 @@ struct ComputeConfig {
   /// 0.001 .. 1000. 8.3: the original detector, 1.0 ms there, filled the 8.3 ms of a frame at 120 Hz on all
   /// cores of a 1.7 GHz quad ARM Cortex-A9 (Barry & Tedrake 2015). More is a slower computer.
   double factor = 8.3;
-  double pushbroom_s = 0.0010;    ///< 0 .. 1; the original, rectification included (FACTS section 6)
+  double pushbroom_s = 0.0010;    ///< 0 .. 1; the original, rectification included (docs/sources.md [17])
   double stereo_bm_s = 0.0090;    ///< StereoBM, 112 disparities (paper's rig, a Zen 4 core, November 2026)
   double stereo_sgbm_s = 0.0127;  ///< StereoSGBM likewise, five paths
 };

@@ -6,9 +6,10 @@ namespace understory {
 
 /// What stands between a command and what acts on the air. The identified model has none of it (its airframe
 /// answers one input delay later, at once and in full), so every part is off by default, at 0. The flight
-/// record cannot tell delay from lag (FACTS section 3): the values named here are typical, none is fitted.
+/// record cannot tell delay from lag (docs/flight_model.md): the values named here are typical, none is
+/// fitted.
 struct ActuatorsConfig {
-  double elevon_time_s = 0;  ///< first-order lag of the servos; 0.030 in FACTS section 3's manoeuvre table
+  double elevon_time_s = 0;      ///< first-order lag of the servos; 0.030 in docs/sources.md [14]
   double elevon_rate_radps = 0;  ///< greatest; 8.7 is the 0.12 s per 60 deg of 9 g servos' data sheets
   double motor_time_s = 0;       ///< first-order lag of the thrust; about 0.05 with a 7 in propeller
   /// Airspeed at which the propeller's thrust ends: pitch times revolutions, 5 in at 10,000 rpm is 21 m/s.

@@ -15,7 +15,7 @@ namespace understory {
 
 /// How a flight begins: held on a catapult, then released with the wings level.
 struct LaunchConfig {
-  double speed_mps = 12.0;        ///< release speed along the catapult (FACTS: 12 m/s)
+  double speed_mps = 12.0;        ///< release speed along the catapult (our assumption)
   double altitude_m = 1.5;        ///< height of the release point
   double climb_angle_rad = 0.20;  ///< inclination of the catapult's rail
   double rail_length_m = 1.5;     ///< accelerated over this length from rest: a = v^2 / 2 s = 48 m/s^2

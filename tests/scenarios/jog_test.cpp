@@ -21,7 +21,7 @@ struct Jog : testing::Test {
   FlightRecord record = read_flight_record(UNDERSTORY_SOURCE_DIR "/tests/data/flight/left_jog.csv");
 };
 
-/// The mended rates are the attitude's own turning: FACTS asks for a correlation of 0.97 to 0.985.
+/// The mended rates are the attitude's own turning: they correlate by more than 0.97.
 TEST_F(Jog, MendedRatesTurnTheAttitude) {
   constexpr std::size_t apart = 4;
   for (int axis = 0; axis < 3; ++axis) {
@@ -48,7 +48,7 @@ TEST_F(Jog, HeightIsTheIntegralOfTheVelocity) {
   EXPECT_NEAR(slope, climb_mps, 0.1);
 }
 
-/// FACTS section 3: 0.12, 0.19, 0.26, 0.39 m and 3, 2, -8, 4 deg at 0.25, 0.5, 1.0 and 1.5 s, unfitted.
+/// docs/sources.md [14]: 0.12, 0.19, 0.26, 0.39 m and 3, 2, -8, 4 deg at 0.25, 0.5, 1.0 and 1.5 s, unfitted.
 TEST_F(Jog, UnfittedReplayIsTheKnownOne) {
   const std::vector<ReplayError> error = errors(replay(air, airframe, record), record);
   const double times_s[] = {0.25, 0.5, 1.0, 1.5}, horizontal_m[] = {0.12, 0.19, 0.26, 0.39},

@@ -74,7 +74,7 @@ TEST(RayMeetsBar, ClosedForms) {
               1e-12);  // multiples, a level bar
 }
 
-// FACTS: one pixel either way of the paper rig's detection depth is 4.47 to 5.20 m.
+// One pixel either way of the paper rig's detection depth is 4.47 to 5.20 m.
 TEST(TrueDepth, SeesOnePixelEitherWay) {
   Scene scene;
   const TrueDepth detector(paper_rig(), {}, scene.history);

@@ -69,7 +69,7 @@ TEST(StereoCameras, APlaneAtTheDetectionDistanceMatchesAtTheRigsDisparity) {
     if (difference < least) best = disparity, least = difference;
   }
   EXPECT_EQ(best, std::lround(rig.disparity_px(4.81)));
-  EXPECT_EQ(best, 105);  // FACTS: infinity at 91.8, and 13.2 px at 4.81 m
+  EXPECT_EQ(best, 105);  // paper.yaml: infinity at 91.8, and 13.2 px at 4.81 m
 }
 
 TEST(StereoCameras, SameSeedSameImagesOtherSeedOtherNoiseOnTheSamePicture) {

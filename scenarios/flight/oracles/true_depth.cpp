@@ -8,7 +8,7 @@ namespace understory {
 namespace {
 
 constexpr int block_px = 5;
-constexpr int last_row_px = 205;  // the original detector looks no lower: FACTS section 2
+constexpr int last_row_px = 205;  // the original detector looks no lower (docs/sources.md [2])
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A bar in the left camera's frame.
