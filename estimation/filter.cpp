@@ -243,7 +243,7 @@ void Filter::on(const BarometerSample& sample) {
 
 void Filter::on(const MagnetometerSample& sample) {
   if (!started_ || !config_.heading.enabled || !sample.field_body_ut.allFinite()) return;
-  if (horizontal_field_ut(state_, sample) < config_.heading.least_horizontal_ut) return;
+  if (horizontal_field_ut(state_, sample) < config_.heading.minimum_horizontal_ut) return;
   if (fuse(Aid::heading, heading(state_, sample, config_.heading), sample.t_ns)) history_.record(state_);
 }
 

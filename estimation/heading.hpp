@@ -14,14 +14,14 @@ struct HeadingConfig {
   /// deg) is 0.027 rad and lasts the flight, and a tilt error enters tan(67 deg) = 2.4 fold: the magnetometer
   /// holds the heading over minutes and leaves seconds to the gyro.
   double sigma_rad = 0.35;
-  double least_horizontal_ut = 5.0;  ///< uT, 0..100: below this the direction means nothing
+  double minimum_horizontal_ut = 5.0;  ///< uT, 0..100: below this the direction means nothing
 };
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, HeadingConfig& config) {
   visit("enabled", config.enabled);
   visit("sigma_rad", config.sigma_rad, 0.01, 3.0);
-  visit("least_horizontal_ut", config.least_horizontal_ut, 0.0, 100.0);
+  visit("minimum_horizontal_ut", config.minimum_horizontal_ut, 0.0, 100.0);
 }
 
 /// Strength of the field's horizontal part, by the estimated attitude, microtesla.

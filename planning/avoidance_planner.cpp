@@ -9,7 +9,7 @@ namespace {
 
 /// Every point of it, whatever is in the way.
 Rollout flown_through(const FlightTask& task, const FlightState& start, const Manoeuvre& manoeuvre) {
-  return fly_out(task, start, manoeuvre, task.config.least_clearance_m, true, false);
+  return fly_out(task, start, manoeuvre, task.config.minimum_clearance_m, true, false);
 }
 
 }  // namespace
@@ -20,21 +20,21 @@ AvoidancePlanner::AvoidancePlanner(const PlannerConfig& config, const FlightMode
       model_(model),
       mission_(mission),
       seed_(seed),
-      primitives_(avoidance_primitives(config.search.greatest_bank_rad)) {}
+      primitives_(avoidance_primitives(config.search.maximum_bank_rad)) {}
 
 Plan AvoidancePlanner::plan(const FlightState& start, std::int64_t t_ns,
                             const std::vector<ObstaclePoint>& points, double distance_flown_m,
                             bool outdated) {
   ++replan_index_;
-  const double asked_m = greatest_clearance_m(
+  const double asked_m = maximum_clearance_m(
       config_.trajectory,
-      std::max(config_.trajectory.least_clearance_m, config_.trajectory.least_kept_clearance_m));
+      std::max(config_.trajectory.minimum_clearance_m, config_.trajectory.minimum_kept_clearance_m));
   const ObstacleField field(config_.field, points, distance_flown_m, asked_m);
   const FlightTask task{model_, config_.trajectory, mission_, field, start.position_world};
   const TrajectoryConfig& limits = config_.trajectory;
 
-  Rollout straight = fly_out(task, start, {}, limits.least_clearance_m, true);
-  if (straight.reached_horizon && straight.least_clearance_m >= limits.comfortable_clearance_m) {
+  Rollout straight = fly_out(task, start, {}, limits.minimum_clearance_m, true);
+  if (straight.reached_horizon && straight.minimum_clearance_m >= limits.comfortable_clearance_m) {
     ++counts_.straight;
     return adopt(t_ns, {}, PlanOrigin::straight, std::move(straight));
   }
@@ -52,7 +52,7 @@ Plan AvoidancePlanner::avoid(const FlightTask& task, const FlightState& start, s
                              bool outdated) {
   const Manoeuvre left = remaining(t_ns);
   const TrajectoryConfig& limits = config_.trajectory;
-  Rollout kept = fly_out(task, start, left, limits.least_kept_clearance_m, true);
+  Rollout kept = fly_out(task, start, left, limits.minimum_kept_clearance_m, true);
   const bool may_keep = kept.reached_horizon && manoeuvre_origin_ != PlanOrigin::fallback;
   const bool kept_good = !left.empty() && kept.cost <= config_.kept_cost_ratio * manoeuvre_cost_ + 1.0;
   const double searched_s = 1e-9 * static_cast<double>(t_ns - searched_t_ns_);
@@ -76,17 +76,17 @@ std::optional<Plan> AvoidancePlanner::search(const FlightTask& task, const Fligh
                                              std::int64_t t_ns, const Manoeuvre& left, bool may_keep) {
   const TrajectoryConfig& limits = config_.trajectory;
   const std::uint64_t search_seed = seed_ * 1'000'003 + replan_index_;
-  const auto improved = [&](const Manoeuvre& manoeuvre, double least_clearance_m) {
-    return improve_manoeuvre(task, start, manoeuvre, least_clearance_m, config_.improvement, search_seed);
+  const auto improved = [&](const Manoeuvre& manoeuvre, double minimum_clearance_m) {
+    return improve_manoeuvre(task, start, manoeuvre, minimum_clearance_m, config_.improvement, search_seed);
   };
   ++counts_.searched;
   const std::optional<Manoeuvre> answer = search_manoeuvre(task, start, left, config_.search, search_seed);
   ImprovedManoeuvre found{{}, INFINITY}, kept{{}, INFINITY};
   if (answer) {
     ++counts_.found;
-    found = improved(*answer, limits.least_clearance_m);
+    found = improved(*answer, limits.minimum_clearance_m);
   }
-  if (may_keep) kept = improved(left, limits.least_kept_clearance_m);
+  if (may_keep) kept = improved(left, limits.minimum_kept_clearance_m);
   if (may_keep && kept.cost <= config_.change_cost_ratio * found.cost) {
     replans_kept_ = 0;
     searched_t_ns_ = t_ns;
@@ -101,14 +101,14 @@ Plan AvoidancePlanner::fall_back(const FlightTask& task, const FlightState& star
   ++counts_.fallback;
   const TrajectoryConfig& limits = config_.trajectory;
   Manoeuvre widest;
-  double greatest_m = -INFINITY, least_cost = INFINITY;
+  double maximum_m = -INFINITY, minimum_cost = INFINITY;
   for (const Manoeuvre& primitive : primitives_) {
-    const Rollout rollout = fly_out(task, start, primitive, limits.least_clearance_m, false, false);
+    const Rollout rollout = fly_out(task, start, primitive, limits.minimum_clearance_m, false, false);
     // Beyond comfort more clearance buys nothing: the cheaper one wins.
-    const double clearance_m = std::min(rollout.least_margin_m, limits.comfortable_clearance_m);
-    if (clearance_m < greatest_m || (clearance_m == greatest_m && rollout.cost >= least_cost)) continue;
-    greatest_m = clearance_m;
-    least_cost = rollout.cost;
+    const double clearance_m = std::min(rollout.minimum_margin_m, limits.comfortable_clearance_m);
+    if (clearance_m < maximum_m || (clearance_m == maximum_m && rollout.cost >= minimum_cost)) continue;
+    maximum_m = clearance_m;
+    minimum_cost = rollout.cost;
     widest = primitive;
   }
   return adopt(t_ns, widest, PlanOrigin::fallback, flown_through(task, start, widest));
@@ -139,12 +139,12 @@ Plan AvoidancePlanner::adopt(std::int64_t t_ns, const Manoeuvre& manoeuvre, Plan
   return {t_ns, origin, std::move(rollout.points)};
 }
 
-std::vector<Manoeuvre> avoidance_primitives(double greatest_bank_rad) {
+std::vector<Manoeuvre> avoidance_primitives(double maximum_bank_rad) {
   std::vector<Manoeuvre> primitives{{}};
   for (const double share : {0.2, 0.4, 0.6, 0.8, 1.0})
     for (const double side : {-1.0, 1.0})
       for (const double first_s : {0.3, 0.6, 1.0}) {
-        const double bank = side * share * greatest_bank_rad;
+        const double bank = side * share * maximum_bank_rad;
         primitives.push_back({{{bank, 0.5}, first_s}});
         primitives.push_back({{{bank, 0.5}, first_s}, {{-bank, 0.5}, 0.7 * first_s}});
       }

@@ -46,7 +46,7 @@ struct PlannerCounts {
   int kept = 0;       ///< the plan in force still good
   int kept_ompl = 0;  ///< of `kept`: what is left of an OMPL answer; the others go straight with less comfort
   int fallback = 0;   ///< no free manoeuvre found: the primitive of greatest clearance
-  int blocked = 0;    ///< an obstacle ahead: straight on would come nearer than the least clearance
+  int blocked = 0;    ///< an obstacle ahead: straight on would come nearer than the minimum clearance
   int blocked_ompl = 0;  ///< of `blocked`: flown on an OMPL answer, of this replan or kept
   int searched = 0;      ///< how often OMPL was asked (a kept plan is searched against anew now and then)
   int found = 0;         ///< how often it answered with a free manoeuvre
@@ -97,6 +97,6 @@ class AvoidancePlanner {
 };
 
 /// The fallback's choices: level, turns of several banks to either side, held or reversed after a while.
-std::vector<Manoeuvre> avoidance_primitives(double greatest_bank_rad);
+std::vector<Manoeuvre> avoidance_primitives(double maximum_bank_rad);
 
 }  // namespace understory

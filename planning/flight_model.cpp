@@ -19,7 +19,7 @@ FlightModel::FlightModel(const Airframe& airframe, const FlightModelConfig& conf
       config_(config),
       lifting_area_m2_(airframe.wing_area_m2 * airframe.wing_lift_factor),
       elevon_arm_m_(-airframe.elevon_hinge_x_m + 0.5 * airframe.elevon_chord_m),
-      sin_twice_differential_(std::sin(2 * config.greatest_differential_rad)) {
+      sin_twice_differential_(std::sin(2 * config.maximum_differential_rad)) {
   // Level flight at cruise speed: lift carries the weight, thrust carries what drag the plate and the body
   // make.
   const double q = dynamic_pressure_pa(airframe_, config_.cruise_speed_mps);
@@ -62,14 +62,14 @@ double FlightModel::commanded_angle_of_attack_rad(const FlightState& state, doub
   const double sine = upward_n / (share * (2 * q * lifting_area_m2_ * attitude.cos_alpha + forward_n));
   // Near the least speed pulling harder only stalls what is left: the cap closes towards level flight's own
   // angle.
-  const double reserve = std::clamp((speed - config_.least_speed_mps + 0.5) / 1.0, 0.6, 1.0);
-  return std::clamp(std::asin(std::clamp(sine, -0.9, 0.9)), config_.least_angle_of_attack_rad,
-                    reserve * config_.greatest_angle_of_attack_rad);
+  const double reserve = std::clamp((speed - config_.minimum_speed_mps + 0.5) / 1.0, 0.6, 1.0);
+  return std::clamp(std::asin(std::clamp(sine, -0.9, 0.9)), config_.minimum_angle_of_attack_rad,
+                    reserve * config_.maximum_angle_of_attack_rad);
 }
 
 double FlightModel::commanded_roll_rate_radps(const FlightState& state, double bank_rad) const {
-  const double greatest = config_.greatest_roll_rate_radps * state.speed_mps / reference_speed_mps;
-  return std::clamp(config_.bank_gain_per_s * (bank_rad - state.bank_rad), -greatest, greatest);
+  const double maximum = config_.maximum_roll_rate_radps * state.speed_mps / reference_speed_mps;
+  return std::clamp(config_.bank_gain_per_s * (bank_rad - state.bank_rad), -maximum, maximum);
 }
 
 double FlightModel::side_force_n(const FlightState& state) const {
@@ -89,10 +89,10 @@ double FlightModel::reachable_roll_acceleration_radps2(const FlightState& state,
   const double slope_nm = elevon_roll_moment_nm_per_rad(state.speed_mps);
   const double damping_nms =
       airframe_.rate_damping_nmspr.x() + slope_nm * airframe_.elevon_y_m / std::max(state.speed_mps, 4.0);
-  const double greatest_nm = slope_nm * 0.5 * sin_twice_differential_;
+  const double maximum_nm = slope_nm * 0.5 * sin_twice_differential_;
   const double damped_nm = damping_nms * state.roll_rate_radps;
-  return std::clamp(wanted_radps2, (-greatest_nm - damped_nm) / airframe_.inertia_kgm2.x(),
-                    (greatest_nm - damped_nm) / airframe_.inertia_kgm2.x());
+  return std::clamp(wanted_radps2, (-maximum_nm - damped_nm) / airframe_.inertia_kgm2.x(),
+                    (maximum_nm - damped_nm) / airframe_.inertia_kgm2.x());
 }
 
 double FlightModel::commanded_thrust_n(const FlightState& state) const {

@@ -18,12 +18,12 @@ bool is_nearer(const Ranked& one, const Ranked& other) {
 
 std::size_t FlightPlaces::nearest(const FlightPlace& place) const {
   std::size_t best = 0;
-  double least = std::sqrt(squared_distance(places_.front(), place)), enough = no_less_than(least);
+  double minimum = std::sqrt(squared_distance(places_.front(), place)), enough = no_less_than(minimum);
   for (std::size_t i = 1; i < places_.size(); ++i) {
     const double squared = squared_distance(places_[i], place);
     if (squared > enough) continue;
-    if (const double distance = std::sqrt(squared); distance < least)
-      best = i, least = distance, enough = no_less_than(least);
+    if (const double distance = std::sqrt(squared); distance < minimum)
+      best = i, minimum = distance, enough = no_less_than(minimum);
   }
   return best;
 }

@@ -6,7 +6,7 @@
 namespace understory {
 namespace {
 
-constexpr double greatest_rollout_s = 4.0;
+constexpr double maximum_rollout_s = 4.0;
 constexpr double side_margin_m = 6.0;  // the course guidance turns inwards this far from the sides
 
 double square(double value) { return value * value; }
@@ -38,7 +38,7 @@ double progress_m(const FlightTask& task, const Eigen::Vector3d& position_world)
 
 double band_clearance_m(const FlightTask& task, const FlightState& state) {
   const double altitude = state.position_world.z();
-  return std::min(altitude - task.mission.least_altitude_m, task.mission.greatest_altitude_m - altitude);
+  return std::min(altitude - task.mission.minimum_altitude_m, task.mission.maximum_altitude_m - altitude);
 }
 
 FlightCommand course_command(const FlightTask& task, const FlightState& state) {
@@ -48,10 +48,10 @@ FlightCommand course_command(const FlightTask& task, const FlightState& state) {
   const double heading = task.mission.heading_rad - std::copysign(std::min(0.6, 0.12 * beyond_m), cross_m);
   FlightCommand command;
   command.bank_rad = std::clamp(config.heading_gain * (course_rad(state) - heading),
-                                -config.greatest_course_bank_rad, config.greatest_course_bank_rad);
+                                -config.maximum_course_bank_rad, config.maximum_course_bank_rad);
   command.climb_mps =
       std::clamp(config.altitude_gain_per_s * (task.mission.cruise_altitude_m - state.position_world.z()),
-                 -config.greatest_climb_mps, config.greatest_climb_mps);
+                 -config.maximum_climb_mps, config.maximum_climb_mps);
   return command;
 }
 
@@ -59,8 +59,8 @@ double cost_rate(const FlightTask& task, const FlightState& state, double cleara
   const TrajectoryConfig& config = task.config;
   const Mission& mission = task.mission;
   const double altitude = state.position_world.z();
-  const double below = std::max(0.0, mission.least_altitude_m + config.band_margin_m - altitude);
-  const double above = std::max(0.0, altitude - (mission.greatest_altitude_m - config.band_margin_m));
+  const double below = std::max(0.0, mission.minimum_altitude_m + config.band_margin_m - altitude);
+  const double above = std::max(0.0, altitude - (mission.maximum_altitude_m - config.band_margin_m));
   const double beside = std::max(
       0.0, std::abs(cross_track_m(task, state.position_world)) - (mission.half_width_m - side_margin_m));
   const double near = std::max(0.0, 1 - clearance_m / config.comfortable_clearance_m);
@@ -72,8 +72,8 @@ double cost_rate(const FlightTask& task, const FlightState& state, double cleara
          config.slow_weight * square(slow);
 }
 
-double greatest_clearance_m(const TrajectoryConfig& config, double least_clearance_m) {
-  return std::max(config.comfortable_clearance_m, least_clearance_m);
+double maximum_clearance_m(const TrajectoryConfig& config, double minimum_clearance_m) {
+  return std::max(config.comfortable_clearance_m, minimum_clearance_m);
 }
 
 double final_cost(const FlightTask& task, const FlightState& state) {
@@ -82,15 +82,15 @@ double final_cost(const FlightTask& task, const FlightState& state) {
 }
 
 Rollout fly_out(const FlightTask& task, const FlightState& start, const Manoeuvre& manoeuvre,
-                double least_clearance_m, bool keep_points, bool stop_when_too_near, double greatest_cost) {
+                double minimum_clearance_m, bool keep_points, bool stop_when_too_near, double maximum_cost) {
   Rollout rollout;
   FlightState state = start;
   const double step_s = task.config.step_s;
-  const double greatest_m = greatest_clearance_m(task.config, least_clearance_m);
+  const double maximum_m = maximum_clearance_m(task.config, minimum_clearance_m);
   std::size_t part = 0;
   double part_left_s = manoeuvre.empty() ? 0 : manoeuvre.front().duration_s;
   bool too_near = false;
-  for (double t_s = 0; t_s < greatest_rollout_s; t_s += step_s) {
+  for (double t_s = 0; t_s < maximum_rollout_s; t_s += step_s) {
     while (part < manoeuvre.size() && part_left_s < 0.5 * step_s)
       if (++part < manoeuvre.size()) part_left_s += manoeuvre[part].duration_s;
     const bool in_manoeuvre = part < manoeuvre.size();
@@ -98,14 +98,14 @@ Rollout fly_out(const FlightTask& task, const FlightState& start, const Manoeuvr
     if (in_manoeuvre) part_left_s -= step_s;
     if (keep_points) rollout.points.push_back(plan_point(state, command, t_s));
     state = task.model.advance(state, command, step_s);
-    const double clearance = task.field.clearance_m(state, greatest_m);
-    rollout.least_clearance_m = std::min(rollout.least_clearance_m, clearance);
+    const double clearance = task.field.clearance_m(state, maximum_m);
+    rollout.minimum_clearance_m = std::min(rollout.minimum_clearance_m, clearance);
     rollout.cost += step_s * cost_rate(task, state, clearance);
     const double margin = std::min(clearance, band_clearance_m(task, state));
-    rollout.least_margin_m = std::min(rollout.least_margin_m, margin);
-    too_near = too_near || margin < least_clearance_m;
+    rollout.minimum_margin_m = std::min(rollout.minimum_margin_m, margin);
+    too_near = too_near || margin < minimum_clearance_m;
     if (!too_near) rollout.free_until_s = t_s + step_s;
-    if ((too_near && stop_when_too_near) || rollout.cost > greatest_cost) break;
+    if ((too_near && stop_when_too_near) || rollout.cost > maximum_cost) break;
     if (progress_m(task, state.position_world) >= task.config.horizon_m) {
       rollout.reached_horizon = !too_near;
       break;

@@ -22,9 +22,9 @@ using Manoeuvre = std::vector<ManoeuvrePart>;
 /// `clearance_weight`.
 struct TrajectoryConfig {
   double step_s = 0.02;
-  double horizon_m = 14.0;           ///< distance ahead that plans cover: detection depth and some
-  double least_clearance_m = -0.05;  ///< hard, for plans to be found
-  double least_kept_clearance_m =
+  double horizon_m = 14.0;             ///< distance ahead that plans cover: detection depth and some
+  double minimum_clearance_m = -0.05;  ///< hard, for plans to be found
+  double minimum_kept_clearance_m =
       -0.08;  ///< hard, for the plan in force: smaller, so that noise does not upset it
   double comfortable_clearance_m = 0.7;
   double clearance_weight = 15.0;
@@ -36,17 +36,17 @@ struct TrajectoryConfig {
   double slow_weight = 2.0;           ///< per (m/s)^2 below 1 m/s less than cruise
   double final_heading_weight = 4.0;  ///< per rad^2 at the horizon
   double heading_gain = 1.6;          ///< bank per heading error, course guidance
-  double greatest_course_bank_rad = 0.6;
+  double maximum_course_bank_rad = 0.6;
   double altitude_gain_per_s = 1.2;  ///< climb per altitude error
-  double greatest_climb_mps = 2.0;
+  double maximum_climb_mps = 2.0;
 };
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, TrajectoryConfig& config) {
   visit("step_s", config.step_s, 0.005, 0.03);
   visit("horizon_m", config.horizon_m, 2.0, 60.0);
-  visit("least_clearance_m", config.least_clearance_m, -1.0, 2.0);
-  visit("least_kept_clearance_m", config.least_kept_clearance_m, -1.0, 2.0);
+  visit("minimum_clearance_m", config.minimum_clearance_m, -1.0, 2.0);
+  visit("minimum_kept_clearance_m", config.minimum_kept_clearance_m, -1.0, 2.0);
   visit("comfortable_clearance_m", config.comfortable_clearance_m, 0.0, 3.0);
   visit("clearance_weight", config.clearance_weight, 0.0, 1e4);
   visit("bank_weight", config.bank_weight, 0.0, 1e4);
@@ -57,9 +57,9 @@ void visit_fields(Visitor& visit, TrajectoryConfig& config) {
   visit("slow_weight", config.slow_weight, 0.0, 1e4);
   visit("final_heading_weight", config.final_heading_weight, 0.0, 1e4);
   visit("heading_gain", config.heading_gain, 0.0, 10.0);
-  visit("greatest_course_bank_rad", config.greatest_course_bank_rad, 0.05, 1.5);
+  visit("maximum_course_bank_rad", config.maximum_course_bank_rad, 0.05, 1.5);
   visit("altitude_gain_per_s", config.altitude_gain_per_s, 0.0, 10.0);
-  visit("greatest_climb_mps", config.greatest_climb_mps, 0.0, 6.0);
+  visit("maximum_climb_mps", config.maximum_climb_mps, 0.0, 6.0);
 }
 
 /// Everything a trajectory is judged against, for the length of one replan.
@@ -81,28 +81,29 @@ double band_clearance_m(const FlightTask& task, const FlightState& state);
 /// Distance made good along the course since the plan's start.
 double progress_m(const FlightTask& task, const Eigen::Vector3d& position_world);
 
-/// The clearance beyond which more of it changes no decision and no cost, where `least_clearance_m` is asked.
-double greatest_clearance_m(const TrajectoryConfig& config, double least_clearance_m);
+/// The clearance beyond which more of it changes no decision and no cost, where `minimum_clearance_m` is
+/// asked.
+double maximum_clearance_m(const TrajectoryConfig& config, double minimum_clearance_m);
 
 /// A manoeuvre flown in the model to the horizon.
 struct Rollout {
   double cost = 0;
-  /// From obstacles, over the whole rollout (up to where it stopped); what is beyond greatest_clearance_m
+  /// From obstacles, over the whole rollout (up to where it stopped); what is beyond maximum_clearance_m
   /// does not count.
-  double least_clearance_m = 3.0;
-  double least_margin_m =
+  double minimum_clearance_m = 3.0;
+  double minimum_margin_m =
       3.0;  ///< the same, or the distance to the altitude band's limits where that is less
-  bool reached_horizon = false;   ///< false: came nearer than `least_clearance_m` or left the band before
+  bool reached_horizon = false;   ///< false: came nearer than `minimum_clearance_m` or left the band before
   double free_until_s = 0;        ///< time at which it came too near, or its whole length
   std::vector<PlanPoint> points;  ///< filled where asked for
 };
 
-/// Flies `manoeuvre` from `start`; stops where the clearance falls below `least_clearance_m`. With
+/// Flies `manoeuvre` from `start`; stops where the clearance falls below `minimum_clearance_m`. With
 /// `keep_points` the trajectory comes along, every step. With `stop_when_too_near` false it flies on to the
-/// horizon all the same. It also stops, short of the horizon, once it has cost more than `greatest_cost`:
+/// horizon all the same. It also stops, short of the horizon, once it has cost more than `maximum_cost`:
 /// costs only grow.
 Rollout fly_out(const FlightTask& task, const FlightState& start, const Manoeuvre& manoeuvre,
-                double least_clearance_m, bool keep_points, bool stop_when_too_near = true,
-                double greatest_cost = std::numeric_limits<double>::infinity());
+                double minimum_clearance_m, bool keep_points, bool stop_when_too_near = true,
+                double maximum_cost = std::numeric_limits<double>::infinity());
 
 }  // namespace understory

@@ -7,19 +7,19 @@
 namespace understory {
 namespace {
 
-constexpr double least_part_s = 0.04;
-constexpr double greatest_part_s = 1.0;
+constexpr double minimum_part_s = 0.04;
+constexpr double maximum_part_s = 1.0;
 constexpr double climb_limit_mps = 3.0;
 
 }  // namespace
 
 ImprovedManoeuvre improve_manoeuvre(const FlightTask& task, const FlightState& start,
-                                    const Manoeuvre& manoeuvre, double least_clearance_m,
+                                    const Manoeuvre& manoeuvre, double minimum_clearance_m,
                                     const ManoeuvreImprovementConfig& config, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> gaussian;
-  const auto cost_of = [&](const Manoeuvre& candidate, double greatest_cost) {
-    const Rollout rollout = fly_out(task, start, candidate, least_clearance_m, false, true, greatest_cost);
+  const auto cost_of = [&](const Manoeuvre& candidate, double maximum_cost) {
+    const Rollout rollout = fly_out(task, start, candidate, minimum_clearance_m, false, true, maximum_cost);
     return rollout.reached_horizon ? rollout.cost : std::numeric_limits<double>::infinity();
   };
   ImprovedManoeuvre best{manoeuvre, cost_of(manoeuvre, std::numeric_limits<double>::infinity())};
@@ -28,11 +28,11 @@ ImprovedManoeuvre improve_manoeuvre(const FlightTask& task, const FlightState& s
     Manoeuvre candidate = best.manoeuvre;
     ManoeuvrePart& part = candidate[generator() % candidate.size()];
     part.command.bank_rad = std::clamp(part.command.bank_rad + config.bank_sigma_rad * gaussian(generator),
-                                       -config.greatest_bank_rad, config.greatest_bank_rad);
+                                       -config.maximum_bank_rad, config.maximum_bank_rad);
     part.command.climb_mps = std::clamp(part.command.climb_mps + config.climb_sigma_mps * gaussian(generator),
                                         -climb_limit_mps, climb_limit_mps);
     part.duration_s = std::clamp(part.duration_s + config.duration_sigma_s * gaussian(generator),
-                                 least_part_s, greatest_part_s);
+                                 minimum_part_s, maximum_part_s);
     const double cost = cost_of(candidate, best.cost);
     if (cost < best.cost) best = {std::move(candidate), cost};
   }

@@ -13,7 +13,7 @@ struct ManoeuvreImprovementConfig {
   double bank_sigma_rad = 0.35;  ///< of the change to one part's bank
   double climb_sigma_mps = 0.6;
   double duration_sigma_s = 0.08;
-  double greatest_bank_rad = 1.57;
+  double maximum_bank_rad = 1.57;
 };
 
 template <typename Visitor>
@@ -22,7 +22,7 @@ void visit_fields(Visitor& visit, ManoeuvreImprovementConfig& config) {
   visit("bank_sigma_rad", config.bank_sigma_rad, 0.0, 3.0);
   visit("climb_sigma_mps", config.climb_sigma_mps, 0.0, 5.0);
   visit("duration_sigma_s", config.duration_sigma_s, 0.0, 1.0);
-  visit("greatest_bank_rad", config.greatest_bank_rad, 0.1, 1.6);
+  visit("maximum_bank_rad", config.maximum_bank_rad, 0.1, 1.6);
 }
 
 struct ImprovedManoeuvre {
@@ -30,11 +30,11 @@ struct ImprovedManoeuvre {
   double cost = 0;  ///< of its rollout; infinite where that does not reach the horizon
 };
 
-/// The cheapest variant met that reaches the horizon with `least_clearance_m`; `manoeuvre` itself where none
-/// is cheaper (or where it does not reach the horizon and no variant does). Repeats exactly for equal
+/// The cheapest variant met that reaches the horizon with `minimum_clearance_m`; `manoeuvre` itself where
+/// none is cheaper (or where it does not reach the horizon and no variant does). Repeats exactly for equal
 /// arguments.
 ImprovedManoeuvre improve_manoeuvre(const FlightTask& task, const FlightState& start,
-                                    const Manoeuvre& manoeuvre, double least_clearance_m,
+                                    const Manoeuvre& manoeuvre, double minimum_clearance_m,
                                     const ManoeuvreImprovementConfig& config, std::uint64_t seed);
 
 }  // namespace understory

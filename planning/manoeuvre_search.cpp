@@ -23,7 +23,7 @@ namespace {
 namespace ob = ompl::base;
 namespace oc = ompl::control;
 
-constexpr int most_parts = 6;
+constexpr int maximum_parts = 6;
 
 // A node of the tree: the predicted aircraft and the commands that lead there.
 struct Node {
@@ -31,7 +31,7 @@ struct Node {
   double cost = 0;
   bool free = true;
   int part_count = 0;
-  std::array<ManoeuvrePart, most_parts> parts{};
+  std::array<ManoeuvrePart, maximum_parts> parts{};
 };
 
 class NodeState : public ob::State {
@@ -115,16 +115,16 @@ class CommandSampler : public oc::ControlSampler {
   }
   void sample(oc::Control* control) override {
     double* values = control->as<oc::RealVectorControlSpace::ControlType>()->values;
-    values[0] = rng_.uniformReal(-config_.greatest_bank_rad, config_.greatest_bank_rad);
-    values[1] = rng_.uniformReal(config_.least_climb_mps, config_.greatest_climb_mps);
+    values[0] = rng_.uniformReal(-config_.maximum_bank_rad, config_.maximum_bank_rad);
+    values[1] = rng_.uniformReal(config_.minimum_climb_mps, config_.maximum_climb_mps);
     const double lot = rng_.uniform01();
     if (lot < config_.hint_share && !hint_.empty()) {
       const FlightCommand& near = hint_[rng_.uniformInt(0, static_cast<int>(hint_.size()) - 1)].command;
-      values[0] = std::clamp(near.bank_rad + rng_.gaussian(0, 0.15), -config_.greatest_bank_rad,
-                             config_.greatest_bank_rad);
+      values[0] = std::clamp(near.bank_rad + rng_.gaussian(0, 0.15), -config_.maximum_bank_rad,
+                             config_.maximum_bank_rad);
       values[1] = near.climb_mps;
     } else if (lot > 1 - config_.extreme_share) {
-      values[0] = std::copysign(config_.greatest_bank_rad, values[0]);
+      values[0] = std::copysign(config_.maximum_bank_rad, values[0]);
     }
   }
 
@@ -158,7 +158,7 @@ class FreeCourse : public ob::Goal {
     // is allowed than what is left to spend, so that rounding decides nothing.
     const double to_spend = (best_cost - node.cost) * (1 + 1e-9) + 1e-9;
     const Rollout rest =
-        fly_out(task_, node.flight, {}, task_.config.least_clearance_m, false, true, to_spend);
+        fly_out(task_, node.flight, {}, task_.config.minimum_clearance_m, false, true, to_spend);
     if (!rest.reached_horizon) return false;
     if (node.cost + rest.cost < best_cost) {
       best_cost = node.cost + rest.cost;
@@ -228,7 +228,7 @@ void propagate(const FlightTask& task, const ManoeuvreSearchConfig& config, cons
                const FlightCommand& command, double step_s, Node& to) {
   to = from;
   const bool continues = to.part_count > 0 && to.parts[to.part_count - 1].command == command;
-  if (!continues && to.part_count == config.greatest_parts) {
+  if (!continues && to.part_count == config.maximum_parts) {
     to.free = false;
     return;
   }
@@ -236,9 +236,9 @@ void propagate(const FlightTask& task, const ManoeuvreSearchConfig& config, cons
   to.parts[to.part_count - 1].duration_s += step_s;
   to.flight = task.model.advance(from.flight, command, step_s);
   const double clearance =
-      task.field.clearance_m(to.flight, greatest_clearance_m(task.config, task.config.least_clearance_m));
+      task.field.clearance_m(to.flight, maximum_clearance_m(task.config, task.config.minimum_clearance_m));
   to.cost += step_s * cost_rate(task, to.flight, clearance);
-  to.free = std::min(clearance, band_clearance_m(task, to.flight)) >= task.config.least_clearance_m &&
+  to.free = std::min(clearance, band_clearance_m(task, to.flight)) >= task.config.minimum_clearance_m &&
             progress_m(task, to.flight.position_world) < task.config.horizon_m;
 }
 
@@ -254,8 +254,8 @@ std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightSt
   const auto states = std::make_shared<FlightStateSpace>(task, start, seed_of(0));
   const auto controls = std::make_shared<oc::RealVectorControlSpace>(states, 2);
   ob::RealVectorBounds bounds(2);
-  bounds.setLow(0, -config.greatest_bank_rad), bounds.setHigh(0, config.greatest_bank_rad);
-  bounds.setLow(1, config.least_climb_mps), bounds.setHigh(1, config.greatest_climb_mps);
+  bounds.setLow(0, -config.maximum_bank_rad), bounds.setHigh(0, config.maximum_bank_rad);
+  bounds.setLow(1, config.minimum_climb_mps), bounds.setHigh(1, config.maximum_climb_mps);
   controls->setBounds(bounds);
   controls->setControlSamplerAllocator([&](const oc::ControlSpace* space) {
     return std::make_shared<CommandSampler>(space, config, hint, seed_of(1));
@@ -270,8 +270,8 @@ std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightSt
       });
   const double step_s = task.config.step_s;
   space->setPropagationStepSize(step_s);
-  space->setMinMaxControlDuration(static_cast<unsigned>(std::lround(config.least_part_s / step_s)),
-                                  static_cast<unsigned>(std::lround(config.greatest_part_s / step_s)));
+  space->setMinMaxControlDuration(static_cast<unsigned>(std::lround(config.minimum_part_s / step_s)),
+                                  static_cast<unsigned>(std::lround(config.maximum_part_s / step_s)));
   space->setup();
 
   const auto problem = std::make_shared<ob::ProblemDefinition>(space);

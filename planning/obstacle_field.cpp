@@ -42,7 +42,7 @@ std::uint64_t cell_number(double column, double row) {
 }  // namespace
 
 ObstacleField::ObstacleField(const ObstacleFieldConfig& config, const std::vector<ObstaclePoint>& points,
-                             double distance_flown_m, double greatest_asked_m)
+                             double distance_flown_m, double maximum_asked_m)
     : config_(config) {
   std::vector<CellPoint> cells;
   std::vector<double> radii_m;  // of the points' uncertainty
@@ -50,7 +50,7 @@ ObstacleField::ObstacleField(const ObstacleFieldConfig& config, const std::vecto
   radii_m.reserve(points.size());
   for (const ObstaclePoint& point : points) {
     const double flown_m = std::max(0.0, distance_flown_m - point.distance_flown_m);
-    radii_m.push_back(std::min(config.sigma_zero_m + config.sigma_per_m * flown_m, config.sigma_greatest_m));
+    radii_m.push_back(std::min(config.sigma_zero_m + config.sigma_per_m * flown_m, config.sigma_maximum_m));
     const Eigen::Vector3d& at = point.position_world;
     cells.push_back({cell_number(std::floor(at.x() / config.cell_m), std::floor(at.y() / config.cell_m)),
                      at.z(), cells.size()});
@@ -78,9 +78,9 @@ ObstacleField::ObstacleField(const ObstacleFieldConfig& config, const std::vecto
                         cells[end - 1].z + config.vertical_reach_m, radius_m + 0.5 * config.cell_m});
     first = end;
   }
-  double greatest_radius_m = 0;
-  for (const Column& column : columns_) greatest_radius_m = std::max(greatest_radius_m, column.radius_m);
-  build_grid(config.half_span_m + config.wing_radius_m + greatest_radius_m + greatest_asked_m + rounding_m);
+  double maximum_radius_m = 0;
+  for (const Column& column : columns_) maximum_radius_m = std::max(maximum_radius_m, column.radius_m);
+  build_grid(config.half_span_m + config.wing_radius_m + maximum_radius_m + maximum_asked_m + rounding_m);
 }
 
 void ObstacleField::build_grid(double reach_m) {
@@ -117,24 +117,24 @@ void ObstacleField::build_grid(double reach_m) {
     });
 }
 
-double ObstacleField::clearance_m(const FlightState& state, double greatest_m) const {
-  if (columns_.empty()) return greatest_m;
+double ObstacleField::clearance_m(const FlightState& state, double maximum_m) const {
+  if (columns_.empty()) return maximum_m;
   const Eigen::Vector2d at = (state.position_world.head<2>() - grid_origin_) / grid_cell_m;
   const int x = static_cast<int>(std::floor(at.x())), y = static_cast<int>(std::floor(at.y()));
-  if (x < 0 || y < 0 || x >= grid_width_ || y >= grid_height_) return greatest_m;
+  if (x < 0 || y < 0 || x >= grid_width_ || y >= grid_height_) return maximum_m;
   const int cell = y * grid_width_ + x;
-  if (cell_start_[cell] == cell_start_[cell + 1]) return greatest_m;
+  if (cell_start_[cell] == cell_start_[cell + 1]) return maximum_m;
 
   const Eigen::Vector3d half_wing = config_.half_span_m * left_wing_direction_world(state);
   const Eigen::Vector3d left_tip = state.position_world + half_wing,
                         right_tip = state.position_world - half_wing;
   const Eigen::Vector2d across = half_wing.head<2>();
   const double per_across_m2 = 1 / std::max(across.squaredNorm(), 1e-12);
-  double least = greatest_m;
+  double minimum = maximum_m;
   for (int k = cell_start_[cell]; k < cell_start_[cell + 1]; ++k) {
     const Near& near = near_[static_cast<std::size_t>(k)];
     // A column is nowhere nearer than its axis prolonged, seen from above: a point beside the wing's shadow.
-    const double matters_m = least + near.around_m + rounding_m;
+    const double matters_m = minimum + near.around_m + rounding_m;
     if (matters_m <= 0) continue;
     const Eigen::Vector2d beside = near.centre_world - state.position_world.head<2>();
     const double along = std::clamp(beside.dot(across) * per_across_m2, -1.0, 1.0);
@@ -142,9 +142,9 @@ double ObstacleField::clearance_m(const FlightState& state, double greatest_m) c
     const Column& column = columns_[static_cast<std::size_t>(near.column)];
     const Eigen::Vector3d bottom(column.centre_world.x(), column.centre_world.y(), column.bottom_m);
     const Eigen::Vector3d top(column.centre_world.x(), column.centre_world.y(), column.top_m);
-    least = std::min(least, segment_distance_m(left_tip, right_tip, bottom, top) - near.around_m);
+    minimum = std::min(minimum, segment_distance_m(left_tip, right_tip, bottom, top) - near.around_m);
   }
-  return least;
+  return minimum;
 }
 
 }  // namespace understory

@@ -21,9 +21,9 @@ struct ObstacleFieldConfig {
   double sigma_zero_m = 0.05;  ///< uncertainty of a point when seen, added to its size
   double sigma_per_m =
       0.010;  ///< growth with the distance flown since: drift of the estimate (docs/sources.md [15])
-  double sigma_greatest_m = 0.3;  ///< growth ends here
-  double half_span_m = 0.4318;    ///< of the wing that must pass
-  double wing_radius_m = 0.09;    ///< half the thickness of wing and winglets, as a capsule about the span
+  double sigma_maximum_m = 0.3;  ///< growth ends here
+  double half_span_m = 0.4318;   ///< of the wing that must pass
+  double wing_radius_m = 0.09;   ///< half the thickness of wing and winglets, as a capsule about the span
 };
 
 template <typename Visitor>
@@ -34,7 +34,7 @@ void visit_fields(Visitor& visit, ObstacleFieldConfig& config) {
   visit("stands_on_ground", config.stands_on_ground);
   visit("sigma_zero_m", config.sigma_zero_m, 0.0, 2.0);
   visit("sigma_per_m", config.sigma_per_m, 0.0, 0.5);
-  visit("sigma_greatest_m", config.sigma_greatest_m, 0.0, 2.0);
+  visit("sigma_maximum_m", config.sigma_maximum_m, 0.0, 2.0);
   visit("half_span_m", config.half_span_m, 0.0, 3.0);
   visit("wing_radius_m", config.wing_radius_m, 0.0, 1.0);
 }
@@ -50,15 +50,15 @@ class ObstacleField {
     double radius_m;  ///< half a cell and the points' uncertainty
   };
 
-  /// Points are in heights above the ground. `greatest_asked_m`: the greatest clearance that it will be asked
+  /// Points are in heights above the ground. `maximum_asked_m`: the greatest clearance that it will be asked
   /// about; the nearer, the cheaper.
   ObstacleField(const ObstacleFieldConfig& config, const std::vector<ObstaclePoint>& points,
-                double distance_flown_m, double greatest_asked_m = 3.0);
+                double distance_flown_m, double maximum_asked_m = 3.0);
 
   /// Free distance from the wing (a capsule from tip to tip, banked as in `state`) to the nearest column, m;
-  /// negative in a collision; `greatest_m` at most, which is what free space answers (at most what the
+  /// negative in a collision; `maximum_m` at most, which is what free space answers (at most what the
   /// constructor was told).
-  double clearance_m(const FlightState& state, double greatest_m) const;
+  double clearance_m(const FlightState& state, double maximum_m) const;
 
   const std::vector<Column>& columns() const { return columns_; }
 

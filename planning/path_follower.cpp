@@ -49,7 +49,7 @@ Controls follow(const FlightModel& model, const PathFollowerConfig& config, cons
   const double roll_moment =
       inertia.x() * roll_acceleration + roll_damping * now.roll_rate_radps +
       airframe.winglet_z_m * model.side_force_n(now);  // the winglets stand above the wing
-  const double limit = model.config().greatest_differential_rad;
+  const double limit = model.config().maximum_differential_rad;
   // A flat plate's lift goes with sin(2 a) / 2: invert it.
   const double share = std::clamp(roll_moment / roll_slope, -0.5, 0.5);
   const double differential = std::clamp(0.5 * std::asin(2 * share), -limit, limit);

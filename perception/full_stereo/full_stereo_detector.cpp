@@ -15,9 +15,9 @@ constexpr double unlimited_m = 1000;
 FullStereoCrop one_pixel_crop(const StereoRig& rig) {
   const double disparity_px = std::round(rig.disparity_px(rig.detection_depth_m));
   FullStereoCrop crop;
-  crop.least_depth_m = rig.depth_m(disparity_px + 1);
-  crop.greatest_depth_m = rig.depth_m(disparity_px - 1);
-  crop.greatest_below_m = unlimited_m;  // the pushbroom's rows alone
+  crop.minimum_depth_m = rig.depth_m(disparity_px + 1);
+  crop.maximum_depth_m = rig.depth_m(disparity_px - 1);
+  crop.maximum_below_m = unlimited_m;  // the pushbroom's rows alone
   return crop;
 }
 
@@ -37,9 +37,9 @@ void FullStereoDetector::add_cell(const cv::Mat& depth_m, int column_px, int row
   for (int v = row_px; v < row_px + crop_.cell_px; ++v) {
     const auto* row = depth_m.ptr<float>(v);
     for (int u = column_px; u < column_px + crop_.cell_px; ++u)
-      if (row[u] >= crop_.least_depth_m && row[u] <= crop_.greatest_depth_m) cell_m_.push_back(row[u]);
+      if (row[u] >= crop_.minimum_depth_m && row[u] <= crop_.maximum_depth_m) cell_m_.push_back(row[u]);
   }
-  if (cell_m_.size() < static_cast<std::size_t>(crop_.least_pixels_per_cell)) return;
+  if (cell_m_.size() < static_cast<std::size_t>(crop_.minimum_pixels_per_cell)) return;
   const auto middle = cell_m_.begin() + static_cast<std::ptrdiff_t>(cell_m_.size() / 2);
   std::nth_element(cell_m_.begin(), middle, cell_m_.end());
   const double z_m = *middle, center_px = 0.5 * (crop_.cell_px - 1);
@@ -49,10 +49,10 @@ void FullStereoDetector::add_cell(const cv::Mat& depth_m, int column_px, int row
   hit.disparity_px = rig_.disparity_px(z_m);
   hit.position_camera = {(column_px + center_px - rig_.center_left_x_px) * z_m / rig_.focal_px,
                          (row_px + center_px - rig_.center_y_px) * z_m / rig_.focal_px, z_m};
-  if (hit.position_camera.y() > crop_.greatest_below_m) return;
+  if (hit.position_camera.y() > crop_.maximum_below_m) return;
   const double farther_px = hit.disparity_px - uncertainty_px;
   hit.depth = {rig_.depth_m(hit.disparity_px + uncertainty_px),
-               farther_px > rig_.infinity_disparity_px() ? rig_.depth_m(farther_px) : crop_.greatest_depth_m};
+               farther_px > rig_.infinity_disparity_px() ? rig_.depth_m(farther_px) : crop_.maximum_depth_m};
   hits_.push_back(hit);
 }
 

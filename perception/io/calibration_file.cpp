@@ -30,10 +30,10 @@ std::string name_of(const fs::path& path) {
 
 void look_at(StereoRig& rig, double detection_depth_m, const fs::path& path) {
   rig.detection_depth_m = detection_depth_m;
-  if (!(detection_depth_m >= least_depth_m && detection_depth_m <= greatest_depth_m))
-    throw_file_fault(
-        path.string(), 0, "detection depth",
-        fmt::format("expected {} to {} m, was given {}", least_depth_m, greatest_depth_m, detection_depth_m));
+  if (!(detection_depth_m >= minimum_depth_m && detection_depth_m <= maximum_depth_m))
+    throw_file_fault(path.string(), 0, "detection depth",
+                     fmt::format("expected {} to {} m, was given {}", minimum_depth_m, maximum_depth_m,
+                                 detection_depth_m));
   if (!detection_depth_in_view(rig))
     throw_file_fault(
         path.string(), 0, "detection depth",
@@ -44,17 +44,17 @@ void look_at(StereoRig& rig, double detection_depth_m, const fs::path& path) {
 
 /// What read_rig asks of a rig file's keys, asked of a rig computed from matrices.
 void require_in_range(const StereoRig& rig, const fs::path& path) {
-  const auto require = [&](const std::string& key, double value, double least, double greatest,
+  const auto require = [&](const std::string& key, double value, double minimum, double maximum,
                            const std::string& hint) {
-    if (!(value >= least && value <= greatest))
+    if (!(value >= minimum && value <= maximum))
       throw_file_fault(path.string(), 0, key,
-                       fmt::format("expected {} to {}, found {:.6g}{}", least, greatest, value, hint));
+                       fmt::format("expected {} to {}, found {:.6g}{}", minimum, maximum, value, hint));
   };
-  require("focal length in px", rig.focal_px, least_focal_px, greatest_focal_px, "");
-  require("baseline in m", rig.baseline_m, least_baseline_m, greatest_baseline_m,
+  require("focal length in px", rig.focal_px, minimum_focal_px, maximum_focal_px, "");
+  require("baseline in m", rig.baseline_m, minimum_baseline_m, maximum_baseline_m,
           "; are the translations in another unit (--unit)?");
   for (const double center_px : {rig.center_left_x_px, rig.center_right_x_px, rig.center_y_px})
-    require("principal point in px", center_px, least_center_px, greatest_center_px, "");
+    require("principal point in px", center_px, minimum_center_px, maximum_center_px, "");
 }
 
 /// Whether rectifying would leave this camera's images as they are.

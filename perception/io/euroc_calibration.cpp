@@ -31,11 +31,11 @@ bool is_rotation(const Eigen::Matrix3d& matrix) {
 }
 
 Eigen::Isometry3d pose(StrictMap& map, double meters_per_unit) {
-  constexpr double greatest_value = 1e6;  // an offset in some unit; checked in metres below
+  constexpr double maximum_value = 1e6;  // an offset in some unit; checked in metres below
   StrictMap fields = map.map("T_BS");
   fields.whole("rows", 4, 4);
   fields.whole("cols", 4, 4);
-  const std::vector<double> data = fields.numbers("data", 16, -greatest_value, greatest_value);
+  const std::vector<double> data = fields.numbers("data", 16, -maximum_value, maximum_value);
   const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(data.data());
   const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
   if (!is_rotation(rotation)) map.fail("T_BS", "expected a rotation in the first three rows and columns");
@@ -44,7 +44,7 @@ Eigen::Isometry3d pose(StrictMap& map, double meters_per_unit) {
   Eigen::Isometry3d T_body_sensor = Eigen::Isometry3d::Identity();
   T_body_sensor.linear() = Eigen::Quaterniond(rotation).normalized().toRotationMatrix();
   T_body_sensor.translation() = meters_per_unit * matrix.topRightCorner<3, 1>();
-  if (T_body_sensor.translation().cwiseAbs().maxCoeff() > greatest_offset_m)
+  if (T_body_sensor.translation().cwiseAbs().maxCoeff() > maximum_offset_m)
     map.fail("T_BS", "expected a translation within 10 m");
   return T_body_sensor;
 }
@@ -58,7 +58,7 @@ void require_text(StrictMap& map, const std::string& key, const std::string& exp
 /// on.
 void read_additions(StrictMap& map, Sensor& sensor) {
   if (map.has("detection_depth_m"))
-    sensor.detection_depth_m = map.number("detection_depth_m", least_depth_m, greatest_depth_m);
+    sensor.detection_depth_m = map.number("detection_depth_m", minimum_depth_m, maximum_depth_m);
   sensor.says_rectification = map.has("rectification");
   if (!sensor.says_rectification) return;
   const std::vector<double> rotation = map.numbers("rectification", 9, -1.1, 1.1);
@@ -66,31 +66,31 @@ void read_additions(StrictMap& map, Sensor& sensor) {
     map.fail("rectification", "expected a rotation, row by row");
   sensor.camera.rectification = cv::Matx33d(rotation.data());
   const std::vector<double> pinhole =
-      map.numbers("rectified_intrinsics", 3, least_center_px, greatest_focal_px);
+      map.numbers("rectified_intrinsics", 3, minimum_center_px, maximum_focal_px);
   sensor.camera.projection =
       cv::Matx34d(pinhole[0], 0, pinhole[1], 0, 0, pinhole[0], pinhole[2], 0, 0, 0, 1, 0);
 }
 
 Sensor read_sensor(const fs::path& file, double meters_per_unit) {
-  constexpr double greatest_coefficient = 1e4;
+  constexpr double maximum_coefficient = 1e4;
   StrictMap map(file.string(), parse_yaml(read_text_file(file), file.string()));
   Sensor sensor;
   sensor.T_body_sensor = pose(map, meters_per_unit);
-  const std::vector<double> size = map.numbers("resolution", 2, least_size_px, greatest_size_px);
+  const std::vector<double> size = map.numbers("resolution", 2, minimum_size_px, maximum_size_px);
   if (size[0] != std::floor(size[0]) || size[1] != std::floor(size[1]))
     map.fail("resolution", "expected whole numbers");
   sensor.size = {static_cast<int>(size[0]), static_cast<int>(size[1])};
   require_text(map, "camera_model", "pinhole");
-  const std::vector<double> pinhole = map.numbers("intrinsics", 4, least_center_px, greatest_focal_px);
-  if (std::min(pinhole[0], pinhole[1]) < least_focal_px ||
-      std::max(pinhole[2], pinhole[3]) > greatest_center_px)
+  const std::vector<double> pinhole = map.numbers("intrinsics", 4, minimum_center_px, maximum_focal_px);
+  if (std::min(pinhole[0], pinhole[1]) < minimum_focal_px ||
+      std::max(pinhole[2], pinhole[3]) > maximum_center_px)
     map.fail("intrinsics", "expected fu, fv, cu, cv in px: a focal length is too short or a center too far");
   sensor.camera.camera_matrix = cv::Matx33d(pinhole[0], 0, pinhole[2], 0, pinhole[1], pinhole[3], 0, 0, 1);
   require_text(map, "distortion_model", "radial-tangential");
   // EuRoC has four; cameras that need more of OpenCV's k1 k2 p1 p2 k3 k4 k5 k6 say them in that order.
   const std::size_t found = map.length("distortion_coefficients");
   sensor.camera.distortion = map.numbers("distortion_coefficients", found == 5 || found == 8 ? found : 4,
-                                         -greatest_coefficient, greatest_coefficient);
+                                         -maximum_coefficient, maximum_coefficient);
   read_additions(map, sensor);
   return sensor;
 }

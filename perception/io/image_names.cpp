@@ -8,7 +8,7 @@ namespace understory {
 namespace {
 
 constexpr std::string_view digits = "0123456789";
-constexpr std::size_t least_digits_of_time = 16;  // nanoseconds since 1970 have 19, since a start-up fewer
+constexpr std::size_t minimum_digits_of_time = 16;  // nanoseconds since 1970 have 19, since a start-up fewer
 
 bool is_digit(char c) { return digits.find(c) != std::string_view::npos; }
 
@@ -74,7 +74,7 @@ bool comes_before(std::string_view a, std::string_view b) {
 
 std::optional<std::int64_t> time_in_name(std::string_view stem) {
   if (leading_digits(stem).size() == stem.size())
-    return stem.size() < least_digits_of_time ? std::nullopt : nanoseconds_in(stem);
+    return stem.size() < minimum_digits_of_time ? std::nullopt : nanoseconds_in(stem);
   const std::size_t point = leading_digits(stem).size();
   const bool is_decimal = point > 0 && stem[point] == '.' && point + 1 < stem.size() &&
                           leading_digits(stem.substr(point + 1)).size() == stem.size() - point - 1;

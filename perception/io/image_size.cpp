@@ -11,7 +11,7 @@ ImageSize agreed_image_size(const std::string& file, std::optional<ImageSize> of
                             const CalibrationOptions& options) {
   using namespace rig_limits;
   const auto fail = [&](const std::string& expected) { throw_file_fault(file, 0, "image size", expected); };
-  const auto in_range = [](int size_px) { return size_px >= least_size_px && size_px <= greatest_size_px; };
+  const auto in_range = [](int size_px) { return size_px >= minimum_size_px && size_px <= maximum_size_px; };
   if (options.width_px.has_value() != options.height_px.has_value()) fail("expected a width and a height");
   if (!options.width_px) {
     if (!of_file)
@@ -20,8 +20,8 @@ ImageSize agreed_image_size(const std::string& file, std::optional<ImageSize> of
   }
   const ImageSize given{*options.width_px, *options.height_px};
   if (!in_range(given.width_px) || !in_range(given.height_px))
-    fail(fmt::format("expected {} to {} px, was given {}x{}", least_size_px, greatest_size_px, given.width_px,
-                     given.height_px));
+    fail(fmt::format("expected {} to {} px, was given {}x{}", minimum_size_px, maximum_size_px,
+                     given.width_px, given.height_px));
   if (of_file && (of_file->width_px != given.width_px || of_file->height_px != given.height_px))
     fail(fmt::format("expected the file's own, {}x{}, was given {}x{}", of_file->width_px, of_file->height_px,
                      given.width_px, given.height_px));

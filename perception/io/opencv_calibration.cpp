@@ -74,8 +74,8 @@ class Matrices {
 std::optional<ImageSize> size_in(Matrices& matrices) {
   using namespace rig_limits;
   if (!matrices.has("image_width") && !matrices.has("image_height")) return std::nullopt;
-  return ImageSize{matrices.with("image_width").whole("image_width", least_size_px, greatest_size_px),
-                   matrices.with("image_height").whole("image_height", least_size_px, greatest_size_px)};
+  return ImageSize{matrices.with("image_width").whole("image_width", minimum_size_px, maximum_size_px),
+                   matrices.with("image_height").whole("image_height", minimum_size_px, maximum_size_px)};
 }
 
 void read_rectification(Matrices& matrices, StereoCalibration& calibration, double meters_per_unit) {

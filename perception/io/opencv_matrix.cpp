@@ -10,8 +10,8 @@
 namespace understory {
 namespace {
 
-constexpr double greatest_value = 1e9;          // of anything: focal lengths times millimetres stay far below
-constexpr double greatest_coefficient = 1e4;    // wild calibrations reach 13 (the paper's rig)
+constexpr double maximum_value = 1e9;           // of anything: focal lengths times millimetres stay far below
+constexpr double maximum_coefficient = 1e4;     // wild calibrations reach 13 (the paper's rig)
 constexpr double rotation_tolerance = 1e-3;     // files rounded by hand
 constexpr double coefficient_tolerance = 1e-9;  // what counts as 0
 
@@ -21,16 +21,16 @@ struct Matrix {
 };
 
 Matrix matrix(StrictMap& map, const std::string& key) {
-  constexpr int greatest_side = 16;
+  constexpr int maximum_side = 16;
   if (map.type(key) != "opencv-matrix") map.fail(key, "expected an OpenCV matrix (opencv-matrix)");
   StrictMap fields = map.map(key);
   Matrix matrix;
-  matrix.rows = fields.whole("rows", 0, greatest_side);
-  matrix.cols = fields.whole("cols", 0, greatest_side);
+  matrix.rows = fields.whole("rows", 0, maximum_side);
+  matrix.cols = fields.whole("cols", 0, maximum_side);
   const std::string type = fields.text("dt");
   if (type != "d" && type != "f") fields.fail("dt", "expected d or f, found '" + type + "'");
   const auto count = static_cast<std::size_t>(matrix.rows * matrix.cols);
-  matrix.values = fields.numbers("data", count, -greatest_value, greatest_value);
+  matrix.values = fields.numbers("data", count, -maximum_value, maximum_value);
   return matrix;
 }
 
@@ -42,7 +42,7 @@ cv::Matx<double, rows, cols> matrix_of_shape(StrictMap& map, const std::string& 
   return cv::Matx<double, rows, cols>(found.values.data());
 }
 
-bool in_range(double value, double least, double greatest) { return value >= least && value <= greatest; }
+bool in_range(double value, double minimum, double maximum) { return value >= minimum && value <= maximum; }
 
 }  // namespace
 
@@ -60,13 +60,13 @@ cv::Matx33d opencv_camera_matrix(StrictMap& map, const std::string& key) {
   if (camera(0, 1) != 0 || camera(1, 0) != 0 || camera(2, 0) != 0 || camera(2, 1) != 0 || camera(2, 2) != 1)
     map.fail(key, "expected the form fx 0 cx, 0 fy cy, 0 0 1");
   for (const double focal_px : {camera(0, 0), camera(1, 1)})
-    if (!in_range(focal_px, least_focal_px, greatest_focal_px))
-      map.fail(key, fmt::format("expected focal lengths from {} to {} px, found {}", least_focal_px,
-                                greatest_focal_px, focal_px));
+    if (!in_range(focal_px, minimum_focal_px, maximum_focal_px))
+      map.fail(key, fmt::format("expected focal lengths from {} to {} px, found {}", minimum_focal_px,
+                                maximum_focal_px, focal_px));
   for (const double center_px : {camera(0, 2), camera(1, 2)})
-    if (!in_range(center_px, least_center_px, greatest_center_px))
-      map.fail(key, fmt::format("expected a principal point from {} to {} px, found {}", least_center_px,
-                                greatest_center_px, center_px));
+    if (!in_range(center_px, minimum_center_px, maximum_center_px))
+      map.fail(key, fmt::format("expected a principal point from {} to {} px, found {}", minimum_center_px,
+                                maximum_center_px, center_px));
   return camera;
 }
 
@@ -87,7 +87,7 @@ cv::Vec3d opencv_translation(StrictMap& map, const std::string& key) {
 }
 
 std::vector<double> opencv_distortion(StrictMap& map, const std::string& key) {
-  constexpr std::size_t greatest_count = 8;
+  constexpr std::size_t maximum_count = 8;
   Matrix found = matrix(map, key);
   const std::size_t count = found.values.size();
   if (count == 0) return {};
@@ -96,13 +96,13 @@ std::vector<double> opencv_distortion(StrictMap& map, const std::string& key) {
     map.fail(key,
              fmt::format("expected 4, 5 or 8 coefficients in a row, found {} x {}", found.rows, found.cols));
   for (const double coefficient : found.values)
-    if (std::abs(coefficient) > greatest_coefficient)
+    if (std::abs(coefficient) > maximum_coefficient)
       map.fail(key,
-               fmt::format("expected coefficients within +-{}, found {}", greatest_coefficient, coefficient));
-  for (std::size_t i = greatest_count; i < count; ++i)
+               fmt::format("expected coefficients within +-{}, found {}", maximum_coefficient, coefficient));
+  for (std::size_t i = maximum_count; i < count; ++i)
     if (std::abs(found.values[i]) > coefficient_tolerance)
       map.fail(key, "expected 4, 5 or 8 coefficients: thin prisms and tilted sensors are not supported");
-  found.values.resize(std::min(count, greatest_count));
+  found.values.resize(std::min(count, maximum_count));
   return found.values;
 }
 

@@ -12,7 +12,7 @@ namespace understory {
 namespace {
 
 constexpr std::int64_t ends_reach_ns = 1000;
-constexpr double greatest_m = 1e8;       // beyond any projected map coordinates
+constexpr double maximum_m = 1e8;        // beyond any projected map coordinates
 constexpr double norm_tolerance = 0.01;  // published files round quaternions to a few digits
 
 /// One way of writing a pose into a line: cell 0 is the time, 1 to 3 the position, 4 to 7 the quaternion.
@@ -38,7 +38,7 @@ TimedPose pose_in(const TableLine& line, const Form& form, const std::string& na
     return *value;
   };
   const Eigen::Vector3d position_world(number(1), number(2), number(3));
-  if (!(position_world.cwiseAbs().maxCoeff() <= greatest_m))
+  if (!(position_world.cwiseAbs().maxCoeff() <= maximum_m))
     fail_at_line(name, line.number, "expected a position within 1e8 m");
   const auto& [w, x, y, z] = form.wxyz;
   const Eigen::Quaterniond q_world_body(number(w), number(x), number(y), number(z));

@@ -24,16 +24,16 @@ StereoRig read_rig(const std::filesystem::path& file) {
   StrictMap map(file.string(), parse_yaml(read_text_file(file), file.string()));
   StereoRig rig;
   rig.name = map.text("name");
-  rig.width_px = map.whole("width_px", least_size_px, greatest_size_px);
-  rig.height_px = map.whole("height_px", least_size_px, greatest_size_px);
-  rig.focal_px = map.number("focal_px", least_focal_px, greatest_focal_px);
-  rig.baseline_m = map.number("baseline_m", least_baseline_m, greatest_baseline_m);
-  rig.center_left_x_px = map.number("center_left_x_px", least_center_px, greatest_center_px);
-  rig.center_right_x_px = map.number("center_right_x_px", least_center_px, greatest_center_px);
-  rig.center_y_px = map.number("center_y_px", least_center_px, greatest_center_px);
-  rig.detection_depth_m = map.number("detection_depth_m", least_depth_m, greatest_depth_m);
+  rig.width_px = map.whole("width_px", minimum_size_px, maximum_size_px);
+  rig.height_px = map.whole("height_px", minimum_size_px, maximum_size_px);
+  rig.focal_px = map.number("focal_px", minimum_focal_px, maximum_focal_px);
+  rig.baseline_m = map.number("baseline_m", minimum_baseline_m, maximum_baseline_m);
+  rig.center_left_x_px = map.number("center_left_x_px", minimum_center_px, maximum_center_px);
+  rig.center_right_x_px = map.number("center_right_x_px", minimum_center_px, maximum_center_px);
+  rig.center_y_px = map.number("center_y_px", minimum_center_px, maximum_center_px);
+  rig.detection_depth_m = map.number("detection_depth_m", minimum_depth_m, maximum_depth_m);
   const std::vector<double> left_camera_body_m =
-      map.numbers("left_camera_body_m", 3, -greatest_offset_m, greatest_offset_m);
+      map.numbers("left_camera_body_m", 3, -maximum_offset_m, maximum_offset_m);
   const double pitch_down_deg = map.number("pitch_down_deg", -90, 90);
   map.refuse_others();
   rig.T_body_camera =

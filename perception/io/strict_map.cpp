@@ -25,18 +25,18 @@ std::string StrictMap::text(const std::string& key) {
   return node.text;
 }
 
-double StrictMap::number(const std::string& key, double least, double greatest) {
-  return number(take(key), key, least, greatest);
+double StrictMap::number(const std::string& key, double minimum, double maximum) {
+  return number(take(key), key, minimum, maximum);
 }
 
-int StrictMap::whole(const std::string& key, int least, int greatest) {
-  const double value = number(key, least, greatest);
+int StrictMap::whole(const std::string& key, int minimum, int maximum) {
+  const double value = number(key, minimum, maximum);
   if (value != std::floor(value)) fail(key, "expected a whole number");
   return static_cast<int>(value);
 }
 
-std::vector<double> StrictMap::numbers(const std::string& key, std::size_t count, double least,
-                                       double greatest) {
+std::vector<double> StrictMap::numbers(const std::string& key, std::size_t count, double minimum,
+                                       double maximum) {
   const TextNode& list = take(key);
   const bool is_list =
       list.kind == TextNode::Kind::list || (count == 0 && list.kind == TextNode::Kind::nothing);
@@ -44,7 +44,7 @@ std::vector<double> StrictMap::numbers(const std::string& key, std::size_t count
     fail(key, fmt::format("expected a list of {} numbers{}", count,
                           is_list ? fmt::format(", found {}", list.children.size()) : ""));
   std::vector<double> values;
-  for (const TextNode& child : list.children) values.push_back(number(child, key, least, greatest));
+  for (const TextNode& child : list.children) values.push_back(number(child, key, minimum, maximum));
   return values;
 }
 
@@ -79,11 +79,11 @@ const TextNode& StrictMap::take(const std::string& key) {
   return *node;
 }
 
-double StrictMap::number(const TextNode& node, const std::string& key, double least, double greatest) const {
+double StrictMap::number(const TextNode& node, const std::string& key, double minimum, double maximum) const {
   const auto value = node.kind == TextNode::Kind::scalar ? finite_number(node.text) : std::nullopt;
-  if (value && *value >= least && *value <= greatest) return *value;
+  if (value && *value >= minimum && *value <= maximum) return *value;
   throw_file_fault(file_, node.line, prefix_ + key,
-                   fmt::format("expected a number from {} to {}{}", least, greatest,
+                   fmt::format("expected a number from {} to {}{}", minimum, maximum,
                                node.kind == TextNode::Kind::scalar ? ", found '" + node.text + "'" : ""));
 }
 

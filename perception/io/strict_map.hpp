@@ -20,10 +20,10 @@ class StrictMap {
   bool has(const std::string& key) const { return find(key) != nullptr; }
 
   std::string text(const std::string& key);
-  double number(const std::string& key, double least, double greatest);
-  int whole(const std::string& key, int least, int greatest);
+  double number(const std::string& key, double minimum, double maximum);
+  int whole(const std::string& key, int minimum, int maximum);
   /// A list of numbers, `count` of them.
-  std::vector<double> numbers(const std::string& key, std::size_t count, double least, double greatest);
+  std::vector<double> numbers(const std::string& key, std::size_t count, double minimum, double maximum);
   /// How many values the list has; 0 where it is none or missing.
   std::size_t length(const std::string& key) const;
   StrictMap map(const std::string& key);
@@ -38,7 +38,7 @@ class StrictMap {
  private:
   const TextNode* find(const std::string& key) const;
   const TextNode& take(const std::string& key);
-  double number(const TextNode& node, const std::string& key, double least, double greatest) const;
+  double number(const TextNode& node, const std::string& key, double minimum, double maximum) const;
 
   std::string file_;
   TextNode map_;

@@ -9,14 +9,14 @@
 namespace understory {
 namespace {
 
-constexpr std::size_t greatest_bytes = 1 << 20;
-constexpr std::size_t greatest_quote = 80;
+constexpr std::size_t maximum_bytes = 1 << 20;
+constexpr std::size_t maximum_quote = 80;
 
 /// What a file said may be anything: a message stays one line of moderate length.
-std::string quotable(std::string text, std::size_t greatest) {
+std::string quotable(std::string text, std::size_t maximum) {
   for (char& character : text)
     if (static_cast<unsigned char>(character) < ' ' || character == '\x7f') character = ' ';
-  if (text.size() > greatest) text = text.substr(0, greatest) + "...";
+  if (text.size() > maximum) text = text.substr(0, maximum) + "...";
   return text;
 }
 
@@ -25,7 +25,7 @@ std::string quotable(std::string text, std::size_t greatest) {
 void throw_file_fault(const std::string& file, int line, const std::string& key,
                       const std::string& expected) {
   throw std::runtime_error(quotable(file, 4096) + (line > 0 ? ":" + std::to_string(line) : "") + ": " +
-                           quotable(key, greatest_quote) + ": " + quotable(expected, 5 * greatest_quote));
+                           quotable(key, maximum_quote) + ": " + quotable(expected, 5 * maximum_quote));
 }
 
 std::string read_text_file(const std::filesystem::path& file) {
@@ -35,13 +35,13 @@ std::string read_text_file(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string text;
   std::array<char, 8192> piece;
-  while (stream && text.size() <= greatest_bytes) {
+  while (stream && text.size() <= maximum_bytes) {
     stream.read(piece.data(), piece.size());
     text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
   }
   if (!stream.is_open() || stream.bad())
     throw_file_fault(file.string(), 0, "rig", "expected a readable file");
-  if (text.size() > greatest_bytes)
+  if (text.size() > maximum_bytes)
     throw_file_fault(file.string(), 0, "rig", "expected a text file of at most 1 MiB");
   return text;
 }

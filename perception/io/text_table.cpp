@@ -71,13 +71,13 @@ std::optional<std::int64_t> nanoseconds_in(std::string_view cell) {
 
 std::optional<std::int64_t> seconds_in(std::string_view cell) {
   constexpr std::int64_t ns_per_s = 1'000'000'000;
-  constexpr std::int64_t most_s = std::numeric_limits<std::int64_t>::max() / ns_per_s - 1;
+  constexpr std::int64_t maximum_s = std::numeric_limits<std::int64_t>::max() / ns_per_s - 1;
   const std::size_t point = std::min(cell.find('.'), cell.size());
   const std::string_view whole = cell.substr(0, point);
   const std::string_view fraction = cell.substr(std::min(point + 1, cell.size()));
   if (!whole.empty() && is_digits(whole) && is_digits(fraction)) {
     const auto seconds = whole_cell<std::int64_t>(whole);
-    if (!seconds || *seconds > most_s) return std::nullopt;
+    if (!seconds || *seconds > maximum_s) return std::nullopt;
     std::int64_t nanoseconds = 0;
     for (std::size_t i = 0; i < 9; ++i)
       nanoseconds = 10 * nanoseconds + (i < fraction.size() ? fraction[i] - '0' : 0);
@@ -85,7 +85,7 @@ std::optional<std::int64_t> seconds_in(std::string_view cell) {
     return *seconds * ns_per_s + nanoseconds;
   }
   const auto seconds = number_in(cell);
-  if (!seconds || !(*seconds >= 0 && *seconds <= static_cast<double>(most_s))) return std::nullopt;
+  if (!seconds || !(*seconds >= 0 && *seconds <= static_cast<double>(maximum_s))) return std::nullopt;
   return std::llround(*seconds * static_cast<double>(ns_per_s));
 }
 

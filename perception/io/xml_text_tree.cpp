@@ -7,7 +7,7 @@
 namespace understory {
 namespace {
 
-constexpr int greatest_depth = 16;  // a matrix is 3 deep
+constexpr int maximum_depth = 16;  // a matrix is 3 deep
 constexpr std::string_view blanks = " \t\r\n";
 
 class XmlReader {
@@ -26,7 +26,7 @@ class XmlReader {
 
  private:
   TextNode element(int depth) {
-    if (depth > greatest_depth) fail("expected at most 16 elements in each other");
+    if (depth > maximum_depth) fail("expected at most 16 elements in each other");
     TextNode node;
     node.line = line_;
     expect("<");

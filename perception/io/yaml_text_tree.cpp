@@ -10,7 +10,7 @@
 namespace understory {
 namespace {
 
-constexpr std::size_t greatest_depth = 16;
+constexpr std::size_t maximum_depth = 16;
 
 /// Builds the tree from the parser's events, because yaml-cpp's own loaders cannot be left alone with a
 /// strange file: YAML::LoadAll (0.7) finds documents without end behind a stray comma, and an alias that
@@ -72,7 +72,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void open(TextNode node) {
-    if (open_.size() >= greatest_depth) fail(node.line, "expected at most 16 lists and maps in each other");
+    if (open_.size() >= maximum_depth) fail(node.line, "expected at most 16 lists and maps in each other");
     if (!open_.empty() && expects_key()) fail(node.line, "expected a plain word as key");
     open_.push_back({std::move(node), std::nullopt});
   }

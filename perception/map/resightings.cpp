@@ -37,7 +37,7 @@ void Resightings::insert(const std::vector<StereoHit>& hits, const Eigen::Isomet
     std::erase_if(clusters_[near], [&](const Cluster& cluster) {
       if (since(cluster) <= config_.settle_s) return false;
       // The last depth only completes; those between are far ones to their successors too, and stay.
-      if (cluster.hits >= config_.least_hits && since(cluster) <= config_.settle_s + 0.02)
+      if (cluster.hits >= config_.minimum_hits && since(cluster) <= config_.settle_s + 0.02)
         match(cluster, clusters_[near - 1]);
       return near + 1 == clusters_.size() || since(cluster) > config_.oldest_s;
     });
@@ -72,7 +72,7 @@ void Resightings::match(const Cluster& near, std::vector<Cluster>& far) {
   const Cluster* found = nullptr;
   for (const Cluster& cluster : far) {
     const double elapsed_s = 1e-9 * static_cast<double>(near.mean_ns() - cluster.mean_ns());
-    if (cluster.hits < config_.least_hits || elapsed_s <= 0 || elapsed_s > config_.oldest_s) continue;
+    if (cluster.hits < config_.minimum_hits || elapsed_s <= 0 || elapsed_s > config_.oldest_s) continue;
     const double apart_m = (near.centre_world() - cluster.centre_world()).norm();
     if (apart_m < best_m) {
       second_m = found == nullptr ? second_m : best_m;

@@ -16,7 +16,7 @@ struct ResightingsConfig {
   /// depth interval of a pixel (1.6 m at 10 m), its places smear over as much in the odometry frame, and by
   /// what a wind that is not yet known carries meanwhile.
   double cluster_m = 2.0;
-  int least_hits = 8;      ///< a cluster of fewer is left alone
+  int minimum_hits = 8;    ///< a cluster of fewer is left alone
   double settle_s = 0.04;  ///< a nearer cluster without a hit for as long is complete
   /// Level distance between the two places of one obstacle, at most: an unknown wind of 5 m/s over the half
   /// second between 10 and 5 m.
@@ -33,7 +33,7 @@ template <typename Visitor>
 void visit_fields(Visitor& visit, ResightingsConfig& config) {
   visit("enabled", config.enabled);
   visit("cluster_m", config.cluster_m, 0.05, 10.0);
-  visit("least_hits", config.least_hits, 1, 10000);
+  visit("minimum_hits", config.minimum_hits, 1, 10000);
   visit("settle_s", config.settle_s, 0.0, 1.0);
   visit("match_m", config.match_m, 0.05, 20.0);
   visit("rival", config.rival, 1.0, 100.0);

@@ -37,7 +37,7 @@ ReadColumns read_columns(const BlockRule& rule) {
     columns.right_first_px = 0;
     for (const DisparityRule& one : rule.disparities)
       columns.right_last_px = std::max(columns.right_last_px,
-                                       rule.width_px - std::min(one.disparity_px, rule.least_disparity_px));
+                                       rule.width_px - std::min(one.disparity_px, rule.minimum_disparity_px));
   }
   for (int* column_px : {&columns.left_first_px, &columns.right_first_px, &columns.right_last_px})
     *column_px = std::clamp(*column_px, 0, rule.width_px);

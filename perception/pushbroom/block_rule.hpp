@@ -11,7 +11,7 @@ namespace understory {
 /// One disparity the detector looks at.
 struct DisparityRule {
   int disparity_px = 0;          ///< x_left - x_right, whole pixels, inside the image
-  int least_edge_sum = 0;        ///< of each image's block by itself; at most largest_edge_sum
+  int minimum_edge_sum = 0;      ///< of each image's block by itself; at most largest_edge_sum
   std::int64_t limit_units = 0;  ///< a hit scores below this (see score_limit_units)
 };
 
@@ -30,7 +30,7 @@ struct BlockRule {
   SelfSimilarityWindow window;
 
   bool uniqueness = false;
-  int least_disparity_px = 0, greatest_disparity_px = 0;  ///< range searched, widened to hold the disparity
+  int minimum_disparity_px = 0, maximum_disparity_px = 0;  ///< range searched, widened to hold the disparity
   double uniqueness_ratio = 2;
 
   bool neighbours = false;  ///< whether matches say how well the disparities one pixel away would do

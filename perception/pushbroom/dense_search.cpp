@@ -34,7 +34,7 @@ DenseSearch::DenseSearch(const BlockRule& rule)
       windows_(rule.width_px) {
   for (const DisparityRule& one : rule.disparities) {
     const SearchColumns columns = search_columns(rule, one);
-    searches_.push_back({columns, candidate_test(one.least_edge_sum, one.limit_units),
+    searches_.push_back({columns, candidate_test(one.minimum_edge_sum, one.limit_units),
                          RunningSums(columns.count), EdgeMap(columns.count, block_px),
                          std::vector<std::uint64_t>(static_cast<std::size_t>(columns.count / block_px + 1))});
   }

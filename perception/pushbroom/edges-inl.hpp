@@ -76,7 +76,7 @@ struct VectorTest {
 HWY_INLINE VectorTest vector_test(const CandidateTest& test) {
   const Words d16;
   const hn::RebindToSigned<Words> signed16;
-  return {hn::Set(signed16, static_cast<std::int16_t>(test.least_edge_sum - 1)),
+  return {hn::Set(signed16, static_cast<std::int16_t>(test.minimum_edge_sum - 1)),
           hn::Set(d16, test.limit_share),
           hn::Set(d16, test.any_score ? std::uint16_t{largest_edge_sum} : std::uint16_t{0})};
 }

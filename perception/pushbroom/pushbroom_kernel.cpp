@@ -14,8 +14,8 @@ PushbroomKernel::PushbroomKernel(const BlockRule& rule)
     strips_.emplace(rule_);
   }
   for (const DisparityRule& one : rule.disparities)
-    uniqueness_.emplace_back(one.disparity_px, std::min(one.disparity_px, rule.least_disparity_px),
-                             std::max(one.disparity_px, rule.greatest_disparity_px), rule.uniqueness_ratio);
+    uniqueness_.emplace_back(one.disparity_px, std::min(one.disparity_px, rule.minimum_disparity_px),
+                             std::max(one.disparity_px, rule.maximum_disparity_px), rule.uniqueness_ratio);
   if (rule.every_pixel || rule.horizontal_invariance) right_edges_ = EdgeMap(rule.width_px, rule.height_px);
 }
 

@@ -31,7 +31,7 @@ PushbroomConfig paper_rule() { return {}; }
 
 PushbroomConfig robust_rule() {
   PushbroomConfig config;
-  config.least_edge_sum = 215;
+  config.minimum_edge_sum = 215;
   config.score_limit = 0.25;
   config.horizontal_invariance = false;
   config.uniqueness = true;
@@ -42,18 +42,18 @@ PushbroomConfig robust_rule() {
 PushbroomConfig tuned_rule(std::string_view rig) {
   PushbroomConfig config = robust_rule();
   if (rig == "long") {
-    config.least_edge_sum = 398;
+    config.minimum_edge_sum = 398;
     config.score_limit = 0.126899;
     config.uniqueness_ratio = 1.35321;
-    config.uniqueness_least_depth_m = 1.66256;
-    config.isolation_least_points = 6;
+    config.uniqueness_minimum_depth_m = 1.66256;
+    config.isolation_minimum_points = 6;
     config.isolation_radius_m = 0.890088;
   } else if (rig == "paper") {
-    config.least_edge_sum = 406;
+    config.minimum_edge_sum = 406;
     config.score_limit = 0.200216;
     config.uniqueness_ratio = 1.19411;
-    config.uniqueness_least_depth_m = 2.15428;
-    config.isolation_least_points = 8;
+    config.uniqueness_minimum_depth_m = 2.15428;
+    config.isolation_minimum_points = 8;
     config.isolation_radius_m = 0.621281;
   }
   return config;
@@ -68,7 +68,7 @@ PushbroomStereo::PushbroomStereo(const StereoRig& rig, const PushbroomConfig& co
     assert_always(px > rig.infinity_disparity_px() + 1, "detection depth within a pixel of infinity");
     depths_.push_back({px, rig.depth_m(px), {rig.depth_m(px + 1), rig.depth_m(px - 1)}});
   }
-  for (const auto* thresholds : {&config.depths_least_edge_sum, &config.depths_score_limit})
+  for (const auto* thresholds : {&config.depths_minimum_edge_sum, &config.depths_score_limit})
     assert_always(thresholds->empty() || thresholds->size() == depths_.size(),
                   "expected a threshold for each depth, or none");
   assert_always(config.stride_px > 0 && config.invariance_row_step_px > 0, "strides must be positive");
@@ -97,8 +97,8 @@ BlockRule PushbroomStereo::block_rule() const {
   rule.last_row_px = config_.last_row_px;
   rule.every_pixel = config_.every_pixel;
   for (std::size_t i = 0; i < depths_.size(); ++i) {
-    const double edges =
-        config_.depths_least_edge_sum.empty() ? config_.least_edge_sum : config_.depths_least_edge_sum[i];
+    const double edges = config_.depths_minimum_edge_sum.empty() ? config_.minimum_edge_sum
+                                                                 : config_.depths_minimum_edge_sum[i];
     const double limit =
         config_.depths_score_limit.empty() ? config_.score_limit : config_.depths_score_limit[i];
     rule.disparities.push_back({depths_[i].disparity_px, whole(edges), score_limit_units(limit)});
@@ -106,13 +106,13 @@ BlockRule PushbroomStereo::block_rule() const {
   rule.horizontal_invariance = config_.horizontal_invariance;
   rule.infinity_px = infinity_px_;
   rule.window = {config_.invariance_columns_px, config_.invariance_rows_px, config_.invariance_row_step_px,
-                 config_.least_edge_sum, score_limit_units(config_.invariance_score_limit)};
+                 config_.minimum_edge_sum, score_limit_units(config_.invariance_score_limit)};
   rule.neighbours = config_.subpixel;
   rule.uniqueness = config_.uniqueness;
   rule.uniqueness_ratio = config_.uniqueness_ratio;
-  rule.least_disparity_px = infinity_px_;
-  rule.greatest_disparity_px =
-      static_cast<int>(std::floor(rig_.disparity_px(config_.uniqueness_least_depth_m)));
+  rule.minimum_disparity_px = infinity_px_;
+  rule.maximum_disparity_px =
+      static_cast<int>(std::floor(rig_.disparity_px(config_.uniqueness_minimum_depth_m)));
   return rule;
 }
 
@@ -133,7 +133,7 @@ const std::vector<StereoHit>& PushbroomStereo::detect(const StereoFrame& frame) 
   for (const Band& band : bands_)
     for (const BlockMatch& match : *band.matches) all_hits_.push_back(hit_of(match));
   if (!config_.isolation) return all_hits_;
-  without_isolated(all_hits_, config_.isolation_least_points, config_.isolation_radius_m, hits_);
+  without_isolated(all_hits_, config_.isolation_minimum_points, config_.isolation_radius_m, hits_);
   return hits_;
 }
 

@@ -18,12 +18,12 @@ struct PushbroomConfig {
   std::vector<double> depths_m;  ///< to look at; empty: the rig's own detection depth. 0.1 .. 1000
   /// For each of depths_m its own threshold, in their order; empty: the ones below for all. Same ranges as
   /// there.
-  std::vector<double> depths_least_edge_sum, depths_score_limit;
+  std::vector<double> depths_minimum_edge_sum, depths_score_limit;
   int threads = 1;           ///< 1 .. 64; hits do not depend on it
   int stride_px = 5;         ///< from block to block, both ways; 1 .. 100; 5 sets the 5x5 blocks side by side
   bool every_pixel = false;  ///< dense: a window at every pixel, of each 5x5 cell of windows the best counts
   int last_row_px = 205;     ///< top edge of the lowest row of blocks; rows below see the ground
-  int least_edge_sum = 860;  ///< Laplacian sum asked of each image's block by itself; 0 .. 6375
+  int minimum_edge_sum = 860;         ///< Laplacian sum asked of each image's block by itself; 0 .. 6375
   double score_limit = 54.0 / 333.0;  ///< hit if S = SAD / (both edge sums) is below; exact to 1/333000
 
   bool horizontal_invariance = true;  ///< reject texture that also matches near infinity
@@ -34,15 +34,15 @@ struct PushbroomConfig {
 
   bool uniqueness = false;        ///< the disparity must stand out along the row
   double uniqueness_ratio = 2.0;  ///< no other disparity within this many times its SAD
-  double uniqueness_least_depth_m =
+  double uniqueness_minimum_depth_m =
       1.5;  ///< range searched: infinity to here (the paper ignores nearer points)
 
   /// Puts a hit at the vertex of the parabola through the SADs of its disparity and the two beside it, at
   /// most half a pixel away, where its own is the least of the three.
   bool subpixel = false;
 
-  bool isolation = false;          ///< a hit needs company in its own frame
-  int isolation_least_points = 3;  ///< itself included (the original's avoidance)
+  bool isolation = false;            ///< a hit needs company in its own frame
+  int isolation_minimum_points = 3;  ///< itself included (the original's avoidance)
   double isolation_radius_m = 1.0;
 };
 
@@ -65,7 +65,7 @@ void visit_fields(Visitor& visit, PushbroomConfig& config) {
   visit("stride_px", config.stride_px, 1, 100);
   visit("every_pixel", config.every_pixel);
   visit("last_row_px", config.last_row_px, 0, 4000);
-  visit("least_edge_sum", config.least_edge_sum, 0, 6375);
+  visit("minimum_edge_sum", config.minimum_edge_sum, 0, 6375);
   visit("score_limit", config.score_limit, 0.0, 10.0);
   visit("horizontal_invariance", config.horizontal_invariance);
   visit("invariance_columns_px", config.invariance_columns_px, 0, 50);
@@ -74,12 +74,12 @@ void visit_fields(Visitor& visit, PushbroomConfig& config) {
   visit("invariance_score_limit", config.invariance_score_limit, 0.0, 10.0);
   visit("uniqueness", config.uniqueness);
   visit("uniqueness_ratio", config.uniqueness_ratio, 1.0, 100.0);
-  visit("uniqueness_least_depth_m", config.uniqueness_least_depth_m, 0.1, 100.0);
-  visit("depths_least_edge_sum", config.depths_least_edge_sum, 0, 6375);
+  visit("uniqueness_minimum_depth_m", config.uniqueness_minimum_depth_m, 0.1, 100.0);
+  visit("depths_minimum_edge_sum", config.depths_minimum_edge_sum, 0, 6375);
   visit("depths_score_limit", config.depths_score_limit, 0.0, 10.0);
   visit("subpixel", config.subpixel);
   visit("isolation", config.isolation);
-  visit("isolation_least_points", config.isolation_least_points, 1, 1000);
+  visit("isolation_minimum_points", config.isolation_minimum_points, 1, 1000);
   visit("isolation_radius_m", config.isolation_radius_m, 0.0, 100.0);
 }
 

@@ -93,7 +93,7 @@ HWY_INLINE bool RowIsSimilar(const WindowSearch& search, const WindowTask& task,
                                    hn::Set(d32, static_cast<std::uint32_t>(search.window.limit_units)));
     const auto scores = hn::Lt(hn::BitCast(signed64, scaled_sad), hn::BitCast(signed64, limit));
     const auto textured = hn::Gt(hn::BitCast(signed64, edges),
-                                 hn::Set(signed64, std::int64_t{search.window.least_edge_sum} - 1));
+                                 hn::Set(signed64, std::int64_t{search.window.minimum_edge_sum} - 1));
     const auto inside = hn::FirstN(signed64, static_cast<std::size_t>(shifts - first));
     similar = hn::Or(similar, hn::And(hn::And(scores, textured), inside));
   }
@@ -136,7 +136,8 @@ bool similar_one_by_one(const WindowSearch& search, const WindowTask& task) {
                                 search.right_stride);
       const int edges =
           block_sum(task.right_edges + v * search.right_edges_stride + u, search.right_edges_stride);
-      if (edges >= window.least_edge_sum && scores_below(sad, task.left_edge_sum + edges, window.limit_units))
+      if (edges >= window.minimum_edge_sum &&
+          scores_below(sad, task.left_edge_sum + edges, window.limit_units))
         return true;
     }
   return false;

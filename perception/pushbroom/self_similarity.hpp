@@ -13,7 +13,7 @@ struct SelfSimilarityWindow {
   int columns_each_side_px = 3;  ///< searched columns: -3 .. +3 (the original's public code)
   int rows_each_side_px = 8;     ///< searched rows: -8 .. +8
   int row_step_px = 2;           ///< in steps of 2
-  int least_edge_sum = 860;      ///< of the right block, as for a hit
+  int minimum_edge_sum = 860;    ///< of the right block, as for a hit
   std::int64_t limit_units = 0;  ///< reject at a score below this (see score_limit_units)
 };
 

@@ -18,7 +18,7 @@ std::vector<std::uint64_t> block_bits(int count, int stride_px) {
 StripSearch::StripSearch(const BlockRule& rule) : rule_(rule), edge_columns_(edge_columns(rule)) {
   for (const DisparityRule& one : rule.disparities) {
     const SearchColumns columns = search_columns(rule, one);
-    searches_.push_back({columns, candidate_test(one.least_edge_sum, one.limit_units),
+    searches_.push_back({columns, candidate_test(one.minimum_edge_sum, one.limit_units),
                          block_bits(columns.count, rule.stride_px)});
   }
   const auto padded = static_cast<std::size_t>(rule.width_px + 2 * over_read_px);

@@ -175,10 +175,10 @@ void edge_row(const std::uint8_t* above, const std::uint8_t* here, const std::ui
   if (last_px == width_px) edges[width_px - 1] = outermost_edge(above, here, below, width_px - 1, width_px);
 }
 
-CandidateTest candidate_test(int least_edge_sum, std::int64_t limit_units) {
+CandidateTest candidate_test(int minimum_edge_sum, std::int64_t limit_units) {
   constexpr std::int64_t shares = 16384;
   CandidateTest test;
-  test.least_edge_sum = least_edge_sum;
+  test.minimum_edge_sum = minimum_edge_sum;
   test.any_score = 2 * limit_units > 5 * score_unit;
   test.limit_share = test.any_score
                          ? std::uint16_t{0}

@@ -75,11 +75,11 @@ inline std::uint8_t outermost_edge(const std::uint8_t* above, const std::uint8_t
 /// What a candidate must pass. limit_share is the score limit in 1/16384, rounded up; any_score lets every
 /// score pass (limits too large for 16 bits).
 struct CandidateTest {
-  int least_edge_sum = 0;
+  int minimum_edge_sum = 0;
   std::uint16_t limit_share = 0;
   bool any_score = false;
 };
-CandidateTest candidate_test(int least_edge_sum, std::int64_t limit_units);
+CandidateTest candidate_test(int minimum_edge_sum, std::int64_t limit_units);
 
 /// Compares the left strip from column left_px with the right one from column right_px, over `count` columns.
 /// column_sads[x] is the SAD of column x over the five rows, at most 255; sads[x] the sum of the five columns

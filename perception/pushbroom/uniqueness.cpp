@@ -65,10 +65,10 @@ void NeighbourSads(const std::uint8_t* block, std::ptrdiff_t left_stride, const 
 // Whether one of the sads is at most `limit`.
 bool AnyAtMost(const std::uint16_t* sads, int count, std::uint16_t limit) {
   const hn::ScalableTag<std::uint16_t> d16;
-  auto least = hn::Set(d16, std::uint16_t{65535});
+  auto minimum = hn::Set(d16, std::uint16_t{65535});
   for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d16)))
-    least = hn::Min(least, hn::LoadU(d16, sads + i));
-  return !hn::AllFalse(d16, hn::Eq(hn::SaturatedSub(least, hn::Set(d16, limit)), hn::Zero(d16)));
+    minimum = hn::Min(minimum, hn::LoadU(d16, sads + i));
+  return !hn::AllFalse(d16, hn::Eq(hn::SaturatedSub(minimum, hn::Set(d16, limit)), hn::Zero(d16)));
 }
 
 }  // namespace HWY_NAMESPACE
@@ -87,22 +87,22 @@ constexpr int over_read_px = 128;  // a vector of loads, and one of stores, past
 
 }  // namespace
 
-UniquenessTest::UniquenessTest(int detection_disparity_px, int least_disparity_px, int greatest_disparity_px,
+UniquenessTest::UniquenessTest(int detection_disparity_px, int minimum_disparity_px, int maximum_disparity_px,
                                double ratio)
     : detection_px_(detection_disparity_px),
-      least_px_(least_disparity_px),
-      greatest_px_(greatest_disparity_px),
+      minimum_px_(minimum_disparity_px),
+      maximum_px_(maximum_disparity_px),
       ratio_thousandths_(std::llround(1000 * ratio)) {
-  assert_always(least_px_ <= detection_px_ && detection_px_ <= greatest_px_,
+  assert_always(minimum_px_ <= detection_px_ && detection_px_ <= maximum_px_,
                 "detection disparity outside the range");
   assert_always(ratio >= 1.0, "uniqueness ratio below 1");
-  sads_.resize(static_cast<std::size_t>(greatest_px_ - least_px_ + 1 + over_read_px));
+  sads_.resize(static_cast<std::size_t>(maximum_px_ - minimum_px_ + 1 + over_read_px));
 }
 
 bool UniquenessTest::unique(const GrayView& left, const GrayView& right, int column_px, int row_px) {
   // A greater disparity is a smaller right column; columns run upwards so that loads read forwards.
-  const int first = std::max(0, column_px - greatest_px_);
-  const int last = std::min(right.width_px - block_px, column_px - least_px_);
+  const int first = std::max(0, column_px - maximum_px_);
+  const int last = std::min(right.width_px - block_px, column_px - minimum_px_);
   const int count = last - first + 1;
   const int chosen = column_px - detection_px_ - first;
   assert_always(chosen >= 0 && chosen < count, "the right block lies outside the image");

@@ -14,14 +14,15 @@ namespace understory {
 class UniquenessTest {
  public:
   /// Range in whole pixels, both ends included, with the detection's disparity inside; ratio >= 1.
-  UniquenessTest(int detection_disparity_px, int least_disparity_px, int greatest_disparity_px, double ratio);
+  UniquenessTest(int detection_disparity_px, int minimum_disparity_px, int maximum_disparity_px,
+                 double ratio);
 
   /// The left block at (column, row), whose right partner at the detection disparity lies inside the image.
   /// Disparities whose right block leaves the image are left out.
   bool unique(const GrayView& left, const GrayView& right, int column_px, int row_px);
 
  private:
-  int detection_px_, least_px_, greatest_px_;
+  int detection_px_, minimum_px_, maximum_px_;
   std::int64_t ratio_thousandths_;   // whole numbers, so that every machine decides alike
   std::vector<std::uint16_t> sads_;  // by right column, ascending
 };

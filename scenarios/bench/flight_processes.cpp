@@ -15,7 +15,7 @@
 namespace understory {
 
 void FlightProcesses::start(std::uint64_t tag, const std::vector<std::string>& arguments) {
-  while (running_.size() >= static_cast<std::size_t>(greatest_count_)) wait_for_one();
+  while (running_.size() >= static_cast<std::size_t>(maximum_count_)) wait_for_one();
   const pid_t child = fork();
   if (child < 0) throw MachineError(fmt::format("cannot start a flight: {}", std::strerror(errno)));
   if (child == 0) become_this_program(arguments);

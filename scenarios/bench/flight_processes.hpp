@@ -17,8 +17,8 @@ class FlightProcesses {
   /// Called with the tag of a process and its exit status (128 + signal where it was killed).
   using OnEnd = std::function<void(std::uint64_t tag, int status)>;
 
-  FlightProcesses(int greatest_count, OnEnd on_end)
-      : greatest_count_(greatest_count), on_end_(std::move(on_end)) {}
+  FlightProcesses(int maximum_count, OnEnd on_end)
+      : maximum_count_(maximum_count), on_end_(std::move(on_end)) {}
 
   /// Starts this program with `arguments` (without the program's name); first waits where all places are
   /// taken.
@@ -35,7 +35,7 @@ class FlightProcesses {
  private:
   void wait_for_one();
 
-  int greatest_count_;
+  int maximum_count_;
   OnEnd on_end_;
   std::map<pid_t, std::uint64_t> running_;
   Use use_;

@@ -25,8 +25,8 @@ struct Scene {
 };
 
 Scene scene_of(std::mt19937_64& generator) {
-  const auto uniform = [&](double least, double greatest) {
-    return std::uniform_real_distribution<double>(least, greatest)(generator);
+  const auto uniform = [&](double minimum, double maximum) {
+    return std::uniform_real_distribution<double>(minimum, maximum)(generator);
   };
   Scene scene;
   scene.ground_y_m = uniform(2.5, 5);

@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t greatest_seed = std::uint64_t{1} << 32;
-constexpr std::size_t greatest_flights = 1'000'000;
+constexpr std::uint64_t maximum_seed = std::uint64_t{1} << 32;
+constexpr std::size_t maximum_flights = 1'000'000;
 
 using Changes = std::vector<ConfigNode>;  ///< a tree per key
 
@@ -112,7 +112,7 @@ std::vector<Variant> with_grid(std::vector<Variant> variants, const ConfigNode* 
 std::uint64_t seed_of(std::string_view word, const std::string& where, const std::string& whole) {
   std::uint64_t seed = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), seed);
-  if (word.empty() || error != std::errc() || end != word.data() + word.size() || seed > greatest_seed)
+  if (word.empty() || error != std::errc() || end != word.data() + word.size() || seed > maximum_seed)
     throw ScenarioError(
         fmt::format("{}: expected first..last (1..200), a seed from 0 to 2^32, or a list of such, got '{}'",
                     where, whole));
@@ -142,8 +142,8 @@ std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, cons
     const std::uint64_t last =
         dots == std::string::npos ? first : seed_of(std::string_view(range).substr(dots + 2), where, range);
     if (last < first) throw ScenarioError(fmt::format("{}: expected first <= last, got '{}'", where, range));
-    if (last - first >= greatest_flights)
-      throw ScenarioError(fmt::format("{}: expected at most {} flights", where, greatest_flights));
+    if (last - first >= maximum_flights)
+      throw ScenarioError(fmt::format("{}: expected at most {} flights", where, maximum_flights));
     for (std::uint64_t seed = first; seed <= last; ++seed) {
       if (!seen.insert(seed).second)
         throw ScenarioError(fmt::format("{}: expected each seed once, {} is given twice", where, seed));
@@ -194,8 +194,8 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario) 
       campaign.conditions.push_back({name, scenario_to_text(scenario)});
     }
   }
-  if (campaign.conditions.size() * campaign.seeds.size() > greatest_flights)
-    refuse_key(*seeds, "seeds", fmt::format("at most {} flights in all", greatest_flights));
+  if (campaign.conditions.size() * campaign.seeds.size() > maximum_flights)
+    refuse_key(*seeds, "seeds", fmt::format("at most {} flights in all", maximum_flights));
   return campaign;
 }
 

@@ -70,8 +70,8 @@ void add_point(Series& series, double x, const Count& count) {
   const Interval interval = wilson_interval(count.goals, count.flights);
   series.x.push_back(x);
   series.y.push_back(100.0 * count.goals / count.flights);
-  series.low.push_back(100 * interval.least);
-  series.high.push_back(100 * interval.greatest);
+  series.low.push_back(100 * interval.minimum);
+  series.high.push_back(100 * interval.maximum);
 }
 
 LinePlot success_plot(const std::string& over, const std::string& x_label) {
@@ -86,8 +86,8 @@ LinePlot success_plot(const std::string& over, const std::string& x_label) {
 double span_of(const std::vector<FlightRow>& rows, const PlotAxis& axis) {
   if (rows.empty()) return 0;
   const auto by_value = [&](const FlightRow& a, const FlightRow& b) { return axis.value(a) < axis.value(b); };
-  const auto [least, greatest] = std::ranges::minmax_element(rows, by_value);
-  return axis.value(*greatest) - axis.value(*least);
+  const auto [minimum, maximum] = std::ranges::minmax_element(rows, by_value);
+  return axis.value(*maximum) - axis.value(*minimum);
 }
 
 /// Whether any conditions differ in nothing else: scenarios that differ in much besides are no scan.
@@ -125,8 +125,8 @@ Series steps_of(const ConditionSummary& summary) {
     for (const double at : {steps[i].at, until}) {
       series.x.push_back(at);
       series.y.push_back(100 * steps[i].share);
-      series.low.push_back(100 * steps[i].interval.least);
-      series.high.push_back(100 * steps[i].interval.greatest);
+      series.low.push_back(100 * steps[i].interval.minimum);
+      series.high.push_back(100 * steps[i].interval.maximum);
     }
   }
   return series;

@@ -49,7 +49,7 @@ std::string number(double value, int decimals) {
 std::string success_text(const ConditionSummary& summary) {
   if (summary.flown == 0) return "-";
   return fmt::format("{:.1f} ({:.1f} to {:.1f})", 100.0 * summary.goals / summary.flown,
-                     100 * summary.success.least, 100 * summary.success.greatest);
+                     100 * summary.success.minimum, 100 * summary.success.maximum);
 }
 
 std::string median_text(const ConditionSummary& summary) {

@@ -35,7 +35,7 @@ struct FlightRow {
   double position_error_max_m = 0;
   std::int64_t detections = 0;
   std::int64_t remembered_points = 0;
-  std::int64_t least_points_on_a_bar = -1;  ///< -1 (empty, null): not counted on this course
+  std::int64_t minimum_points_on_a_bar = -1;  ///< -1 (empty, null): not counted on this course
   std::int64_t replans = 0, straight = 0, solved = 0, kept = 0, kept_ompl = 0, fallback = 0;
   std::int64_t obstacle_ahead = 0;       ///< replans in which straight on would touch what the map holds
   std::int64_t obstacle_ahead_ompl = 0;  ///< of those: flown on OMPL's answer

@@ -46,7 +46,7 @@ void visit_columns(Row& row, Is&& is, Measured&& measured) {
   measured("position_error_max_m", row.position_error_max_m);
   measured("detections", row.detections);
   measured("remembered_points", row.remembered_points);
-  measured("least_points_on_a_bar", row.least_points_on_a_bar);
+  measured("minimum_points_on_a_bar", row.minimum_points_on_a_bar);
   measured("replans", row.replans);
   measured("straight", row.straight);
   measured("solved", row.solved);
@@ -84,7 +84,7 @@ Json json_of(const FlightRow& row) {
     json[std::string(name)] = json_value(value);
   };
   visit_columns(row, put, [&](std::string_view name, const auto& value) {
-    const bool counted = name != "least_points_on_a_bar" || row.least_points_on_a_bar >= 0;
+    const bool counted = name != "minimum_points_on_a_bar" || row.minimum_points_on_a_bar >= 0;
     if (row.flown() && counted)
       put(name, value);
     else

@@ -19,8 +19,8 @@ FlightRow flown_row(const Scenario& scenario, const FlightResult& result) {
   row.detections = result.detections;
   row.remembered_points = result.remembered_points;
   for (const auto& [bar, points] : result.points_on_obstacles)
-    if (row.least_points_on_a_bar < 0 || points < row.least_points_on_a_bar)
-      row.least_points_on_a_bar = points;
+    if (row.minimum_points_on_a_bar < 0 || points < row.minimum_points_on_a_bar)
+      row.minimum_points_on_a_bar = points;
   row.replans = result.replans;
   row.straight = result.replans_straight;
   row.solved = result.replans_solved;

@@ -28,7 +28,7 @@ std::string signed_percent(double share) { return fmt::format("{:+.1f}", 100 * s
 
 std::string success_text(int goals, int flights) {
   const Interval interval = wilson_interval(goals, flights);
-  return fmt::format("{} ({} to {})", goals, percent(interval.least), percent(interval.greatest));
+  return fmt::format("{} ({} to {})", goals, percent(interval.minimum), percent(interval.maximum));
 }
 
 std::vector<std::string> success_row(const ConditionComparison& condition) {
@@ -39,7 +39,7 @@ std::vector<std::string> success_row(const ConditionComparison& condition) {
       success_text(goals.first(), goals.pairs()),
       success_text(goals.second(), goals.pairs()),
       fmt::format("{} ({} to {})", signed_percent(goals.difference()),
-                  signed_percent(condition.difference.least), signed_percent(condition.difference.greatest)),
+                  signed_percent(condition.difference.minimum), signed_percent(condition.difference.maximum)),
       fmt::format("{}", goals.only_first),
       fmt::format("{}", goals.only_second),
       fmt::format("{:.3g}", condition.p),
@@ -64,9 +64,9 @@ PrintedTable metric_table(const Comparison& comparison) {
       if (metric.pairs == 0) continue;
       const BootstrapEstimate& difference = metric.difference;
       std::string change = fmt::format("{:+.4f}", difference.value);
-      if (std::isfinite(difference.interval.least))
+      if (std::isfinite(difference.interval.minimum))
         change +=
-            fmt::format(" ({:+.4f} to {:+.4f})", difference.interval.least, difference.interval.greatest);
+            fmt::format(" ({:+.4f} to {:+.4f})", difference.interval.minimum, difference.interval.maximum);
       table.rows.push_back({condition.condition, metric.name, fmt::format("{}", metric.pairs),
                             fmt::format("{:.4f}", metric.baseline_mean),
                             fmt::format("{:.4f}", metric.candidate_mean), change});

@@ -36,10 +36,10 @@ std::size_t letter_length(const std::string& text, std::size_t at) {
     if ((byte(i) & 0xc0) != 0x80) return 0;
     code = code << 6 | (byte(i) & 0x3f);
   }
-  constexpr unsigned least[]{0, 0, 0x80, 0x800, 0x10000};
+  constexpr unsigned minimum[]{0, 0, 0x80, 0x800, 0x10000};
   const bool surrogate = code >= 0xd800 && code <= 0xdfff;
-  return code < least[length] || code > 0x10ffff || surrogate || code == 0xfffe || code == 0xffff ? 0
-                                                                                                  : length;
+  return code < minimum[length] || code > 0x10ffff || surrogate || code == 0xfffe || code == 0xffff ? 0
+                                                                                                    : length;
 }
 
 std::string without_odd_characters(const std::string& text) {

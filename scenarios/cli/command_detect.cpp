@@ -85,7 +85,7 @@ void add_detect_command(CLI::App& app, Command& chosen) {
   command
       ->add_option("--set", arguments->options.settings,
                    "key=value of the detector or the map: depths_m=[10.1,7,5] (several depths at once), "
-                   "pushbroom.least_edge_sum=300, map.max_age_s=10")
+                   "pushbroom.minimum_edge_sum=300, map.max_age_s=10")
       ->allow_extra_args(false)
       ->trigger_on_parse(false);
   command->add_option("--poses", arguments->poses,

@@ -9,15 +9,15 @@ namespace understory {
 namespace {
 
 template <typename Number>
-Number parsed(const ConfigNode& node, const std::string& key, Number least, Number greatest,
+Number parsed(const ConfigNode& node, const std::string& key, Number minimum, Number maximum,
               const char* what) {
   Number value{};
   const char* const end = node.text.data() + node.text.size();
   const auto [stop, error] = std::from_chars(node.text.data(), end, value);
   const bool is_number =
       node.kind == ConfigNode::Kind::scalar && !node.quoted && error == std::errc() && stop == end;
-  if (!is_number || !(value >= least && value <= greatest))  // written so that nan is refused
-    refuse_key(node, key, fmt::format("{} from {} to {}", what, least, greatest));
+  if (!is_number || !(value >= minimum && value <= maximum))  // written so that nan is refused
+    refuse_key(node, key, fmt::format("{} from {} to {}", what, minimum, maximum));
   return value;
 }
 
@@ -56,12 +56,12 @@ std::vector<std::string> words_of(const ConfigNode& node, const std::string& key
   return words;
 }
 
-double number_of(const ConfigNode& node, const std::string& key, double least, double greatest) {
-  return parsed(node, key, least, greatest, "a number");
+double number_of(const ConfigNode& node, const std::string& key, double minimum, double maximum) {
+  return parsed(node, key, minimum, maximum, "a number");
 }
 
-int whole_number_of(const ConfigNode& node, const std::string& key, int least, int greatest) {
-  return parsed(node, key, least, greatest, "a whole number");
+int whole_number_of(const ConfigNode& node, const std::string& key, int minimum, int maximum) {
+  return parsed(node, key, minimum, maximum, "a whole number");
 }
 
 }  // namespace understory

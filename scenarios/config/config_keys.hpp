@@ -24,7 +24,7 @@ std::vector<std::string> words_of(const ConfigNode& node, const std::string& key
                                   const std::string& expected);
 
 /// Nothing of a number, or one outside least .. greatest, is refused.
-double number_of(const ConfigNode& node, const std::string& key, double least, double greatest);
-int whole_number_of(const ConfigNode& node, const std::string& key, int least, int greatest);
+double number_of(const ConfigNode& node, const std::string& key, double minimum, double maximum);
+int whole_number_of(const ConfigNode& node, const std::string& key, int minimum, int maximum);
 
 }  // namespace understory

@@ -44,11 +44,11 @@ class ConfigReader {
   }
 
   template <typename T, typename Least, typename Greatest>
-  void operator()(std::string_view name, T& field, Least least, Greatest greatest) {
+  void operator()(std::string_view name, T& field, Least minimum, Greatest maximum) {
     const ConfigNode* node = take(name);
     if (node == nullptr) return;
     if constexpr (std::is_arithmetic_v<T>) {
-      field = number<T>(*node, name, static_cast<T>(least), static_cast<T>(greatest));
+      field = number<T>(*node, name, static_cast<T>(minimum), static_cast<T>(maximum));
     } else {  // Eigen::Vector3d, std::vector<double>
       constexpr bool fixed = std::is_same_v<T, Eigen::Vector3d>;
       if (node->kind != ConfigNode::Kind::list || (fixed && node->children.size() != 3)) {
@@ -56,7 +56,7 @@ class ConfigReader {
       }
       if constexpr (!fixed) field.resize(node->children.size());
       for (std::size_t i = 0; i < node->children.size(); ++i) {
-        const double bound[] = {static_cast<double>(least), static_cast<double>(greatest)};
+        const double bound[] = {static_cast<double>(minimum), static_cast<double>(maximum)};
         field[static_cast<typename std::conditional_t<fixed, Eigen::Index, std::size_t>>(i)] =
             number<double>(node->children[i], name, bound[0], bound[1]);
       }
@@ -119,15 +119,15 @@ class ConfigReader {
   }
 
   template <typename T>
-  T number(const ConfigNode& node, std::string_view name, T least, T greatest) const {
+  T number(const ConfigNode& node, std::string_view name, T minimum, T maximum) const {
     T value{};
     const char* end = node.text.data() + node.text.size();
     const auto [stop, error] = std::from_chars(node.text.data(), end, value);
     const bool is_number =
         node.kind == ConfigNode::Kind::scalar && !node.quoted && error == std::errc() && stop == end;
-    if (!is_number || !(value >= least && value <= greatest)) {  // written so that nan is refused
+    if (!is_number || !(value >= minimum && value <= maximum)) {  // written so that nan is refused
       constexpr std::string_view what = std::is_integral_v<T> ? "a whole number" : "a number";
-      refuse(node, name, fmt::format("{} from {} to {}", what, least, greatest));
+      refuse(node, name, fmt::format("{} from {} to {}", what, minimum, maximum));
     }
     return value;
   }

@@ -5,20 +5,29 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <set>
 #include <sstream>
+#include <utility>
 
 namespace understory {
 namespace {
 
 /// Far above what any scenario needs: an alias that contains itself has no end.
-constexpr int greatest_depth = 16;
+constexpr int maximum_depth = 16;
 
 std::string place(const std::string& name, const YAML::Mark& mark) {
   const bool has_lines = !name.starts_with("--set ");
   return mark.is_null() || !has_lines ? name : fmt::format("{}:{}", name, mark.line + 1);
+}
+
+/// `key` with the words that keys have had since version 0.2, so that older files learn the new name.
+std::string renamed_key(std::string key) {
+  for (const auto& [before, now] : {std::pair{"least", "minimum"}, std::pair{"greatest", "maximum"}})
+    if (const auto at = key.find(before); at != std::string::npos) key.replace(at, std::strlen(before), now);
+  return key;
 }
 
 std::string one_line(std::string text) {
@@ -29,9 +38,9 @@ std::string one_line(std::string text) {
 ConfigNode convert(const YAML::Node& yaml, const std::string& name, const std::string& path, int depth = 0) {
   ConfigNode node;
   node.origin = place(name, yaml.Mark());
-  if (depth > greatest_depth) {
+  if (depth > maximum_depth) {
     throw ScenarioError(fmt::format("{}: {}: expected at most {} levels", node.origin,
-                                    path.substr(0, path.find('[')), greatest_depth));
+                                    path.substr(0, path.find('[')), maximum_depth));
   }
   if (yaml.IsScalar()) {
     node.kind = ConfigNode::Kind::scalar;
@@ -172,6 +181,8 @@ std::string origin_of(const std::vector<ConfigNode>& sources, std::string_view p
 }
 
 std::string nearest_name(std::string_view word, const std::vector<std::string>& known) {
+  const std::string renamed = renamed_key(std::string(word));
+  if (std::ranges::find(known, renamed) != known.end()) return renamed;
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string& name : known) {  // Levenshtein, one row at a time

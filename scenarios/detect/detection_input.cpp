@@ -90,12 +90,12 @@ std::optional<PosedMap> map_for(const DetectionOptions& options, const StereoRec
 }
 
 double film_rate_hz(const StereoRecording& recording) {
-  constexpr double where_unknown_hz = 20, least_hz = 1, greatest_hz = 120;
+  constexpr double where_unknown_hz = 20, minimum_hz = 1, maximum_hz = 120;
   const auto times = recording.times();
   const std::int64_t count = recording.frame_count();
   if (!times || count < 2) return where_unknown_hz;
   const double span_s = 1e-9 * static_cast<double>(times->last_ns - times->first_ns);
-  return std::clamp(static_cast<double>(count - 1) / span_s, least_hz, greatest_hz);
+  return std::clamp(static_cast<double>(count - 1) / span_s, minimum_hz, maximum_hz);
 }
 
 }  // namespace understory

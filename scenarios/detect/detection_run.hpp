@@ -13,7 +13,7 @@
 
 namespace understory {
 
-/// The numbers of a detection run. In --set: depths_m, pushbroom.least_edge_sum, map.max_age_s ...
+/// The numbers of a detection run. In --set: depths_m, pushbroom.minimum_edge_sum, map.max_age_s ...
 struct DetectionConfig {
   PushbroomConfig pushbroom = robust_rule();
   LocalMapConfig map;

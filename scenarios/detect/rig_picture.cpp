@@ -64,10 +64,10 @@ class TopView {
   }
 
   void draw_grid() {
-    const double least_step_m = 70 / px_per_m_;  // 1, 2 or 5 times a power of ten
-    double step_m = std::pow(10, std::floor(std::log10(least_step_m)));
+    const double minimum_step_m = 70 / px_per_m_;  // 1, 2 or 5 times a power of ten
+    double step_m = std::pow(10, std::floor(std::log10(minimum_step_m)));
     for (const double factor : {2.0, 2.5, 2.0})
-      if (step_m < least_step_m) step_m *= factor;
+      if (step_m < minimum_step_m) step_m *= factor;
     const double right_m = left_m_ + image_.cols / px_per_m_;
     for (double x_m = std::ceil(left_m_ / step_m) * step_m; x_m < right_m; x_m += step_m) {
       cv::line(image_, place(x_m, bottom_m_), place(x_m, top_m_), pale);

@@ -15,11 +15,11 @@ int commonest(std::array<int, truth_block_px * truth_block_px>& numbers, int cou
   const auto end = numbers.begin() + count;
   std::sort(numbers.begin(), end);
   int best = 0;
-  std::ptrdiff_t most = 0;
+  std::ptrdiff_t maximum = 0;
   for (auto from = numbers.begin(); from != end;) {
     const auto to = std::upper_bound(from, end, *from);
-    if (to - from > most) {
-      most = to - from;
+    if (to - from > maximum) {
+      maximum = to - from;
       best = *from;
     }
     from = to;

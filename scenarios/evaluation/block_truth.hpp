@@ -25,14 +25,14 @@ cv::Mat shared_depth(const cv::Mat& depth_mm, const StereoRig& rig);
 /// true: blocks at the edge of a trunk match by the part of it that they hold. The same fifth makes a block
 /// one that should have been found.
 inline constexpr int truth_block_px = 5;
-inline constexpr int least_true_pixels = 5;
+inline constexpr int minimum_true_pixels = 5;
 
 /// What a block holds between two depths.
 struct BlockContent {
   int pixels = 0;           ///< of 25
   int object = 0;           ///< that most of them belong to; 0 where nobody says
   double mean_depth_m = 0;  ///< of these pixels
-  bool holds() const { return pixels >= least_true_pixels; }
+  bool holds() const { return pixels >= minimum_true_pixels; }
 };
 
 /// Of the block whose top left pixel is (column_px, row_px), inside the image. `obstacles_only`: pixels of

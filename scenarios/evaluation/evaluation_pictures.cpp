@@ -23,18 +23,18 @@ void write_line(cv::Mat& picture, const std::string& text, cv::Point place) {
 
 cv::Mat heat_map(const std::vector<std::int64_t>& counts, int columns, const std::string& title) {
   const int rows = static_cast<int>(counts.size()) / columns;
-  const std::int64_t most = std::max<std::int64_t>(1, *std::ranges::max_element(counts));
+  const std::int64_t maximum = std::max<std::int64_t>(1, *std::ranges::max_element(counts));
   cv::Mat small(rows, columns, CV_8UC1);
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column)
       small.at<std::uint8_t>(row, column) = static_cast<std::uint8_t>(
           255 * std::sqrt(static_cast<double>(counts[static_cast<std::size_t>(row * columns + column)]) /
-                          static_cast<double>(most)));
+                          static_cast<double>(maximum)));
   cv::Mat large, coloured;
   cv::resize(small, large, {}, heat_scale, heat_scale, cv::INTER_NEAREST);
   cv::applyColorMap(large, coloured, cv::COLORMAP_INFERNO);
   cv::copyMakeBorder(coloured, coloured, title_px, 4, 4, 4, cv::BORDER_CONSTANT, cv::Scalar(40, 40, 40));
-  write_line(coloured, fmt::format("{}: {} at most in a block", title, most), {6, 16});
+  write_line(coloured, fmt::format("{}: {} at most in a block", title, maximum), {6, 16});
   return coloured;
 }
 

@@ -28,7 +28,8 @@ std::string resampled_text(const Evaluation& evaluation, Share (*of)(const Recor
   const double value = pooled(indices);
   if (indices.size() < 2) return fmt::format("{:.3f}", value);
   const BootstrapEstimate estimate = bootstrap(indices, pooled, {.resamples = 2000});
-  return fmt::format("{:.3f} ({:.3f} to {:.3f})", value, estimate.interval.least, estimate.interval.greatest);
+  return fmt::format("{:.3f} ({:.3f} to {:.3f})", value, estimate.interval.minimum,
+                     estimate.interval.maximum);
 }
 
 /// The paper's figures of one sum, the scene's name in front.

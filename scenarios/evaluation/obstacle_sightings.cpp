@@ -53,12 +53,12 @@ std::vector<ObstacleSighting> ObstacleSightings::passed() const {
   for (const RecordedObject& object : objects_) {
     if (!object.is_obstacle()) continue;
     const Segment bar{object.from_world, object.to_world};
-    double least_m = std::numeric_limits<double>::infinity();
+    double minimum_m = std::numeric_limits<double>::infinity();
     std::size_t nearest = 0;
     for (std::size_t i = 0; i + 1 < path_world_.size(); ++i) {
       const double distance_m = segment_distance_m({path_world_[i], path_world_[i + 1]}, bar);
-      if (distance_m >= least_m) continue;
-      least_m = distance_m;
+      if (distance_m >= minimum_m) continue;
+      minimum_m = distance_m;
       nearest = i;
     }
     if ((path_world_.back() - path_world_[nearest]).norm() < passed_by_m) continue;
@@ -69,7 +69,7 @@ std::vector<ObstacleSighting> ObstacleSightings::passed() const {
       sighting.on_the_path = would_touch(object, found->second.seen_at);
     }
     sighting.object = object.number;
-    sighting.miss_m = least_m - object.radius_m;
+    sighting.miss_m = minimum_m - object.radius_m;
     sightings.push_back(sighting);
   }
   return sightings;

@@ -9,10 +9,10 @@
 namespace understory {
 namespace {
 
-constexpr double crop_m = 0.5;          // evaluation 1: StereoBM's points about the detection depth
-constexpr double least_range_m = 1.5;   // evaluation 2 ignores nearer points
-constexpr double near_m = 5.0;          // evaluation 3 asks for points nearer than this
-constexpr double nothing_there_m = 10;  // what counts where there is nothing to compare with
+constexpr double crop_m = 0.5;           // evaluation 1: StereoBM's points about the detection depth
+constexpr double minimum_range_m = 1.5;  // evaluation 2 ignores nearer points
+constexpr double near_m = 5.0;           // evaluation 3 asks for points nearer than this
+constexpr double nothing_there_m = 10;   // what counts where there is nothing to compare with
 constexpr int first_obstacle = 2;
 
 Eigen::Vector3d point_at(const StereoRig& rig, double column_px, double row_px, double depth_m) {
@@ -21,7 +21,7 @@ Eigen::Vector3d point_at(const StereoRig& rig, double column_px, double row_px, 
 }
 
 bool in_view(const StereoRig& rig, const Eigen::Vector3d& point_camera) {
-  if (point_camera.z() < least_range_m) return false;
+  if (point_camera.z() < minimum_range_m) return false;
   const double u = rig.focal_px * point_camera.x() / point_camera.z() + rig.center_left_x_px;
   const double v = rig.focal_px * point_camera.y() / point_camera.z() + rig.center_y_px;
   return u >= 0 && u <= rig.width_px - 1 && v >= 0 && v <= rig.height_px - 1;
@@ -29,15 +29,15 @@ bool in_view(const StereoRig& rig, const Eigen::Vector3d& point_camera) {
 
 /// StereoBM's points between two depths; `on_obstacles`: those of pixels that the truth, where it is known,
 /// gives to an obstacle.
-std::vector<Eigen::Vector3d> points_between(const StereoRig& rig, const cv::Mat& depth_m, double least_m,
-                                            double greatest_m, const cv::Mat* on_obstacles = nullptr) {
+std::vector<Eigen::Vector3d> points_between(const StereoRig& rig, const cv::Mat& depth_m, double minimum_m,
+                                            double maximum_m, const cv::Mat* on_obstacles = nullptr) {
   std::vector<Eigen::Vector3d> points;
   for (int v = 0; v < depth_m.rows; ++v) {
     const auto* row = depth_m.ptr<float>(v);
     const auto* object =
         on_obstacles != nullptr && !on_obstacles->empty() ? on_obstacles->ptr<std::uint16_t>(v) : nullptr;
     for (int u = 0; u < depth_m.cols; ++u) {
-      if (row[u] <= 0 || row[u] < least_m || row[u] > greatest_m) continue;
+      if (row[u] <= 0 || row[u] < minimum_m || row[u] > maximum_m) continue;
       if (object != nullptr && object[u] < first_obstacle) continue;
       points.push_back(point_at(rig, u, v, row[u]));
     }
@@ -90,7 +90,7 @@ void PublishedEvaluations::compare(const EvaluationFrame& frame, const std::vect
   }
   constexpr double everything_m = std::numeric_limits<double>::max();
   for (const double distance_m :
-       nearest_distances_m(remembered_in_view, points_between(rig_, depth_m, least_range_m, everything_m)))
+       nearest_distances_m(remembered_in_view, points_between(rig_, depth_m, minimum_range_m, everything_m)))
     scores_.false_positives.add(or_far(distance_m));
   for (const double distance_m :
        nearest_distances_m(points_between(rig_, depth_m, 0, near_m, &frame.truth.objects), remembered))

@@ -18,7 +18,7 @@ inline std::string share_text(const Share& share) {
 inline std::string wilson_text(const Share& share) {
   if (share.of == 0) return "-";
   const Interval interval = wilson_interval(static_cast<int>(share.with), static_cast<int>(share.of));
-  return fmt::format("{:.3f} ({:.3f} to {:.3f})", share.value(), interval.least, interval.greatest);
+  return fmt::format("{:.3f} ({:.3f} to {:.3f})", share.value(), interval.minimum, interval.maximum);
 }
 
 }  // namespace understory

@@ -145,7 +145,7 @@ std::string lies_on(const StereoHit& hit, const TrueImages& truth, const std::ma
   const BlockContent obstacle = content_between(truth, hit.column_px, hit.row_px, any_depth, true);
   const BlockContent beyond =
       content_between(truth, hit.column_px, hit.row_px, {obstacle.mean_depth_m + jump_m, 65.5}, false);
-  const bool sky_too = all.pixels <= truth_block_px * truth_block_px - least_true_pixels;
+  const bool sky_too = all.pixels <= truth_block_px * truth_block_px - minimum_true_pixels;
   if (obstacle.holds() && (beyond.holds() || sky_too)) return "edge of " + kind_in(kinds, obstacle.object);
   if (!obstacle.holds()) return kind_in(kinds, all.object);
   return kind_in(kinds, obstacle.object) +

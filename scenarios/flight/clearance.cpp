@@ -38,19 +38,19 @@ double rectangle_distance_m(const Segment& segment, const Segment& diagonal) {
   const Eigen::Vector3d side(across.x(), across.y(), 0), up(0, 0, across.z());
   const Eigen::Vector3d normal = side.cross(up).normalized();
   const Eigen::Vector3d corners[] = {diagonal.from, diagonal.from + side, diagonal.to, diagonal.from + up};
-  double least = std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 4; ++i)
-    least = std::min(least, segment_distance_m(segment, {corners[i], corners[(i + 1) % 4]}));
+    minimum = std::min(minimum, segment_distance_m(segment, {corners[i], corners[(i + 1) % 4]}));
   const auto is_over_face = [&](const Eigen::Vector3d& point) {
     const Eigen::Vector3d from_corner = point - diagonal.from;
     const double along = from_corner.dot(side) / side.squaredNorm(), height = from_corner.z() / across.z();
     return along >= 0 && along <= 1 && height >= 0 && height <= 1;
   };
   const double a = normal.dot(segment.from - diagonal.from), b = normal.dot(segment.to - diagonal.from);
-  if (is_over_face(segment.from)) least = std::min(least, std::abs(a));
-  if (is_over_face(segment.to)) least = std::min(least, std::abs(b));
+  if (is_over_face(segment.from)) minimum = std::min(minimum, std::abs(a));
+  if (is_over_face(segment.to)) minimum = std::min(minimum, std::abs(b));
   if (a * b < 0 && is_over_face(segment.from + a / (a - b) * (segment.to - segment.from))) return 0;
-  return least;
+  return minimum;
 }
 
 }  // namespace
@@ -74,17 +74,17 @@ double clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airfra
   Eigen::AlignedBox3d around;
   for (const Segment& part : parts) around.extend(part.from).extend(part.to);
   constexpr double rounding_m = 1e-9;
-  double least = std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
   for (const Obstacle& bar : obstacles) {
     // The boxes' distance tells most bars of a forest from the nearest.
     Eigen::AlignedBox3d box(bar.from_world.cwiseMin(bar.to_world), bar.from_world.cwiseMax(bar.to_world));
-    const double matters_m = least + bar.radius_m + rounding_m;
+    const double matters_m = minimum + bar.radius_m + rounding_m;
     if (matters_m < 0 || around.squaredExteriorDistance(box) > matters_m * matters_m) continue;
     for (const Segment& part : parts) {
-      least = std::min(least, obstacle_distance_m(part, bar));
+      minimum = std::min(minimum, obstacle_distance_m(part, bar));
     }
   }
-  return least;
+  return minimum;
 }
 
 }  // namespace understory

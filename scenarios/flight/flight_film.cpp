@@ -31,9 +31,9 @@ void FlightFilm::observe(const StereoFrame& frame, const Autopilot& autopilot,
   const cv::Mat eye = draw_overlay(moment, rig_, scale);
   const cv::Mat picture = beside(eye, cameras_.chase_view(data, eye.cols, eye.rows));
   video_.add(picture);
-  if (still_.empty() || moment.hits.size() > most_hits_) {
+  if (still_.empty() || moment.hits.size() > maximum_hits_) {
     still_ = picture.clone();
-    most_hits_ = moment.hits.size();
+    maximum_hits_ = moment.hits.size();
   }
 }
 

@@ -28,7 +28,7 @@ class FlightFilm {
   VideoFile video_;
   int every_ = 4;  ///< frames per picture
   std::int64_t frames_ = 0;
-  std::size_t most_hits_ = 0;
+  std::size_t maximum_hits_ = 0;
   cv::Mat still_;
 };
 

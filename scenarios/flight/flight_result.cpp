@@ -78,7 +78,7 @@ std::string to_json(const FlightResult& result) {
     json["timings"][timing.stage] = {
         {"count", timing.count},
         {"mean_ms", timing.count > 0 ? 1e3 * timing.total_s / timing.count : 0.0},
-        {"greatest_ms", 1e3 * timing.greatest_s},
+        {"maximum_ms", 1e3 * timing.maximum_s},
         {"total_s", timing.total_s}};
   }
   json["versions"] = {{"understory", understory_version}, {"opencv", CV_VERSION}, {"compiler", __VERSION__}};
@@ -97,7 +97,7 @@ std::string to_report(const FlightResult& result) {
   if (!result.touched.empty()) line("touched", result.touched);
   line("flown", fmt::format("{:.1f} m in {:.2f} s, {:.1f} m/s on average", result.distance_m,
                             result.simulated_s, result.mean_speed_mps));
-  line("least clearance", clearance_text(result.min_clearance_m));
+  line("minimum clearance", clearance_text(result.min_clearance_m));
   line("estimator error",
        fmt::format("{:.2f} m on average, {:.2f} m at most, {:.1f} deg at most", result.position_error_mean_m,
                    result.position_error_max_m, result.attitude_error_max_rad * 57.29577951308232));

@@ -23,7 +23,7 @@ struct StageTiming {
   std::string stage;
   std::int64_t count = 0;
   double total_s = 0;
-  double greatest_s = 0;
+  double maximum_s = 0;
 };
 
 /// One flight in numbers: what result.json holds.

@@ -11,9 +11,9 @@ std::optional<Ending> Referee::judge(const Truth& truth, Contact contact, bool r
   if (contact == Contact::ground) return Ending::ground;
   const Eigen::Vector3d& place = truth.T_world_body.translation();
   if (place.x() >= scenario_.goal_x_m()) return Ending::goal;
-  climbed_ = climbed_ || place.z() >= scenario_.band.least_altitude_m;
-  const bool is_low = climbed_ && place.z() < scenario_.band.least_altitude_m;
-  const bool is_high = place.z() > scenario_.band.greatest_altitude_m;
+  climbed_ = climbed_ || place.z() >= scenario_.band.minimum_altitude_m;
+  const bool is_low = climbed_ && place.z() < scenario_.band.minimum_altitude_m;
+  const bool is_high = place.z() > scenario_.band.maximum_altitude_m;
   const bool is_aside = std::abs(place.y()) > scenario_.forest.half_width_m;
   const bool is_back = place.x() < -scenario_.forest.half_width_m;
   if (is_low || is_high || is_aside || is_back) return Ending::out_of_bounds;

@@ -139,11 +139,11 @@ void RunRecord::finish(Ending ending) {
   const double now_clearance = clearance_m(last_truth_.T_world_body, scenario_.airframe, obstacles_);
   result_.min_clearance_m = std::min(result_.min_clearance_m, now_clearance);
   if (ending == Ending::collision) {
-    double least = std::numeric_limits<double>::infinity();
+    double minimum = std::numeric_limits<double>::infinity();
     for (const Obstacle& obstacle : obstacles_) {
       const double here = clearance_m(last_truth_.T_world_body, scenario_.airframe, {obstacle});
-      if (here < least) result_.touched = obstacle.name;
-      least = std::min(least, here);
+      if (here < minimum) result_.touched = obstacle.name;
+      minimum = std::min(minimum, here);
     }
   }
   if (obstacles_.size() <= 8) {  // a course of few, named bars: say what was seen of each

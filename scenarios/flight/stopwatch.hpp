@@ -37,7 +37,7 @@ class Stopwatch {
     StageTiming& timing = timings_[place_of(stage)];
     timing.count += 1;
     timing.total_s += seconds;
-    timing.greatest_s = std::max(timing.greatest_s, seconds);
+    timing.maximum_s = std::max(timing.maximum_s, seconds);
   }
 
   /// Several thousand times a simulated second, nearly always with a pointer that has come before.

@@ -34,10 +34,10 @@ std::uintmax_t expected_bytes(const Scenario& scenario, const StereoRig& rig, do
 }
 
 void require_numbers_for(const std::vector<Obstacle>& obstacles) {
-  constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max() - object_first_obstacle + 1;
-  if (obstacles.size() > most)
+  constexpr std::size_t maximum = std::numeric_limits<std::uint16_t>::max() - object_first_obstacle + 1;
+  if (obstacles.size() > maximum)
     throw ScenarioError(
-        fmt::format("record: expected at most {} obstacles, as many as 16 bits can number, found {}", most,
+        fmt::format("record: expected at most {} obstacles, as many as 16 bits can number, found {}", maximum,
                     obstacles.size()));
 }
 

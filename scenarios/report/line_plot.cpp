@@ -82,17 +82,17 @@ class Panel {
 
  private:
   static double width() { return panel_width - left - right; }
-  double at_x(double x) const { return left + (x - x_.least) / (x_.greatest - x_.least) * width(); }
+  double at_x(double x) const { return left + (x - x_.minimum) / (x_.maximum - x_.minimum) * width(); }
   double at_y(double y) const {
-    return top + plot_height - (y - y_.least) / (y_.greatest - y_.least) * plot_height;
+    return top + plot_height - (y - y_.minimum) / (y_.maximum - y_.minimum) * plot_height;
   }
 
   void make_scales_equal() {
     const double per_px =
-        std::max((x_.greatest - x_.least) / width(), (y_.greatest - y_.least) / plot_height);
+        std::max((x_.maximum - x_.minimum) / width(), (y_.maximum - y_.minimum) / plot_height);
     const auto widen = [](AxisRange& range, double length) {
-      const double more = 0.5 * (length - (range.greatest - range.least));
-      range = {range.least - more, range.greatest + more};
+      const double more = 0.5 * (length - (range.maximum - range.minimum));
+      range = {range.minimum - more, range.maximum + more};
     };
     widen(x_, per_px * width());
     widen(y_, per_px * plot_height);

@@ -7,19 +7,19 @@ namespace understory {
 
 void include(AxisRange& range, double value) {
   if (!std::isfinite(value)) return;
-  range.least = std::min(range.least, value);
-  range.greatest = std::max(range.greatest, value);
+  range.minimum = std::min(range.minimum, value);
+  range.maximum = std::max(range.maximum, value);
 }
 
 AxisRange padded(AxisRange range) {
-  if (range.least > range.greatest) return {0, 1};  // nothing to show
-  const double room = range.greatest > range.least ? 0.05 * (range.greatest - range.least)
-                                                   : std::max(0.5 * std::abs(range.least), 0.5);
-  return {range.least - room, range.greatest + room};
+  if (range.minimum > range.maximum) return {0, 1};  // nothing to show
+  const double room = range.maximum > range.minimum ? 0.05 * (range.maximum - range.minimum)
+                                                    : std::max(0.5 * std::abs(range.minimum), 0.5);
+  return {range.minimum - room, range.maximum + room};
 }
 
 double tick_step(AxisRange range, int wanted) {
-  const double rough = (range.greatest - range.least) / std::max(1, wanted);
+  const double rough = (range.maximum - range.minimum) / std::max(1, wanted);
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
   const double share = rough / power;
   return power * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
@@ -28,7 +28,7 @@ double tick_step(AxisRange range, int wanted) {
 std::vector<double> tick_positions(AxisRange range, int wanted) {
   const double step = tick_step(range, wanted);
   std::vector<double> ticks;
-  for (double n = std::ceil(range.least / step - 1e-9); n * step <= range.greatest + 1e-9 * step; ++n)
+  for (double n = std::ceil(range.minimum / step - 1e-9); n * step <= range.maximum + 1e-9 * step; ++n)
     ticks.push_back(n == 0 ? 0.0 : n * step);  // no "-0"
   return ticks;
 }

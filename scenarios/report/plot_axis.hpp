@@ -5,8 +5,8 @@
 namespace understory {
 
 struct AxisRange {
-  double least = 0;
-  double greatest = 1;
+  double minimum = 0;
+  double maximum = 1;
 };
 
 /// Widens `range` to hold `value`, if that is a number.

@@ -12,7 +12,7 @@ namespace understory {
 void check_depths(const PushbroomConfig& rule, const StereoRig& rig, const std::string& depths_key,
                   const std::string& section) {
   const std::size_t depths = std::max<std::size_t>(1, rule.depths_m.size());
-  for (const auto* thresholds : {&rule.depths_least_edge_sum, &rule.depths_score_limit})
+  for (const auto* thresholds : {&rule.depths_minimum_edge_sum, &rule.depths_score_limit})
     if (!thresholds->empty() && thresholds->size() != depths)
       throw ScenarioError(fmt::format("{}: expected thresholds for each of {} depths or none, got {}",
                                       section, depths, thresholds->size()));

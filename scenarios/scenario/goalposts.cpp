@@ -12,7 +12,7 @@ std::vector<Obstacle> goalposts(const GoalpostsConfig& config, std::uint64_t see
   std::uniform_real_distribution<double> unit(0, 1);
   const double side = unit(generator) < 0.5 ? -1 : 1;
   const double pass_m =
-      config.pass_least_m + unit(generator) * (config.pass_greatest_m - config.pass_least_m);
+      config.pass_minimum_m + unit(generator) * (config.pass_maximum_m - config.pass_minimum_m);
   const double near_y = side * (pass_m + config.radius_m);
   const double between_axes_m = config.width_m + 2 * config.radius_m;
   const double far_y = near_y - side * between_axes_m * std::cos(config.turn_rad);

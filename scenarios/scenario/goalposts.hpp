@@ -19,9 +19,10 @@ struct GoalpostsConfig {
   double turn_rad = 0.7;
   double height_m = 9.144;  ///< top of the uprights
   double crossbar_top_m = 3.048;
-  double radius_m = 0.084;    ///< of every bar; a crossbar is 6 5/8 in wide
-  double pass_least_m = 0.5;  ///< the seed draws how far beside the course the near upright's surface stands
-  double pass_greatest_m = 2.0;
+  double radius_m = 0.084;  ///< of every bar; a crossbar is 6 5/8 in wide
+  double pass_minimum_m =
+      0.5;  ///< the seed draws how far beside the course the near upright's surface stands
+  double pass_maximum_m = 2.0;
 };
 
 template <typename Visitor>
@@ -32,12 +33,12 @@ void visit_fields(Visitor& visit, GoalpostsConfig& config) {
   visit("height_m", config.height_m, 1.0, 50.0);
   visit("crossbar_top_m", config.crossbar_top_m, 0.2, 20.0);
   visit("radius_m", config.radius_m, 0.01, 1.0);
-  visit("pass_least_m", config.pass_least_m, 0.0, 20.0);
-  visit("pass_greatest_m", config.pass_greatest_m, 0.0, 20.0);
+  visit("pass_minimum_m", config.pass_minimum_m, 0.0, 20.0);
+  visit("pass_maximum_m", config.pass_maximum_m, 0.0, 20.0);
 }
 
 /// Two uprights from the ground and a crossbar between them. The course (y = 0) runs between the uprights;
-/// the near one, left or right by the seed, is pass_least_m .. pass_greatest_m from it.
+/// the near one, left or right by the seed, is pass_minimum_m .. pass_maximum_m from it.
 std::vector<Obstacle> goalposts(const GoalpostsConfig& config, std::uint64_t seed);
 
 }  // namespace understory

@@ -90,8 +90,8 @@ struct VisitorWithout {
 /// Altitudes the flight must keep to once it has climbed into them; leaving ends it. Flying over the trees or
 /// along the ground would prove nothing.
 struct BandConfig {
-  double least_altitude_m = 1;
-  double greatest_altitude_m = 6;
+  double minimum_altitude_m = 1;
+  double maximum_altitude_m = 6;
   double cruise_altitude_m = 4.5;  ///< what the stack is told to hold
 };
 
@@ -188,8 +188,8 @@ struct Scenario {
     return {0,
             goal_x_m(),
             forest.half_width_m,
-            band.least_altitude_m,
-            band.greatest_altitude_m,
+            band.minimum_altitude_m,
+            band.maximum_altitude_m,
             band.cruise_altitude_m};
   }
   /// The airframe of the simulator, mismatch included. The stack is never shown it.
@@ -220,8 +220,8 @@ struct Scenario {
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, BandConfig& band) {
-  visit("least_altitude_m", band.least_altitude_m, -10.0, 100.0);
-  visit("greatest_altitude_m", band.greatest_altitude_m, 0.0, 500.0);
+  visit("minimum_altitude_m", band.minimum_altitude_m, -10.0, 100.0);
+  visit("maximum_altitude_m", band.maximum_altitude_m, 0.0, 500.0);
   visit("cruise_altitude_m", band.cruise_altitude_m, 0.0, 500.0);
 }
 

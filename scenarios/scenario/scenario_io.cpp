@@ -35,10 +35,10 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
   const auto divides = [](int rate_hz) { return physics_rate_hz % rate_hz == 0; };
   expect(scenario.forest.radius_min_m <= scenario.forest.radius_max_m,
          "forest.radius_min_m: expected at most forest.radius_max_m");
-  expect(scenario.band.least_altitude_m < scenario.band.greatest_altitude_m,
-         "band.least_altitude_m: expected less than band.greatest_altitude_m");
-  expect(scenario.goalposts.pass_least_m <= scenario.goalposts.pass_greatest_m,
-         "goalposts.pass_least_m: expected at most goalposts.pass_greatest_m");
+  expect(scenario.band.minimum_altitude_m < scenario.band.maximum_altitude_m,
+         "band.minimum_altitude_m: expected less than band.maximum_altitude_m");
+  expect(scenario.goalposts.pass_minimum_m <= scenario.goalposts.pass_maximum_m,
+         "goalposts.pass_minimum_m: expected at most goalposts.pass_maximum_m");
   expect(scenario.fence.gate_m < 2 * scenario.fence.reach_m,
          "fence.gate_m: expected less than twice fence.reach_m");
   expect(scenario.actuators.pitch_speed_mps == 0 ||
@@ -69,8 +69,8 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
          "perception.stereo_sgbm.disparities: expected a multiple of 16");
   expect(perception.stereo_sgbm.smoothness_1 < perception.stereo_sgbm.smoothness_2,
          "perception.stereo_sgbm.smoothness_1: expected less than smoothness_2");
-  expect(perception.full_stereo.least_depth_m < perception.full_stereo.greatest_depth_m,
-         "perception.full_stereo.least_depth_m: expected less than greatest_depth_m");
+  expect(perception.full_stereo.minimum_depth_m < perception.full_stereo.maximum_depth_m,
+         "perception.full_stereo.minimum_depth_m: expected less than maximum_depth_m");
   // The estimator remembers where it was for a second, and waits for no older frame than half of it.
   const double cost_s = perception.cost_s();
   expect(scenario.cameras.latency_s + cost_s + std::min(cost_s, 1.0 / scenario.cameras.rate_hz) <= 0.5,

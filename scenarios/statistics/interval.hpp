@@ -3,8 +3,8 @@
 namespace understory {
 
 struct Interval {
-  double least = 0;
-  double greatest = 1;
+  double minimum = 0;
+  double maximum = 1;
 };
 
 /// The normal quantile of 95 % intervals: what every interval of this folder has unless it says otherwise.

@@ -43,8 +43,8 @@ Interval paired_difference_interval(const PairedOutcomes& outcomes) {
   const Interval of_second = wilson_interval(outcomes.second(), n);
   const double phi = correlation(outcomes);
   const double difference = outcomes.difference();
-  return {difference - reach(second - of_second.least, of_first.greatest - first, phi),
-          difference + reach(of_second.greatest - second, first - of_first.least, phi)};
+  return {difference - reach(second - of_second.minimum, of_first.maximum - first, phi),
+          difference + reach(of_second.maximum - second, first - of_first.minimum, phi)};
 }
 
 }  // namespace understory

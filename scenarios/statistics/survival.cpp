@@ -54,7 +54,7 @@ SurvivalCurve kaplan_meier(const std::vector<Lifetime>& lifetimes) {
         step.standard_error = step.share * std::sqrt(greenwood);
         step.interval = log_log_interval(step.share, greenwood);
       } else {
-        step.interval = {0, before.interval.greatest};
+        step.interval = {0, before.interval.maximum};
       }
       curve.steps.push_back(step);
     }

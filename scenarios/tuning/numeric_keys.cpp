@@ -24,8 +24,8 @@ class NumericKeyCollector {
   }
 
   template <typename T, typename Least, typename Greatest>
-  void operator()(std::string_view name, T& field, Least least, Greatest greatest) {
-    const double low = static_cast<double>(least), high = static_cast<double>(greatest);
+  void operator()(std::string_view name, T& field, Least minimum, Greatest maximum) {
+    const double low = static_cast<double>(minimum), high = static_cast<double>(maximum);
     const std::string key = prefix_ + std::string(name);
     if constexpr (std::is_same_v<T, std::uint64_t>) {
       return;  // seeds

@@ -11,7 +11,7 @@ namespace understory {
 struct NumericKey {
   std::string key;     ///< "perception.pushbroom.score_limit"; an entry of a list: "... .depths_m[0]"
   bool whole = false;  ///< a whole number
-  double least = 0, greatest = 0;
+  double minimum = 0, maximum = 0;
   double value = 0;  ///< in this scenario
 };
 

@@ -46,17 +46,17 @@ std::vector<std::size_t> unbeaten(const std::vector<std::vector<double>>& costs)
 std::size_t nearest_to_ideal(const std::vector<std::vector<double>>& costs,
                              const std::vector<std::size_t>& front) {
   const std::size_t dimensions = costs[front.front()].size();
-  std::vector<double> least(dimensions, infinity), greatest(dimensions, -infinity);
+  std::vector<double> minimum(dimensions, infinity), maximum(dimensions, -infinity);
   for (const std::size_t member : front)
     for (std::size_t i = 0; i < dimensions; ++i) {
-      least[i] = std::min(least[i], costs[member][i]);
-      greatest[i] = std::max(greatest[i], costs[member][i]);
+      minimum[i] = std::min(minimum[i], costs[member][i]);
+      maximum[i] = std::max(maximum[i], costs[member][i]);
     }
   const auto distance = [&](std::size_t member) {
     double sum = 0;
     for (std::size_t i = 0; i < dimensions; ++i) {
-      const double range = greatest[i] - least[i];
-      if (range > 0) sum += std::pow((costs[member][i] - least[i]) / range, 2);
+      const double range = maximum[i] - minimum[i];
+      if (range > 0) sum += std::pow((costs[member][i] - minimum[i]) / range, 2);
     }
     return sum;
   };

@@ -35,7 +35,7 @@ struct Space {
 
 /// The keys of a point as YAML in groups, for load_scenario's `with`.
 std::string to_yaml(const Space& space, const Point& point);
-/// As people read it: "least_edge_sum 215, score_limit 0.25".
+/// As people read it: "minimum_edge_sum 215, score_limit 0.25".
 std::string in_words(const Space& space, const Point& point);
 /// The last word of a key.
 std::string short_key(const std::string& key);

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int greatest_trials = 1'000'000;
+constexpr int maximum_trials = 1'000'000;
 
 const ConfigNode& required(const ConfigNode& map, std::string_view key, const std::string& expected) {
   const ConfigNode* node = find_child(map, key);
@@ -36,7 +36,7 @@ const ConfigNode& required_group(const ConfigNode& map, std::string_view key, co
 
 /// Within the bounds of its key, and whole where it is.
 double value_of(const ConfigNode& node, const std::string& name, const NumericKey& key) {
-  const double value = number_of(node, name, key.least, key.greatest);
+  const double value = number_of(node, name, key.minimum, key.maximum);
   if (key.whole && value != std::round(value)) refuse_key(node, name, "a whole number");
   return value;
 }
@@ -160,9 +160,9 @@ void read_search(const ConfigNode& group, TuneFile& tune) {
     tune.search.sensitivity_points = whole_number_of(*points, "search.sensitivity", 2, 1000);
   const ConfigNode* trials = find_child(group, "trials");
   if (found->second != SearchMethod::grid) {
-    const std::string wanted = fmt::format("a whole number from 1 to {}", greatest_trials);
+    const std::string wanted = fmt::format("a whole number from 1 to {}", maximum_trials);
     tune.search.trials =
-        whole_number_of(required(group, "trials", wanted), "search.trials", 1, greatest_trials);
+        whole_number_of(required(group, "trials", wanted), "search.trials", 1, maximum_trials);
     return;
   }
   if (trials != nullptr) refuse_key(*trials, "search.trials", "none: a grid has as many as it has");
@@ -172,8 +172,8 @@ void read_search(const ConfigNode& group, TuneFile& tune) {
       refuse_key(group, "parameters." + parameter.key, "values, or a range with steps, for a grid");
     size *= static_cast<double>(spread_values(parameter, parameter.steps).size());
   }
-  if (size > greatest_trials)
-    refuse_key(group, "search.method", fmt::format("a grid of at most {} points", greatest_trials));
+  if (size > maximum_trials)
+    refuse_key(group, "search.method", fmt::format("a grid of at most {} points", maximum_trials));
   tune.search.trials = static_cast<int>(size);
 }
 

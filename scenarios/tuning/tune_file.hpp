@@ -35,7 +35,7 @@ struct TuneFile {
 ///
 ///     scenario: forest                 # of the library, or a file beside this one
 ///     parameters:                      # any numeric keys of the scenario
-///       perception.pushbroom.least_edge_sum: {from: 100, to: 900}
+///       perception.pushbroom.minimum_edge_sum: {from: 100, to: 900}
 ///       perception.pushbroom.score_limit: {from: 0.05, to: 0.4, scale: log}
 ///       perception.pushbroom.uniqueness_ratio: {values: [1.5, 2, 3]}
 ///     objective: {maximize: recall, at_least: {precision: 0.97}}   # minimize, at_most; lists of goals

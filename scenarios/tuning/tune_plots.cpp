@@ -52,14 +52,14 @@ LinePlot trials_plot(const TuneFile& file, const Tuned& tuned) {
   LinePlot plot{.title = "Trials", .x_label = "trial", .y_label = file.figures[goal]};
   Series trials{.name = "trials (training)", .mark = Mark::dots, .colour = grayish};
   Series best{.name = "best so far", .colour = blue};
-  double least = HUGE_VAL;
+  double minimum = HUGE_VAL;
   for (const Trial& trial : tuned.trials) {
     if (trial.figures.empty()) continue;
     trials.x.push_back(trial.number);
     trials.y.push_back(trial.figures[goal]);
     const double cost = fitness(file.objective, trial.figures).front();
-    if (cost >= least) continue;
-    least = cost;
+    if (cost >= minimum) continue;
+    minimum = cost;
     best.x.push_back(trial.number);
     best.y.push_back(trial.figures[goal]);
   }

@@ -19,8 +19,8 @@ std::string figure(const Trial& trial, std::size_t i) {
 }
 
 std::string interval_text(const Interval& interval) {
-  if (!std::isfinite(interval.least) || !std::isfinite(interval.greatest)) return "-";
-  return fmt::format("{:+.3g} to {:+.3g}", interval.least, interval.greatest);
+  if (!std::isfinite(interval.minimum) || !std::isfinite(interval.maximum)) return "-";
+  return fmt::format("{:+.3g} to {:+.3g}", interval.minimum, interval.maximum);
 }
 
 bool keeps_limits(const TuneFile& file, const Trial& trial) {
@@ -30,7 +30,7 @@ bool keeps_limits(const TuneFile& file, const Trial& trial) {
 std::string objective_in_words(const TuneFile& file) {
   std::vector<std::string> words;
   for (const Goal& goal : file.objective.goals)
-    words.push_back(fmt::format("{} {}", goal.maximize ? "greatest" : "least", file.figures[goal.figure]));
+    words.push_back(fmt::format("{} {}", goal.maximize ? "maximum" : "minimum", file.figures[goal.figure]));
   for (const Limit& limit : file.objective.limits)
     words.push_back(fmt::format("{} {} {:g}", file.figures[limit.figure],
                                 limit.at_least ? "at least" : "at most", limit.bound));
@@ -95,11 +95,11 @@ PrintedTable sensitivity_table(const TuneFile& file, const Tuned& tuned) {
   if (!file.objective.limits.empty()) table.head.push_back("limits kept from .. to");
   for (std::size_t i = 0; i < tuned.sensitivity.size(); ++i) {
     const Sensitivity& one = tuned.sensitivity[i];
-    double least = HUGE_VAL, greatest = -HUGE_VAL, kept_from = NAN, kept_to = NAN;
+    double minimum = HUGE_VAL, maximum = -HUGE_VAL, kept_from = NAN, kept_to = NAN;
     for (std::size_t k = 0; k < one.values.size(); ++k) {
       if (one.figures[k].empty() || !std::isfinite(one.figures[k][goal])) continue;
-      least = std::min(least, one.figures[k][goal]);
-      greatest = std::max(greatest, one.figures[k][goal]);
+      minimum = std::min(minimum, one.figures[k][goal]);
+      maximum = std::max(maximum, one.figures[k][goal]);
       if (violation(file.objective, one.figures[k]) > 0) continue;
       if (std::isnan(kept_from)) kept_from = one.values[k];
       kept_to = one.values[k];
@@ -108,7 +108,7 @@ PrintedTable sensitivity_table(const TuneFile& file, const Tuned& tuned) {
         {file.space.parameters[i].key, fmt::format("{:g} .. {:g}", one.values.front(), one.values.back()),
          fmt::format("{:g}", file.scenario_point[i]),
          tuned_value(file.space.parameters[i], tuned.best.training.point[i]),
-         fmt::format("{} .. {}", number(least), number(greatest)), number(greatest - least)});
+         fmt::format("{} .. {}", number(minimum), number(maximum)), number(maximum - minimum)});
     if (!file.objective.limits.empty())
       table.rows.back().push_back(std::isnan(kept_from) ? "-"
                                                         : fmt::format("{:g} .. {:g}", kept_from, kept_to));
@@ -124,8 +124,8 @@ std::string flights_sentence(const TuneFile& file, const Tuned& tuned) {
   return fmt::format(
       "\nGoals on the validation seeds: {} of {} as it is (Wilson {:.1f} to {:.1f} %), {} tuned ({:.1f} to "
       "{:.1f} %); won {}, lost {}; McNemar's exact p {:.3g}.\n",
-      goals.first(), goals.pairs(), 100 * before.least, 100 * before.greatest, goals.second(),
-      100 * after.least, 100 * after.greatest, goals.only_second, goals.only_first, mcnemar_exact_p(goals));
+      goals.first(), goals.pairs(), 100 * before.minimum, 100 * before.maximum, goals.second(),
+      100 * after.minimum, 100 * after.maximum, goals.only_second, goals.only_first, mcnemar_exact_p(goals));
 }
 
 std::string limits_sentence(const TuneFile& file, const Tuned& tuned) {

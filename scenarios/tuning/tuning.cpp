@@ -76,15 +76,15 @@ std::size_t sensitivity_trials(const TuneFile& file) {
 /// All trials: the scenario as it is, then the search's.
 std::vector<Trial> run_search(const TuneFile& file, Tuning& tuning, Judge& training) {
   TrialLog log = tuning.log("trials", training);
-  double least = 3;
+  double minimum = 3;
   const auto of = static_cast<std::size_t>(file.search.trials);
   const auto evaluate = [&](const Point& point) {
     const Trial trial = log.evaluate(point);
     const double cost = fitness(file.objective, trial.figures).front();
-    if (cost < least && !trial.figures.empty())
+    if (cost < minimum && !trial.figures.empty())
       tuning.set_best(trial.figures[file.objective.goals.front().figure]);
-    least = std::min(least, cost);
-    tuning.report("trial", log.evaluated().size() - 1, of, greatest_front / 2 + sensitivity_trials(file));
+    minimum = std::min(minimum, cost);
+    tuning.report("trial", log.evaluated().size() - 1, of, maximum_front / 2 + sensitivity_trials(file));
     return trial.figures;
   };
   evaluate(file.scenario_point);
@@ -102,18 +102,18 @@ std::size_t choose_best(const TuneFile& file, const std::vector<Trial>& trials, 
   }
   keeps_limits = false;
   const auto cost = [&](const Figures& some) { return fitness(file.objective, some).front(); };
-  const auto least = std::ranges::min_element(figures, {}, cost);
-  if (least->empty())
+  const auto minimum = std::ranges::min_element(figures, {}, cost);
+  if (minimum->empty())
     throw ScenarioError(
         fmt::format("{}: expected a trial that can be measured, all were refused; the first: {}", file.name,
                     trials.back().refused));
-  return static_cast<std::size_t>(least - figures.begin());
+  return static_cast<std::size_t>(minimum - figures.begin());
 }
 
 std::vector<std::size_t> choose_front(const TuneFile& file, const std::vector<Trial>& trials) {
   std::vector<Figures> figures = figures_of(trials);
   figures.front().clear();
-  return thinned(pareto_front(file.objective, figures), greatest_front);
+  return thinned(pareto_front(file.objective, figures), maximum_front);
 }
 
 /// The values of each parameter alone: spread over its range, and the best's own.

@@ -27,13 +27,13 @@ struct Tuned {
   std::vector<Trial> trials;             ///< 0: the scenario as it is; then the search's
   bool keeps_limits = true;              ///< the best, on training data; else it misses them the least
   JudgedTrial scenario, best;            ///< chosen by training; `validation` is what counts
-  std::vector<JudgedTrial> front;        ///< of training, thinned to at most `greatest_front`
+  std::vector<JudgedTrial> front;        ///< of training, thinned to at most `maximum_front`
   std::vector<Sensitivity> sensitivity;  ///< of each parameter
   /// Counts on validation data, for statements about the difference; empty where one was refused.
   std::vector<Counts> scenario_units, best_units;
 };
 
-inline constexpr std::size_t greatest_front = 20;
+inline constexpr std::size_t maximum_front = 20;
 
 /// How far it is.
 struct TuneProgress {

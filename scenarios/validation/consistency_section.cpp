@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::uint64_t first_seed = 1000;  // development seeds: none of them is reported elsewhere
 constexpr std::uint64_t sensor_seed_base = 5000;
-constexpr double least_share_inside = 0.90;                // issue: of the moments, in calm air
-constexpr double least_ratio = 0.7, greatest_ratio = 1.6;  // of the dimension, in turbulence
+constexpr double minimum_share_inside = 0.90;               // issue: of the moments, in calm air
+constexpr double minimum_ratio = 0.7, maximum_ratio = 1.6;  // of the dimension, in turbulence
 
 std::vector<Consistency> measured(int flights, const std::function<Scenario(int)>& scenario,
                                   const std::function<TrialConfig(int, const Scenario&)>& trial,
@@ -136,7 +136,7 @@ Section matched_consistency_section(const std::filesystem::path& root, int fligh
   for (const Consistency& one : all)
     if (!one.average.empty())
       section.checks.push_back(at_least(one.name + ": moments inside the 95 % bounds, calm", one.share_inside,
-                                        least_share_inside, ""));
+                                        minimum_share_inside, ""));
   return section;
 }
 
@@ -171,9 +171,9 @@ Section turbulent_consistency_section(const std::filesystem::path& root, int fli
   for (const Consistency& one : all) {
     if (one.average.empty()) continue;
     section.checks.push_back(
-        at_least(one.name + ": mean over dimension, turbulence", one.mean_over_degrees, least_ratio, ""));
+        at_least(one.name + ": mean over dimension, turbulence", one.mean_over_degrees, minimum_ratio, ""));
     section.checks.push_back(
-        at_most(one.name + ": mean over dimension, turbulence", one.mean_over_degrees, greatest_ratio, ""));
+        at_most(one.name + ": mean over dimension, turbulence", one.mean_over_degrees, maximum_ratio, ""));
   }
   return section;
 }

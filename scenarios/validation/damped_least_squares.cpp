@@ -24,14 +24,14 @@ Eigen::MatrixXd jacobian(const Residuals& residuals, const Eigen::VectorXd& at, 
 
 LeastSquares least_squares(const Residuals& residuals, const Eigen::VectorXd& start,
                            const Eigen::VectorXd& step) {
-  constexpr int most_iterations = 60;
+  constexpr int maximum_iterations = 60;
   constexpr double enough = 1e-9;  // relative change of the sum
   LeastSquares best;
   best.parameters = start;
   Eigen::VectorXd now = residuals(start);
   best.sum_of_squares = now.squaredNorm();
   double damping = 1e-3;  // of each parameter's own curvature
-  while (best.iterations < most_iterations) {
+  while (best.iterations < maximum_iterations) {
     ++best.iterations;
     const Eigen::MatrixXd slopes = jacobian(residuals, best.parameters, step);
     const Eigen::MatrixXd curvature = slopes.transpose() * slopes;

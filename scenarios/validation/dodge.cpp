@@ -39,7 +39,7 @@ double sideways_m(const FreeFlight& air, const Airframe& airframe, const DodgeTa
   controls.thrust_n = airframe.max_thrust_n;
   const double share = 1 - std::exp(-1.0 / (physics_rate_hz * task.servo_lag_s));
   const double to_go_m = task.distance_m - task.reaction_s * task.airspeed_mps;
-  double penalty_m = 0, least_height_m = 0;
+  double penalty_m = 0, minimum_height_m = 0;
   for (int step = 0; step < longest_s * physics_rate_hz; ++step) {
     const double t_s = static_cast<double>(step) / physics_rate_hz;
     const std::size_t part = t_s < commands.duration_s[0]                            ? 0
@@ -50,13 +50,13 @@ double sideways_m(const FreeFlight& air, const Airframe& airframe, const DodgeTa
     aircraft.step(controls);
     const Truth& truth = aircraft.truth();
     const Eigen::Vector3d position = truth.T_world_body.translation();
-    least_height_m = std::min(least_height_m, position.z() - start_altitude_m);
+    minimum_height_m = std::min(minimum_height_m, position.z() - start_altitude_m);
     const double attack =
         angle_of_attack_rad(truth.T_world_body.linear().transpose() * truth.velocity_world_mps);
     penalty_m += std::max(0.0, std::abs(attack) - task.angle_of_attack_cap_rad) * attack_penalty_m_per_rad_s /
                  physics_rate_hz;
     if (position.x() < to_go_m) continue;
-    penalty_m += height_penalty * std::max(0.0, -least_height_m - task.height_lost_m);
+    penalty_m += height_penalty * std::max(0.0, -minimum_height_m - task.height_lost_m);
     return -position.y() - penalty_m;
   }
   return 0;  // never got there

@@ -70,21 +70,21 @@ FlightRecord read_flight_record(const std::filesystem::path& file) {
       throw ScenarioError(fmt::format("{}:{}: expected {} numbers", file.string(), line_number, columns));
     record.moments.push_back(moment(numbers));
   }
-  constexpr std::size_t least_moments = 2;
-  if (record.moments.size() < least_moments)
-    throw ScenarioError(fmt::format("{}: expected at least {} moments", file.string(), least_moments));
+  constexpr std::size_t minimum_moments = 2;
+  if (record.moments.size() < minimum_moments)
+    throw ScenarioError(fmt::format("{}: expected at least {} moments", file.string(), minimum_moments));
   const std::vector<Vector3d> integrated = integrated_velocity(record.moments);
   for (std::size_t i = 0; i < integrated.size(); ++i)
     record.moments[i].position_world.z() = integrated[i].z();
   return record;
 }
 
-double greatest_contradiction_m(const FlightRecord& record) {
+double maximum_contradiction_m(const FlightRecord& record) {
   const std::vector<Vector3d> integrated = integrated_velocity(record.moments);
-  double greatest = 0;
+  double maximum = 0;
   for (std::size_t i = 0; i < integrated.size(); ++i)
-    greatest = std::max(greatest, (record.moments[i].position_world - integrated[i]).head<2>().norm());
-  return greatest;
+    maximum = std::max(maximum, (record.moments[i].position_world - integrated[i]).head<2>().norm());
+  return maximum;
 }
 
 }  // namespace understory

@@ -35,6 +35,6 @@ struct FlightRecord {
 FlightRecord read_flight_record(const std::filesystem::path& file);
 
 /// How far the recorded position strays horizontally from the integral of the recorded velocity.
-double greatest_contradiction_m(const FlightRecord& record);
+double maximum_contradiction_m(const FlightRecord& record);
 
 }  // namespace understory

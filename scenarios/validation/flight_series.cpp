@@ -19,13 +19,13 @@ Scenario forest_in(const Air& air, std::uint64_t seed, const std::filesystem::pa
 }
 
 int measure_flights(int flights, const std::function<Scenario(int)>& scenario,
-                    const std::filesystem::path& models_folder, double least_s,
+                    const std::filesystem::path& models_folder, double minimum_s,
                     const std::function<void(int, const RecordedFlight&)>& measure) {
   std::future<void> measured;
   int left_out = 0;
   for (int number = 0; number < flights; ++number) {
     auto flight = std::make_shared<RecordedFlight>(recorded_flight(scenario(number), models_folder));
-    if (static_cast<double>(flight->truths.size()) < least_s * physics_rate_hz) {
+    if (static_cast<double>(flight->truths.size()) < minimum_s * physics_rate_hz) {
       ++left_out;
       continue;
     }

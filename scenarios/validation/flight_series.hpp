@@ -19,9 +19,9 @@ Scenario forest_in(const Air& air, std::uint64_t seed, const std::filesystem::pa
 
 /// Flies `flights` scenarios one after the other and hands each record to `measure` with its number, on a
 /// thread beside, while the next one flies: two cores are kept busy, and results that are kept by number do
-/// not depend on it. Flights that end before `least_s` of simulated time are left out and counted.
+/// not depend on it. Flights that end before `minimum_s` of simulated time are left out and counted.
 int measure_flights(int flights, const std::function<Scenario(int)>& scenario,
-                    const std::filesystem::path& models_folder, double least_s,
+                    const std::filesystem::path& models_folder, double minimum_s,
                     const std::function<void(int, const RecordedFlight&)>& measure);
 
 }  // namespace understory

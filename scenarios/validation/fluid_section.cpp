@@ -67,11 +67,11 @@ Series over(const Airframe& airframe, const NamedModel& named, bool attack, doub
   return series;
 }
 
-double greatest_difference(const Series& a, const Series& b, double from) {
-  double greatest = 0;
+double maximum_difference(const Series& a, const Series& b, double from) {
+  double maximum = 0;
   for (std::size_t i = 0; i < a.x.size(); ++i)
-    if (a.x[i] >= from) greatest = std::max(greatest, std::abs(a.y[i] - b.y[i]));
-  return greatest;
+    if (a.x[i] >= from) maximum = std::max(maximum, std::abs(a.y[i] - b.y[i]));
+  return maximum;
 }
 
 }  // namespace
@@ -100,7 +100,7 @@ Section fluid_section(const Airframe& airframe) {
     return plot;
   };
   const LinePlot lift = panel("Lift", "lift coefficient", true, 90, &Coefficients::lift);
-  const double lift_difference = greatest_difference(lift.series[0], lift.series[2], 10);
+  const double lift_difference = maximum_difference(lift.series[0], lift.series[2], 10);
 
   std::vector<std::vector<std::string>> rows;
   for (const double attack : {5.0, 10.0, 20.0, 30.0, 45.0, 90.0}) {

@@ -15,7 +15,7 @@ Section glide_section(const Airframe& airframe) {
   constexpr double degree = std::numbers::pi / 180;
   Series sink{"trimmed, elevons included"}, attack = sink, point_mass{"lift and drag of wing and body alone"};
   point_mass.mark = Mark::dashes;
-  double least_sink = HUGE_VAL, least_sink_speed = 0, best_ratio = 0, best_ratio_speed = 0;
+  double minimum_sink = HUGE_VAL, minimum_sink_speed = 0, best_ratio = 0, best_ratio_speed = 0;
   for (double speed = 7.5; speed < 15.01; speed += 0.1) {
     SteadyFlight given;
     given.airspeed_mps = speed;
@@ -32,9 +32,9 @@ Section glide_section(const Airframe& airframe) {
                                            airframe.body_drag_area_m2 * cosine * cosine * cosine);
     point_mass.x.push_back(speed);
     point_mass.y.push_back(speed * drag_n / (airframe.mass_kg * airframe.gravity_mps2));
-    if (glide->sink_mps() < least_sink) {
-      least_sink = glide->sink_mps();
-      least_sink_speed = speed;
+    if (glide->sink_mps() < minimum_sink) {
+      minimum_sink = glide->sink_mps();
+      minimum_sink_speed = speed;
     }
     const double ratio = 1 / std::tan(-glide->climb_angle_rad);
     if (ratio > best_ratio) {
@@ -56,7 +56,7 @@ Section glide_section(const Airframe& airframe) {
       "FACTS has no polar; its thrust in level flight says the same (5.08 N of 6.36 N of weight at 12.27 "
       "m/s: a ratio of 1.25). The drag was identified with the motor running, and a stopped propeller may "
       "drag more or less.\n",
-      best_ratio, best_ratio_speed, least_sink, least_sink_speed);
+      best_ratio, best_ratio_speed, minimum_sink, minimum_sink_speed);
   section.figures = {{"glide", "Straight glide without thrust", to_svg({polar, attacks}, 2)}};
   return section;
 }

@@ -24,9 +24,9 @@ std::vector<OtherFilter> other_filters(const std::filesystem::path& forest, cons
 /// Speeds of level flight by the flat-plate model, at angles of attack that the stack's follower allows.
 AxisRange level_speeds(const Scenario& scenario) {
   AxisRange range{HUGE_VAL, -HUGE_VAL};
-  const double greatest_rad = scenario.autopilot.autopilot.flight_model.greatest_angle_of_attack_rad;
+  const double maximum_rad = scenario.autopilot.autopilot.flight_model.maximum_angle_of_attack_rad;
   for (double speed_mps = 5; speed_mps < 18; speed_mps += 0.05)
-    if (straight_trim(scenario.flown_airframe(), speed_mps, 0, greatest_rad)) include(range, speed_mps);
+    if (straight_trim(scenario.flown_airframe(), speed_mps, 0, maximum_rad)) include(range, speed_mps);
   return range;
 }
 

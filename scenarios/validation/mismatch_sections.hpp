@@ -27,7 +27,7 @@ struct OtherFilter {
 };
 
 inline bool flies_level(const FlownCondition& flown) {
-  return flown.level_mps.least <= flown.level_mps.greatest;
+  return flown.level_mps.minimum <= flown.level_mps.maximum;
 }
 
 using Measure = std::function<double(const FlightTally&)>;

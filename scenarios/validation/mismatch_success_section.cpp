@@ -25,11 +25,11 @@ std::string success_table(const std::vector<FlownCondition>& all) {
     const Interval success = tally.success();
     rows.push_back({flown.condition.name(),
                     flies_level(flown)
-                        ? fmt::format("{:.1f} to {:.1f}", flown.level_mps.least, flown.level_mps.greatest)
+                        ? fmt::format("{:.1f} to {:.1f}", flown.level_mps.minimum, flown.level_mps.maximum)
                         : "nowhere",
                     fmt::format("{:.1f}", tally.mean_speed_mps()),
                     fmt::format("{} of {}", tally.goals(), tally.flights()),
-                    fmt::format("{:.0f} to {:.0f} %", 100 * success.least, 100 * success.greatest),
+                    fmt::format("{:.0f} to {:.0f} %", 100 * success.minimum, 100 * success.maximum),
                     endings_text(tally)});
   }
   return markdown_table(
@@ -40,7 +40,7 @@ std::string success_table(const std::vector<FlownCondition>& all) {
 
 Section mismatch_success_section(const std::vector<FlownCondition>& all) {
   const FlightTally& model = all.front().tally;
-  const double least_goals = std::ceil(model.success().least * model.flights());
+  const double minimum_goals = std::ceil(model.success().minimum * model.flights());
   Section section;
   section.title = "Success";
   section.markdown =
@@ -58,7 +58,7 @@ Section mismatch_success_section(const std::vector<FlownCondition>& all) {
   LinePlot goals = curves(all, "Flights that reach the goal", "goals (%)",
                           [](const FlightTally& tally) { return 100.0 * tally.goals() / tally.flights(); });
   goals.y_range = AxisRange{-5, 105};
-  goals.references = {{100 * model.success().least, "least of the model's own 95 % interval"}};
+  goals.references = {{100 * model.success().minimum, "least of the model's own 95 % interval"}};
   const LinePlot speeds = curves(all, "Speed", "mean speed (m/s)",
                                  [](const FlightTally& tally) { return tally.mean_speed_mps(); });
   section.figures = {{"success", "Success and speed over mismatch", to_svg({goals, speeds}, 2)}};
@@ -66,7 +66,7 @@ Section mismatch_success_section(const std::vector<FlownCondition>& all) {
   for (const FlownCondition& flown : all)
     if (!flown.condition.what.empty() && flies_level(flown))
       section.checks.push_back(
-          at_least("goals, " + flown.condition.name(), flown.tally.goals(), least_goals, ""));
+          at_least("goals, " + flown.condition.name(), flown.tally.goals(), minimum_goals, ""));
   return section;
 }
 

@@ -8,7 +8,7 @@
 namespace understory {
 namespace {
 
-constexpr double least_lift_mps2 = 2;         // upwards: the bank never passes the vertical
+constexpr double minimum_lift_mps2 = 2;       // upwards: the bank never passes the vertical
 constexpr int physics_steps_per_control = 6;  // 200 Hz, the rate of the stack's IMU
 
 /// The record at `t_s`, between its moments; its ends beyond them.
@@ -62,7 +62,7 @@ FlightCommand tracking_command(const FlightModel& model, const TrackingConfig& c
   const Eigen::Vector3d right(std::sin(heading), -std::cos(heading), 0);
   const Eigen::Vector3d wanted = acceleration_world(record, t_s + config.lead_s) + back;
   const double gravity_mps2 = model.airframe().gravity_mps2;
-  const double upward_mps2 = std::max(least_lift_mps2, gravity_mps2 + wanted.z());
+  const double upward_mps2 = std::max(minimum_lift_mps2, gravity_mps2 + wanted.z());
   const double aside_mps2 = wanted.dot(right);
   const FlightState now = flight_state(state);
   FlightCommand command;
@@ -97,14 +97,14 @@ Replay track(const FreeFlight& air, const Airframe& airframe, const TrackingConf
 }
 
 double distance_to_path_m(const FlightRecord& record, const Eigen::Vector3d& position_world) {
-  double least = HUGE_VAL;
+  double minimum = HUGE_VAL;
   for (std::size_t i = 1; i < record.moments.size(); ++i) {
     const Eigen::Vector3d from = record.moments[i - 1].position_world;
     const Eigen::Vector3d along = record.moments[i].position_world - from;
     const double share = std::clamp((position_world - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
-    least = std::min(least, (position_world - from - share * along).norm());
+    minimum = std::min(minimum, (position_world - from - share * along).norm());
   }
-  return least;
+  return minimum;
 }
 
 }  // namespace understory

@@ -59,16 +59,16 @@ double rms_roll_rad(const std::vector<ReplayError>& all) {
   return std::sqrt(sum / static_cast<double>(all.size()));
 }
 
-double greatest_horizontal_m(const std::vector<ReplayError>& all) {
-  double greatest = 0;
-  for (const ReplayError& error : all) greatest = std::max(greatest, error.horizontal_m);
-  return greatest;
+double maximum_horizontal_m(const std::vector<ReplayError>& all) {
+  double maximum = 0;
+  for (const ReplayError& error : all) maximum = std::max(maximum, error.horizontal_m);
+  return maximum;
 }
 
-double greatest_height_m(const std::vector<ReplayError>& all) {
-  double greatest = 0;
-  for (const ReplayError& error : all) greatest = std::max(greatest, std::abs(error.height_m));
-  return greatest;
+double maximum_height_m(const std::vector<ReplayError>& all) {
+  double maximum = 0;
+  for (const ReplayError& error : all) maximum = std::max(maximum, std::abs(error.height_m));
+  return maximum;
 }
 
 const ReplayError& error_at(const std::vector<ReplayError>& all, double t_s) {

@@ -32,8 +32,8 @@ struct ReplayError {
 std::vector<ReplayError> errors(const Replay& flown, const FlightRecord& record);
 
 double rms_roll_rad(const std::vector<ReplayError>& all);
-double greatest_horizontal_m(const std::vector<ReplayError>& all);
-double greatest_height_m(const std::vector<ReplayError>& all);
+double maximum_horizontal_m(const std::vector<ReplayError>& all);
+double maximum_height_m(const std::vector<ReplayError>& all);
 /// The error at the moment nearest to `t_s`.
 const ReplayError& error_at(const std::vector<ReplayError>& all, double t_s);
 

@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double greatest_log = 1.5;
+constexpr double maximum_log = 1.5;
 constexpr int channels = 4;
 
 /// Channel by channel for each sample.
@@ -48,7 +48,7 @@ Airframe with(Airframe airframe, const std::vector<const FreeParameter*>& chosen
   return airframe;
 }
 
-bool at_the_edge(double log) { return std::abs(log) > 0.99 * greatest_log; }
+bool at_the_edge(double log) { return std::abs(log) > 0.99 * maximum_log; }
 
 }  // namespace
 
@@ -68,12 +68,12 @@ ReplayFit fit_replay(const FreeFlight& air, const Airframe& airframe, const Flig
   // Beyond the edge the replay says what it says at the edge: a parameter that runs there has no slope left,
   // and so no certainty.
   const auto residuals_at = [&](const VectorXd& logs) {
-    const VectorXd inside = logs.cwiseMax(-greatest_log).cwiseMin(greatest_log);
+    const VectorXd inside = logs.cwiseMax(-maximum_log).cwiseMin(maximum_log);
     return residuals(replay(air, with(airframe, chosen, inside), record), record, from_s, until_s);
   };
   const LeastSquares best =
       least_squares(residuals_at, VectorXd::Zero(count), VectorXd::Constant(count, 1e-3));
-  const VectorXd logs = best.parameters.cwiseMax(-greatest_log).cwiseMin(greatest_log);
+  const VectorXd logs = best.parameters.cwiseMax(-maximum_log).cwiseMin(maximum_log);
 
   ReplayFit fit;
   fit.airframe = with(airframe, chosen, logs);

@@ -114,8 +114,8 @@ std::vector<std::string> error_row(const std::string& name, const std::vector<Re
           horizontal(0.5),
           horizontal(1),
           horizontal(1.5),
-          fmt::format("{:.2f}", greatest_horizontal_m(error)),
-          fmt::format("{:.2f}", greatest_height_m(error)),
+          fmt::format("{:.2f}", maximum_horizontal_m(error)),
+          fmt::format("{:.2f}", maximum_height_m(error)),
           fmt::format("{} / {} / {} / {}", roll(0.25), roll(0.5), roll(1), roll(1.5)),
           fmt::format("{:.1f}", rms_roll_rad(error) / degree)};
 }
@@ -205,7 +205,7 @@ std::string fit_words(const FreeFlight& air, const Airframe& airframe, const Fli
       "within the first quarter of a second. The simulator keeps the identified values: one and a half "
       "seconds of one flight are too little to replace them.\n",
       fit.residual_memory, std::sqrt(fit.residual_memory), values_of(fit), correlation, values_of(second),
-      values_of(whole), choices_table(air, airframe, record), greatest_contradiction_m(record));
+      values_of(whole), choices_table(air, airframe, record), maximum_contradiction_m(record));
 }
 
 }  // namespace
@@ -230,7 +230,7 @@ Section replay_section(const FreeFlight& air, const Airframe& airframe, const Fl
       at_most("replayed jog, horizontal at 0.5 s", error_at(error, 0.5).horizontal_m, 0.20, "m"),
       at_most("replayed jog, horizontal at 1.0 s", error_at(error, 1.0).horizontal_m, 0.25, "m"),
       at_most("replayed jog, horizontal at 1.5 s", error_at(error, 1.5).horizontal_m, 0.40, "m"),
-      at_most("replayed jog, height at any time", greatest_height_m(error), 0.35, "m"),
+      at_most("replayed jog, height at any time", maximum_height_m(error), 0.35, "m"),
       at_most("replayed jog, roll at 0.5 s", std::abs(error_at(error, 0.5).roll_rad) / degree, 4, "deg"),
       at_most("replayed jog, roll RMS", rms_roll_rad(error) / degree, 4.5, "deg"),
       at_most("replayed jog, parameters fitted", static_cast<double>(fit.parameters.size()), 3, "")};

@@ -90,14 +90,14 @@ Matrix3d attitude_of(const SteadyFlight& flight) {
 
 std::optional<SteadyFlight> steady_flight(const Airframe& airframe, const SteadyFlight& given, Solved solved,
                                           double max_angle_of_attack_rad) {
-  constexpr int most_iterations = 100;
+  constexpr int maximum_iterations = 100;
   constexpr double difference = 1e-6, tolerance = 1e-10, longest_step_rad = 0.2;
   SteadyFlight flight = given;
   flight.angle_of_attack_rad = flight.left_elevon_rad = flight.right_elevon_rad = 0.2;
   flight.sideslip_rad = 0;
   // The turn of a coordinated bank: what Newton starts from.
   flight.turn_rate_radps = airframe.gravity_mps2 * std::tan(given.bank_rad) / given.airspeed_mps;
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+  for (int iteration = 0; iteration < maximum_iterations; ++iteration) {
     const Vector6d now = residual(airframe, flight);
     if (!now.allFinite()) return std::nullopt;
     if (now.norm() < tolerance) {

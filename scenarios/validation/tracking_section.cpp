@@ -61,7 +61,7 @@ Section tracking_section(const FreeFlight& air, const Airframe& airframe, const 
   rolls.series = {{"record", t, real_roll, Mark::line, 7}, {"follower", t, roll, Mark::line, 2}};
   LinePlot attacks{"Angle of attack", "time (s)", "angle of attack (deg)"};
   attacks.series = {{"record", t, real_attack, Mark::line, 7}, {"follower", t, attack, Mark::line, 2}};
-  attacks.references = {{config.flight_model.greatest_angle_of_attack_rad / degree, "the follower's cap"}};
+  attacks.references = {{config.flight_model.maximum_angle_of_attack_rad / degree, "the follower's cap"}};
 
   Section section;
   section.title = "The real left jog, closed loop";

@@ -35,10 +35,10 @@ std::optional<Trim> flattest_trim(const Airframe& airframe, double speed_mps) {
 
 /// The end of level flight between two speeds of which one flies level and the other does not.
 double limit_speed_mps(const Airframe& airframe, double flies_mps, double does_not_mps,
-                       double greatest_attack_rad) {
+                       double maximum_attack_rad) {
   for (int halving = 0; halving < 40; ++halving) {
     const double middle = 0.5 * (flies_mps + does_not_mps);
-    (straight_trim(airframe, middle, 0, greatest_attack_rad) ? flies_mps : does_not_mps) = middle;
+    (straight_trim(airframe, middle, 0, maximum_attack_rad) ? flies_mps : does_not_mps) = middle;
   }
   return flies_mps;
 }

@@ -12,8 +12,8 @@ double followed(double now, double commanded, double time_s, double rate_per_s, 
   if (time_s == 0 && rate_per_s == 0) return commanded;
   const double share = time_s > 0 ? -std::expm1(-step_s / time_s) : 1;
   const double change = share * (commanded - now);
-  const double greatest = rate_per_s > 0 ? rate_per_s * step_s : std::abs(change);
-  return now + std::clamp(change, -greatest, greatest);
+  const double maximum = rate_per_s > 0 ? rate_per_s * step_s : std::abs(change);
+  return now + std::clamp(change, -maximum, maximum);
 }
 
 }  // namespace

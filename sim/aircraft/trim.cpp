@@ -29,11 +29,11 @@ Eigen::Vector3d residual(const Airframe& airframe, double airspeed_mps, double c
 
 std::optional<Trim> straight_trim(const Airframe& airframe, double airspeed_mps, double climb_angle_rad,
                                   double max_angle_of_attack_rad) {
-  constexpr int most_iterations = 50;
+  constexpr int maximum_iterations = 50;
   constexpr double difference = 1e-6;
   constexpr double tolerance = 1e-10;
   Eigen::Vector3d unknowns(0.2, 0.2, 0.5 * airframe.max_thrust_n);
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+  for (int iteration = 0; iteration < maximum_iterations; ++iteration) {
     const Eigen::Vector3d now = residual(airframe, airspeed_mps, climb_angle_rad, unknowns);
     if (!now.allFinite()) return std::nullopt;
     if (now.norm() < tolerance) {

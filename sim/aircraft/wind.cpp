@@ -33,8 +33,8 @@ Eigen::Vector3d Wind::at(const Eigen::Vector3d& position_world) const {
 
 Eigen::Vector3d Wind::mean_at(double altitude_m) const {
   if (config_.roughness_m == 0) return mean_world_mps_;
-  constexpr double least_height_m = 0.9144;  // 3 ft: the profile is not given below
-  const double height_m = std::max(altitude_m, least_height_m);
+  constexpr double minimum_height_m = 0.9144;  // 3 ft: the profile is not given below
+  const double height_m = std::max(altitude_m, minimum_height_m);
   const double share =
       std::log(height_m / config_.roughness_m) / std::log(config_.reference_height_m / config_.roughness_m);
   return std::max(0.0, share) * mean_world_mps_;

@@ -22,7 +22,7 @@ double stretch(double square) { return std::sqrt(-2 * std::log(square) / square)
 
 /// Bounds of stretch() between two steps of the squared distance, a little wide for its rounding.
 struct StretchBounds {
-  double least, greatest;
+  double minimum, maximum;
 };
 constexpr int bound_count = 1024;
 
@@ -31,7 +31,7 @@ std::array<StretchBounds, bound_count> stretch_bounds() {
   const auto at = [](int step) { return stretch(static_cast<double>(step) / bound_count); };  // it falls
   for (int i = 0; i < bound_count; ++i)
     bounds[static_cast<std::size_t>(i)] = {at(i + 1) * (1 - 1e-12), at(std::max(i, 1)) * (1 + 1e-12)};
-  bounds[0].greatest = 1e100;  // without bound, but times zero still zero
+  bounds[0].maximum = 1e100;  // without bound, but times zero still zero
   return bounds;
 }
 
@@ -55,8 +55,8 @@ std::vector<std::int8_t> rounded_gaussians(std::size_t count, double deviation, 
     } while (square > 1.0 || square == 0.0);
     // Where both bounds round alike, what lies between them does too: most logarithms need not be known.
     const auto step = static_cast<std::size_t>(std::min(square * bound_count, bound_count - 1.0));
-    const int size_x = size_at(x, bounds[step].least), size_y = size_at(y, bounds[step].least);
-    if (size_x == size_at(x, bounds[step].greatest) && size_y == size_at(y, bounds[step].greatest)) {
+    const int size_x = size_at(x, bounds[step].minimum), size_y = size_at(y, bounds[step].minimum);
+    if (size_x == size_at(x, bounds[step].maximum) && size_y == size_at(y, bounds[step].maximum)) {
       values[i] = static_cast<std::int8_t>(y < 0 ? -size_y : size_y);
       values[i + 1] = static_cast<std::int8_t>(x < 0 ? -size_x : size_x);
     } else {

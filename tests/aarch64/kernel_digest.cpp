@@ -77,8 +77,8 @@ BlockRule rule(int variant) {
   rule.infinity_px = 20;
   rule.window.limit_units = score_limit_units(0.324);
   rule.uniqueness = variant == 1;
-  rule.least_disparity_px = 20;
-  rule.greatest_disparity_px = 106;
+  rule.minimum_disparity_px = 20;
+  rule.maximum_disparity_px = 106;
   return rule;
 }
 

@@ -65,12 +65,12 @@ class Tracking {
     return config;
   }
 
-  Command random_command(std::mt19937_64& generator, int greatest_steps) {
-    const auto uniform = [&](double least, double greatest) {
-      return std::uniform_real_distribution<double>(least, greatest)(generator);
+  Command random_command(std::mt19937_64& generator, int maximum_steps) {
+    const auto uniform = [&](double minimum, double maximum) {
+      return std::uniform_real_distribution<double>(minimum, maximum)(generator);
     };
     const double bank = uniform(-1.4, 1.4), climb = uniform(-1, 2);
-    return {{bank, climb}, std::min(greatest_steps, static_cast<int>(uniform(5, 20)))};
+    return {{bank, climb}, std::min(maximum_steps, static_cast<int>(uniform(5, 20)))};
   }
 
   void fly(Aircraft& aircraft, const FlightCommand& command, int physics_steps) {

@@ -16,7 +16,7 @@
 namespace understory {
 namespace {
 
-constexpr std::int64_t greatest_latency_ns = 50'000'000;
+constexpr std::int64_t maximum_latency_ns = 50'000'000;
 constexpr std::int64_t never_ns = std::int64_t{1} << 60;
 
 /// Perfect vision that opens its eyes with the first image exposed at `opens_ns`.
@@ -109,14 +109,14 @@ TEST_P(LatencyOf, ElevonsAnswerAnImageWithinTheLimit) {
       trunk.to_world = {20.0 + i, 0.1 - 0.2 * i, 9};
       obstacles.push_back(trunk);
     }
-    const std::int64_t end_ns = opens_ns + 4 * greatest_latency_ns;
+    const std::int64_t end_ns = opens_ns + 4 * maximum_latency_ns;
     const std::vector<double> seeing = loop.left_elevon(obstacles, opens_ns, end_ns);
     const std::vector<double> unseeing = loop.left_elevon(obstacles, never_ns, end_ns);
     const auto [first, other] = std::mismatch(seeing.begin(), seeing.end(), unseeing.begin());
     ASSERT_NE(first, seeing.end()) << "never answered";
     const std::int64_t moved_ns = time_of_step_ns(first - seeing.begin());
     EXPECT_GT(moved_ns, opens_ns + 8'000'000) << "answered before the image arrived";
-    EXPECT_LE(moved_ns - opens_ns, greatest_latency_ns);
+    EXPECT_LE(moved_ns - opens_ns, maximum_latency_ns);
     slowest_ns = std::max(slowest_ns, moved_ns - opens_ns);
   }
   RecordProperty("slowest_us", static_cast<int>(slowest_ns / 1000));

@@ -42,12 +42,12 @@ TEST(MismatchPage, TheEstimateFollowedIsTheOneThatFlew) {
   config.filter = scenario.estimation.filter;
   config.sensors = scenario.sensors.sensors;
   config.sensor_seed = scenario.sensor_seed();
-  double greatest_m = 0;
+  double maximum_m = 0;
   for (const TrialMoment& moment : run_trial(flight, config))
     if (moment.truth.t_ns * physics_rate_hz >= flight.release_step * 1'000'000'000)
-      greatest_m = std::max(greatest_m, error_of(moment).segment<3>(position_block).norm());
+      maximum_m = std::max(maximum_m, error_of(moment).segment<3>(position_block).norm());
   EXPECT_GT(flight.result.position_error_max_m, 0.01);
-  EXPECT_NEAR(greatest_m, flight.result.position_error_max_m, 1e-9);
+  EXPECT_NEAR(maximum_m, flight.result.position_error_max_m, 1e-9);
 }
 
 TEST(MismatchPage, TallyCountsEveryFlightAndEveryFilter) {

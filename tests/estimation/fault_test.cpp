@@ -42,7 +42,7 @@ struct Tampered : StateSource {
 
 constexpr int seeds = 40;
 /// 99.9 % quantile of the mean of 40 chi-square variables with three degrees of freedom: chi2(120) / 40.
-constexpr double nees_most = 173.6 / seeds;
+constexpr double nees_maximum = 173.6 / seeds;
 constexpr double begin_s = 1.5, end_s = 5.0;  ///< of the faults: steady flight, then a dodge, then faster
 
 /// Dodges after a second and again 3.5 s later. The catapult fires at no moment of the sampling in
@@ -131,7 +131,7 @@ void expect_no_worse_than_without_pitot(const Course& course) {
               1.3 * without_pitot().at(without_pitot().error_mps, t_s) + 0.03)
         << t_s;
     EXPECT_LT(course.at(course.error_mps, t_s), 0.15) << t_s;
-    EXPECT_LT(course.at(course.nees, t_s), nees_most) << t_s;
+    EXPECT_LT(course.at(course.nees, t_s), nees_maximum) << t_s;
   }
   EXPECT_GT(course.at(course.sigma_mps, end_s), 1.1 * healthy().at(healthy().sigma_mps, end_s));
   EXPECT_EQ(course.faulty[Course::index(begin_s)], 0);
@@ -142,7 +142,7 @@ void expect_no_worse_than_without_pitot(const Course& course) {
 TEST(Fault, NoneIsReportedInAHealthyFlight) {
   for (const int faulty : healthy().faulty) EXPECT_EQ(faulty, 0);
   for (double t_s = begin_s; t_s < 8; t_s += 0.05)
-    EXPECT_LT(healthy().at(healthy().nees, t_s), nees_most) << t_s;
+    EXPECT_LT(healthy().at(healthy().nees, t_s), nees_maximum) << t_s;
 }
 
 TEST(Fault, ABlockedPitotIsLeftOutWithinHalfASecond) {
@@ -187,7 +187,7 @@ TEST(Fault, LostImuFramesAreCountedAndTheCovarianceCoversThem) {
       });
       EXPECT_GT(course.at(course.sigma_mps, until_s), 3 * healthy().at(healthy().sigma_mps, until_s));
       for (double t_s = until_s; t_s < 8; t_s += 0.05)
-        EXPECT_LT(course.at(course.nees, t_s), nees_most) << t_s << " lost from " << from_s;
+        EXPECT_LT(course.at(course.nees, t_s), nees_maximum) << t_s << " lost from " << from_s;
       EXPECT_LT(course.at(course.error_mps, until_s), 0.3);
       EXPECT_LT(course.at(course.error_mps, until_s + 1), 0.1);
     }
@@ -211,7 +211,7 @@ TEST(Fault, ABarometerThatStepsIsLeftOut) {
   for (double t_s = begin_s; t_s < 8; t_s += 0.005) {
     EXPECT_LT(course.at(course.worst_altitude_m, t_s), 0.6) << t_s;
     EXPECT_LT(course.at(course.worst_climb_mps, t_s), 0.25) << t_s;
-    EXPECT_LT(course.at(course.nees, t_s), nees_most) << t_s;
+    EXPECT_LT(course.at(course.nees, t_s), nees_maximum) << t_s;
     if (t_s > begin_s + 0.5) {
       EXPECT_EQ(course.faulty[Course::index(t_s)], seeds) << t_s;
     }

@@ -90,16 +90,16 @@ Nees average_nees(const Modelled& set) {
 }
 
 /// 99.8 % bounds of the mean of 50 chi-square variables: chi2(600)/50 (all states), chi2(150)/50 (one block).
-constexpr double all_least = 9.97, all_most = 14.25, block_least = 2.02, block_most = 4.17;
+constexpr double all_minimum = 9.97, all_maximum = 14.25, block_minimum = 2.02, block_maximum = 4.17;
 
 void expect_block(double block, const char* name) {
-  EXPECT_GT(block, block_least) << name;
-  EXPECT_LT(block, block_most) << name;
+  EXPECT_GT(block, block_minimum) << name;
+  EXPECT_LT(block, block_maximum) << name;
 }
 
 void expect_chi_square(const Nees& nees) {
-  EXPECT_GT(nees.all, all_least);
-  EXPECT_LT(nees.all, all_most);
+  EXPECT_GT(nees.all, all_minimum);
+  EXPECT_LT(nees.all, all_maximum);
   expect_block(nees.attitude, "attitude");
   expect_block(nees.velocity, "velocity");
   expect_block(nees.position, "position");
@@ -124,8 +124,8 @@ TEST(Nees, WithTheForcesAsMeasurementsOnlyTheVelocityIsCautious) {
     Modelled set = modelled();
     set.config.smooth_frame = smooth;
     const Nees nees = average_nees(set);
-    EXPECT_LT(nees.all, all_most);
-    EXPECT_LT(nees.velocity, block_most);
+    EXPECT_LT(nees.all, all_maximum);
+    EXPECT_LT(nees.velocity, block_maximum);
     expect_block(nees.attitude, "attitude");
     expect_block(nees.position, "position");
     expect_block(nees.bias, "gyro bias");

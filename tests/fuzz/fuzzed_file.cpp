@@ -13,8 +13,8 @@ namespace understory::fuzz {
 namespace {
 
 bool is_one_line(std::string_view text) {
-  constexpr std::size_t greatest = 6000;  // a path and a quotation, each cut
-  if (text.empty() || text.size() > greatest) return false;
+  constexpr std::size_t maximum = 6000;  // a path and a quotation, each cut
+  if (text.empty() || text.size() > maximum) return false;
   for (const char character : text)
     if (static_cast<unsigned char>(character) < ' ') return false;
   return true;

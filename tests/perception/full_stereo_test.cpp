@@ -94,8 +94,8 @@ TEST_P(FullStereoOf, SeesAPlaneInsideItsCropAndNoneOutside) {
     const auto hits = detector.detect(support::render_plane(rig(), plane_at(depth_m)));
     ASSERT_GT(hits.size(), 1000u);
     for (const StereoHit& hit : hits) {
-      EXPECT_GE(hit.position_camera.z(), crop.least_depth_m);
-      EXPECT_LE(hit.position_camera.z(), crop.greatest_depth_m);
+      EXPECT_GE(hit.position_camera.z(), crop.minimum_depth_m);
+      EXPECT_LE(hit.position_camera.z(), crop.maximum_depth_m);
     }
   }
   for (const double away_px : {-3.0, 3.0}) {
@@ -116,7 +116,7 @@ TEST_P(FullStereoOf, HitsLieOnThePlaneInsideTheirDepthInterval) {
     EXPECT_NEAR(ray.y() * rig().focal_px + rig().center_y_px, hit.row_px + 2, 1e-9);
     EXPECT_NEAR(hit.disparity_px, rig().disparity_px(hit.position_camera.z()), 1e-9);
     EXPECT_LE(hit.row_px, FullStereoCrop{}.last_row_px);
-    EXPECT_LE(hit.position_camera.y(), FullStereoCrop{}.greatest_below_m);
+    EXPECT_LE(hit.position_camera.y(), FullStereoCrop{}.maximum_below_m);
   }
   ASSERT_GT(hits.size(), 1000u);
   EXPECT_GT(static_cast<double>(inside), 0.95 * static_cast<double>(hits.size()));
@@ -142,7 +142,7 @@ TEST(FullStereo, CellsNeedEnoughPixelsAtTheWantedDepths) {
   const StereoFrame frame = support::render_plane(rig, plane_at(6));
   FullStereoCrop all;
   FullStereoCrop none = all;
-  none.least_pixels_per_cell = 26;
+  none.minimum_pixels_per_cell = 26;
   EXPECT_GT(FullStereoDetector(rig, StereoBmConfig{}, all).detect(frame).size(), 1000u);
   EXPECT_EQ(FullStereoDetector(rig, StereoBmConfig{}, none).detect(frame).size(), 0u);
 }
@@ -150,8 +150,8 @@ TEST(FullStereo, CellsNeedEnoughPixelsAtTheWantedDepths) {
 TEST(FullStereo, OnePixelCropIsThePushbroomsInterval) {
   // The paper's rig: 63.68 m px; its detection disparity 105 px is 13.2 px of parallax, 4.82 m.
   const FullStereoCrop paper = one_pixel_crop(support::house_rig("paper.yaml"));
-  EXPECT_NEAR(paper.least_depth_m, 180.4 * 0.353 / 14.2, 1e-9);
-  EXPECT_NEAR(paper.greatest_depth_m, 180.4 * 0.353 / 12.2, 1e-9);
+  EXPECT_NEAR(paper.minimum_depth_m, 180.4 * 0.353 / 14.2, 1e-9);
+  EXPECT_NEAR(paper.maximum_depth_m, 180.4 * 0.353 / 12.2, 1e-9);
 }
 
 }  // namespace

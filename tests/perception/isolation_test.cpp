@@ -10,9 +10,9 @@ TEST(Isolation, KeepsExactlyTheHitsWithCompany) {
   const double x[] = {0.0, 0.9, 5.0,
                       1.7, 5.5, 9.0};  // 0.0 has one other within 1 m, 0.9 two, 1.7 one, 5.0 one
   for (std::size_t i = 0; i < 6; ++i) hits[i].position_camera = {x[i], 0, 10};
-  const auto kept = [&](int least_points) {
+  const auto kept = [&](int minimum_points) {
     std::vector<StereoHit> some;
-    without_isolated(hits, least_points, 1.0, some);
+    without_isolated(hits, minimum_points, 1.0, some);
     return some;
   };
   ASSERT_EQ(kept(3).size(), 1u);

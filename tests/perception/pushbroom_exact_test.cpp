@@ -36,9 +36,9 @@ struct Reference {
     return static_cast<int>(cv::sum(difference)[0]);
   }
 
-  bool scores(int u, int v, int least_edges, int per_mille_of_333) const {
+  bool scores(int u, int v, int minimum_edges, int per_mille_of_333) const {
     const int a = sum(left_edges, u, v), b = sum(right_edges, u - disparity, v);
-    return a >= least_edges && b >= least_edges &&
+    return a >= minimum_edges && b >= minimum_edges &&
            333000 * static_cast<long>(sad(u, v, u - disparity, v)) <
                static_cast<long>(per_mille_of_333) * (a + b);
   }
@@ -55,9 +55,9 @@ struct Reference {
     return false;
   }
 
-  bool unique(int u, int v, int greatest) const {
+  bool unique(int u, int v, int maximum) const {
     const int best = sad(u, v, u - disparity, v);
-    for (int d = infinity; d <= greatest; ++d) {
+    for (int d = infinity; d <= maximum; ++d) {
       if (d == disparity || u - d < 0 || u - d + 5 > right.cols) continue;
       const int other = sad(u, v, u - d, v);
       if (std::abs(d - disparity) == 1 ? other < best : other <= 2 * best) return false;
@@ -137,7 +137,7 @@ TEST_P(ExactRule, UniquenessEqualsTheReference) {
   PushbroomConfig config = robust_rule();
   config.isolation = false;
   PushbroomStereo detector(rig, config);
-  const int greatest = static_cast<int>(std::floor(rig.disparity_px(config.uniqueness_least_depth_m)));
+  const int maximum = static_cast<int>(std::floor(rig.disparity_px(config.uniqueness_minimum_depth_m)));
   std::size_t found = 0, rejected = 0;
   for (const StereoFrame& frame : frames(rig)) {
     const Reference reference(frame, rig);
@@ -145,7 +145,7 @@ TEST_P(ExactRule, UniquenessEqualsTheReference) {
     for (int v = 0; v <= 205; v += 5)
       for (int u = reference.disparity; u + 5 <= rig.width_px; u += 5) {
         if (!reference.scores(u, v, 215, 83250)) continue;
-        if (reference.unique(u, v, greatest))
+        if (reference.unique(u, v, maximum))
           expected.emplace_back(v, u);
         else
           ++rejected;

@@ -86,8 +86,8 @@ BlockRule rule_of(int width_px, int height_px, std::vector<int> disparities) {
   for (const int d : disparities) rule.disparities.push_back({d, 215, score_limit_units(0.25)});
   rule.infinity_px = disparities.front() / 2;
   rule.window.limit_units = score_limit_units(0.324);
-  rule.least_disparity_px = rule.infinity_px;
-  rule.greatest_disparity_px = disparities.front() + 20;
+  rule.minimum_disparity_px = rule.infinity_px;
+  rule.maximum_disparity_px = disparities.front() + 20;
   return rule;
 }
 
@@ -205,19 +205,19 @@ TEST(PushbroomKernel, EqualsThePlainRuleForRulesDrawnAtRandom) {
     rule.stride_px = *rc::gen::inRange(1, 9);
     rule.every_pixel = *rc::gen::arbitrary<bool>();
     rule.last_row_px = *rc::gen::inRange(0, 60);
-    rule.disparities.front().least_edge_sum = *rc::gen::inRange(0, largest_edge_sum + 1);
+    rule.disparities.front().minimum_edge_sum = *rc::gen::inRange(0, largest_edge_sum + 1);
     rule.disparities.front().limit_units = *rc::gen::inRange<std::int64_t>(0, 10 * score_unit);
     rule.horizontal_invariance = *rc::gen::arbitrary<bool>();
     rule.uniqueness = *rc::gen::arbitrary<bool>();
     rule.neighbours = *rc::gen::arbitrary<bool>();
     rule.infinity_px = *rc::gen::inRange(-width, width);
-    rule.least_disparity_px = *rc::gen::inRange(-width, width);
-    rule.greatest_disparity_px = *rc::gen::inRange(rule.least_disparity_px, 2 * width);
+    rule.minimum_disparity_px = *rc::gen::inRange(-width, width);
+    rule.maximum_disparity_px = *rc::gen::inRange(rule.minimum_disparity_px, 2 * width);
     rule.uniqueness_ratio = *rc::gen::inRange(1000, 100000) / 1000.0;
     rule.window.columns_each_side_px = *rc::gen::inRange(0, 12);
     rule.window.rows_each_side_px = *rc::gen::inRange(0, 10);
     rule.window.row_step_px = *rc::gen::inRange(1, 6);
-    rule.window.least_edge_sum = *rc::gen::inRange(0, 3000);
+    rule.window.minimum_edge_sum = *rc::gen::inRange(0, 3000);
     rule.window.limit_units = *rc::gen::inRange<std::int64_t>(0, score_unit);
     expect_equal(rule, pair, *rc::gen::inRange(1, 4));
     RC_ASSERT(!testing::Test::HasFailure());

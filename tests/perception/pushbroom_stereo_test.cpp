@@ -26,7 +26,7 @@ using support::render_plane;
 using support::SyntheticPlane;
 
 /// Blocks of the detector's grid whose left and right edges suffice: those that could hit at all.
-int textured_blocks(const StereoFrame& frame, const PushbroomStereo& detector, int least_edge_sum) {
+int textured_blocks(const StereoFrame& frame, const PushbroomStereo& detector, int minimum_edge_sum) {
   cv::Mat left, right;
   cv::Laplacian(frame.left, left, CV_8U, 3);
   cv::Laplacian(frame.right, right, CV_8U, 3);
@@ -34,8 +34,8 @@ int textured_blocks(const StereoFrame& frame, const PushbroomStereo& detector, i
   int count = 0;
   for (int v = 0; v <= 205; v += 5)
     for (int u = d; u + 5 <= left.cols; u += 5)
-      count += cv::sum(left(cv::Rect(u, v, 5, 5)))[0] >= least_edge_sum &&
-               cv::sum(right(cv::Rect(u - d, v, 5, 5)))[0] >= least_edge_sum;
+      count += cv::sum(left(cv::Rect(u, v, 5, 5)))[0] >= minimum_edge_sum &&
+               cv::sum(right(cv::Rect(u - d, v, 5, 5)))[0] >= minimum_edge_sum;
   return count;
 }
 
@@ -51,7 +51,7 @@ Share share(const StereoRig& rig, const PushbroomConfig& config, SyntheticPlane 
   Share share;
   for (plane.seed = 1; plane.seed <= 4; ++plane.seed) {
     const StereoFrame frame = render_plane(rig, plane);
-    share.textured += textured_blocks(frame, detector, config.least_edge_sum);
+    share.textured += textured_blocks(frame, detector, config.minimum_edge_sum);
     share.hits += static_cast<int>(detector.detect(frame).size());
   }
   return share;
@@ -294,9 +294,9 @@ TEST(PushbroomStereo, EachDepthHasItsOwnThresholdsWhereTheyAreGiven) {
   config.depths_score_limit = {0.25, 0.02};
   EXPECT_LT(hits_at_7(config), all);
   config.depths_score_limit = {0.02, 0.25};
-  config.depths_least_edge_sum = {6375, 215};
+  config.depths_minimum_edge_sum = {6375, 215};
   EXPECT_EQ(hits_at_7(config), all);
-  config.depths_least_edge_sum = {215};
+  config.depths_minimum_edge_sum = {215};
   EXPECT_THROW(PushbroomStereo(rig, config), std::logic_error);
 }
 

@@ -111,7 +111,7 @@ TEST(Resightings, OfFewHitsAreNone) {
   course.rows = 1;  // the nearer depth's interval, 0.4 m, is crossed in four frames
   ResightingsConfig config = two_depths();
   EXPECT_TRUE(fly(course, config).empty());
-  config.least_hits = 3;
+  config.minimum_hits = 3;
   EXPECT_EQ(fly(course, config).size(), 1u);
 }
 

@@ -50,7 +50,7 @@ TEST(AvoidancePlanner, PlansNeverTouchAKnownTrunk) {
   const PlannerConfig config;
   const double around_m = config.field.wing_radius_m + config.field.sigma_zero_m + 0.5 * config.field.cell_m;
   const double limit_m =
-      around_m + std::min(config.trajectory.least_clearance_m, config.trajectory.least_kept_clearance_m);
+      around_m + std::min(config.trajectory.minimum_clearance_m, config.trajectory.minimum_kept_clearance_m);
   PlannerCounts sum;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     std::mt19937_64 generator(seed);

@@ -111,8 +111,8 @@ TEST(FlightModel, HardTurnsCostSpeed) {
 
 TEST(FlightModel, StaysInsideItsEnvelopeUnderAnyCommands) {
   std::mt19937_64 generator(7);
-  const auto uniform = [&](double least, double greatest) {
-    return std::uniform_real_distribution<double>(least, greatest)(generator);
+  const auto uniform = [&](double minimum, double maximum) {
+    return std::uniform_real_distribution<double>(minimum, maximum)(generator);
   };
   for (int flight = 0; flight < 200; ++flight) {
     const FlightModel model = model_at(uniform(10, 13));
@@ -126,11 +126,11 @@ TEST(FlightModel, StaysInsideItsEnvelopeUnderAnyCommands) {
         ASSERT_TRUE(next.position_world.allFinite());
         ASSERT_TRUE(std::isfinite(next.speed_mps + next.heading_rad + next.climb_angle_rad + next.bank_rad +
                                   next.roll_rate_radps + next.sideslip_rad + next.yaw_rate_radps));
-        EXPECT_LE(next.angle_of_attack_rad, config.greatest_angle_of_attack_rad + 1e-9);
-        EXPECT_GE(next.angle_of_attack_rad, config.least_angle_of_attack_rad - 1e-9);
+        EXPECT_LE(next.angle_of_attack_rad, config.maximum_angle_of_attack_rad + 1e-9);
+        EXPECT_GE(next.angle_of_attack_rad, config.minimum_angle_of_attack_rad - 1e-9);
         // The limit holds about the velocity, for what is asked; the lag towards it may add a little.
         const double limit =
-            config.greatest_roll_rate_radps * std::max(state.speed_mps, next.speed_mps) / 12.27;
+            config.maximum_roll_rate_radps * std::max(state.speed_mps, next.speed_mps) / 12.27;
         EXPECT_LE(std::abs(next.bank_rad - state.bank_rad) / step_s, 1.1 * limit);
         EXPECT_LT(std::abs(next.sideslip_rad), 1.2);  // on edge it falls sideways, never tail first
         state = next;

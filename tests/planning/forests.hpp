@@ -67,31 +67,31 @@ inline Eigen::Vector3d left_wing_by_rotations(double heading_rad, double climb_a
 inline double wing_distance_by_walking_m(const Eigen::Vector3d& centre_world,
                                          const Eigen::Vector3d& left_wing_world, double half_span_m,
                                          const Eigen::Vector2d& foot_world, double bottom_m, double top_m) {
-  double least = std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
   for (int step = -1000; step <= 1000; ++step) {
     const Eigen::Vector3d at = centre_world + step / 1000.0 * half_span_m * left_wing_world;
     const double above = std::max({0.0, bottom_m - at.z(), at.z() - top_m});
-    least = std::min(least, std::hypot((at.head<2>() - foot_world).norm(), above));
+    minimum = std::min(minimum, std::hypot((at.head<2>() - foot_world).norm(), above));
   }
-  return least;
+  return minimum;
 }
 
 /// Least distance over a plan between the wing and the trunks' own upright lines. The plan's first point is
 /// where the aircraft is anyway, so it is left out.
 inline double plan_distance_m(const Plan& plan, const std::vector<Trunk>& trunks,
                               const ObstacleFieldConfig& config) {
-  double least = std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < plan.points.size(); ++i) {
     const PlanPoint& point = plan.points[i];
     const Eigen::Vector3d left =
         left_wing_by_rotations(point.heading_rad, point.climb_angle_rad, point.bank_rad);
     for (const Trunk& trunk : trunks) {
       if ((trunk.foot_world - point.position_world.head<2>()).norm() > 1.5) continue;
-      least = std::min(least, wing_distance_by_walking_m(point.position_world, left, config.half_span_m,
-                                                         trunk.foot_world, trunk.bottom_m, trunk.top_m));
+      minimum = std::min(minimum, wing_distance_by_walking_m(point.position_world, left, config.half_span_m,
+                                                             trunk.foot_world, trunk.bottom_m, trunk.top_m));
     }
   }
-  return least;
+  return minimum;
 }
 
 }  // namespace understory

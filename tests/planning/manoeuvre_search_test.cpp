@@ -74,7 +74,7 @@ TEST(ManoeuvreSearch, WhatItFindsKeepsClearOfEveryKnownTrunk) {
     const std::optional<Manoeuvre> found = search.run(seed);
     if (!found) continue;
     ++found_count;
-    const double limit = search.trajectory.least_clearance_m;
+    const double limit = search.trajectory.minimum_clearance_m;
     Plan plan;
     const Rollout rollout = fly_out(search.task(), search.start, *found, limit, true);
     EXPECT_TRUE(rollout.reached_horizon) << "seed " << seed;
@@ -83,8 +83,8 @@ TEST(ManoeuvreSearch, WhatItFindsKeepsClearOfEveryKnownTrunk) {
     const double around_m = field.wing_radius_m + field.sigma_zero_m + 0.5 * field.cell_m;
     EXPECT_GE(plan_distance_m(plan, search.trunks, field), around_m + limit - 1e-9) << "seed " << seed;
     for (const PlanPoint& point : plan.points) {
-      EXPECT_GT(point.position_world.z(), search.mission.least_altitude_m);
-      EXPECT_LT(point.position_world.z(), search.mission.greatest_altitude_m);
+      EXPECT_GT(point.position_world.z(), search.mission.minimum_altitude_m);
+      EXPECT_LT(point.position_world.z(), search.mission.maximum_altitude_m);
     }
   }
   EXPECT_GE(found_count, 45);

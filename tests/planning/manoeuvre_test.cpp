@@ -39,16 +39,16 @@ TEST(FlyOut, ReachesTheHorizonInFreeSpace) {
 
 TEST(FlyOut, StopsBeforeAnObstacle) {
   const Flight flight(wall(8));
-  const double least_m = 0.2;
-  const Rollout rollout = fly_out(flight.task(), flight.start, {}, least_m, true);
+  const double minimum_m = 0.2;
+  const Rollout rollout = fly_out(flight.task(), flight.start, {}, minimum_m, true);
   EXPECT_FALSE(rollout.reached_horizon);
-  EXPECT_LT(rollout.least_clearance_m, least_m);
+  EXPECT_LT(rollout.minimum_clearance_m, minimum_m);
   EXPECT_LT(rollout.points.back().position_world.x(), 8.0);
   EXPECT_LT(rollout.free_until_s, 8.0 / 11.0);
   // The last moment that was free, was.
   const PlanPoint& before = rollout.points[rollout.points.size() - 2];
   EXPECT_NEAR(before.t_s, rollout.free_until_s, 1e-9);
-  EXPECT_LT(before.position_world.x(), 8.0 - least_m);
+  EXPECT_LT(before.position_world.x(), 8.0 - minimum_m);
 }
 
 TEST(FlyOut, FliesThroughWhereToldTo) {
@@ -56,18 +56,18 @@ TEST(FlyOut, FliesThroughWhereToldTo) {
   const Rollout rollout = fly_out(flight.task(), flight.start, {}, 0.2, true, false);
   EXPECT_FALSE(rollout.reached_horizon);
   EXPECT_GE(rollout.points.back().position_world.x(), flight.config.horizon_m);
-  EXPECT_LT(rollout.least_clearance_m, 0);
+  EXPECT_LT(rollout.minimum_clearance_m, 0);
   EXPECT_LT(rollout.free_until_s, 8.0 / 11.0);
 }
 
 TEST(FlyOut, StopsWhereTheBandEnds) {
   Flight flight;
-  flight.start.position_world.z() = flight.mission.greatest_altitude_m - 0.15;
+  flight.start.position_world.z() = flight.mission.maximum_altitude_m - 0.15;
   flight.start.climb_angle_rad = 0.15;
   const Rollout rollout = fly_out(flight.task(), flight.start, {{{0, 2}, 2.0}}, 0.05, true);
   EXPECT_FALSE(rollout.reached_horizon);
-  EXPECT_LT(rollout.least_margin_m, 0.05);
-  EXPECT_GE(rollout.least_clearance_m, flight.config.comfortable_clearance_m);  // no obstacle far and wide
+  EXPECT_LT(rollout.minimum_margin_m, 0.05);
+  EXPECT_GE(rollout.minimum_clearance_m, flight.config.comfortable_clearance_m);  // no obstacle far and wide
   EXPECT_LT(rollout.points.back().position_world.x(), flight.config.horizon_m);
 }
 

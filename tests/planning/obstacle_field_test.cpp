@@ -12,23 +12,23 @@ namespace {
 
 /// Column by column, walking along the wing.
 double clearance_by_walking_m(const ObstacleField& field, const ObstacleFieldConfig& config,
-                              const FlightState& state, double greatest_m) {
-  double least = greatest_m;
+                              const FlightState& state, double maximum_m) {
+  double minimum = maximum_m;
   const Eigen::Vector3d left =
       left_wing_by_rotations(state.heading_rad, state.climb_angle_rad, state.bank_rad);
   for (const ObstacleField::Column& column : field.columns()) {
-    if ((column.centre_world - state.position_world.head<2>()).norm() > greatest_m + 2) continue;
+    if ((column.centre_world - state.position_world.head<2>()).norm() > maximum_m + 2) continue;
     const double wing = wing_distance_by_walking_m(state.position_world, left, config.half_span_m,
                                                    column.centre_world, column.bottom_m, column.top_m);
-    least = std::min(least, wing - column.radius_m - config.wing_radius_m);
+    minimum = std::min(minimum, wing - column.radius_m - config.wing_radius_m);
   }
-  return least;
+  return minimum;
 }
 
 TEST(ObstacleField, ClearanceAgreesWithWalkingAlongTheWing) {
   std::mt19937_64 generator(11);
-  const auto uniform = [&](double least, double greatest) {
-    return std::uniform_real_distribution<double>(least, greatest)(generator);
+  const auto uniform = [&](double minimum, double maximum) {
+    return std::uniform_real_distribution<double>(minimum, maximum)(generator);
   };
   ObstacleFieldConfig config;
   int near = 0, touching = 0;
@@ -109,7 +109,7 @@ TEST(ObstacleField, WhatIsSeenInTheAirStandsOnTheGroundWhereAsked) {
 
 TEST(ObstacleField, UncertaintyGrowsWithTheDistanceFlownUpToItsLimit) {
   ObstacleFieldConfig config;
-  config.sigma_zero_m = 0.05, config.sigma_per_m = 0.01, config.sigma_greatest_m = 0.3;
+  config.sigma_zero_m = 0.05, config.sigma_per_m = 0.01, config.sigma_maximum_m = 0.3;
   const std::vector<ObstaclePoint> points = points_of({{{5, 0.1}}});
   FlightState state;
   state.position_world = {3, 0, 4};

@@ -88,8 +88,8 @@ TEST(Follow, DampsRatesAndHoldsSpeed) {
 
 TEST(Follow, StaysWithinTheAirframesLimits) {
   std::mt19937_64 generator(9);
-  const auto uniform = [&](double least, double greatest) {
-    return std::uniform_real_distribution<double>(least, greatest)(generator);
+  const auto uniform = [&](double minimum, double maximum) {
+    return std::uniform_real_distribution<double>(minimum, maximum)(generator);
   };
   const Airframe airframe;
   const FlightModel model(airframe, {});

@@ -30,8 +30,8 @@ TEST(Bootstrap, PublishedBcaInterval) {
                                     0,  33, 28, 34, 4,  32, 24, 47, 41, 24, 26, 30, 41};
   const BootstrapEstimate estimate = bootstrap(spatial, variance, {50'000, 1, 1.6448536269514722});
   EXPECT_NEAR(estimate.value, 171.5, 0.05);
-  EXPECT_NEAR(estimate.interval.least, 115.8, 2.5);
-  EXPECT_NEAR(estimate.interval.greatest, 259.6, 5);
+  EXPECT_NEAR(estimate.interval.minimum, 115.8, 2.5);
+  EXPECT_NEAR(estimate.interval.maximum, 259.6, 5);
 }
 
 /// For many values that are nearly normal it is the textbook's interval.
@@ -41,27 +41,27 @@ TEST(Bootstrap, ApproachesTheNormalInterval) {
   const BootstrapEstimate estimate = bootstrap(values);
   const double error = std::sqrt(variance(values) / 400);
   EXPECT_NEAR(estimate.standard_error, error, 0.03 * error);
-  EXPECT_NEAR(estimate.interval.least, estimate.value - z_95 * error, 0.1 * error);
-  EXPECT_NEAR(estimate.interval.greatest, estimate.value + z_95 * error, 0.1 * error);
+  EXPECT_NEAR(estimate.interval.minimum, estimate.value - z_95 * error, 0.1 * error);
+  EXPECT_NEAR(estimate.interval.maximum, estimate.value + z_95 * error, 0.1 * error);
 }
 
 TEST(Bootstrap, RepeatsItself) {
   const std::vector<double> values{0.1, -0.4, 0.9, 1.3, -2.2, 0.7};
   const BootstrapEstimate one = bootstrap(values), other = bootstrap(values);
-  EXPECT_EQ(one.interval.least, other.interval.least);
-  EXPECT_EQ(one.interval.greatest, other.interval.greatest);
-  EXPECT_LT(one.interval.least, one.value);
-  EXPECT_GT(one.interval.greatest, one.value);
+  EXPECT_EQ(one.interval.minimum, other.interval.minimum);
+  EXPECT_EQ(one.interval.maximum, other.interval.maximum);
+  EXPECT_LT(one.interval.minimum, one.value);
+  EXPECT_GT(one.interval.maximum, one.value);
 }
 
 TEST(Bootstrap, SaysNothingOfWhatItCannotKnow) {
   EXPECT_TRUE(std::isnan(bootstrap({}).value));
   const std::vector<double> one{3};
   EXPECT_EQ(bootstrap(one).value, 3);
-  EXPECT_TRUE(std::isinf(bootstrap(one).interval.least));
+  EXPECT_TRUE(std::isinf(bootstrap(one).interval.minimum));
   const std::vector<double> same(10, 0.0);
-  EXPECT_EQ(bootstrap(same).interval.least, 0);
-  EXPECT_EQ(bootstrap(same).interval.greatest, 0);
+  EXPECT_EQ(bootstrap(same).interval.minimum, 0);
+  EXPECT_EQ(bootstrap(same).interval.maximum, 0);
 }
 
 }  // namespace

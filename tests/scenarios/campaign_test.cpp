@@ -208,7 +208,7 @@ TEST(CampaignFolder, CollectsWholeFlightsInTheCampaignsOrder) {
   EXPECT_EQ(rows[1].progress_m, 75.125);
   EXPECT_EQ(rows[1].min_clearance_m, 0.5);
   EXPECT_EQ(rows[1].detections, 12345678);
-  EXPECT_EQ(rows[1].least_points_on_a_bar, -1);
+  EXPECT_EQ(rows[1].minimum_points_on_a_bar, -1);
   EXPECT_EQ(rows[1].digest, "00ff");
 }
 

@@ -31,15 +31,15 @@ TEST(SegmentDistance, AgreesWithSearch) {
   for (int trial = 0; trial < 50; ++trial) {
     const Segment a{point(), point()};
     const Segment b{point(), point()};
-    double least = 10;
+    double minimum = 10;
     for (int i = 0; i <= 200; ++i) {
       for (int k = 0; k <= 200; ++k) {
-        least = std::min(
-            least, (a.from + i / 200.0 * (a.to - a.from) - b.from - k / 200.0 * (b.to - b.from)).norm());
+        minimum = std::min(
+            minimum, (a.from + i / 200.0 * (a.to - a.from) - b.from - k / 200.0 * (b.to - b.from)).norm());
       }
     }
-    EXPECT_LE(segment_distance_m(a, b), least + 1e-12);
-    EXPECT_NEAR(segment_distance_m(a, b), least, 0.02);
+    EXPECT_LE(segment_distance_m(a, b), minimum + 1e-12);
+    EXPECT_NEAR(segment_distance_m(a, b), minimum, 0.02);
   }
 }
 
@@ -65,18 +65,19 @@ TEST(ObstacleDistance, OfAWallAgreesWithSearch) {
   for (int trial = 0; trial < 40; ++trial) {
     const Segment segment{2 * point(), 2 * point()};
     const Vector3d from = point(), to = point();
-    double least = 10;
+    double minimum = 10;
     for (int i = 0; i <= 50; ++i)
       for (int k = 0; k <= 50; ++k)
         for (int m = 0; m <= 50; ++m) {
           const Vector3d on_wall(from.x() + i / 50.0 * (to.x() - from.x()),
                                  from.y() + i / 50.0 * (to.y() - from.y()),
                                  from.z() + k / 50.0 * (to.z() - from.z()));
-          least = std::min(least, (segment.from + m / 50.0 * (segment.to - segment.from) - on_wall).norm());
+          minimum =
+              std::min(minimum, (segment.from + m / 50.0 * (segment.to - segment.from) - on_wall).norm());
         }
     const double found = obstacle_distance_m(segment, wall(from, to, 0));
-    EXPECT_LE(found, least + 1e-12);
-    EXPECT_NEAR(found, least, 0.06);
+    EXPECT_LE(found, minimum + 1e-12);
+    EXPECT_NEAR(found, minimum, 0.06);
   }
 }
 

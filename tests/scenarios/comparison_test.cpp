@@ -40,8 +40,8 @@ TEST(Comparison, PairsOutcomesOfTheSameSeed) {
   EXPECT_EQ(goals.neither, 16);
   EXPECT_NEAR(comparison.all.p, 0.0129, 5e-5);
   EXPECT_NEAR(goals.difference(), -0.2, 1e-12);
-  EXPECT_NEAR(comparison.all.difference.least, -0.329207, 5e-7);
-  EXPECT_NEAR(comparison.all.difference.greatest, -0.056156, 5e-7);
+  EXPECT_NEAR(comparison.all.difference.minimum, -0.329207, 5e-7);
+  EXPECT_NEAR(comparison.all.difference.maximum, -0.056156, 5e-7);
 }
 
 TEST(Comparison, FlightsThatFailedToRunEnterNoFigure) {
@@ -82,7 +82,7 @@ TEST(Comparison, MeansArePaired) {
   // Speeds spread over 30 m/s, differences not at all: only a paired comparison knows half a metre a second.
   EXPECT_EQ(all.metrics[0].name, "mean_speed_mps");
   EXPECT_NEAR(all.metrics[0].difference.value, 0.5, 1e-12);
-  EXPECT_NEAR(all.metrics[0].difference.interval.least, 0.5, 1e-12);
+  EXPECT_NEAR(all.metrics[0].difference.interval.minimum, 0.5, 1e-12);
   EXPECT_EQ(all.metrics[1].name, "min_clearance_m");
   EXPECT_EQ(all.metrics[1].pairs, 29);
   EXPECT_EQ(all.bit_for_bit, 30);

@@ -281,9 +281,9 @@ TEST(Evaluation, NearestDistancesAreThoseOfBruteForce) {
     for (Eigen::Vector3d& point : *points) point = {place(generator), place(generator), place(generator)};
   const auto distances_m = nearest_distances_m(from, to);
   for (std::size_t i = 0; i < from.size(); ++i) {
-    double least = 1e9;
-    for (const Eigen::Vector3d& other : to) least = std::min(least, (from[i] - other).norm());
-    EXPECT_DOUBLE_EQ(distances_m[i], least);
+    double minimum = 1e9;
+    for (const Eigen::Vector3d& other : to) minimum = std::min(minimum, (from[i] - other).norm());
+    EXPECT_DOUBLE_EQ(distances_m[i], minimum);
   }
   EXPECT_TRUE(std::isinf(nearest_distances_m(from, {}).front()));
 }

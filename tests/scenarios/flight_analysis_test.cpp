@@ -90,8 +90,8 @@ TEST(Modes, EquationsAreTheSimulators) {
   const Airframe airframe;
   const FreeFlight air(UNDERSTORY_SOURCE_DIR "/models", airframe);
   std::mt19937_64 generator(4);
-  const auto uniform = [&](double least, double greatest) {
-    return std::uniform_real_distribution<double>(least, greatest)(generator);
+  const auto uniform = [&](double minimum, double maximum) {
+    return std::uniform_real_distribution<double>(minimum, maximum)(generator);
   };
   for (int trial = 0; trial < 50; ++trial) {
     BodyMotion motion;

@@ -68,7 +68,7 @@ TEST_F(Jog, FittedReplayKeepsItsTolerances) {
   EXPECT_LE(error_at(error, 0.5).horizontal_m, 0.20);
   EXPECT_LE(error_at(error, 1.0).horizontal_m, 0.25);
   EXPECT_LE(error_at(error, 1.5).horizontal_m, 0.40);
-  EXPECT_LE(greatest_height_m(error), 0.35);
+  EXPECT_LE(maximum_height_m(error), 0.35);
   EXPECT_LE(std::abs(error_at(error, 0.5).roll_rad) / degree, 4);
   EXPECT_LE(rms_roll_rad(error) / degree, 4.5);
 }

@@ -207,12 +207,12 @@ TEST(Objects, AWallAheadHasOneDepth) {
     const fs::path mav0 = options.output_folder / "mav0";
     const cv::Mat depth = cv::imread((mav0 / "depth0/data" / name).string(), cv::IMREAD_UNCHANGED);
     const cv::Mat objects = cv::imread((mav0 / "objects0/data" / name).string(), cv::IMREAD_UNCHANGED);
-    double least = 0, greatest = 0;
-    cv::minMaxLoc(depth, &least, &greatest, nullptr, nullptr, objects == 2);
+    double minimum = 0, maximum = 0;
+    cv::minMaxLoc(depth, &minimum, &maximum, nullptr, nullptr, objects == 2);
     EXPECT_GT(cv::countNonZero(objects == 2), 20'000);
     const double expected_mm = 1000 * (72 - 3.0 * quarter - ahead_m);
-    EXPECT_NEAR(least, expected_mm, 0.5 + 2e-4 * expected_mm);
-    EXPECT_NEAR(greatest, expected_mm, 0.5 + 2e-4 * expected_mm);
+    EXPECT_NEAR(minimum, expected_mm, 0.5 + 2e-4 * expected_mm);
+    EXPECT_NEAR(maximum, expected_mm, 0.5 + 2e-4 * expected_mm);
   }
 }
 
@@ -250,9 +250,9 @@ TEST(Objects, BeyondTheViewAreNone) {
   const support::TemporaryFolder folder;
   const Recorded forest = walked("forest", {"cameras.view_distance_m=5"}, folder.path());
   for (const auto& entry : fs::directory_iterator(folder.path() / "mav0/objects0/data")) {
-    double greatest = 0;
-    cv::minMaxLoc(cv::imread(entry.path().string(), cv::IMREAD_UNCHANGED), nullptr, &greatest);
-    EXPECT_EQ(greatest, object_ground);
+    double maximum = 0;
+    cv::minMaxLoc(cv::imread(entry.path().string(), cv::IMREAD_UNCHANGED), nullptr, &maximum);
+    EXPECT_EQ(maximum, object_ground);
   }
   EXPECT_GT(forest.agreement.on_obstacles, 0);  // although some stand there
 }

@@ -29,25 +29,25 @@ TEST(McNemar, OnlyChangedPairsCount) {
 TEST(PairedDifference, PublishedIntervals) {
   const struct {
     PairedOutcomes outcomes;
-    double least, greatest;  ///< of first less second, as published
+    double minimum, maximum;  ///< of first less second, as published
     double within;
   } rows[] = {{{36, 12, 2, 0}, 0.0569, 0.3404, 5e-5},
               {airways, -0.507, -0.026, 5e-4},
               {cultures, 0.056156, 0.329207, 5e-7}};
   for (const auto& row : rows) {
     const Interval interval = paired_difference_interval(row.outcomes);
-    EXPECT_NEAR(-interval.greatest, row.least, row.within);
-    EXPECT_NEAR(-interval.least, row.greatest, row.within);
+    EXPECT_NEAR(-interval.maximum, row.minimum, row.within);
+    EXPECT_NEAR(-interval.minimum, row.maximum, row.within);
   }
 }
 
 TEST(PairedDifference, Edges) {
-  EXPECT_EQ(paired_difference_interval({}).least, -1);
-  EXPECT_EQ(paired_difference_interval({}).greatest, 1);
+  EXPECT_EQ(paired_difference_interval({}).minimum, -1);
+  EXPECT_EQ(paired_difference_interval({}).maximum, 1);
   const Interval same = paired_difference_interval({100, 0, 0, 0});
-  EXPECT_LT(same.least, 0);
-  EXPECT_NEAR(same.greatest, -same.least, 1e-12);
-  EXPECT_NEAR(paired_difference_interval({0, 10, 0, 0}).least, -1, 1e-12);
+  EXPECT_LT(same.minimum, 0);
+  EXPECT_NEAR(same.maximum, -same.minimum, 1e-12);
+  EXPECT_NEAR(paired_difference_interval({0, 10, 0, 0}).minimum, -1, 1e-12);
 }
 
 }  // namespace

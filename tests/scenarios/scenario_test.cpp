@@ -27,8 +27,8 @@ TEST(Scenario, TheLibraryIsWhatTheMissionSays) {
   EXPECT_EQ(forest.rig, "long");
   EXPECT_EQ(forest.goal_x_m(), 75);
   EXPECT_EQ(forest.forest.half_width_m, 25);
-  EXPECT_EQ(forest.band.least_altitude_m, 1);
-  EXPECT_EQ(forest.band.greatest_altitude_m, 6);
+  EXPECT_EQ(forest.band.minimum_altitude_m, 1);
+  EXPECT_EQ(forest.band.maximum_altitude_m, 6);
   EXPECT_EQ(load_scenario(library / "dense.yaml").forest.square_metres_per_tree, 25);
   EXPECT_EQ(load_scenario(library / "paper.yaml").rig, "paper");
   EXPECT_EQ(load_scenario(library / "clear.yaml").course, Course::clear);
@@ -38,7 +38,7 @@ TEST(Scenario, TheLibraryIsWhatTheMissionSays) {
 
 TEST(Scenario, EveryDefaultIsWritten) {
   const std::string text = scenario_to_text(Scenario{});
-  for (const char* key : {"square_metres_per_tree", "latency_s", "lens_cap", "mass_kg", "greatest_altitude_m",
+  for (const char* key : {"square_metres_per_tree", "latency_s", "lens_cap", "mass_kg", "maximum_altitude_m",
                           "invisible", "detector", "source"}) {
     EXPECT_NE(text.find(std::string(key) + ": "), std::string::npos) << key;
   }
@@ -70,14 +70,16 @@ TEST(Scenario, FullStereosNumbersAreRefusedInOneLineWhereOpenCvWouldThrow) {
       return error.what();
     }
   };
+  EXPECT_EQ(refusal("band: {least_altitude_m: 1}"),  // as keys were called in 0.1
+            "a.yaml:1: band.least_altitude_m: expected a known key (did you mean minimum_altitude_m?)");
   EXPECT_EQ(refusal("perception:\n  stereo_bm: {window_px: 6}\n"),
             "a.yaml:2: perception.stereo_bm.window_px: expected an odd number");
   EXPECT_EQ(refusal("perception:\n  stereo_sgbm: {disparities: 100}\n"),
             "a.yaml:2: perception.stereo_sgbm.disparities: expected a multiple of 16");
   EXPECT_EQ(refusal("perception:\n  stereo_sgbm: {smoothness_1: 40}\n"),
             "a.yaml:2: perception.stereo_sgbm.smoothness_1: expected less than smoothness_2");
-  EXPECT_EQ(refusal("perception: {full_stereo: {least_depth_m: 20}}"),
-            "a.yaml:1: perception.full_stereo.least_depth_m: expected less than greatest_depth_m");
+  EXPECT_EQ(refusal("perception: {full_stereo: {minimum_depth_m: 20}}"),
+            "a.yaml:1: perception.full_stereo.minimum_depth_m: expected less than maximum_depth_m");
   EXPECT_EQ(
       refusal("perception: {detector: stereo}"),
       "a.yaml:1: perception.detector: expected pushbroom | stereo_bm | stereo_sgbm | true_depth | none, "
@@ -102,15 +104,15 @@ TEST(Scenario, ARuleIsTheRigsOwnUnderTheKeysBesideIt) {
   const auto rule = [](const char* text) {
     return scenario_from_text(text, "rule.yaml").perception.pushbroom;
   };
-  EXPECT_EQ(rule("name: a").least_edge_sum, tuned_rule("long").least_edge_sum);
-  EXPECT_EQ(rule("perception: {rule: robust}").least_edge_sum, robust_rule().least_edge_sum);
-  EXPECT_EQ(rule("perception: {rule: paper}").least_edge_sum, paper_rule().least_edge_sum);
+  EXPECT_EQ(rule("name: a").minimum_edge_sum, tuned_rule("long").minimum_edge_sum);
+  EXPECT_EQ(rule("perception: {rule: robust}").minimum_edge_sum, robust_rule().minimum_edge_sum);
+  EXPECT_EQ(rule("perception: {rule: paper}").minimum_edge_sum, paper_rule().minimum_edge_sum);
   const PushbroomConfig tuned =
       rule("{rig: paper, perception: {rule: tuned, pushbroom: {score_limit: 0.2}}}");
-  EXPECT_EQ(tuned.least_edge_sum, tuned_rule("paper").least_edge_sum);
+  EXPECT_EQ(tuned.minimum_edge_sum, tuned_rule("paper").minimum_edge_sum);
   EXPECT_EQ(tuned.score_limit, 0.2);
-  EXPECT_NE(tuned.least_edge_sum, rule("{rig: long, perception: {rule: tuned}}").least_edge_sum);
-  EXPECT_EQ(tuned_rule("somebody's").least_edge_sum, robust_rule().least_edge_sum);
+  EXPECT_NE(tuned.minimum_edge_sum, rule("{rig: long, perception: {rule: tuned}}").minimum_edge_sum);
+  EXPECT_EQ(tuned_rule("somebody's").minimum_edge_sum, robust_rule().minimum_edge_sum);
 }
 
 TEST(Scenario, FaultsAreReadWrittenAndChecked) {

@@ -27,7 +27,7 @@ TEST(KaplanMeier, PublishedCurve) {
   const struct {
     double at;
     int at_risk, ended;
-    double share, standard_error, least, greatest;
+    double share, standard_error, minimum, maximum;
   } rows[] = {{6, 21, 3, 0.857, 0.0764, 0.620, 0.952},  {7, 17, 1, 0.807, 0.0869, 0.563, 0.923},
               {10, 15, 1, 0.753, 0.0963, 0.503, 0.889}, {13, 12, 1, 0.690, 0.1068, 0.432, 0.849},
               {16, 11, 1, 0.627, 0.1141, 0.368, 0.805}, {22, 7, 1, 0.538, 0.1282, 0.268, 0.747},
@@ -41,8 +41,8 @@ TEST(KaplanMeier, PublishedCurve) {
     EXPECT_EQ(step.ended, rows[i].ended);
     EXPECT_NEAR(step.share, rows[i].share, 5e-4);
     EXPECT_NEAR(step.standard_error, rows[i].standard_error, 5e-5);
-    EXPECT_NEAR(step.interval.least, rows[i].least, 5e-4);
-    EXPECT_NEAR(step.interval.greatest, rows[i].greatest, 5e-4);
+    EXPECT_NEAR(step.interval.minimum, rows[i].minimum, 5e-4);
+    EXPECT_NEAR(step.interval.maximum, rows[i].maximum, 5e-4);
   }
   EXPECT_EQ(curve.last_at, 35);
 }
@@ -81,19 +81,19 @@ TEST(KaplanMeier, WithoutCensoringItIsAShare) {
 TEST(KaplanMeier, TheEndsOfWhatCanBeSaid) {
   const SurvivalCurve nobody = kaplan_meier({});
   EXPECT_EQ(nobody.steps.size(), 1u);
-  EXPECT_EQ(nobody.steps[0].interval.least, 0);
+  EXPECT_EQ(nobody.steps[0].interval.minimum, 0);
 
   const SurvivalCurve all_well = kaplan_meier({{75, false}, {75, false}});
   EXPECT_EQ(survival_at(all_well, 75).share, 1);
-  EXPECT_NEAR(survival_at(all_well, 75).interval.least, 0.3424, 5e-5);  // Wilson, 2 of 2
+  EXPECT_NEAR(survival_at(all_well, 75).interval.minimum, 0.3424, 5e-5);  // Wilson, 2 of 2
   EXPECT_FALSE(median_survival(all_well));
 
   const SurvivalCurve all_gone = kaplan_meier({{10, true}, {20, true}});
   EXPECT_EQ(survival_at(all_gone, 9.9).share, 1);
   EXPECT_EQ(survival_at(all_gone, 10).share, 0.5);
   EXPECT_EQ(survival_at(all_gone, 300).share, 0);
-  EXPECT_EQ(survival_at(all_gone, 300).interval.least, 0);
-  EXPECT_EQ(survival_at(all_gone, 300).interval.greatest, survival_at(all_gone, 10).interval.greatest);
+  EXPECT_EQ(survival_at(all_gone, 300).interval.minimum, 0);
+  EXPECT_EQ(survival_at(all_gone, 300).interval.maximum, survival_at(all_gone, 10).interval.maximum);
   EXPECT_EQ(median_survival(all_gone), 10);
 }
 

@@ -78,8 +78,8 @@ TEST(RayMeetsBar, ClosedForms) {
 TEST(TrueDepth, SeesOnePixelEitherWay) {
   Scene scene;
   const TrueDepth detector(paper_rig(), {}, scene.history);
-  EXPECT_NEAR(detector.least_depth_m(), 4.47, 0.02);
-  EXPECT_NEAR(detector.greatest_depth_m(), 5.20, 0.02);
+  EXPECT_NEAR(detector.minimum_depth_m(), 4.47, 0.02);
+  EXPECT_NEAR(detector.maximum_depth_m(), 5.20, 0.02);
 }
 
 TEST(TrueDepth, HitsLieOnTheTrunkAndCoverIt) {

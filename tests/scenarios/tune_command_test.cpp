@@ -99,7 +99,7 @@ TEST(TuneCommand, OverRecordingsItsFiguresAreThoseOfTheirScore) {
       folder
           .write("tune.yaml",
                  "scenario: forest\nparameters:\n"
-                 "  perception.pushbroom.least_edge_sum: {from: 100, to: 900}\n"
+                 "  perception.pushbroom.minimum_edge_sum: {from: 100, to: 900}\n"
                  "  perception.pushbroom.score_limit: {from: 0.05, to: 0.4, scale: log}\n"
                  "objective: {maximize: [recall, precision]}\n"
                  "search: {method: nsga2, trials: 20, seed: 1, sensitivity: 2}\nover: recordings\n"

@@ -16,7 +16,7 @@ TEST_F(TuningTest, ReadsWhatIsTunedForWhat) {
   ASSERT_EQ(tune.space.parameters.size(), 2u);
   EXPECT_TRUE(tune.space.parameters[0].whole);
   EXPECT_TRUE(tune.space.parameters[1].logarithmic);
-  EXPECT_EQ(tune.scenario_point[0], tune.scenario.perception.pushbroom.least_edge_sum);
+  EXPECT_EQ(tune.scenario_point[0], tune.scenario.perception.pushbroom.minimum_edge_sum);
   EXPECT_EQ(tune.scenario_point[1], tune.scenario.perception.pushbroom.score_limit);
   EXPECT_EQ(tune.figures[tune.objective.goals[0].figure], "mean_speed_mps");
   EXPECT_EQ(tune.objective.limits[0].bound, 0.5);
@@ -55,10 +55,10 @@ TEST_F(TuningTest, RefusesBadFilesInOneLineWithFileLineAndKey) {
        "mean perception.pushbroom.score_limit?)"},
       {parameter("course: {from: 0, to: 1}"), "t.yaml:3: parameters.course: expected a numeric key"},
       {parameter("seed: {from: 0, to: 1}"), "t.yaml:3: parameters.seed: expected a numeric key"},
-      {parameter("perception.pushbroom.least_edge_sum: {from: 100, to: 7000}"),
-       "t.yaml:3: parameters.perception.pushbroom.least_edge_sum.to: expected a number from 0 to 6375"},
-      {parameter("perception.pushbroom.least_edge_sum: {from: 100.5, to: 900}"),
-       "least_edge_sum.from: expected a whole number"},
+      {parameter("perception.pushbroom.minimum_edge_sum: {from: 100, to: 7000}"),
+       "t.yaml:3: parameters.perception.pushbroom.minimum_edge_sum.to: expected a number from 0 to 6375"},
+      {parameter("perception.pushbroom.minimum_edge_sum: {from: 100.5, to: 900}"),
+       "minimum_edge_sum.from: expected a whole number"},
       {parameter("perception.pushbroom.score_limit: {from: 0.4, to: 0.1}"),
        "score_limit: expected from less than to"},
       {parameter("perception.pushbroom.score_limit: {from: 0, to: 0.1, scale: log}"),
@@ -89,7 +89,7 @@ TEST_F(TuningTest, RefusesBadFilesInOneLineWithFileLineAndKey) {
        "search.sensitivity: expected a whole number from 2 to 1000"},
       {with(success, "{method: grid, trials: 9}", over_flights), "search.trials: expected none"},
       {with(success, "{method: grid}", over_flights),
-       "parameters.perception.pushbroom.least_edge_sum: expected values, or a range with steps"},
+       "parameters.perception.pushbroom.minimum_edge_sum: expected values, or a range with steps"},
       {with(success, random, "over: walks\n"), "t.yaml:7: over: expected recordings | flights"},
       {with(success, random, "over: flights\ntraining: 1..5\n"), "validation: expected seeds"},
       {with(success, random, "over: flights\ntraining: 1..5\nvalidation: 5..9\n"),
@@ -124,13 +124,13 @@ TEST_F(TuningTest, NumbersOfAScenarioHaveTheirBoundsAndEntriesOfListsTheirPlaces
   EXPECT_EQ(find("perception.depths_m[1]")->value, 10);
   EXPECT_EQ(find("perception.depths_m[2]"), keys.end());
   EXPECT_EQ(find("sensors.seed"), keys.end());
-  const auto edge = find("perception.pushbroom.least_edge_sum");
+  const auto edge = find("perception.pushbroom.minimum_edge_sum");
   ASSERT_NE(edge, keys.end());
   EXPECT_TRUE(edge->whole);
-  EXPECT_EQ(edge->greatest, 6375);
+  EXPECT_EQ(edge->maximum, 6375);
   const auto wind = find("wind_world_mps[2]");
   ASSERT_NE(wind, keys.end());
-  EXPECT_EQ(wind->least, -20);
+  EXPECT_EQ(wind->minimum, -20);
 }
 
 TEST(With, StandsBetweenTheFileAndSettings) {

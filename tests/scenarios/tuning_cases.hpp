@@ -22,7 +22,7 @@ inline fs::path in_library(const std::string& name) {
 inline const std::string two_keys =
     "scenario: forest\n"
     "parameters:\n"
-    "  perception.pushbroom.least_edge_sum: {from: 100, to: 900}\n"
+    "  perception.pushbroom.minimum_edge_sum: {from: 100, to: 900}\n"
     "  perception.pushbroom.score_limit: {from: 0.05, to: 0.4, scale: log}\n";
 inline const std::string over_flights = "over: flights\ntraining: 1000..1003\nvalidation: 1010..1013\n";
 

@@ -40,7 +40,7 @@ Found search_all(const Space& space, const Objective& objective, const SearchCon
 /// Minimum 0 at (0.7, 1.9).
 Figures sphere(const Point& p) { return {std::pow(p[0] - 0.7, 2) + std::pow(p[1] - 1.9, 2)}; }
 
-const Objective least_first{{{0, false}}};
+const Objective minimum_first{{{0, false}}};
 
 TEST(Search, EveryMethodFindsTheSpheresCentre) {
   const struct {
@@ -49,9 +49,9 @@ TEST(Search, EveryMethodFindsTheSpheresCentre) {
     double within;
   } cases[] = {{SearchMethod::random, 2000, 0.2}, {SearchMethod::cma_es, 400, 0.002}};
   for (const auto& one : cases) {
-    const Found found = search_all(plane(), least_first, {one.method, one.trials, 3}, sphere);
+    const Found found = search_all(plane(), minimum_first, {one.method, one.trials, 3}, sphere);
     EXPECT_EQ(found.points.size(), static_cast<std::size_t>(one.trials));
-    const Point& best = found.points[best_of(least_first, found.figures).value()];
+    const Point& best = found.points[best_of(minimum_first, found.figures).value()];
     EXPECT_NEAR(best[0], 0.7, one.within);
     EXPECT_NEAR(best[1], 1.9, one.within);
   }
@@ -65,16 +65,17 @@ TEST(Search, StartsAnewInAFunctionOfManyHollows) {
     return Figures{sum};
   };
   const Space space{{range("x", -5, 5), range("y", -5, 5)}};
-  const Found found = search_all(space, least_first, {SearchMethod::cma_es, 6000, 1}, rastrigin);
+  const Found found = search_all(space, minimum_first, {SearchMethod::cma_es, 6000, 1}, rastrigin);
   EXPECT_EQ(found.points.size(), 6000u);
-  EXPECT_LT(found.figures[best_of(least_first, found.figures).value()][0], 0.5);  // other minima: 1 and more
+  EXPECT_LT(found.figures[best_of(minimum_first, found.figures).value()][0],
+            0.5);  // other minima: 1 and more
 }
 
 TEST(Search, GivesTheSamePointsForTheSameSeedAndOthersForAnother) {
   const Objective both{{{0, false}, {1, false}}};
   const auto two = [](const Point& p) { return Figures{sphere(p)[0], std::abs(p[0])}; };
   for (const SearchMethod method : {SearchMethod::random, SearchMethod::cma_es, SearchMethod::nsga2}) {
-    const Objective& objective = method == SearchMethod::nsga2 ? both : least_first;
+    const Objective& objective = method == SearchMethod::nsga2 ? both : minimum_first;
     const Found once = search_all(plane(), objective, {method, 100, 5}, two);
     const Found again = search_all(plane(), objective, {method, 100, 5}, two);
     const Found other = search_all(plane(), objective, {method, 100, 6}, two);
@@ -124,11 +125,10 @@ TEST(Search, Nsga2FindsTheFrontOfZdt1) {
   for (int i = 0; i < 5; ++i) space.parameters.push_back(range("x", 0, 1));
   const Objective objective{{{0, false}, {1, false}}};
   const Found found = search_all(space, objective, {SearchMethod::nsga2, 6000, 1}, function);
-  double greatest_miss = 0;
+  double maximum_miss = 0;
   for (const std::size_t member : pareto_front(objective, found.figures))
-    greatest_miss =
-        std::max(greatest_miss, found.figures[member][1] - 1 + std::sqrt(found.figures[member][0]));
-  EXPECT_LT(greatest_miss, 0.1);
+    maximum_miss = std::max(maximum_miss, found.figures[member][1] - 1 + std::sqrt(found.figures[member][0]));
+  EXPECT_LT(maximum_miss, 0.1);
 }
 
 TEST(Search, AGridIsEveryCombinationOnce) {
@@ -140,7 +140,7 @@ TEST(Search, AGridIsEveryCombinationOnce) {
   decades.steps = 5;
   const Space space{{list, three, decades}};
   EXPECT_EQ(grid_size(space), 45u);
-  const Found found = search_all(space, least_first, {SearchMethod::grid, 45, 1}, sphere);
+  const Found found = search_all(space, minimum_first, {SearchMethod::grid, 45, 1}, sphere);
   ASSERT_EQ(found.points.size(), 45u);
   EXPECT_EQ(std::set<Point>(found.points.begin(), found.points.end()).size(), 45u);
   EXPECT_EQ(found.points.front(), (Point{1, 0, 0.01}));

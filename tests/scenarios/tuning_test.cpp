@@ -28,8 +28,8 @@ class ClosedForm : public Judge {
     if (rule.score_limit > 0.35) return {{}, "seed 1000: too much"};
     Measured result;
     for (int i = 0; i < 20; ++i)
-      result.units.push_back({rule.least_edge_sum <= 500 + 10 * i ? 1.0 : 0.0, 0.5,
-                              12 - std::pow((rule.least_edge_sum - 300) / 100.0, 2) -
+      result.units.push_back({rule.minimum_edge_sum <= 500 + 10 * i ? 1.0 : 0.0, 0.5,
+                              12 - std::pow((rule.minimum_edge_sum - 300) / 100.0, 2) -
                                   std::pow(10 * (rule.score_limit - best_score_), 2) + i,
                               0.25});
     return result;
@@ -62,8 +62,8 @@ TEST_F(TuningTest, TrainingChoosesAndValidationIsMeasuredApart) {
   const std::vector<FigureChange> changes = changes_on_validation(file, tuned, validation);
   const double difference = tuned.best.validation.figures[2] - tuned.scenario.validation.figures[2];
   EXPECT_NEAR(changes[2].difference, difference, 1e-9);
-  EXPECT_NEAR(changes[2].interval.least, difference, 1e-9);
-  EXPECT_NEAR(changes[2].interval.greatest, difference, 1e-9);
+  EXPECT_NEAR(changes[2].interval.minimum, difference, 1e-9);
+  EXPECT_NEAR(changes[2].interval.maximum, difference, 1e-9);
 }
 
 TEST_F(TuningTest, VariesEachParameterAloneOverItsRange) {
@@ -170,7 +170,7 @@ TEST_F(TuningTest, LeavesTablesPlotsAndAConfigThatGoesOverTheScenario) {
   const Tuned tuned = tune(file, training, validation, {.folder = where});
   write_tune_report(where, file, tuned, validation);
   const Scenario scenario = load_scenario(in_library("forest"), {}, {where / "best.yaml"});
-  EXPECT_EQ(scenario.perception.pushbroom.least_edge_sum, tuned.best.training.point[0]);
+  EXPECT_EQ(scenario.perception.pushbroom.minimum_edge_sum, tuned.best.training.point[0]);
   EXPECT_EQ(scenario.perception.pushbroom.score_limit, tuned.best.training.point[1]);
   EXPECT_EQ(scenario.forest.length_m, file.scenario.forest.length_m);
   const std::string summary = support::content_of(where / "summary.md");

@@ -44,8 +44,8 @@ TEST(LinePlot, TicksAreRoundNumbersWithinTheAxis) {
                 std::abs(mantissa - 5) < 1e-6)
         << step;
     for (const double tick : ticks) {
-      EXPECT_GE(tick, range.least - 1e-9);
-      EXPECT_LE(tick, range.greatest + 1e-9);
+      EXPECT_GE(tick, range.minimum - 1e-9);
+      EXPECT_LE(tick, range.maximum + 1e-9);
     }
   }
 }

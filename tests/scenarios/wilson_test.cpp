@@ -9,21 +9,21 @@ namespace {
 TEST(Wilson, PublishedValues) {
   const struct {
     int successes, trials;
-    double least, greatest;
+    double minimum, maximum;
   } rows[] = {
       {81, 263, 0.2553, 0.3662}, {15, 148, 0.0624, 0.1605}, {0, 20, 0.0000, 0.1611}, {1, 29, 0.0061, 0.1718}};
   for (const auto& row : rows) {
     const Interval interval = wilson_interval(row.successes, row.trials);
-    EXPECT_NEAR(interval.least, row.least, 5e-5);
-    EXPECT_NEAR(interval.greatest, row.greatest, 5e-5);
+    EXPECT_NEAR(interval.minimum, row.minimum, 5e-5);
+    EXPECT_NEAR(interval.maximum, row.maximum, 5e-5);
   }
 }
 
 TEST(Wilson, StaysWithinZeroAndOne) {
-  EXPECT_NEAR(wilson_interval(100, 100).greatest, 1, 1e-12);
-  EXPECT_NEAR(wilson_interval(100, 100).least, 0.9630, 5e-5);
-  EXPECT_EQ(wilson_interval(0, 0).least, 0);
-  EXPECT_EQ(wilson_interval(0, 0).greatest, 1);
+  EXPECT_NEAR(wilson_interval(100, 100).maximum, 1, 1e-12);
+  EXPECT_NEAR(wilson_interval(100, 100).minimum, 0.9630, 5e-5);
+  EXPECT_EQ(wilson_interval(0, 0).minimum, 0);
+  EXPECT_EQ(wilson_interval(0, 0).maximum, 1);
 }
 
 }  // namespace

@@ -122,9 +122,9 @@ TEST(RecordReplay, RecordIsTheManoeuvreItSays) {
   ASSERT_FALSE(rows.empty());
   EXPECT_NEAR(rows.back().position_world.x(), 16.7, 0.05);
   EXPECT_NEAR(rows.back().position_world.y(), 6.1, 0.05);
-  double greatest_roll = 0;
-  for (const Recorded& row : rows) greatest_roll = std::max(greatest_roll, std::abs(row.roll_rad));
-  EXPECT_NEAR(greatest_roll * 180 / std::numbers::pi, 64, 2);
+  double maximum_roll = 0;
+  for (const Recorded& row : rows) maximum_roll = std::max(maximum_roll, std::abs(row.roll_rad));
+  EXPECT_NEAR(maximum_roll * 180 / std::numbers::pi, 64, 2);
 }
 
 }  // namespace

@@ -122,12 +122,12 @@ TEST(Facade, IsClosedAndFacesOutward) {
   for (const auto& face : mesh.faces)
     six_volumes += mesh.vertices[face[0]].dot(mesh.vertices[face[1]].cross(mesh.vertices[face[2]]));
   EXPECT_NEAR(six_volumes / 6, 6 * 5 * 0.4, 1e-9);
-  double least = 1e9, greatest = -1e9;
+  double minimum = 1e9, maximum = -1e9;
   for (const auto& texture : mesh.texture) {
-    least = std::min(least, texture.x());
-    greatest = std::max(greatest, texture.x());
+    minimum = std::min(minimum, texture.x());
+    maximum = std::max(maximum, texture.x());
   }
-  EXPECT_NEAR(greatest - least, 6 / window_period_m, 1e-12);
+  EXPECT_NEAR(maximum - minimum, 6 / window_period_m, 1e-12);
 }
 
 TEST(TrunkMesh, IsClosedAndFacesOutward) {

@@ -15,10 +15,10 @@ TEST(StereoCameras, DepthOfAWallIsItsDistanceAlongTheAxisEverywhere) {
   const World world = bare_world("<geom type='box' size='.5 50 50' pos='5.5 0 0'/>");
   StereoCameras cameras(world, paper_rig(), noiseless(), {1, 1});
   const cv::Mat depth = cameras.depth(*data_at(world, {0, 0, 0}, level));
-  double least = 0, most = 0;
-  cv::minMaxLoc(depth, &least, &most);
-  EXPECT_NEAR(least, 5.0, 0.001);
-  EXPECT_NEAR(most, 5.0, 0.001);
+  double minimum = 0, maximum = 0;
+  cv::minMaxLoc(depth, &minimum, &maximum);
+  EXPECT_NEAR(minimum, 5.0, 0.001);
+  EXPECT_NEAR(maximum, 5.0, 0.001);
 }
 
 TEST(StereoCameras, DepthOfTheGroundIsTheRaysOwn) {
@@ -62,11 +62,11 @@ TEST(StereoCameras, APlaneAtTheDetectionDistanceMatchesAtTheRigsDisparity) {
   StereoCameras cameras(world, rig, {.noise_gray = 2}, {1, 1});
   const StereoFrame frame = cameras.capture(*data_at(world, {10, 0, 4.81}, straight_down), 0);
   int best = 0;
-  double least = std::numeric_limits<double>::max();
+  double minimum = std::numeric_limits<double>::max();
   for (int disparity = 95; disparity < 120; ++disparity) {
     const double difference = cv::norm(frame.left(cv::Rect(150, 0, 200, 240)),
                                        frame.right(cv::Rect(150 - disparity, 0, 200, 240)), cv::NORM_L1);
-    if (difference < least) best = disparity, least = difference;
+    if (difference < minimum) best = disparity, minimum = difference;
   }
   EXPECT_EQ(best, std::lround(rig.disparity_px(4.81)));
   EXPECT_EQ(best, 105);  // paper.yaml: infinity at 91.8, and 13.2 px at 4.81 m
@@ -102,9 +102,9 @@ TEST(StereoCameras, LensCapAndInvisibleObstaclesHideThem) {
   const World forest = forest_world(), invisible = forest_world(false);
   StereoCameras capped(forest, paper_rig(), {.lens_cap = true, .noise_gray = 2}, {1, 1});
   const StereoFrame dark = capped.capture(*data_at(forest, {0, 0, 3}, level), 0);
-  double most = 0;
-  cv::minMaxLoc(dark.left, nullptr, &most);
-  EXPECT_LT(most, 15);
+  double maximum = 0;
+  cv::minMaxLoc(dark.left, nullptr, &maximum);
+  EXPECT_LT(maximum, 15);
   EXPECT_GT(cv::norm(dark.left, cv::NORM_L1), 0) << "noise still applies";
 
   StereoCameras seeing(forest, paper_rig(), noiseless(), {1, 1}),

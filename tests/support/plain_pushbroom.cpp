@@ -40,8 +40,9 @@ bool repeats(const BlockRule& rule, const Images& images, const BlockMatch& matc
       const int u = match.column_px - rule.infinity_px + du, v = match.row_px + dv;
       if (!inside(images.right, u, v)) return true;
       const int edges = edges_at(images.right_edges, u, v);
-      if (edges >= window.least_edge_sum && scores_below(sad_of(images, match.column_px, match.row_px, u, v),
-                                                         match.left_edge_sum + edges, window.limit_units))
+      if (edges >= window.minimum_edge_sum &&
+          scores_below(sad_of(images, match.column_px, match.row_px, u, v), match.left_edge_sum + edges,
+                       window.limit_units))
         return true;
     }
   // The window's last row and column count as part of it even where the steps do not reach them.
@@ -51,8 +52,8 @@ bool repeats(const BlockRule& rule, const Images& images, const BlockMatch& matc
 bool unique(const BlockRule& rule, const Images& images, const BlockMatch& match) {
   const int detection = rule.disparities[static_cast<std::size_t>(match.disparity)].disparity_px;
   const auto thousandths = std::llround(1000 * rule.uniqueness_ratio);
-  for (int d = std::min(detection, rule.least_disparity_px);
-       d <= std::max(detection, rule.greatest_disparity_px); ++d) {
+  for (int d = std::min(detection, rule.minimum_disparity_px);
+       d <= std::max(detection, rule.maximum_disparity_px); ++d) {
     if (d == detection || !inside(images.right, match.column_px - d, match.row_px)) continue;
     const int other = sad_of(images, match.column_px, match.row_px, match.column_px - d, match.row_px);
     if (std::abs(d - detection) == 1 ? other < match.sad : 1000LL * other <= thousandths * match.sad)
@@ -135,7 +136,8 @@ std::vector<BlockMatch> plain_matches(const BlockRule& rule, const GrayView& lef
                                sad_of(images, column, row, partner, row),
                                edges_at(images.left_edges, column, row),
                                edges_at(images.right_edges, partner, row)};
-        if (match.left_edge_sum < one.least_edge_sum || match.right_edge_sum < one.least_edge_sum) continue;
+        if (match.left_edge_sum < one.minimum_edge_sum || match.right_edge_sum < one.minimum_edge_sum)
+          continue;
         if (!scores_below(match.sad, match.left_edge_sum + match.right_edge_sum, one.limit_units)) continue;
         matches.push_back(match);
       }

@@ -20,15 +20,15 @@ class TrueDepth : public ObstacleDetector {
   const std::vector<StereoHit>& detect(const StereoFrame& frame) override;
 
   /// The depths between which a block counts, m: one pixel either way of the nearest whole disparity.
-  double least_depth_m() const { return least_depth_m_; }
-  double greatest_depth_m() const { return greatest_depth_m_; }
+  double minimum_depth_m() const { return minimum_depth_m_; }
+  double maximum_depth_m() const { return maximum_depth_m_; }
 
  private:
   StereoRig rig_;
   std::vector<Obstacle> obstacles_;
   const TruthHistory& history_;
-  double least_depth_m_ = 0;
-  double greatest_depth_m_ = 0;
+  double minimum_depth_m_ = 0;
+  double maximum_depth_m_ = 0;
   std::vector<StereoHit> hits_;
 };
 
