@@ -39,6 +39,7 @@ enum class Course { forest, goalposts, clear, windows, fence };
 enum class DetectorKind { pushbroom, stereo_bm, stereo_sgbm, true_depth, none };
 enum class StateKind { filter, truth };
 enum class FilterPreset { tuned, original, windy };  ///< which numbers estimation.filter starts from
+enum class PlanningPreset { thorough, economical };  ///< how often, and with how much search, plans are made
 
 inline constexpr std::array<std::pair<std::string_view, Course>, 5> course_names{
     {{"forest", Course::forest},
@@ -56,6 +57,8 @@ inline constexpr std::array<std::pair<std::string_view, StateKind>, 2> state_nam
     {{"filter", StateKind::filter}, {"truth", StateKind::truth}}};
 inline constexpr std::array<std::pair<std::string_view, FilterPreset>, 3> filter_preset_names{
     {{"tuned", FilterPreset::tuned}, {"original", FilterPreset::original}, {"windy", FilterPreset::windy}}};
+inline constexpr std::array<std::pair<std::string_view, PlanningPreset>, 2> planning_preset_names{
+    {{"thorough", PlanningPreset::thorough}, {"economical", PlanningPreset::economical}}};
 inline constexpr std::array<std::pair<std::string_view, SensorGrade>, 4> sensor_grade_names{
     {{"ideal", SensorGrade::ideal},
      {"plain", SensorGrade::plain},
@@ -154,7 +157,8 @@ struct EstimationSection {
 };
 
 struct AutopilotSection {
-  int replan_rate_hz = 120;  ///< divides 1200
+  PlanningPreset preset = PlanningPreset::thorough;  ///< keys given beside it win over it
+  int replan_rate_hz = 120;                          ///< divides 1200
   AutopilotConfig autopilot;
 };
 
@@ -269,6 +273,7 @@ void visit_fields(Visitor& visit, EstimationSection& section) {
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, AutopilotSection& section) {
+  visit("preset", section.preset, planning_preset_names);
   visit("replan_rate_hz", section.replan_rate_hz, 1, 1200);
   visit_fields(visit, section.autopilot);
 }

@@ -88,6 +88,19 @@ Eigen::Vector3d rail_start_world(const LaunchConfig& launch) {
           launch.altitude_m - launch.rail_length_m * std::sin(launch.climb_angle_rad)};
 }
 
+/// Plans at once for what is new near the way, seldom otherwise, and searches less: for forests that leave
+/// room (docs/decisions/015).
+AutopilotSection economical_planning() {
+  AutopilotSection section;
+  section.replan_rate_hz = 600;  // the moments at which it may plan
+  section.autopilot.straight_period_s = 0.1;
+  section.autopilot.avoiding_period_s = 0.025;
+  section.autopilot.planner.refresh_s = 0.105;
+  section.autopilot.planner.search.iterations = 100;
+  section.autopilot.planner.improvement.iterations = 20;
+  return section;
+}
+
 Sources sources_of(ConfigNode file, const std::vector<std::string>& settings,
                    const std::vector<std::filesystem::path>& with = {}) {
   Sources sources{std::move(file)};
@@ -109,6 +122,7 @@ Scenario compose(const Sources& sources, const std::string& name) {
   scenario.perception.pushbroom = rule_of(first.perception.rule, first.rig);
   if (first.estimation.preset == FilterPreset::original) scenario.estimation.filter = original_filter();
   if (first.estimation.preset == FilterPreset::windy) scenario.estimation.filter = windy_filter();
+  if (first.autopilot.preset == PlanningPreset::economical) scenario.autopilot = economical_planning();
   scenario.estimation.filter.distrust.imu_gap_s = 1.5 / first.sensors.sensors.imu_rate_hz;
   scenario.estimation.filter.start.position_world_m = rail_start_world(first.launch);
   scenario.estimation.filter.start.pitch_rad = first.launch.climb_angle_rad;

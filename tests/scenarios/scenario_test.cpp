@@ -29,6 +29,10 @@ TEST(Scenario, TheLibraryIsWhatTheMissionSays) {
   EXPECT_EQ(forest.forest.half_width_m, 25);
   EXPECT_EQ(forest.band.minimum_altitude_m, 1);
   EXPECT_EQ(forest.band.maximum_altitude_m, 6);
+  EXPECT_EQ(forest.autopilot.replan_rate_hz, 600);
+  EXPECT_EQ(forest.autopilot.autopilot.planner.search.iterations, 100);
+  EXPECT_EQ(load_scenario(library / "forest.yaml", {"autopilot.replan_rate_hz=120"}).autopilot.replan_rate_hz,
+            120);
   EXPECT_EQ(load_scenario(library / "dense.yaml").forest.square_metres_per_tree, 25);
   EXPECT_EQ(load_scenario(library / "paper.yaml").rig, "paper");
   EXPECT_EQ(load_scenario(library / "clear.yaml").course, Course::clear);
