@@ -6,8 +6,8 @@
 
 namespace understory {
 
-/// The aircraft's velocity through the air, body axes, by the estimate: over ground less wind and gust (both
-/// level). What pitot, winglets and wing feel.
+/// The estimated velocity through the air, body axes: velocity over ground minus wind and gust (both level).
+/// Pitot, winglets and wing feel it.
 struct AirVelocity {
   Eigen::Vector3d body_mps = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, 3, error_states> jacobian = Eigen::Matrix<double, 3, error_states>::Zero();

@@ -5,7 +5,7 @@
 
 namespace understory {
 
-/// The pitot tube measures the aircraft's speed through the air along body x, and a bias that zeroing left.
+/// The pitot tube measures the speed through the air along body x, plus a bias that remains after zeroing.
 struct AirspeedConfig {
   double usable_mps = 6.0;  ///< m/s, 0..20: slower readings are ignored, being poor
   /// m/s, 0.01..10: of one reading at 12 m/s; pressure grows with the square of the speed, so that slower

@@ -5,8 +5,8 @@
 
 namespace understory {
 
-/// The barometer measures world z and an offset, a state, which it shows on the catapult, where the altitude
-/// is known.
+/// The barometer measures world z plus an offset. The offset is a state; it is observed on the catapult,
+/// where the altitude is known.
 struct AltitudeConfig {
   double sigma_m = 0.4;             ///< m, 0.01..100: of one reading; a consumer barometer's noise is 0.3 m
   double offset_sigma_m = 0.3;      ///< m, 0..10: spread of the offset before the readings at rest
@@ -24,13 +24,13 @@ void visit_fields(Visitor& visit, AltitudeConfig& config) {
   visit("drift_walk_m_rts", config.drift_walk_m_rts, 0.0, 10.0);
 }
 
-/// The height of the odometry frame's zero over the ground, followed slowly from the barometer: the
-/// odometry's z itself is moved by no correction. A scalar Kalman filter of a random walk.
+/// The height of the odometry frame's origin above the ground, followed slowly from the barometer. (No
+/// correction moves the odometry's z itself.) A scalar Kalman filter of a random walk.
 class AltitudeDrift {
  public:
   explicit AltitudeDrift(const AltitudeConfig& config) : config_(config) {}
   void pass(double dt_s) { variance_m2_ += config_.drift_walk_m_rts * config_.drift_walk_m_rts * dt_s; }
-  /// `excess_m`: the barometer's altitude, offset taken out, less the odometry's z.
+  /// `excess_m`: the barometer's altitude minus its offset minus the odometry's z.
   void observe(double excess_m);
   double value_m() const { return value_m_; }
 

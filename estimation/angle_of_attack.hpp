@@ -4,11 +4,11 @@
 
 namespace understory {
 
-/// Angle of attack from normal specific force. The wing is a flat plate of area S whose force is normal to
-/// it, rho/2 V^2 S 2 sin(alpha), with V and sin(alpha) = -w/V of the air in the body's x-z plane, so that the
-/// wing's a_z = -rho S V w / m. The wing has no moment about the centre of mass, so in steady flight the
-/// elevons carry just what balances the pitch damping: D q / (arm m) (docs/sources.md [3], identified model;
-/// trim checks within 0.1 %).
+/// Angle of attack from normal specific force. The wing is a flat plate of area S. Its force is normal to it:
+/// rho/2 V^2 S 2 sin(alpha), with V and sin(alpha) = -w/V of the air in the body's x-z plane. So the wing's
+/// a_z = -rho S V w / m. The wing has no moment about the centre of mass. In steady flight the elevons' force
+/// therefore balances the pitch damping: D q / (arm m) (docs/sources.md [3], identified model; trim checks
+/// within 0.1 %).
 struct AngleOfAttackConfig {
   /// Off: with the right wing it takes 0.01 m off the drift over 10 m, with one 20 % wrong in lift or mass it
   /// adds up to 0.2 m (docs/model_mismatch.md).

@@ -6,7 +6,7 @@ namespace understory {
 
 void inject(State& state, const ErrorVector& error, FilterModel model) {
   const Eigen::Matrix3d turned = state.T_world_body.linear() * so3::exp(error.segment<3>(attitude_block));
-  // Back onto the manifold: rounding would otherwise add up over thousands of updates.
+  // Normalised, because rounding would add up over thousands of updates.
   state.T_world_body.linear() = Eigen::Quaterniond(turned).normalized().toRotationMatrix();
   state.velocity_body_mps += error.segment<3>(velocity_block);
   state.T_world_body.translation() += error.segment<3>(position_block);

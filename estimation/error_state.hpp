@@ -5,16 +5,17 @@
 
 #include "estimation/state.hpp"
 
-/// The one update every measurement goes through.
+/// The update that every measurement uses.
 namespace understory {
 
-/// What the states of rate_block are.
+/// Meaning of the states of rate_block.
 enum class FilterModel {
   gyro_bias,     ///< the gyro is an input; its bias is estimated
   angular_rate,  ///< the paper's: angular rate is a state which the gyro measures (docs/sources.md [4])
 };
 
-/// Derivative of the angular rate by the rate block: a gyro bias is subtracted, an angular rate is itself.
+/// Derivative of the angular rate by the rate block: -1 for a gyro bias, which is subtracted, +1 for an
+/// angular rate.
 constexpr double rate_sign(FilterModel model) { return model == FilterModel::gyro_bias ? -1.0 : 1.0; }
 
 /// innovation = measured - predicted = jacobian * error + noise, with `noise` the covariance of the latter.
@@ -25,11 +26,11 @@ struct Measurement {
   Eigen::Matrix<double, M, M> noise = Eigen::Matrix<double, M, M>::Identity();
 };
 
-/// Which parts of the pose a correction may move. The pose lives in an odometry frame in which obstacles seen
-/// earlier rest: moving it for an error that has grown since the launch, or turning it about the vertical,
-/// would carry the aircraft past its own map.
+/// Which parts of the pose a correction may change. The pose is in an odometry frame, in which obstacles seen
+/// earlier rest. A correction for an error that has grown since the launch, or a turn about the vertical,
+/// would move the aircraft relative to its own map.
 enum class FrameGain {
-  held,  ///< neither the position nor the heading; roll and pitch, which gravity shows, may be corrected
+  held,  ///< neither position nor heading; roll and pitch, which gravity observes, may be corrected
   free,  ///< all of it, as in a textbook
 };
 
@@ -37,13 +38,14 @@ enum class FrameGain {
 /// vector.
 void inject(State& state, const ErrorVector& error, FilterModel model);
 
-/// A measurement weighed against the estimate: what both its gate and its gain need.
+/// A measurement compared with the estimate: what its gate and its gain need.
 template <int M>
 struct Weighed {
   Eigen::Matrix<double, error_states, M> cross;  ///< covariance of error and innovation, P H'
   Eigen::Matrix<double, M, M> spread;            ///< predicted covariance of the innovation, H P H' + noise
   Eigen::Matrix<double, M, M> inverse_spread;
-  /// Squared innovation in units of its spread: chi-square with M degrees of freedom where all is well.
+  /// Squared innovation in units of its spread: chi-square with M degrees of freedom if the filter is
+  /// consistent.
   double innovation_squared = 0;
 };
 
@@ -52,7 +54,7 @@ Weighed<M> weigh(const State& state, const Measurement<M>& measurement) {
   Weighed<M> weighed;
   weighed.cross.setZero();
   weighed.spread = measurement.noise;
-  // No measurement speaks of more than a few states: only their columns are visited.
+  // A measurement depends on few states. Only their columns are visited.
   for (int error = 0; error < error_states; ++error) {
     const auto by_error = measurement.jacobian.col(error);
     if ((by_error.array() != 0).any())
@@ -64,8 +66,8 @@ Weighed<M> weigh(const State& state, const Measurement<M>& measurement) {
   return weighed;
 }
 
-/// Kalman update. The covariance's is Joseph's form (I - K H) P (I - K H)' + K R K', true for any gain K, the
-/// withheld ones included, multiplied out: P - D - D' with D = K (P H' - K S / 2)'.
+/// Kalman update. The covariance uses Joseph's form (I - K H) P (I - K H)' + K R K', which holds for any gain
+/// K, also with rows set to zero. Multiplied out: P - D - D' with D = K (P H' - K S / 2)'.
 template <int M>
 void correct(State& state, const Measurement<M>& measurement, const Weighed<M>& weighed, FilterModel model,
              FrameGain frame) {

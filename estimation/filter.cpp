@@ -9,7 +9,7 @@
 namespace understory {
 namespace {
 
-/// Long enough for the way between two detection depths, 5 m at the slowest flight.
+/// Long enough for the way between two detection depths: 5 m in the slowest flight.
 constexpr std::int64_t history_length_ns = 1'000'000'000;
 
 State starting_state(const FilterConfig& config) {
@@ -37,7 +37,7 @@ State starting_state(const FilterConfig& config) {
   return state;
 }
 
-/// Levels by the felt gravity, keeping the configured yaw.
+/// Roll and pitch from the measured gravity; yaw as configured.
 Eigen::Matrix3d levelled(const Eigen::Vector3d& specific_force_body_mps2, double yaw_rad) {
   const Eigen::Matrix3d tilt =
       Eigen::Quaterniond::FromTwoVectors(specific_force_body_mps2, Eigen::Vector3d::UnitZ())
@@ -111,9 +111,8 @@ void Filter::start(const ImuSample& sample) {
 }
 
 void Filter::propagate(const ImuSample& sample, double dt_s) {
-  // Samples are values of a moment: between two of them both are taken as straight lines. The mean alone
-  // would miss how rate and force turn with the body (coning and sculling), which in a 400 deg/s roll is more
-  // than the noise.
+  // Samples are instantaneous. Between two of them rate and force are taken as linear. Their mean alone would
+  // miss that both turn with the body (coning and sculling), which exceeds the noise in a roll of 400 deg/s.
   const Eigen::Vector3d before = previous_.angular_rate_body_radps - state_.gyro_bias_radps;
   const Eigen::Vector3d now = sample.angular_rate_body_radps - state_.gyro_bias_radps;
   const bool rate_is_state = config_.model == FilterModel::angular_rate;
@@ -149,7 +148,7 @@ ProcessNoise Filter::process_noise(double dt_s) const {
   if (extra.gust) noise.gust_sigma_mps = extra.gust_sigma_mps;
   noise.gust_time_s = extra.gust_length_m / std::max(state_.velocity_body_mps.norm(), 1.0);
   if (dt_s > config_.distrust.imu_gap_s) {
-    // A mean that is wrong by sigma over dt is a density of sigma * sqrt(dt).
+    // A mean that is wrong by sigma over dt equals a noise density of sigma * sqrt(dt).
     const double root = std::sqrt(dt_s);
     noise.gyro_radps_rthz = std::hypot(noise.gyro_radps_rthz, config_.distrust.gap_rate_sigma_radps * root);
     noise.accelerometer_mps2_rthz =
@@ -188,7 +187,7 @@ void Filter::on_catapult(const ImuSample& sample, double dt_s) {
       correct(state_, zero_rate(state_, sample.angular_rate_body_radps, sigma), model, FrameGain::free);
     }
   }
-  // A soft launch never reaches the threshold: flying speed is launch enough.
+  // A soft launch never reaches the threshold. Flying speed counts as a launch too.
   const bool fired = launch_detector_.fires(sample);
   if (fired || state_.velocity_body_mps.x() > config_.airspeed.usable_mps) launch(sample.t_ns);
 }
@@ -197,8 +196,8 @@ void Filter::launch(std::int64_t t_ns) {
   launch_t_ns_ = t_ns;
   at_rest_ = false;
   const RestConfig& rest = config_.rest;
-  // What no length of rest reveals: an accelerometer bias, which passed for tilt (where it is a state, the
-  // two are known to go together), and the moment of firing.
+  // Rest of any length leaves two things unknown: an accelerometer bias, which looks like tilt (where it is a
+  // state, the correlation is known), and the moment of firing.
   const double tilt =
       config_.states.accelerometer_bias ? 0 : rest.accelerometer_bias_mps2 / config_.gravity_mps2;
   state_.covariance.diagonal().segment<2>(attitude_block).array() += tilt * tilt;
@@ -207,7 +206,7 @@ void Filter::launch(std::int64_t t_ns) {
 }
 
 void Filter::in_flight(const ImuSample& sample) {
-  // While the catapult pushes, its rail carries the aircraft: the forces are not the air's.
+  // While the catapult pushes, its rail carries the aircraft, so the forces do not come from the air.
   on_rail_ = sample.specific_force_body_mps2.x() > 0.5 * config_.rest.launch_threshold_mps2;
   if (on_rail_ || state_.velocity_body_mps.x() < config_.airspeed.usable_mps) return;
   if (config_.sideslip.model != SideslipModel::off)
@@ -220,9 +219,9 @@ void Filter::in_flight(const ImuSample& sample) {
 }
 
 void Filter::on(const PitotSample& sample) {
-  // On the rail the velocity still lacks half an IMU sample of the catapult's push, which its end gives back.
+  // On the rail the velocity lacks half an IMU sample of the catapult's push; the end of the push adds it.
   if (!launched() || on_rail_ || !std::isfinite(sample.airspeed_mps)) return;
-  // Slow readings are poor, unless the aircraft is not slow at all: then they are a fault to be seen.
+  // Slow readings are poor. If the aircraft is not slow, they are a fault, which the gate must see.
   const bool is_slow = air_velocity(state_).body_mps.x() < 1.5 * config_.airspeed.usable_mps;
   if (is_slow && sample.airspeed_mps < config_.airspeed.usable_mps) return;
   if (fuse(Aid::airspeed, airspeed(state_, sample, config_.airspeed), sample.t_ns)) history_.record(state_);
@@ -232,7 +231,7 @@ void Filter::on(const BarometerSample& sample) {
   if (!std::isfinite(sample.altitude_m)) return;
   if (!launched() && !at_rest_) return;
   if (!fuse(Aid::altitude, altitude(state_, sample, config_.altitude), sample.t_ns)) return;
-  // The offset that was found at rest; what the filter makes of it in flight is entangled with the drift.
+  // The offset found at rest. The filter's estimate of it in flight is correlated with the drift.
   if (launched())
     altitude_drift_.observe(sample.altitude_m - resting_offset_m_ - state_.T_world_body.translation().z());
   else
@@ -257,7 +256,7 @@ void Filter::on(const GpsSample& sample) {
 void Filter::on(const ResightingSample& sample) {
   if (!launched() || !config_.resightings || !sample.discrepancy_world_m.allFinite()) return;
   const State earlier = history_.at(sample.earlier_ns), later = history_.at(sample.t_ns);
-  if (earlier.t_ns != sample.earlier_ns || later.t_ns != sample.t_ns) return;  // before what is remembered
+  if (earlier.t_ns != sample.earlier_ns || later.t_ns != sample.t_ns) return;  // older than the history
   if (fuse(Aid::resighting, ground_displacement(state_, earlier, later, sample), state_.t_ns))
     history_.record(state_);
 }

@@ -16,14 +16,13 @@ namespace understory {
 enum class Aid { airspeed, sideslip, angle_of_attack, altitude, heading, gps, resighting };
 inline constexpr int aid_count = 7;
 
-/// Error-state Kalman filter (order of State::covariance), driven by the IMU. On the catapult it levels
-/// itself, learns the gyro bias and the barometer's offset and holds its place; the stroke is integrated from
-/// rest; in flight pitot, lateral and normal specific force, barometer, magnetometer, satellites and
-/// obstacles seen twice correct it through gates. Samples with a value that is not finite are ignored, values
-/// beyond full scale clamped, IMU samples that are not newer than the last ignored, long gaps integrated as
-/// DistrustConfig::longest_gap_s. Nothing here throws, and nothing allocates once a second was recorded.
-/// The error-state form and the angular_rate variant follow Bry, Bachrach and Roy 2012 and Sola 2017 (arXiv
-/// 1711.02508).
+/// Error-state Kalman filter (order of State::covariance), driven by the IMU. On the catapult it finds roll
+/// and pitch, learns the gyro bias and the barometer's offset, and holds its place. The stroke is integrated
+/// from rest. In flight it is corrected by pitot, lateral and normal specific force, barometer, magnetometer,
+/// GPS and obstacles seen twice, each through a gate. Samples with a value that is not finite are ignored,
+/// and so are IMU samples that are not newer than the last. Values beyond full scale are clamped. Long gaps
+/// are integrated as DistrustConfig::longest_gap_s. Nothing here throws, and nothing allocates after the
+/// first second. The error-state form and the angular_rate variant follow docs/sources.md [4] and [5].
 class Filter : public StateSource {
  public:
   explicit Filter(const FilterConfig& config);
@@ -40,7 +39,7 @@ class Filter : public StateSource {
   bool launched() const { return launch_t_ns_.has_value(); }
   /// When the launch was detected (the second sample of the stroke); empty before.
   std::optional<std::int64_t> launch_t_ns() const { return launch_t_ns_; }
-  /// Whether an aid is left out because it has disagreed for too long.
+  /// Whether an aid is ignored because it has disagreed for too long.
   bool faulty(Aid aid) const { return gates_[static_cast<std::size_t>(aid)].faulty(); }
   /// Squared normalized innovation of an aid's newest measurement; nan before the first.
   double innovation_squared(Aid aid) const { return gates_[static_cast<std::size_t>(aid)].newest(); }
@@ -55,7 +54,7 @@ class Filter : public StateSource {
   void in_flight(const ImuSample& sample);
   void launch(std::int64_t t_ns);
   ProcessNoise process_noise(double dt_s) const;
-  /// Corrects where the aid's gate admits.
+  /// Corrects where the aid's gate admits the measurement.
   template <int M>
   bool fuse(Aid aid, const Measurement<M>& measurement, std::int64_t t_ns);
 

@@ -5,18 +5,18 @@
 
 namespace understory {
 
-/// The x below which a chi-square variable of `degrees` (1, 2 or 3) degrees of freedom falls with
-/// `probability` (in (0, 1)).
+/// The quantile of the chi-square distribution with `degrees` (1, 2 or 3) degrees of freedom at `probability`
+/// (in (0, 1)).
 double chi_square_quantile(double probability, int degrees);
 
-/// What is done with a sensor that has disagreed for longer than the patience.
+/// What happens to a sensor that has disagreed for longer than the patience.
 enum class Distrust {
-  believe,  ///< no outlier then: it is let in until it agrees again, so that a wrong estimate can be put
-            ///< right
-  exclude,  ///< faulty: it stays out until it has agreed for as long; the covariance grows meanwhile
+  believe,  ///< it is no outlier: it is used until it agrees again, so that a wrong estimate can be
+            ///< corrected
+  exclude,  ///< it is faulty: ignored until it has agreed for as long; the covariance grows meanwhile
 };
 
-/// Keeps outliers of one sensor out, and tells when it has become faulty.
+/// Rejects outliers of one sensor and detects when it has become faulty.
 class Gate {
  public:
   Gate(double threshold, double patience_s, Distrust distrust);
@@ -32,7 +32,7 @@ class Gate {
   std::int64_t patience_ns_;
   Distrust distrust_;
   std::int64_t last_ns_ = -1;
-  std::int64_t since_ns_ = 0;  ///< agreed, or disagreed, since then without a break
+  std::int64_t since_ns_ = 0;  ///< start of the present agreement or disagreement
   bool agrees_ = true;
   bool faulty_ = false;
   double newest_ = std::numeric_limits<double>::quiet_NaN();

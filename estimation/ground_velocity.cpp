@@ -5,7 +5,7 @@
 namespace understory {
 namespace {
 
-/// Of the velocity in world axes, by the error of now.
+/// Derivative of the velocity in world axes by the present error.
 Eigen::Matrix<double, 3, error_states> by_error(const State& now) {
   const Eigen::Matrix3d attitude = now.T_world_body.linear();
   Eigen::Matrix<double, 3, error_states> jacobian = Eigen::Matrix<double, 3, error_states>::Zero();
@@ -14,7 +14,7 @@ Eigen::Matrix<double, 3, error_states> by_error(const State& now) {
   return jacobian;
 }
 
-/// What the velocity of now and dead reckoning's differ by: the same at every moment but for corrections.
+/// Difference between the present velocity and that of dead reckoning. Only corrections change it.
 Eigen::Vector3d correction_world(const State& now) {
   return now.T_world_body.linear() * now.velocity_body_mps - now.inertial_velocity_world_mps;
 }

@@ -5,9 +5,8 @@
 
 namespace understory {
 
-/// The magnetometer's field, turned into the world by the estimated attitude (which compensates the tilt),
-/// must point to magnetic north = world y. Only its horizontal direction is used, not its strength or
-/// inclination.
+/// The magnetometer's field, rotated into the world by the estimated attitude (which compensates the tilt),
+/// points to magnetic north, world y. Only its horizontal direction is used, not its strength or inclination.
 struct HeadingConfig {
   bool enabled = true;
   /// rad, 0.01..3. A hard-iron error of 0.5 uT against a horizontal field of 19 uT (48 uT, inclination 67
@@ -24,12 +23,12 @@ void visit_fields(Visitor& visit, HeadingConfig& config) {
   visit("minimum_horizontal_ut", config.minimum_horizontal_ut, 0.0, 100.0);
 }
 
-/// Strength of the field's horizontal part, by the estimated attitude, microtesla.
+/// Horizontal strength of the field under the estimated attitude, microtesla.
 double horizontal_field_ut(const State& state, const MagnetometerSample& sample);
 
 /// Innovation: by how much the aircraft's heading is left (counter-clockwise) of the estimate, rad, in (-pi,
-/// pi]. The jacobian holds the tilt's share too, and is that of a field seen due north. Precondition:
-/// horizontal_field_ut > 0.
+/// pi]. The jacobian includes the tilt and is that of a field due north. Precondition: horizontal_field_ut >
+/// 0.
 Measurement<1> heading(const State& state, const MagnetometerSample& sample, const HeadingConfig& config);
 
 }  // namespace understory

@@ -8,14 +8,14 @@
 
 namespace understory {
 
-/// The last `length` of states, for whoever asks what was (an image is delivered later than it was taken). A
-/// ring that grows until it holds the span once, and allocates nothing after.
+/// The states of the last `length`, because images arrive later than they were taken. A ring that grows until
+/// it holds the span and allocates nothing after that.
 class History {
  public:
   explicit History(std::int64_t length_ns) : length_ns_(length_ns) {}
   /// `state.t_ns` must not be before the newest; a state of the same moment replaces it.
   void record(const State& state);
-  /// Forgets all; keeps its memory.
+  /// Removes all states; keeps the memory.
   void clear() { count_ = 0; }
   /// Interpolated (rotation on the manifold, the rest linearly); the nearest end outside the recorded span.
   /// Precondition: something was recorded.

@@ -53,8 +53,8 @@ StepDerivatives advance(State& state, const InertialStep& step, double gravity_m
 void propagate(ErrorCovariance& covariance, const StepDerivatives& by, const ProcessNoise& noise, double dt_s,
                FilterModel model) {
   const auto variance = [dt_s](double density) { return density * density * dt_s; };
-  // Block by block, as half of by.state is zero; and transposed, as the columns of the symmetric covariance
-  // lie together in memory.
+  // Block by block, because half of by.state is zero. Transposed, because the columns of the symmetric
+  // covariance are contiguous in memory.
   constexpr int attitude = attitude_block, velocity = velocity_block, position = position_block;
   constexpr int rate = rate_block, bias = accelerometer_bias_block;
   const auto from = [&](int columns) { return covariance.middleCols<3>(columns); };
@@ -71,7 +71,7 @@ void propagate(ErrorCovariance& covariance, const StepDerivatives& by, const Pro
                                   from(rate).lazyProduct(part(position, rate)) +
                                   from(bias).lazyProduct(part(position, bias));
 
-  // The rate block walks during the step, not after it: half of the walk has turned the aircraft already.
+  // The rate block walks during the step, so half of the walk has already turned the aircraft.
   const double walked = 0.5 * dt_s * rate_sign(model), walk = variance(noise.rate_block_rthz);
   const double turned =
       walk * walked * walked + (model == FilterModel::gyro_bias ? variance(noise.gyro_radps_rthz) : 0.0);

@@ -15,8 +15,8 @@ struct InertialStep {
   double dt_s = 0;
 };
 
-/// White noise of the inputs and of what walks, as densities: over one interval each adds density^2 * dt to
-/// its integral's variance.
+/// Densities of the white noise of inputs and random walks. Over one interval each adds density^2 * dt to the
+/// variance of its integral.
 struct ProcessNoise {
   double gyro_radps_rthz = 0;          ///< rad/s/sqrt(Hz); unused where the angular rate is a state
   double accelerometer_mps2_rthz = 0;  ///< m/s^2/sqrt(Hz)
@@ -25,12 +25,12 @@ struct ProcessNoise {
   double wind_walk_rthz = 0;                ///< m/s^2/sqrt(Hz)
   double pitot_bias_walk_rthz = 0;          ///< m/s^2/sqrt(Hz)
   double barometer_offset_walk_m_rts = 0;   ///< m/sqrt(s)
-  double gust_sigma_mps = 0;                ///< that a gust tends to, per axis
+  double gust_sigma_mps = 0;                ///< stationary, per axis
   double gust_time_s = 1;                   ///< its time constant
 };
 
-/// Rows of attitude, velocity and position, which the step moves, and the states that move them: those, gyro
-/// and accelerometer biases.
+/// Rows that the step changes (attitude, velocity, position), and the number of states on which they depend
+/// (the same, gyro bias, accelerometer bias).
 inline constexpr int motion_rows = 9, moving_columns = 15;
 
 /// Derivatives of the motion after one step: by the state before, by the rotation vector of the step, by the
@@ -41,12 +41,12 @@ struct StepDerivatives {
   Eigen::Matrix<double, motion_rows, 3> velocity_increment;
 };
 
-/// Strapdown step with the attitude at mid-interval for the specific force. Moves pose, velocity and dead
-/// reckoning of `state` (nothing else) and returns the derivatives at its old value.
+/// Strapdown step that uses the attitude at mid-interval for the specific force. Changes pose, velocity and
+/// dead reckoning of `state`, and returns the derivatives at its old value.
 StepDerivatives advance(State& state, const InertialStep& step, double gravity_mps2, FilterModel model);
 
-/// Turns `covariance` into that after the step. Only the rows that the step moves are multiplied: the others
-/// keep their values, but for gusts, which fade.
+/// Propagates `covariance` over the step. Only the rows that the step changes are multiplied. The others keep
+/// their values, except gusts, which decay.
 void propagate(ErrorCovariance& covariance, const StepDerivatives& by, const ProcessNoise& noise, double dt_s,
                FilterModel model);
 

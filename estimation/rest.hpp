@@ -9,8 +9,8 @@
 
 namespace understory {
 
-/// On the catapult the aircraft stands still in a known place: velocity and rate are zero, specific force is
-/// gravity.
+/// On the catapult the aircraft stands still at a known place: velocity and rate are zero, the specific force
+/// is gravity.
 struct RestConfig {
   double force_tolerance_mps2 = 0.6;  ///< m/s^2, 0.01..10: specific force this near gravity, and
   double rate_tolerance_radps =
@@ -46,10 +46,10 @@ Measurement<3> known_position(const State& state, const Eigen::Vector3d& positio
                               const RestConfig& config);
 Measurement<3> gravity_direction(const State& state, const Eigen::Vector3d& specific_force_body_mps2,
                                  double gravity_mps2, const RestConfig& config);
-/// A gyro that reads `gyro_radps` while nothing turns shows its bias. `sigma_radps`: noise of one reading.
+/// At rest a gyro reading is the gyro's bias. `sigma_radps`: noise of one reading.
 Measurement<3> zero_rate(const State& state, const Eigen::Vector3d& gyro_radps, double sigma_radps);
 
-/// Fires once, on the second sample running whose forward specific force is over the threshold.
+/// True once: at the second consecutive sample whose forward specific force exceeds the threshold.
 class LaunchDetector {
  public:
   explicit LaunchDetector(double threshold_mps2) : threshold_mps2_(threshold_mps2) {}

@@ -10,7 +10,7 @@ namespace understory {
 struct ImuSample {
   std::int64_t t_ns = 0;
   Eigen::Vector3d angular_rate_body_radps = Eigen::Vector3d::Zero();
-  /// Acceleration less gravity, what an accelerometer feels: (0, 0, +9.81) at rest and level.
+  /// Acceleration minus gravity, as an accelerometer measures it: (0, 0, +9.81) at rest and level.
   Eigen::Vector3d specific_force_body_mps2 = Eigen::Vector3d::Zero();
 };
 
@@ -30,20 +30,20 @@ struct MagnetometerSample {
       Eigen::Vector3d::Zero();  ///< microtesla; declination taken as zero (north = world y)
 };
 
-/// Satellite positioning. Arrives late: t_ns is the moment it speaks of.
+/// A GPS fix. It arrives late; t_ns is the moment of measurement.
 struct GpsSample {
   std::int64_t t_ns = 0;
   Eigen::Vector3d position_world_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();
 };
 
-/// An obstacle seen at one depth and, later and nearer, at a second: by how much its place in the odometry
-/// frame has moved meanwhile, level. The aircraft's own estimate drifted by the opposite.
+/// An obstacle seen at one depth and, later, at a nearer one: how far its place in the odometry frame has
+/// moved in between, level. The aircraft's estimate has drifted by the opposite.
 struct ResightingSample {
   std::int64_t t_ns = 0;                                          ///< of the second sighting
   std::int64_t earlier_ns = 0;                                    ///< of the first
   Eigen::Vector2d discrepancy_world_m = Eigen::Vector2d::Zero();  ///< second place less first
-  Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Identity();    ///< of what vision got wrong in it
+  Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Identity();    ///< of the errors of vision
 };
 
 }  // namespace understory

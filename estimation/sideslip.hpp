@@ -10,14 +10,14 @@
 namespace understory {
 
 enum class SideslipModel {
-  lateral_force,  ///< the winglets' side force tells the sideslip
+  lateral_force,  ///< from the winglets' side force
   zero,           ///< v_y = 0, the original's: false by up to 2.6 m/s in dodges (docs/sources.md [15])
   off,
 };
 
-/// Sideslip from lateral specific force. Only the winglets push sideways: as flat plates of area S together
-/// (two) their force is normal to them, rho/2 V^2 S 2 sin(beta), with V and sin(beta) = v/V of the air in the
-/// body's x-y plane at the winglets, so that a_y = -k V v with k = rho S / m (docs/sources.md [3]: identified
+/// Sideslip from lateral specific force. Only the winglets push sideways. As flat plates with a total area S
+/// their force is normal to them: rho/2 V^2 S 2 sin(beta), with V and sin(beta) = v/V of the air in the
+/// body's x-y plane at the winglets. So a_y = -k V v with k = rho S / m (docs/sources.md [3]: identified
 /// flat-plate model).
 struct SideslipConfig {
   SideslipModel model = SideslipModel::lateral_force;

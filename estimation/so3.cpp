@@ -5,7 +5,7 @@
 namespace understory::so3 {
 namespace {
 
-/// Below this angle the series' next term is under the rounding of a double.
+/// Below this angle the next term of the series is smaller than the rounding of a double.
 constexpr double small_angle_rad = 1e-4;
 
 }  // namespace
@@ -27,7 +27,7 @@ Eigen::Matrix3d exp(const Eigen::Vector3d& rotation_vector) {
 }
 
 Eigen::Vector3d log(const Eigen::Matrix3d& rotation) {
-  // Through the quaternion: well conditioned at pi, where the trace formula is not.
+  // By way of the quaternion, which is well conditioned at pi. The trace formula is not.
   Eigen::Quaterniond quaternion(rotation);
   if (quaternion.w() < 0) quaternion.coeffs() = -quaternion.coeffs();
   const double sine = quaternion.vec().norm();

@@ -7,8 +7,8 @@
 
 namespace understory {
 
-/// Whatever tells the autopilot where the aircraft is: the filter, or an oracle in its place.
-/// Samples arrive in order of time. Time never runs backwards.
+/// Tells the autopilot where the aircraft is: the filter, or an oracle in its place. Samples arrive in order
+/// of time.
 class StateSource {
  public:
   virtual ~StateSource() = default;

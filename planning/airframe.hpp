@@ -41,7 +41,7 @@ struct Airframe {
   double input_delay_s = 0.020;  ///< command to surface
 };
 
-/// Every field by name, for loading, saving, --set and tuning: visit(name, field, least, greatest).
+/// Every field by name, for loading, saving, --set and tuning: visit(name, field, minimum, maximum).
 template <typename Visitor>
 void visit_fields(Visitor& visit, Airframe& airframe) {
   visit("mass_kg", airframe.mass_kg, 0.05, 20.0);

@@ -48,8 +48,8 @@ void Autopilot::on(const StereoFrame& frame) {
   map_.forget_passed(state_source_.state().T_world_body, frame.t_ns);
 }
 
-// Whether the frame of that moment put a new point on the map so near the plan in force, or the one on its
-// way, that it can change its cost.
+// Whether the frame of `t_ns` added a point that is near enough to change the cost of the plan: the newest
+// one, in force or about to be.
 bool Autopilot::seen_near_the_plan(std::int64_t t_ns) const {
   const Plan& plan = next_plan_due_ns_ >= 0 ? next_plan_ : plan_;
   const ObstacleFieldConfig& field = config_.planner.field;
@@ -76,15 +76,16 @@ void Autopilot::replan(std::int64_t t_ns) {
   const bool outdated = plan_outdated_ || period_s == 0;
   planned_ns_ = t_ns;
   plan_outdated_ = false;
-  // A command given now moves the elevons one input delay later, and the plan itself is ready only after its
-  // latency: plan from where the aircraft will be then, under what has been commanded until then.
+  // A command moves the elevons one input delay later, and the plan is ready one latency later. So plan from
+  // where the aircraft will be then under the commands given until then.
   const std::int64_t effective_ns =
       t_ns + nanoseconds(config_.plan_latency_s) + nanoseconds(model_.airframe().input_delay_s);
   const State& state = state_source_.state();
   FlightState start = flight_state(state);
   for (std::int64_t at_ns = state.t_ns; at_ns < effective_ns; at_ns += nanoseconds(predict_step_s))
     start = model_.advance(start, command_at(plan_, at_ns), predict_step_s);
-  // The planner thinks in heights over the ground, the map in the odometry's: they drift apart slowly.
+  // The planner uses heights above the ground, the map uses those of the odometry frame. The two drift apart
+  // slowly.
   const double ground_m = state.T_world_body.translation().z() - state.altitude_m;
   start.position_world.z() -= ground_m;
   std::vector<ObstaclePoint> points = map_.trusted_points();

@@ -45,9 +45,8 @@ void visit_fields(Visitor& visit, AutopilotConfig& config) {
   visit("follower", config.follower);
 }
 
-/// The flight stack composed: what would run on the aircraft. It knows the airframe, its rig and the mission;
-/// what is around it, it learns through `detector`; where it is, through `state_source`. Both must outlive
-/// it.
+/// The flight stack composed: what would run on the aircraft. It knows the airframe, its rig and the mission.
+/// `detector` tells it what is around it, `state_source` where it is. Both must outlive it.
 class Autopilot {
  public:
   Autopilot(const AutopilotConfig& config, const Airframe& airframe, const StereoRig& rig,
@@ -60,9 +59,9 @@ class Autopilot {
   void on(const MagnetometerSample& sample) { state_source_.on(sample); }
   void on(const GpsSample& sample) { state_source_.on(sample); }
   void on(const StereoFrame& frame);
-  /// Plans for the moment at which the plan will take effect; does nothing while one is being computed
-  /// (plan_latency_s long), so that a rate of calls above that changes nothing, and nothing while the plan in
-  /// force is younger than its period and no new point of the map lies near it.
+  /// Plans for the moment at which the plan will take effect. Does nothing while a plan is being computed
+  /// (plan_latency_s), so calling more often changes nothing. Does nothing either while the plan in force is
+  /// younger than its period and no new point lies near it.
   void replan(std::int64_t t_ns);
   Controls controls(std::int64_t t_ns);
 

@@ -7,7 +7,7 @@
 namespace understory {
 namespace {
 
-/// Every point of it, whatever is in the way.
+/// The manoeuvre flown to the horizon with all its points, through obstacles too.
 Rollout flown_through(const FlightTask& task, const FlightState& start, const Manoeuvre& manoeuvre) {
   return fly_out(task, start, manoeuvre, task.config.minimum_clearance_m, true, false);
 }
@@ -104,7 +104,7 @@ Plan AvoidancePlanner::fall_back(const FlightTask& task, const FlightState& star
   double maximum_m = -INFINITY, minimum_cost = INFINITY;
   for (const Manoeuvre& primitive : primitives_) {
     const Rollout rollout = fly_out(task, start, primitive, limits.minimum_clearance_m, false, false);
-    // Beyond comfort more clearance buys nothing: the cheaper one wins.
+    // Clearance beyond the comfortable one does not count: the cheaper primitive wins.
     const double clearance_m = std::min(rollout.minimum_margin_m, limits.comfortable_clearance_m);
     if (clearance_m < maximum_m || (clearance_m == maximum_m && rollout.cost >= minimum_cost)) continue;
     maximum_m = clearance_m;

@@ -39,46 +39,45 @@ void visit_fields(Visitor& visit, PlannerConfig& config) {
   visit("improvement", config.improvement);
 }
 
-/// How the replans of a flight were answered. straight + solved + kept + fallback are all of them.
+/// How the replans of a flight were answered. straight + solved + kept + fallback is their number.
 struct PlannerCounts {
-  int straight = 0;   ///< nothing within comfort of the straight way
-  int solved = 0;     ///< OMPL's answer of this replan taken
-  int kept = 0;       ///< the plan in force still good
-  int kept_ompl = 0;  ///< of `kept`: what is left of an OMPL answer; the others go straight with less comfort
-  int fallback = 0;   ///< no free manoeuvre found: the primitive of greatest clearance
-  int blocked = 0;    ///< an obstacle ahead: straight on would come nearer than the minimum clearance
+  int straight = 0;      ///< nothing within comfortable clearance of the straight way
+  int solved = 0;        ///< OMPL's answer of this replan taken
+  int kept = 0;          ///< the plan in force still good
+  int kept_ompl = 0;     ///< of `kept`: the rest of an OMPL answer; the others go straight
+  int fallback = 0;      ///< no free manoeuvre found: the primitive with the maximum clearance
+  int blocked = 0;       ///< straight on would come nearer to an obstacle than the minimum clearance
   int blocked_ompl = 0;  ///< of `blocked`: flown on an OMPL answer, of this replan or kept
   int searched = 0;      ///< how often OMPL was asked (a kept plan is searched against anew now and then)
   int found = 0;         ///< how often it answered with a free manoeuvre
 };
 
-/// Receding-horizon avoidance: straight on where that is free, else the plan in force while it is free and
-/// good, else what OMPL finds, else the primitive of greatest clearance.
+/// Receding-horizon avoidance. The first of these that is possible is flown: straight on where that is free;
+/// the plan in force while it is free and good; what OMPL finds; the primitive with the maximum clearance.
 class AvoidancePlanner {
  public:
   AvoidancePlanner(const PlannerConfig& config, const FlightModel& model, const Mission& mission,
                    std::uint64_t seed);
 
-  /// A plan from `start`, where the aircraft will be at `t_ns` (not now: when the plan takes effect).
-  /// `outdated`: the points are not those of the plan in force. Where they are, and it is free, it is
-  /// searched against only when the refresh is due.
+  /// A plan from `start`, where the aircraft will be at `t_ns`, when the plan takes effect. `outdated`:
+  /// `points` differ from those of the plan in force. Where they do not and that plan is free, a new search
+  /// is made only when the refresh is due.
   Plan plan(const FlightState& start, std::int64_t t_ns, const std::vector<ObstaclePoint>& points,
             double distance_flown_m, bool outdated = true);
 
   const PlannerCounts& counts() const { return counts_; }
 
  private:
-  /// What is left of the manoeuvre in force at `t_ns`.
+  /// The rest of the manoeuvre in force at `t_ns`.
   Manoeuvre remaining(std::int64_t t_ns) const;
   Plan keep(std::int64_t t_ns, const Manoeuvre& manoeuvre, Rollout rollout);
-  /// OMPL's answer, or `left` where that `may_keep` and OMPL's is not clearly cheaper; nothing where neither
-  /// is.
+  /// OMPL's answer; or `left`, where `may_keep` and OMPL's is not clearly cheaper; or nothing.
   std::optional<Plan> search(const FlightTask& task, const FlightState& start, std::int64_t t_ns,
                              const Manoeuvre& left, bool may_keep);
   Plan fall_back(const FlightTask& task, const FlightState& start, std::int64_t t_ns);
-  /// The plan where the straight way is not comfortable.
+  /// The plan where the straight way comes nearer than the comfortable clearance.
   Plan avoid(const FlightTask& task, const FlightState& start, std::int64_t t_ns, bool outdated);
-  /// Puts it in force; `rollout` is the manoeuvre flown from the plan's start, with its points.
+  /// Puts `manoeuvre` in force; `rollout` is it, flown from the plan's start, with points.
   Plan adopt(std::int64_t t_ns, const Manoeuvre& manoeuvre, PlanOrigin origin, Rollout rollout);
 
   PlannerConfig config_;

@@ -54,14 +54,14 @@ double FlightModel::commanded_angle_of_attack_rad(const FlightState& state, doub
   const double turn_up_radps = (wanted_climb_angle - state.climb_angle_rad) / config_.climb_angle_time_s;
   const double upward_n =
       airframe_.mass_kg * (speed * turn_up_radps + airframe_.gravity_mps2 * attitude.cos_climb);
-  // Beyond 80 deg of bank the wing cannot carry the weight at all: it pulls as if at 80 deg, which is the
-  // cap.
+  // Beyond 80 deg of bank the wing cannot carry the weight. The command is that of 80 deg, where the cap of
+  // the angle of attack applies.
   const double share = std::max(attitude.cos_bank, 0.17);
   // Lift is N cos(a) + X sin(a) with N = 2 sin(a) q S and X = thrust less body drag; cos(a) taken as now.
   const double forward_n = commanded_thrust_n(state) - q * airframe_.body_drag_area_m2;
   const double sine = upward_n / (share * (2 * q * lifting_area_m2_ * attitude.cos_alpha + forward_n));
-  // Near the least speed pulling harder only stalls what is left: the cap closes towards level flight's own
-  // angle.
+  // Near the minimum speed a larger angle of attack only costs speed, so its cap approaches that of level
+  // flight.
   const double reserve = std::clamp((speed - config_.minimum_speed_mps + 0.5) / 1.0, 0.6, 1.0);
   return std::clamp(std::asin(std::clamp(sine, -0.9, 0.9)), config_.minimum_angle_of_attack_rad,
                     reserve * config_.maximum_angle_of_attack_rad);
@@ -124,11 +124,11 @@ FlightState FlightModel::advance(const FlightState& state, const FlightCommand& 
   const double balance_n = airframe_.rate_damping_nmspr.y() * body_pitch_rate / elevon_arm_m_;
   const double normal_n = 2 * sin_alpha * q * lifting_area_m2_ - balance_n;
   const double side_n = side_force_n(state);
-  // Body drag was identified along body x, as the thrust is: both lean with the nose.
+  // Body drag was identified along body x, like the thrust. Both turn with the nose.
   const double forward_n =
       commanded_thrust_n(state) - q * airframe_.body_drag_area_m2 * cos_alpha * cos_alpha;
   const double lift_n = normal_n * cos_alpha + forward_n * sin_alpha;
-  // What makes the wing's drag other than the plate's that the normal force stands for: nothing by default.
+  // Drag of the wing beyond that of the plate, which the normal force contains. Zero by default.
   const double more_drag_m2 = airframe_.wing_area_m2 * airframe_.wing_drag_factor - lifting_area_m2_;
   const double drag_n = normal_n * sin_alpha - forward_n * cos_alpha - side_n * std::sin(state.sideslip_rad) +
                         2 * sin_alpha * sin_alpha * q * more_drag_m2;
@@ -201,7 +201,7 @@ FlightState flight_state(const Eigen::Isometry3d& T_world_body, const Eigen::Vec
   state.speed_mps = velocity.norm();
   state.roll_rate_radps = angular_rate_body_radps.x();
   state.yaw_rate_radps = angular_rate_body_radps.z();
-  // At rest in the air the velocity has no direction: take the nose's.
+  // At rest in the air the velocity has no direction. Take that of the nose.
   const Eigen::Vector3d direction =
       state.speed_mps > 1.0 ? Eigen::Vector3d(velocity / state.speed_mps) : Eigen::Vector3d(rotation.col(0));
   const Eigen::Vector3d in_body = rotation.transpose() * direction;

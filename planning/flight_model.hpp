@@ -63,8 +63,9 @@ void visit_fields(Visitor& visit, FlightModelConfig& config) {
   visit("speed_gain_n_per_mps", config.speed_gain_n_per_mps, 0.0, 20.0);
 }
 
-/// A point mass with roll-in, speed loss and sideslip, under the identified flat-plate forces (flight
-/// records): the inner loops of the path follower appear as lags, so that steps of 20 ms stay accurate.
+/// A point mass with roll-in, speed loss and sideslip, under the forces of the identified flat plates
+/// (docs/sources.md [3]). The inner loops of the path follower appear as lags, so steps of 20 ms are
+/// accurate.
 class FlightModel {
  public:
   FlightModel(const Airframe& airframe, const FlightModelConfig& config);
@@ -95,7 +96,7 @@ class FlightModel {
   const FlightModelConfig& config() const { return config_; }
 
  private:
-  /// Sines and cosines that several of a step's terms need: they are most of its cost.
+  /// Sines and cosines that several terms of a step need. They are most of its cost.
   struct Attitude {
     explicit Attitude(const FlightState& state);
     double sin_alpha, cos_alpha, sin_bank, cos_bank, sin_climb, cos_climb;
@@ -108,7 +109,7 @@ class FlightModel {
   FlightModelConfig config_;
   double lifting_area_m2_;  ///< the wing's, times its lift factor
   double elevon_arm_m_;
-  double sin_twice_differential_;  ///< of the greatest differential deflection
+  double sin_twice_differential_;  ///< of the maximum differential deflection
   double level_thrust_n_;
 };
 

@@ -6,7 +6,7 @@
 namespace understory {
 namespace {
 
-/// Squares beyond it need no root: rounding cannot bring them back.
+/// Beyond this factor a squared distance is larger even after rounding, so no root is needed.
 double no_less_than(double distance) { return distance * distance * (1 + 1e-12); }
 
 template <typename Ranked>

@@ -26,14 +26,15 @@ inline double squared_distance(const FlightPlace& one, const FlightPlace& other)
   return (one.position_world - other.position_world).squaredNorm() + heading * heading + bank * bank;
 }
 
-/// Places numbered in the order they came in, asked for the nearest. Linear, as ompl::NearestNeighborsLinear,
-/// and with its answers in its order; but the places lie side by side, no distance is asked for twice, and no
-/// root is taken that decides nothing. Not thread safe, not even to read.
+/// Places, numbered in the order they were added, and a linear search for the nearest. The answers and their
+/// order are those of ompl::NearestNeighborsLinear. It is faster, because the places lie side by side in
+/// memory, no distance is computed twice, and roots are taken only where they decide. Not thread safe, not
+/// even to read.
 class FlightPlaces {
  public:
   void clear() { places_.clear(); }
   void add(const FlightPlace& place) { places_.push_back(place); }
-  /// Later ones move up by a number.
+  /// The numbers of later places decrease by one.
   void remove(std::size_t number) { places_.erase(places_.begin() + static_cast<std::ptrdiff_t>(number)); }
   std::size_t size() const { return places_.size(); }
 

@@ -10,15 +10,15 @@
 
 namespace understory {
 
-/// Commands held one after the other; when they are used up the course guidance takes over (level out, turn
-/// back towards the course's heading, return to the cruise altitude).
+/// Commands, each held for a time, one after the other. After the last one the course guidance takes over:
+/// level out, turn back to the course's heading, return to the cruise altitude.
 struct ManoeuvrePart {
   FlightCommand command;
   double duration_s = 0;
 };
 using Manoeuvre = std::vector<ManoeuvrePart>;
 
-/// What a trajectory should be like. Costs are per second of flight, dimensionless; a clearance of zero costs
+/// How trajectories are judged. Costs are dimensionless, per second of flight. A clearance of zero costs
 /// `clearance_weight`.
 struct TrajectoryConfig {
   double step_s = 0.02;
@@ -62,7 +62,7 @@ void visit_fields(Visitor& visit, TrajectoryConfig& config) {
   visit("maximum_climb_mps", config.maximum_climb_mps, 0.0, 6.0);
 }
 
-/// Everything a trajectory is judged against, for the length of one replan.
+/// Everything by which trajectories are judged during one replan.
 struct FlightTask {
   const FlightModel& model;
   const TrajectoryConfig& config;
@@ -81,15 +81,13 @@ double band_clearance_m(const FlightTask& task, const FlightState& state);
 /// Distance made good along the course since the plan's start.
 double progress_m(const FlightTask& task, const Eigen::Vector3d& position_world);
 
-/// The clearance beyond which more of it changes no decision and no cost, where `minimum_clearance_m` is
-/// asked.
+/// A clearance beyond this one changes no decision and no cost, where `minimum_clearance_m` is required.
 double maximum_clearance_m(const TrajectoryConfig& config, double minimum_clearance_m);
 
 /// A manoeuvre flown in the model to the horizon.
 struct Rollout {
   double cost = 0;
-  /// From obstacles, over the whole rollout (up to where it stopped); what is beyond maximum_clearance_m
-  /// does not count.
+  /// From obstacles, over the whole rollout (up to where it stopped), at most maximum_clearance_m().
   double minimum_clearance_m = 3.0;
   double minimum_margin_m =
       3.0;  ///< the same, or the distance to the altitude band's limits where that is less
@@ -98,10 +96,9 @@ struct Rollout {
   std::vector<PlanPoint> points;  ///< filled where asked for
 };
 
-/// Flies `manoeuvre` from `start`; stops where the clearance falls below `minimum_clearance_m`. With
-/// `keep_points` the trajectory comes along, every step. With `stop_when_too_near` false it flies on to the
-/// horizon all the same. It also stops, short of the horizon, once it has cost more than `maximum_cost`:
-/// costs only grow.
+/// Flies `manoeuvre` from `start` in the model. Stops where the clearance falls below `minimum_clearance_m`,
+/// unless `stop_when_too_near` is false. Stops also where the cost exceeds `maximum_cost`, since costs only
+/// grow. `keep_points` returns the trajectory, every step.
 Rollout fly_out(const FlightTask& task, const FlightState& start, const Manoeuvre& manoeuvre,
                 double minimum_clearance_m, bool keep_points, bool stop_when_too_near = true,
                 double maximum_cost = std::numeric_limits<double>::infinity());

@@ -6,8 +6,7 @@
 
 namespace understory {
 
-/// Random descent around a manoeuvre: a tree of random commands finds the way, and seldom the best version of
-/// it.
+/// Random descent around a manoeuvre. A tree of random commands finds a way, but seldom its best version.
 struct ManoeuvreImprovementConfig {
   int iterations = 60;           ///< rollouts tried
   double bank_sigma_rad = 0.35;  ///< of the change to one part's bank
@@ -30,9 +29,8 @@ struct ImprovedManoeuvre {
   double cost = 0;  ///< of its rollout; infinite where that does not reach the horizon
 };
 
-/// The cheapest variant met that reaches the horizon with `minimum_clearance_m`; `manoeuvre` itself where
-/// none is cheaper (or where it does not reach the horizon and no variant does). Repeats exactly for equal
-/// arguments.
+/// The cheapest variant found that reaches the horizon with `minimum_clearance_m`; `manoeuvre` itself where
+/// no variant is cheaper or reaches the horizon. Repeats exactly for equal arguments.
 ImprovedManoeuvre improve_manoeuvre(const FlightTask& task, const FlightState& start,
                                     const Manoeuvre& manoeuvre, double minimum_clearance_m,
                                     const ManoeuvreImprovementConfig& config, std::uint64_t seed);

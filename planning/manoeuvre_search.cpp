@@ -133,7 +133,7 @@ class CommandSampler : public oc::ControlSampler {
   const Manoeuvre& hint_;
 };
 
-// What a step adds to the node is its whole cost, clearance included; OMPL adds up the differences.
+// A node holds its whole cost so far, clearance included. OMPL adds up the differences.
 class AccumulatedCost : public ob::OptimizationObjective {
  public:
   using OptimizationObjective::OptimizationObjective;
@@ -144,7 +144,7 @@ class AccumulatedCost : public ob::OptimizationObjective {
 };
 
 // The goal: states from which the course guidance alone reaches the horizon. It remembers the cheapest whole
-// flight (commands so far and the way to the horizon), which SST's own account of the tree alone would not.
+// flight (the commands so far and the course guidance to the horizon). SST itself accounts only for the tree.
 class FreeCourse : public ob::Goal {
  public:
   FreeCourse(const ob::SpaceInformationPtr& space, const FlightTask& task) : Goal(space), task_(task) {}
@@ -154,8 +154,8 @@ class FreeCourse : public ob::Goal {
     const double to_go_m = task_.config.horizon_m - progress_m(task_, node.flight.position_world);
     if (distance != nullptr) *distance = std::max(0.0, to_go_m);
     if (node.cost >= best_cost) return false;
-    // What cannot become the cheapest is not flown to its end: SST makes nothing of it either. A little more
-    // is allowed than what is left to spend, so that rounding decides nothing.
+    // A flight that cannot become the cheapest is not flown to its end, as SST would discard it. The limit is
+    // slightly larger than what remains, so that rounding decides nothing.
     const double to_spend = (best_cost - node.cost) * (1 + 1e-9) + 1e-9;
     const Rollout rest =
         fly_out(task_, node.flight, {}, task_.config.minimum_clearance_m, false, true, to_spend);
@@ -174,7 +174,7 @@ class FreeCourse : public ob::Goal {
   const FlightTask& task_;
 };
 
-// SST's motions by their places. OMPL's own structures ask for each distance through a pointer to a function.
+// SST's motions by their places. OMPL's own structures call a function pointer for each distance.
 template <typename Motion>
 class NearestMotions : public ompl::NearestNeighbors<Motion> {
  public:
@@ -215,8 +215,8 @@ class NearestMotions : public ompl::NearestNeighbors<Motion> {
   FlightPlaces places_;
 };
 
-// SST with a seed of its own for each search; OMPL seeds one generator per process, which would tie a replan
-// to all that came before it.
+// SST with its own seed for each search. OMPL has one generator per process, with which a replan would depend
+// on every replan before it.
 class SeededSst : public oc::SST {
  public:
   SeededSst(const oc::SpaceInformationPtr& space, std::uint32_t seed) : SST(space) {

@@ -38,8 +38,8 @@ void visit_fields(Visitor& visit, ManoeuvreSearchConfig& config) {
   visit("pruning_radius", config.pruning_radius, 0.0, 10.0);
 }
 
-/// The cheapest manoeuvre found whose rollout reaches the horizon free of obstacles, or nothing. Some
-/// commands are drawn near those of `hint`, the plan in force (it may be empty). Repeats exactly for equal
+/// The cheapest manoeuvre found whose rollout reaches the horizon without touching an obstacle, or nothing.
+/// Some commands are drawn near those of `hint`, the plan in force (may be empty). Repeats exactly for equal
 /// arguments, whatever was searched before: `seed` seeds every generator of the search.
 std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightState& start,
                                           const Manoeuvre& hint, const ManoeuvreSearchConfig& config,

@@ -10,8 +10,8 @@ namespace {
 constexpr double grid_cell_m = 1.0;
 constexpr double rounding_m = 1e-9;  // more than any rounding, less than anything that matters
 
-// Least distance between the segments a0-a1 and b0-b1: Ericson 2005, Real-Time Collision Detection,
-// section 5.1.9.
+// Minimum distance between the segments a0-a1 and b0-b1: Ericson 2005, Real-Time Collision Detection, section
+// 5.1.9.
 double segment_distance_m(const Eigen::Vector3d& a0, const Eigen::Vector3d& a1, const Eigen::Vector3d& b0,
                           const Eigen::Vector3d& b1) {
   const Eigen::Vector3d along_a = a1 - a0, along_b = b1 - b0, between = a0 - b0;
@@ -25,7 +25,7 @@ double segment_distance_m(const Eigen::Vector3d& a0, const Eigen::Vector3d& a1, 
   return (between + s * along_a - t * along_b).norm();
 }
 
-/// A point in its horizontal cell. Small, since sorting moves them: half the cost of a field.
+/// A point and its horizontal cell. Small, because sorting moves it, and sorting is half of a field's cost.
 struct CellPoint {
   std::uint64_t cell;  ///< in the order of the cells' columns, then rows
   double z;
@@ -34,7 +34,8 @@ struct CellPoint {
 
 std::uint64_t cell_number(double column, double row) {
   const auto ordered = [](double whole) {
-    return static_cast<std::uint32_t>(static_cast<std::int32_t>(whole)) ^ 0x80000000u;  // negative ones first
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(whole)) ^
+           0x80000000u;  // sorts negative numbers first
   };
   return std::uint64_t{ordered(column)} << 32 | ordered(row);
 }
@@ -55,7 +56,7 @@ ObstacleField::ObstacleField(const ObstacleFieldConfig& config, const std::vecto
     cells.push_back({cell_number(std::floor(at.x() / config.cell_m), std::floor(at.y() / config.cell_m)),
                      at.z(), cells.size()});
   }
-  // Whatever the points' order: a sum of doubles hangs on it, and a plan on the sum.
+  // Sorted, because the order of points would change a sum of doubles, and the sum changes plans.
   std::sort(cells.begin(), cells.end(), [&](const CellPoint& a, const CellPoint& b) {
     if (a.cell != b.cell) return a.cell < b.cell;
     if (a.z != b.z) return a.z < b.z;
@@ -133,7 +134,7 @@ double ObstacleField::clearance_m(const FlightState& state, double maximum_m) co
   double minimum = maximum_m;
   for (int k = cell_start_[cell]; k < cell_start_[cell + 1]; ++k) {
     const Near& near = near_[static_cast<std::size_t>(k)];
-    // A column is nowhere nearer than its axis prolonged, seen from above: a point beside the wing's shadow.
+    // Seen from above, a column is nowhere nearer than its axis: a point beside the wing's projection.
     const double matters_m = minimum + near.around_m + rounding_m;
     if (matters_m <= 0) continue;
     const Eigen::Vector2d beside = near.centre_world - state.position_world.head<2>();

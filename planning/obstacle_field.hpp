@@ -39,9 +39,9 @@ void visit_fields(Visitor& visit, ObstacleFieldConfig& config) {
   visit("wing_radius_m", config.wing_radius_m, 0.0, 1.0);
 }
 
-/// The remembered points as a planner wants them: upright columns in a horizontal grid, asked for the free
-/// distance to a wing in a given attitude. Rebuilt for each replan, asked some ten thousand times where that
-/// searches.
+/// The remembered points for the planner: upright columns in a horizontal grid, which answer the free
+/// distance to a wing in a given attitude. It is rebuilt for each replan. A search asks about ten thousand
+/// times.
 class ObstacleField {
  public:
   struct Column {
@@ -50,14 +50,14 @@ class ObstacleField {
     double radius_m;  ///< half a cell and the points' uncertainty
   };
 
-  /// Points are in heights above the ground. `maximum_asked_m`: the greatest clearance that it will be asked
-  /// about; the nearer, the cheaper.
+  /// Heights of `points` are above the ground. `maximum_asked_m`: the maximum clearance that will be asked
+  /// for. A smaller one is cheaper.
   ObstacleField(const ObstacleFieldConfig& config, const std::vector<ObstaclePoint>& points,
                 double distance_flown_m, double maximum_asked_m = 3.0);
 
-  /// Free distance from the wing (a capsule from tip to tip, banked as in `state`) to the nearest column, m;
-  /// negative in a collision; `maximum_m` at most, which is what free space answers (at most what the
-  /// constructor was told).
+  /// Free distance from the wing (a capsule from tip to tip, banked as in `state`) to the nearest column, m.
+  /// Negative in a collision. At most `maximum_m`, which is the answer in free space and at most the
+  /// constructor's `maximum_asked_m`.
   double clearance_m(const FlightState& state, double maximum_m) const;
 
   const std::vector<Column>& columns() const { return columns_; }
@@ -70,7 +70,7 @@ class ObstacleField {
   Eigen::Vector2d grid_origin_ = Eigen::Vector2d::Zero();
   int grid_width_ = 0, grid_height_ = 0;
   std::vector<std::int32_t> cell_start_;  ///< per cell, into near_; one more than there are cells
-  /// Columns within reach of each cell, with what tells most of them from the nearest.
+  /// Columns within reach of each cell, with the data that exclude most of them.
   struct Near {
     Eigen::Vector2d centre_world;
     double around_m;  ///< the column's radius and the wing's

@@ -23,8 +23,8 @@ Controls follow(const FlightModel& model, const PathFollowerConfig& config, cons
   const double speed = std::max(now.speed_mps, 5.0);
   const double pitch_rate = -state.angular_rate_body_radps.y();  // nose up positive; body y points left
 
-  // Pitch: the rate that carries the path round and takes out the angle of attack error, then the elevon that
-  // makes it.
+  // Pitch: the rate that turns the path and removes the error of the angle of attack, then the elevon
+  // deflection for it.
   const double alpha_error =
       model.commanded_angle_of_attack_rad(now, command.climb_mps) - now.angle_of_attack_rad;
   const double wanted_pitch_rate =
@@ -39,7 +39,7 @@ Controls follow(const FlightModel& model, const PathFollowerConfig& config, cons
       inertia.y() * pitch_acceleration + airframe.rate_damping_nmspr.y() * pitch_rate + coupling;
   const double collective = now.angle_of_attack_rad + pitch_rate * arm / speed + pitch_moment / pitch_slope;
 
-  // Roll about the velocity, not about the nose: else the angle of attack would turn into sideslip.
+  // Roll about the velocity, not about the nose. Otherwise the angle of attack would become sideslip.
   const double wanted_about_velocity = model.commanded_roll_rate_radps(now, command.bank_rad);
   const double wanted_roll =
       (wanted_about_velocity + now.yaw_rate_radps * std::sin(now.angle_of_attack_rad)) /
@@ -54,8 +54,9 @@ Controls follow(const FlightModel& model, const PathFollowerConfig& config, cons
   const double share = std::clamp(roll_moment / roll_slope, -0.5, 0.5);
   const double differential = std::clamp(0.5 * std::asin(2 * share), -limit, limit);
 
-  // Rolling to the right wants the left elevon down (less lift lost there) and the right one up. Where one
-  // meets its stop both move: a dodge is lost by rolling late, not by pulling a little less.
+  // To roll right, the left elevon goes down (it loses less lift there) and the right one up. Where one
+  // reaches its stop, both are shifted to keep their difference: a dodge fails by rolling late, not by
+  // pulling slightly less.
   const double room = std::abs(differential);
   const double mean = std::clamp(collective, airframe.elevon_min_rad + room, airframe.elevon_max_rad - room);
   Controls controls;

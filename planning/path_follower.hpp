@@ -10,7 +10,7 @@
 namespace understory {
 
 /// Gains of the inner loops. The outer laws (bank to roll rate, climb to angle of attack, speed to thrust)
-/// are the flight model's own, so that the aircraft answers as planned.
+/// are those of the flight model, so that the aircraft answers as planned.
 struct PathFollowerConfig {
   double pitch_time_s = 0.05;            ///< in which a pitch rate error is taken out
   double angle_of_attack_time_s = 0.09;  ///< in which an angle of attack error is taken out

@@ -25,7 +25,7 @@ enum class PlanOrigin {
   straight,  ///< nothing in the way: towards the goal, holding altitude
   solved,    ///< OMPL found it in this replan
   kept,      ///< an earlier plan, still valid and good
-  fallback   ///< nothing collision-free found: the primitive of greatest clearance
+  fallback   ///< nothing free of collision found: the primitive with the maximum clearance
 };
 
 struct Plan {
