@@ -18,7 +18,7 @@ struct ManoeuvreSearchConfig {
   double maximum_part_s = 0.48;
   int maximum_parts = 4;          ///< commands in a row before the course guidance takes over
   double hint_share = 0.3;        ///< of the commands tried: near those of the plan in force
-  double extreme_share = 0.2;     ///< of the commands tried: with the greatest bank, to either side
+  double extreme_share = 0.2;     ///< of the commands tried: with the maximum bank, to either side
   double selection_radius = 0.6;  ///< SST's, in the search's metric (see manoeuvre_search.cpp)
   double pruning_radius = 0.15;
 };

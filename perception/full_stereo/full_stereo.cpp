@@ -84,7 +84,7 @@ const cv::Mat& FullStereo::depth_m(const StereoFrame& frame) {
     for (int u = 0; u < common_width_px_; ++u) {
       const double disparity_px = found[u] / steps_per_px;
       const double parallax_px = disparity_px - remainder_px_;
-      // Unmatched pixels lie below the least disparity; beyond the right image's first column is padding.
+      // Unmatched pixels lie below the minimum disparity; beyond the right image's first column is padding.
       const bool is_matched = disparity_px >= min_disparity_px_ && disparity_px <= u + right_from_px_;
       if (is_matched && parallax_px > 0) depth[u] = static_cast<float>(scale_m / parallax_px);
     }

@@ -19,8 +19,8 @@ struct DisparityRule {
 struct BlockRule {
   int width_px = 0, height_px = 0;
   int stride_px = block_px;  ///< from block to block, both ways
-  /// Dense: a window at every pixel, and of each cell of 5x5 windows the one of least score (the first of
-  /// equals, by row, then column) goes on to the filters. The stride has no part in it.
+  /// Dense: a window at every pixel, and of each cell of 5x5 windows the one with the minimum score (the
+  /// first of equals, by row, then column) goes on to the filters. The stride has no part in it.
   bool every_pixel = false;
   int last_row_px = 0;  ///< top edge of the lowest blocks that may be looked at
   std::vector<DisparityRule> disparities;

@@ -15,7 +15,7 @@ namespace {
 
 int whole(double pixels) { return static_cast<int>(std::lround(pixels)); }
 
-/// Where the parabola through a match's SAD and those beside it is least, in pixels of disparity; 0 where the
+/// Minimum of the parabola through a match's SAD and those beside it, in pixels of disparity; 0 where the
 /// neighbours are not known or one of them is better.
 double vertex_px(const BlockMatch& match) {
   if (match.sad_below < match.sad || match.sad_above < match.sad) return 0;

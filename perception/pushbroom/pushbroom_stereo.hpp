@@ -38,7 +38,7 @@ struct PushbroomConfig {
       1.5;  ///< range searched: infinity to here (the paper ignores nearer points)
 
   /// Puts a hit at the vertex of the parabola through the SADs of its disparity and the two beside it, at
-  /// most half a pixel away, where its own is the least of the three.
+  /// most half a pixel away, where its own is the minimum of the three.
   bool subpixel = false;
 
   bool isolation = false;            ///< a hit needs company in its own frame

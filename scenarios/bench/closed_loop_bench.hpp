@@ -14,7 +14,7 @@ struct TimedFlight {
   double frames = 0;  ///< stereo pairs
   std::map<std::string, double>
       stage_s;                ///< wall time per stage of the loop (scenarios/flight/stopwatch.hpp)
-  double peak_memory_mb = 0;  ///< greatest resident set
+  double peak_memory_mb = 0;  ///< maximum resident set
   double cpu_s = 0;           ///< the process's own
 };
 

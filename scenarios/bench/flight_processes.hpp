@@ -28,7 +28,7 @@ class FlightProcesses {
   /// What the process used whose end is being told.
   struct Use {
     double cpu_s = 0;                    ///< of all its threads, in the kernel too
-    std::int64_t peak_memory_bytes = 0;  ///< greatest resident set
+    std::int64_t peak_memory_bytes = 0;  ///< maximum resident set
   };
   const Use& use() const { return use_; }
 

@@ -27,7 +27,7 @@ struct FlightRow {
   double cruise_speed_mps = 0;        ///< asked
   double square_metres_per_tree = 0;  ///< of the forest
   double distance_m = 0;              ///< flown: true path length since release
-  double progress_m = 0;              ///< greatest true x reached
+  double progress_m = 0;              ///< maximum true x reached
   double goal_m = 0;                  ///< x of the goal plane
   double mean_speed_mps = 0;          ///< true, over ground
   double min_clearance_m = 0;         ///< true; +infinity (empty in CSV, null in JSON) without obstacles

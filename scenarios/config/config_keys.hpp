@@ -23,7 +23,7 @@ void require_known_keys(const ConfigNode& map, const std::vector<std::string>& k
 std::vector<std::string> words_of(const ConfigNode& node, const std::string& key,
                                   const std::string& expected);
 
-/// Nothing of a number, or one outside least .. greatest, is refused.
+/// What is no number, or lies outside minimum .. maximum, is refused.
 double number_of(const ConfigNode& node, const std::string& key, double minimum, double maximum);
 int whole_number_of(const ConfigNode& node, const std::string& key, int minimum, int maximum);
 

@@ -12,7 +12,7 @@ namespace understory {
 /// What became of one obstacle that was passed.
 struct ObstacleSighting {
   int object = 0;
-  double miss_m = 0;  ///< least distance from the path of the rig's centre to the surface
+  double miss_m = 0;  ///< minimum distance from the path of the rig's centre to the surface
   bool on_the_path =
       false;               ///< straight on, from where it came into view at the depth, a wing would touch it
   int blocks_in_view = 0;  ///< of all frames: blocks of 5x5 px that showed it to both eyes within half a

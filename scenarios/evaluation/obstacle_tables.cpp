@@ -30,7 +30,7 @@ EvaluationTable computer_table(const Evaluation& evaluation) {
 EvaluationTable on_the_path_table(const Evaluation& evaluation) {
   EvaluationTable table{"on_the_path",
                         "Obstacles that a wing would touch, straight on from where they came into view",
-                        {{"algorithm", "obstacles", "found", "hits each, median", "least tenth",
+                        {{"algorithm", "obstacles", "found", "hits each, median", "lowest tenth",
                           "first hit at, m, median", "third hit at, m, median"},
                          {}}};
   for (std::size_t i = 0; i < algorithm_count; ++i) {

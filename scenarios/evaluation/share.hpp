@@ -4,7 +4,7 @@
 
 namespace understory {
 
-/// So many of so many.
+/// A count out of a total.
 struct Share {
   std::int64_t of = 0;
   std::int64_t with = 0;

@@ -20,9 +20,9 @@ double segment_distance_m(const Segment& a, const Segment& b);
 /// Least distance between a segment and an obstacle's surface, m; not positive where they touch.
 double obstacle_distance_m(const Segment& segment, const Obstacle& obstacle);
 
-/// The true least distance between the aircraft and the obstacles' surfaces, m; negative where they overlap,
-/// +infinity without obstacles. The aircraft is its wing as a segment between the tips and its body as one
-/// from nose to tail (the root chord of a delta is about twice the mean chord).
+/// The true minimum distance between the aircraft and the obstacles' surfaces, m; negative where they
+/// overlap, +infinity without obstacles. The aircraft is its wing as a segment between the tips and its body
+/// as one from nose to tail (the root chord of a delta is about twice the mean chord).
 double clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airframe,
                    const std::vector<Obstacle>& obstacles);
 

@@ -38,7 +38,7 @@ struct FlightResult {
   double simulated_s = 0;  ///< since the start at rest
   double wall_s = 0;
   double distance_m = 0;             ///< true path length since release
-  double progress_m = 0;             ///< greatest true x reached
+  double progress_m = 0;             ///< maximum true x reached
   double mean_speed_mps = 0;         ///< true, over ground, since release
   double min_clearance_m = 0;        ///< true; +infinity without obstacles (null in JSON)
   double position_error_mean_m = 0;  ///< estimate against truth, since release

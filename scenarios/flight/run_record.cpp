@@ -14,7 +14,7 @@
 namespace understory {
 namespace {
 
-/// The least true clearance is sampled at this fraction of the physics rate: 200 Hz, 6 cm of flight.
+/// The minimum true clearance is sampled at this fraction of the physics rate: 200 Hz, 6 cm of flight.
 constexpr std::int64_t clearance_every_steps = 6;
 
 constexpr const char* trajectory_header =

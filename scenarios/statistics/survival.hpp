@@ -39,7 +39,7 @@ SurvivalCurve kaplan_meier(const std::vector<Lifetime>& lifetimes);
 /// The step that holds at `at` (>= 0).
 const SurvivalStep& survival_at(const SurvivalCurve& curve, double at);
 
-/// The least distance by which half have ended; nothing where more than half got through.
+/// The shortest distance by which half have ended; nothing where more than half got through.
 std::optional<double> median_survival(const SurvivalCurve& curve);
 
 /// Whether two groups' curves are one: the log-rank test (Mantel 1966; Peto & Peto 1972) with the

@@ -62,7 +62,7 @@ void search_by_cma_es(const Space& space, const Objective& objective, const Sear
   auto size = static_cast<std::size_t>(
       std::max(5.0, 4 + std::floor(3 * std::log(static_cast<double>(cube.dimensions())))));
   try {
-    for (std::uint64_t start = 0;; ++start, size *= 2) {  // each start takes `size` trials at the least
+    for (std::uint64_t start = 0;; ++start, size *= 2) {  // each start takes at least `size` trials
       const pagmo::cmaes method(static_cast<unsigned>(config.trials), -1, -1, -1, -1,
                                 0.3,         // of the range: Hansen's advice for a first step
                                 1e-7, 1e-4,  // converged: fitnesses the same, steps below any use

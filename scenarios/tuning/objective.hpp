@@ -40,7 +40,7 @@ double violation(const Objective& objective, const Figures& figures);
 /// all that keeps them (the feasibility rules of Deb 2000, Comput. Methods Appl. Mech. Eng. 186).
 std::vector<double> fitness(const Objective& objective, const Figures& figures);
 
-/// The configuration to be recommended. One goal: the least fitness, the first of equals. Several: of those
+/// The configuration to be recommended. One goal: the minimum fitness, the first of equals. Several: of those
 /// that nobody beats in all goals, the nearest to the best of each goal, ranges scaled to 1 (the ideal point:
 /// Zeleny 1973). Nothing where no limit is kept by any.
 std::optional<std::size_t> best_of(const Objective& objective, const std::vector<Figures>& figures);

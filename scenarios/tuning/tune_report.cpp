@@ -130,7 +130,8 @@ std::string flights_sentence(const TuneFile& file, const Tuned& tuned) {
 
 std::string limits_sentence(const TuneFile& file, const Tuned& tuned) {
   if (file.objective.limits.empty()) return "";
-  if (!tuned.keeps_limits) return "\nNo trial keeps the limits: this one misses them by the least.\n";
+  if (!tuned.keeps_limits)
+    return "\nNo trial keeps the limits: this one misses them by the smallest amount.\n";
   return keeps_limits(file, tuned.best.validation) ? "\nThe limits are kept on validation data too.\n"
                                                    : "\nOn validation data the limits are not kept.\n";
 }

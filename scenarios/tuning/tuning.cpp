@@ -92,7 +92,8 @@ std::vector<Trial> run_search(const TuneFile& file, Tuning& tuning, Judge& train
   return log.evaluated();
 }
 
-/// The search's best, numbered as in `trials`; where none keeps the limits, the one that misses them least.
+/// The search's best, numbered as in `trials`; where none keeps the limits, the one that misses them by the
+/// smallest amount.
 std::size_t choose_best(const TuneFile& file, const std::vector<Trial>& trials, bool& keeps_limits) {
   std::vector<Figures> figures = figures_of(trials);
   figures.front().clear();  // the scenario as it is stands beside, not in the search

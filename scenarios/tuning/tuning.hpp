@@ -24,8 +24,8 @@ struct JudgedTrial {
 };
 
 struct Tuned {
-  std::vector<Trial> trials;             ///< 0: the scenario as it is; then the search's
-  bool keeps_limits = true;              ///< the best, on training data; else it misses them the least
+  std::vector<Trial> trials;  ///< 0: the scenario as it is; then the search's
+  bool keeps_limits = true;   ///< the best, on training data; otherwise it misses them by the smallest amount
   JudgedTrial scenario, best;            ///< chosen by training; `validation` is what counts
   std::vector<JudgedTrial> front;        ///< of training, thinned to at most `maximum_front`
   std::vector<Sensitivity> sensitivity;  ///< of each parameter

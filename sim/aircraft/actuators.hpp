@@ -10,7 +10,7 @@ namespace understory {
 /// fitted.
 struct ActuatorsConfig {
   double elevon_time_s = 0;      ///< first-order lag of the servos; 0.030 in docs/sources.md [14]
-  double elevon_rate_radps = 0;  ///< greatest; 8.7 is the 0.12 s per 60 deg of 9 g servos' data sheets
+  double elevon_rate_radps = 0;  ///< maximum; 8.7 is 0.12 s per 60 deg, from data sheets of 9 g servos
   double motor_time_s = 0;       ///< first-order lag of the thrust; about 0.05 with a 7 in propeller
   /// Airspeed at which the propeller's thrust ends: pitch times revolutions, 5 in at 10,000 rpm is 21 m/s.
   /// Thrust falls linearly up to there (nearly true of measured propellers: Brandt & Selig 2011, "Propeller

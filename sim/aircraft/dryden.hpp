@@ -25,7 +25,7 @@ DrydenScales low_altitude_dryden(double altitude_m, double wind20_mps);
 ///   u:    2 L / pi / (1 + (L Omega)^2)
 ///   v, w: L / pi (1 + 3 (L Omega)^2) / (1 + (L Omega)^2)^2
 /// Discretised exactly for a step of any length over which L does not change. Rotation of the air (p_g, q_g,
-/// r_g) is left out: the span is a quarter of the least L_w.
+/// r_g) is left out: the span is a quarter of the minimum L_w.
 class DrydenTurbulence {
  public:
   /// Begins in the stationary state.

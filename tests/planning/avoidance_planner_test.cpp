@@ -133,7 +133,7 @@ TEST(AvoidancePlanner, WithoutOmplThePrimitivesAnswer) {
   const Plan plan = planner.plan(level_start(mission), 0, points_of(trunks), 0);
   EXPECT_EQ(plan.origin, PlanOrigin::fallback);
   EXPECT_EQ(planner.counts().solved, 0);
-  // With one trunk alone the primitive of greatest clearance passes it.
+  // With one trunk alone the primitive with the maximum clearance passes it.
   EXPECT_GT(plan_distance_m(plan, trunks, config.field),
             config.field.wing_radius_m + config.field.sigma_zero_m);
 }

@@ -14,7 +14,8 @@ namespace understory {
 namespace {
 
 /// Stands in for flights: closed forms of the two keys. A seed's flight is good where its own limit on the
-/// edge sum, 500 + 10 a place, is kept; speed is greatest at edge 300 and score 0.2, or 0.1 in validation.
+/// edge sum, 500 + 10 a place, is kept; speed has its maximum at edge 300 and score 0.2, or 0.1 in
+/// validation.
 class ClosedForm : public Judge {
  public:
   explicit ClosedForm(double best_score) : best_score_(best_score) {}
@@ -93,7 +94,7 @@ TEST_F(TuningTest, SaysSoWhereNoTrialKeepsTheLimits) {
   ClosedForm training(0.2), validation(0.2);
   const Tuned tuned = tune(file, training, validation, {.folder = results("r")});
   EXPECT_FALSE(tuned.keeps_limits);
-  EXPECT_EQ(tuned.best.training.figures[0], 1);  // misses it the least
+  EXPECT_EQ(tuned.best.training.figures[0], 1);  // misses it by the smallest amount
   EXPECT_NE(tune_summary(file, tuned, validation).find("No trial keeps the limits"), std::string::npos);
 }
 

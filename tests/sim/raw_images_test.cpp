@@ -101,7 +101,7 @@ TEST_P(RawImages, RectifiedTheyAreTheIdealPair) {
   EXPECT_GT(cv::countNonZero(covered.left > 250), 0.8 * double(white.total()));
   EXPECT_LT(difference(rectified.left, ideal.left, covered.left), 5);
   EXPECT_LT(difference(rectified.right, ideal.right, covered.right), 5);
-  // One pixel of error either way would be worse: the least difference is at no shift.
+  // One pixel of error either way would be worse: the difference is smallest at no shift.
   const cv::Rect middle(40, 40, 290, 150);
   for (const cv::Point shift : {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)})
     EXPECT_LT(cv::norm(rectified.right(middle), ideal.right(middle), cv::NORM_L1),

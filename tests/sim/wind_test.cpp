@@ -51,8 +51,8 @@ TEST(Wind, ShearIsLogarithmic) {
   EXPECT_EQ(Wind(mean, config, {}, 0).at({0, 0, 1}), Vector3d::Zero());
 }
 
-// MIL-F-8785C: half of it at half the length, all of it from the length on; the slope's greatest is
-// pi / 2 amplitude / length at the middle.
+// MIL-F-8785C: half of it at half the length, all of it from the length on; the maximum slope is pi / 2
+// amplitude / length at the middle.
 TEST(Wind, GustIsOneMinusCosineOfTheWayFlown) {
   WindConfig config;
   config.gust = {2, 6, {0, 1, -4}};

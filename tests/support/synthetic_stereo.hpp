@@ -11,7 +11,7 @@ namespace understory::support {
 struct SyntheticPlane {
   double depth_m = 5;
   double grain_px = 2.5;         ///< size of the texture's fine grain as it appears in the image
-  double contrast = 68;          ///< its greatest departure from mid gray
+  double contrast = 68;          ///< its maximum deviation from mid gray
   double coarse_grain_px = 28;   ///< the coarse grain, which keeps distant places from looking alike
   double coarse_contrast = 500;  ///< more than the camera's range: part of the plane is black or white
   double noise_gray_levels = 2;  ///< standard deviation of each image's own sensor noise
