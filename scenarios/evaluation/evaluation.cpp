@@ -35,7 +35,8 @@ class Progress {
   std::mutex mutex_;
 };
 
-/// Opens each once, before the work begins: what is wrong with the last shows at once. The frames to come.
+/// Opens each once before the work begins, so that a fault of the last shows at once. Returns the frames to
+/// come.
 std::int64_t check(const EvaluationOptions& options) {
   std::int64_t frames = 0;
   StereoRig first;

@@ -14,8 +14,8 @@ namespace understory {
 namespace {
 
 constexpr int scale = 3, heat_scale = 6, worst_pictures = 12, title_px = 22;
-const cv::Scalar right_colour(80, 200, 60), wrong_colour(40, 40, 235), missed_colour(60, 220, 240),
-    text_colour(240, 240, 240);
+const cv::Scalar true_positive_colour(80, 200, 60), false_positive_colour(40, 40, 235),
+    missed_colour(60, 220, 240), text_colour(240, 240, 240);
 
 void write_line(cv::Mat& picture, const std::string& text, cv::Point place) {
   cv::putText(picture, text, place, cv::FONT_HERSHEY_SIMPLEX, 0.5, text_colour, 1, cv::LINE_AA);
@@ -42,10 +42,12 @@ cv::Mat heat_map(const std::vector<std::int64_t>& counts, int columns, const std
 
 cv::Mat heat_maps(const VisionTally& tally, const char* title) {
   cv::Mat all;
-  cv::hconcat(std::vector<cv::Mat>{heat_map(tally.right_at, tally.columns, std::string(title) + ", right"),
-                                   heat_map(tally.wrong_at, tally.columns, std::string(title) + ", wrong"),
-                                   heat_map(tally.expected_at, tally.columns, "obstacles at the depth")},
-              all);
+  cv::hconcat(
+      std::vector<cv::Mat>{
+          heat_map(tally.true_positives_at, tally.columns, std::string(title) + ", true positives"),
+          heat_map(tally.false_positives_at, tally.columns, std::string(title) + ", false positives"),
+          heat_map(tally.expected_at, tally.columns, "obstacles at the depth")},
+      all);
   return all;
 }
 
@@ -64,7 +66,7 @@ cv::Mat annotated_frame(const EvaluationFrame& frame, const StereoRig& rig, cons
   std::vector<bool> found(static_cast<std::size_t>(grid.block_count()));
   for (const StereoHit& hit : hits)
     if (const int block = grid.block_of(hit); block >= 0) found[static_cast<std::size_t>(block)] = true;
-  int missed = 0, wrong = 0;
+  int missed = 0, false_positives = 0;
   for (const ExpectedBlock& block : expected_blocks(frame.truth, grid)) {
     if (found[static_cast<std::size_t>(block.block)]) continue;
     ++missed;
@@ -72,13 +74,13 @@ cv::Mat annotated_frame(const EvaluationFrame& frame, const StereoRig& rig, cons
          missed_colour, 1);
   }
   for (const StereoHit& hit : hits) {
-    const bool right = judge(hit, frame.truth, grid)[one_pixel];
-    wrong += !right;
-    draw(hit.column_px, hit.row_px, right ? right_colour : wrong_colour, 2);
+    const bool is_true = judge(hit, frame.truth, grid)[one_pixel];
+    false_positives += !is_true;
+    draw(hit.column_px, hit.row_px, is_true ? true_positive_colour : false_positive_colour, 2);
   }
   write_line(picture,
-             fmt::format("{} right (green), {} wrong (red), {} obstacle blocks without (yellow)",
-                         static_cast<int>(hits.size()) - wrong, wrong, missed),
+             fmt::format("{} true positives (green), {} false (red), {} due blocks without a hit (yellow)",
+                         static_cast<int>(hits.size()) - false_positives, false_positives, missed),
              {8, picture.rows - 10});
   return picture;
 }

@@ -8,11 +8,11 @@
 
 namespace understory {
 
-/// Where over the image right hits, wrong ones and expected blocks lie, side by side, each as bright as its
+/// Where in the image true positives, false positives and due blocks lie, side by side, each as bright as its
 /// own fullest block; BGR, with titles.
 cv::Mat heat_maps(const VisionTally& tally, const char* title);
 
-/// A frame, three times as large: right hits green, wrong ones red, obstacle blocks that went without thin
+/// A frame, three times as large: true positives green, false positives red, due blocks without a hit thin
 /// yellow. BGR.
 cv::Mat annotated_frame(const EvaluationFrame& frame, const StereoRig& rig, const PushbroomConfig& rule);
 

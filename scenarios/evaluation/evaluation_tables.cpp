@@ -187,8 +187,9 @@ EvaluationTable false_hits_table(const Evaluation& evaluation) {
     std::vector<std::string> row{what};
     for (const std::size_t i : {our_rule, the_papers_rule, stereo_bm, stereo_sgbm}) {
       const auto found = tallies[i].false_on.find(what);
-      const double wrong = found == tallies[i].false_on.end() ? 0 : static_cast<double>(found->second);
-      row.push_back(fmt::format("{:.1f}", tallies[i].seconds > 0 ? wrong / tallies[i].seconds : 0));
+      const double false_positives =
+          found == tallies[i].false_on.end() ? 0 : static_cast<double>(found->second);
+      row.push_back(fmt::format("{:.1f}", tallies[i].seconds > 0 ? false_positives / tallies[i].seconds : 0));
     }
     table.table.rows.push_back(std::move(row));
   }

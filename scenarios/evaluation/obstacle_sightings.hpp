@@ -17,7 +17,7 @@ struct ObstacleSighting {
       false;               ///< straight on, from where it came into view at the depth, a wing would touch it
   int blocks_in_view = 0;  ///< of all frames: blocks of 5x5 px that showed it to both eyes within half a
                            ///< pixel of a depth looked at
-  int hits = 0;            ///< right ones, within one pixel, before it was passed
+  int hits = 0;            ///< true positives within one pixel, before it was passed
   double first_hit_m = 0;  ///< its depth at the first of them; 0: never
   double third_hit_m = 0;  ///< and at the third, when it counts as found (the original's avoidance: 3)
   bool hidden() const {

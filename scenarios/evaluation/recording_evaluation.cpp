@@ -161,15 +161,16 @@ void Evaluator::add_invariance(const EvaluationFrame& frame, const std::vector<E
 
 /// The worst of each quarter of a second, so that they show different things.
 void Evaluator::keep_if_bad(const EvaluationFrame& frame, std::size_t index) {
-  int wrong = 0;
-  for (const StereoHit& hit : timed_[our_rule].hits) wrong += !judge(hit, frame.truth, grid_)[one_pixel];
-  if (wrong == 0) return;
+  int false_positives = 0;
+  for (const StereoHit& hit : timed_[our_rule].hits)
+    false_positives += !judge(hit, frame.truth, grid_)[one_pixel];
+  if (false_positives == 0) return;
   constexpr std::size_t apart = 30;
   if (!bad_frames_.empty() && index - bad_frames_.back().index < apart) {
-    if (wrong > bad_frames_.back().false_hits) bad_frames_.back() = {index, wrong};
+    if (false_positives > bad_frames_.back().false_hits) bad_frames_.back() = {index, false_positives};
     return;
   }
-  bad_frames_.push_back({index, wrong});
+  bad_frames_.push_back({index, false_positives});
 }
 
 void Evaluator::add(const EvaluationFrame& frame, std::size_t index, std::int64_t next_t_ns) {

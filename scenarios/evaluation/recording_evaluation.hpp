@@ -65,7 +65,7 @@ struct InvarianceRow {
   Share precision, recall;  ///< of nothing where there is no true depth
 };
 
-/// A frame that went wrong, to be shown.
+/// A frame with many false positives, to be shown.
 struct WorstFrame {
   std::size_t index = 0;  ///< of the recording
   int false_hits = 0;

@@ -17,7 +17,8 @@ struct RecordingScore {
   std::string name;
   std::int64_t frames = 0;
   Share precision, recall;
-  Share trunks_1m, trunks_3m;  ///< passed within so much, in view at the depth: found by three right hits
+  Share trunks_1m,
+      trunks_3m;  ///< passed within 1 m, 3 m, in view at the depth: found by three true positives
 };
 
 /// Figures of one configuration over all of them.

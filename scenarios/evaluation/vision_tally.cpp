@@ -61,16 +61,17 @@ struct FrameTally {
 
   void add_hits(const std::vector<StereoHit>& hits, const std::array<TallyPart*, 3>& parts) {
     for (const StereoHit& hit : hits) {
-      const auto right = judge(hit, frame.truth, grid);
-      for (std::size_t i = 0; i < tolerance_count; ++i) to.precision[i].count(right[i]);
-      for (TallyPart* part : parts) part->precision.count(right[one_pixel]);
+      const auto is_true = judge(hit, frame.truth, grid);
+      for (std::size_t i = 0; i < tolerance_count; ++i) to.precision[i].count(is_true[i]);
+      for (TallyPart* part : parts) part->precision.count(is_true[one_pixel]);
       const int block = grid.block_of(hit);
       if (block >= 0) {
-        ++(right[one_pixel] ? to.right_at : to.wrong_at)[static_cast<std::size_t>(block)];
+        ++(is_true[one_pixel] ? to.true_positives_at
+                              : to.false_positives_at)[static_cast<std::size_t>(block)];
         to.parts["lateral offset"][lateral_name(block, hit.position_camera.z())].precision.count(
-            right[one_pixel]);
+            is_true[one_pixel]);
       }
-      if (!right[one_pixel]) ++to.false_on[lies_on(hit, frame.truth, kinds)];
+      if (!is_true[one_pixel]) ++to.false_on[lies_on(hit, frame.truth, kinds)];
     }
   }
 
@@ -110,7 +111,7 @@ struct FrameTally {
 
 void make_room(const DetectionGrid& grid, VisionTally& tally) {
   tally.columns = grid.columns;
-  for (auto* map : {&tally.right_at, &tally.wrong_at, &tally.expected_at})
+  for (auto* map : {&tally.true_positives_at, &tally.false_positives_at, &tally.expected_at})
     map->resize(static_cast<std::size_t>(grid.block_count()));
   tally.response.resize(static_cast<std::size_t>(response_reach_m / response_bin_m));
 }
@@ -131,11 +132,11 @@ std::array<bool, tolerance_count> judge(const StereoHit& hit, const TrueImages& 
     return content_between(truth, hit.column_px, hit.row_px, depths, false).holds();
   };
   const double claimed_m = hit.position_camera.z();
-  std::array<bool, tolerance_count> right{};
+  std::array<bool, tolerance_count> is_true{};
   for (std::size_t i = 0; i < tolerances_m.size(); ++i)
-    right[i] = borne_out({claimed_m - tolerances_m[i], claimed_m + tolerances_m[i]});
-  right[one_pixel] = borne_out(grid.depths[grid.depth_of(hit)].one_pixel);
-  return right;
+    is_true[i] = borne_out({claimed_m - tolerances_m[i], claimed_m + tolerances_m[i]});
+  is_true[one_pixel] = borne_out(grid.depths[grid.depth_of(hit)].one_pixel);
+  return is_true;
 }
 
 std::string lies_on(const StereoHit& hit, const TrueImages& truth, const std::map<int, std::string>& kinds) {
@@ -172,8 +173,8 @@ void VisionTally::add(const VisionTally& other) {
     to.resize(std::max(to.size(), from.size()));
     for (std::size_t i = 0; i < from.size(); ++i) to[i] += from[i];
   };
-  add_map(right_at, other.right_at);
-  add_map(wrong_at, other.wrong_at);
+  add_map(true_positives_at, other.true_positives_at);
+  add_map(false_positives_at, other.false_positives_at);
   add_map(expected_at, other.expected_at);
 }
 

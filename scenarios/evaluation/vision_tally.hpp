@@ -30,7 +30,7 @@ std::array<bool, tolerance_count> judge(const StereoHit& hit, const TrueImages& 
 /// and something at least a metre farther). `kinds`: by object number; "surface" where nobody says.
 std::string lies_on(const StereoHit& hit, const TrueImages& truth, const std::map<int, std::string>& kinds);
 
-/// One part of the frames or blocks: hits that are right, expected blocks that were hit; at one pixel.
+/// One part of the frames or blocks: true positives among hits, hits among due blocks; at one pixel.
 struct TallyPart {
   Share precision, recall;
 };
@@ -40,14 +40,14 @@ struct VisionTally {
   std::int64_t frames = 0;
   double seconds = 0;
   std::array<Share, tolerance_count> precision, recall;
-  std::map<std::string, std::int64_t> false_on;  ///< hits wrong by more than a pixel
+  std::map<std::string, std::int64_t> false_on;  ///< false positives, by what they lie on
   /// "kind", "distance" (true, of the block), "lateral offset" (of the block from the optical axis),
   /// "lighting" (mean gray of the image), "speed", "bank"; each by its bins' names, which sort.
   std::map<std::string, std::map<std::string, TallyPart>> parts;
   /// Obstacle blocks of any depth, in bins of half a metre from 0, and how many have a hit.
   std::vector<Share> response;
-  /// Over the image, a cell per block: hits right at one pixel, wrong ones, expected blocks.
-  std::vector<std::int64_t> right_at, wrong_at, expected_at;
+  /// Over the image, a cell per block: true positives at one pixel, false positives, due blocks.
+  std::vector<std::int64_t> true_positives_at, false_positives_at, expected_at;
   int columns = 0;
 
   void add(const VisionTally& other);
