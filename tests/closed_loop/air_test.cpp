@@ -20,7 +20,7 @@ TEST(Air, WindySeedsRepeatAndDiffer) {
   EXPECT_NE(one.digest(), flown("windy", 1000, with(eyes_shut, {"wind.turbulence_wind20_mps=0"})).digest());
 }
 
-// The wind's triangle: knowing its way over ground, the stack flies straight ahead with the nose turned into
+// The wind triangle: the stack knows its way over ground and flies straight ahead, with the nose turned into
 // the wind by asin(wind / airspeed).
 TEST(Air, CrosswindTurnsTheNoseIntoIt) {
   const Flown crossed =
@@ -29,11 +29,11 @@ TEST(Air, CrosswindTurnsTheNoseIntoIt) {
       columns(crossed, {"qw", "qx", "qy", "qz", "vx_world_mps", "vy_world_mps", "vz_world_mps"}).back();
   const Eigen::Vector3d nose = Eigen::Quaterniond(end[0], end[1], end[2], end[3]) * Eigen::Vector3d::UnitX();
   const double airspeed_mps = Eigen::Vector3d(end[4], end[5] - 3, end[6]).norm();
-  EXPECT_NEAR(end[5], 0, 0.6);  // it would be 3 with the nose ahead
+  EXPECT_NEAR(end[5], 0, 0.6);  // 3 if the nose pointed ahead
   EXPECT_NEAR(std::atan2(nose.y(), nose.x()), std::atan2(end[5], end[4]) - std::asin(3 / airspeed_mps), 0.03);
 }
 
-// The catapult pitches the aircraft by its own trim's angle of attack: that of the airframe that flies.
+// The catapult pitches the aircraft by the trim's angle of attack of the airframe that flies.
 TEST(Mismatch, TheSimulatorFliesThePerturbedAirframe) {
   const Flown heavy = flown("clear", 1000, with(clear_field, {"mismatch.mass_percent=-20"}));
   const auto attitude = columns(heavy, {"qw", "qy"}).front();
@@ -43,7 +43,8 @@ TEST(Mismatch, TheSimulatorFliesThePerturbedAirframe) {
   EXPECT_NEAR(2 * std::atan2(-attitude[1], attitude[0]), expected_rad, 1e-5);  // nose up is about -y
 }
 
-// What the stack believes level flight to take shows in its throttle: thrust = level + gain (cruise - speed).
+// The throttle shows the thrust that the stack expects level flight to need: thrust = level + gain (cruise -
+// speed).
 TEST(Mismatch, TheStackKeepsItsOwnAirframe) {
   const auto level_thrust_n = [&](const std::vector<std::string>& settings) {
     constexpr std::size_t released = 120;  // 0.6 s at 200 Hz

@@ -4,7 +4,7 @@
 
 #include "tests/closed_loop/flown.hpp"
 
-/// The whole loop behind cameras that are not ideal.
+/// The whole loop with cameras that are not ideal.
 namespace understory {
 namespace {
 
@@ -14,14 +14,14 @@ TEST(CameraFaultsInFlight, RawCamerasAreRectifiedByTheStackAndShowItTheSameTrees
   const Flown ideal = flown("forest", 1000, short_forest);
   const Flown raw = flown("forest", 1000, with(short_forest, {"cameras.raw=true"}));
   EXPECT_EQ(raw.outcome(), "goal");
-  // Two interpolations on the way soften the bark's edges, so fewer blocks pass; most trees stay seen.
+  // Two interpolations soften the bark's edges, so fewer blocks pass, but most trees are still seen.
   EXPECT_GT(3 * raw.detections(), ideal.detections());
   EXPECT_GT(ideal.detections(), raw.detections());
   EXPECT_EQ(raw.digest(), flown("forest", 1000, with(short_forest, {"cameras.raw=true"})).digest());
 }
 
 TEST(CameraFaultsInFlight, DroppedFramesNeverArriveAndTheOthersDo) {
-  // On the rail and off it for 0.9 s, whatever happens: 108 exposures, of which half stay away.
+  // 0.9 s on the rail and after it: 108 exposures, of which half are dropped.
   const std::vector<std::string> brief{"forest.length_m=20", "time_limit_s=0.9"};
   const auto frames = [&](const char* probability) {
     return flown("clear", 1000, with(brief, {std::string("cameras.drop_probability=") + probability}))

@@ -44,8 +44,8 @@ struct Loop {
   StereoRig rig = read_rig(UNDERSTORY_SOURCE_DIR "/models/rigs/" + scenario.rig + ".yaml");
   World world = build_world(UNDERSTORY_SOURCE_DIR "/models", scenario.airframe, {}, scenario.world_config());
 
-  /// The surfaces at every physics step up to `end_ns`, by the loop of scenarios/flight/fly.cpp at the
-  /// scenario's own rates, among `obstacles` that are seen, and not felt, from `opens_ns` on.
+  /// The surfaces at every physics step up to `end_ns`, by the loop of scenarios/flight at the scenario's
+  /// rates, among `obstacles` that are visible from `opens_ns` on and cannot be touched.
   std::vector<double> left_elevon(const std::vector<Obstacle>& obstacles, std::int64_t opens_ns,
                                   std::int64_t end_ns) {
     Aircraft aircraft(*world.model, scenario.airframe, scenario.launch, scenario.wind_world_mps);
@@ -122,7 +122,7 @@ TEST_P(LatencyOf, ElevonsAnswerAnImageWithinTheLimit) {
   RecordProperty("slowest_us", static_cast<int>(slowest_ns / 1000));
 }
 
-// One plans at every pair of images, the other when something new is seen and seldom else.
+// One plans after every pair of images, the other when something new is seen and seldom otherwise.
 INSTANTIATE_TEST_SUITE_P(Scenarios, LatencyOf, testing::Values("clear", "forest"));
 
 }  // namespace

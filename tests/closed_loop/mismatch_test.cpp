@@ -19,7 +19,7 @@ Scenario forest(const std::vector<std::string>& settings) {
   return load_scenario(UNDERSTORY_SOURCE_DIR "/scenarios/library/forest.yaml", settings);
 }
 
-/// The page flies them all in one process, which OMPL's one generator must not tell apart.
+/// The page flies all of them in one process. OMPL's one generator must not make them differ.
 TEST(MismatchPage, FlightsOfOneProcessAreThoseOfAProcessEach) {
   for (const std::uint64_t seed : {1000, 1001, 1000}) {
     Scenario scenario = forest(short_forest);

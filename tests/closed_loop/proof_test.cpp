@@ -9,7 +9,7 @@ namespace understory {
 namespace {
 
 const std::vector<std::string> thick_forest{"forest.length_m=35", "forest.square_metres_per_tree=25"};
-/// The blind aircraft looks at nothing, so one picture a second saves it the rest.
+/// The blind aircraft looks at nothing, so one picture a second is enough.
 const std::vector<std::string> blind{"perception.detector=none", "cameras.rate_hz=1"};
 
 /// The first `count` seeds from 1000 up whose forest stands in the blind aircraft's way.
@@ -83,9 +83,8 @@ TEST(Proof, TheEstimateIsNeverTheTruth) {
   EXPECT_GT(flight.result.at("estimation").at("position_error_mean_m"), 1e-3);
 
   const Flown told = flown("clear", 1000, with(blind, {"forest.length_m=20", "estimation.source=truth"}));
-  EXPECT_LT(
-      told.result.at("estimation").at("position_error_max_m"),
-      flight.result.at("estimation").at("position_error_mean_m"));  // the oracle is what no error looks like
+  EXPECT_LT(told.result.at("estimation").at("position_error_max_m"),
+            flight.result.at("estimation").at("position_error_mean_m"));  // the oracle has no error
 }
 
 TEST(Proof, APitotBiasMovesTheEstimate) {

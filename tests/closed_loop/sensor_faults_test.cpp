@@ -75,7 +75,7 @@ TEST(OnboardSensors, ADropoutSilencesOneSensor) {
   EXPECT_EQ(whole.altitudes, 101);
   EXPECT_EQ(broken.altitudes, 76);
   EXPECT_EQ(broken.fixes.size(), whole.fixes.size() - 3);  // of 1.0, 1.2 and 1.4 s
-  // The others are what they were: a fault is none of the sensors' business.
+  // The other samples are unchanged: a fault does not reach the sensors.
   EXPECT_EQ(broken.fixes.back().position_world_m, whole.fixes.back().position_world_m);
 }
 

@@ -8,8 +8,8 @@
 namespace understory::test {
 namespace {
 
-/// Where an obstacle seen 10 m ahead would be when passed, against where the estimate puts it: 95th
-/// percentile over seeds of sensor noise, metres.
+/// Distance between an obstacle that was seen 10 m ahead and its place by the estimate, when it is passed:
+/// 95th percentile over seeds of sensor noise, metres.
 double drift_m(const Manoeuvre& manoeuvre, const FilterConfig& config, int seeds = 60) {
   const std::vector<Moment> flight = fly(manoeuvre, 3.2);
   std::vector<double> drifts;
@@ -48,7 +48,7 @@ TEST(Drift, SideslipFromLateralForceBeatsNoSideslip) {
   FilterConfig none;
   none.sideslip.model = SideslipModel::zero;
   none.sideslip.zero_sigma_mps = 0.5;
-  none.distrust.exclude = false;  // else it is found out, and left out
+  none.distrust.exclude = false;  // otherwise the fault is detected and the pitot ignored
   EXPECT_LT(2 * drift_m(dodge(), {}), drift_m(dodge(), none));
 }
 

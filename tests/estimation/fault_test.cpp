@@ -9,7 +9,7 @@
 #include "estimation/filter.hpp"
 #include "simulated_flight.hpp"
 
-/// What the filter does when a sensor fails in flight: it says so, flies on, and knows that it knows less.
+/// When a sensor fails in flight, the filter reports it, goes on, and states a larger uncertainty.
 namespace understory::test {
 namespace {
 
@@ -123,8 +123,8 @@ const Course& without_pitot() {
 
 bool failing(double t_s) { return t_s > begin_s && t_s < end_s; }
 
-/// A false pitot costs no more than having none, before the fault is known too; root mean squares of the
-/// velocity's error. Having none costs little here: for 3.5 s the inertial sensors hold what the pitot found.
+/// A false pitot costs no more than none, even before the fault is known (root mean squares of the velocity's
+/// error). Having none costs little here: for 3.5 s the inertial sensors keep what the pitot found.
 void expect_no_worse_than_without_pitot(const Course& course) {
   for (double t_s = begin_s; t_s < 8; t_s += 0.05) {
     EXPECT_LT(course.at(course.error_mps, t_s),
@@ -177,7 +177,7 @@ TEST(Fault, AFrozenPitotIsLeftOutOnceTheSpeedHasChanged) {
   expect_no_worse_than_without_pitot(course);
 }
 
-/// Amid the roll and the pull of a dodge, where a guessed rate and force are wrong.
+/// During the roll and the pull of a dodge, where a guessed rate and force are wrong.
 TEST(Fault, LostImuFramesAreCountedAndTheCovarianceCoversThem) {
   for (const double lost_s : {0.05, 0.1}) {
     for (const double from_s : {1.7, 2.0, 2.4}) {
@@ -201,7 +201,7 @@ TEST(Fault, LostImuFramesAreCountedAndTheCovarianceCoversThem) {
   }
 }
 
-/// For good: a door opened. The altitude is then the odometry's.
+/// A lasting offset, as if a door had opened. The altitude is then that of the odometry.
 TEST(Fault, ABarometerThatStepsIsLeftOut) {
   const Course course = flown(
       [](Tampered& tampered) {

@@ -161,7 +161,7 @@ TEST(Filter, APitotBiasOfThreeMetresPerSecondMovesTheEstimate) {
   sensors.extra_pitot_mps = 3;
   for (const Moment& moment : flight) sensors.feed(filter, moment);
   const double error = filter.state().velocity_body_mps.x() - flight.back().velocity_body.x();
-  EXPECT_GT(error, 0.5);  // the inertial sensors, which know better, hold against it
+  EXPECT_GT(error, 0.5);  // the inertial sensors, which are better, resist it
   EXPECT_LT(error, 3.5);
 }
 

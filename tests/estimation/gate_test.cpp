@@ -30,10 +30,10 @@ TEST(Gate, AFaultySensorStaysOutUntilItHasAgreedAsLong) {
   const auto at = [&](double squared, std::int64_t t_ms) { return gate.admits(squared, t_ms * 1'000'000); };
   EXPECT_TRUE(at(1, 0));
   EXPECT_FALSE(at(50, 20));
-  EXPECT_FALSE(gate.faulty());  // an outlier is no fault
+  EXPECT_FALSE(gate.faulty());  // a single outlier is no fault
   EXPECT_FALSE(at(50, 130));
   EXPECT_TRUE(gate.faulty());
-  EXPECT_FALSE(at(1, 140));  // one agreement is no cure
+  EXPECT_FALSE(at(1, 140));  // one agreement does not end a fault
   EXPECT_FALSE(at(50, 200));
   EXPECT_FALSE(at(1, 220));
   EXPECT_FALSE(at(1, 320));

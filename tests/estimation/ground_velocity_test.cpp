@@ -5,7 +5,7 @@
 #include "estimation/filter.hpp"
 #include "simulated_flight.hpp"
 
-/// Corrections that speak of earlier moments: satellites 0.2 s late, and obstacles seen again.
+/// Corrections from earlier moments: GPS, 0.2 s late, and obstacles seen again.
 namespace understory::test {
 namespace {
 
@@ -100,7 +100,7 @@ TEST(Resightings, ShrinkAVelocityErrorAsTheMeanOfTheirDisplacementsDoes) {
   EXPECT_GT(taken, 35);
 }
 
-/// Air that moves: the pitot feels it, satellites do not. `aided`: with them.
+/// Moving air: the pitot feels it, GPS does not. `aided`: with GPS.
 Filter through_wind(const std::vector<Moment>& flight, const Eigen::Vector3d& wind_world, bool aided) {
   FilterConfig config = wrong_about_velocity(flight.front(), Eigen::Vector3d::Zero(), 0.5);
   config.states.wind = true;

@@ -44,7 +44,7 @@ State nudged(const State& state, int axis, double by, FilterModel model) {
   return moved;
 }
 
-/// The innovation must fall, as the estimate moves towards the truth, by the jacobian.
+/// As the estimate moves towards the truth, the innovation must decrease by the jacobian.
 template <int M>
 void expect_jacobian(const std::function<Measurement<M>(const State&)>& measure, FilterModel model) {
   const State state = somewhere();

@@ -61,7 +61,7 @@ TEST(AvoidancePlanner, PlansNeverTouchAKnownTrunk) {
     for (int replan = 0; replan < 40; ++replan) {
       const Plan plan = planner.plan(state, replan * replan_ns, points, 0);
       ASSERT_GE(plan.points.size(), 2u);
-      if (plan.origin == PlanOrigin::fallback) break;  // promises nothing; what follows may be a touch
+      if (plan.origin == PlanOrigin::fallback) break;  // a fallback is not free of collision
       EXPECT_GE(plan_distance_m(plan, trunks, config.field), limit_m - 1e-9)
           << "seed " << seed << " at " << replan;
       state = follow_plan(model, state, plan, replan_ns);
@@ -69,7 +69,7 @@ TEST(AvoidancePlanner, PlansNeverTouchAKnownTrunk) {
     sum.straight += planner.counts().straight, sum.solved += planner.counts().solved;
     sum.kept += planner.counts().kept, sum.fallback += planner.counts().fallback;
   }
-  EXPECT_GT(sum.solved, 10);  // the forests have asked for something
+  EXPECT_GT(sum.solved, 10);  // the forests required dodges
   EXPECT_GT(sum.kept, 10);
   EXPECT_LE(sum.fallback, 3);
 }

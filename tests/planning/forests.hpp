@@ -12,7 +12,7 @@
 #include "planning/obstacle_field.hpp"
 #include "planning/plan.hpp"
 
-/// Forests as the map would remember them, and the plainest way to ask how near a wing comes to them.
+/// Forests as the map would remember them, and a plain computation of a wing's distance to them.
 namespace understory {
 
 /// A trunk as a stack of remembered points, exactly upright, so that the field's column stands exactly there.
@@ -76,8 +76,8 @@ inline double wing_distance_by_walking_m(const Eigen::Vector3d& centre_world,
   return minimum;
 }
 
-/// Least distance over a plan between the wing and the trunks' own upright lines. The plan's first point is
-/// where the aircraft is anyway, so it is left out.
+/// Minimum distance over a plan between the wing and the trunks' axes. The plan's first point is where the
+/// aircraft is anyway, so it is left out.
 inline double plan_distance_m(const Plan& plan, const std::vector<Trunk>& trunks,
                               const ObstacleFieldConfig& config) {
   double minimum = std::numeric_limits<double>::infinity();

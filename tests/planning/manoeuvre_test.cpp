@@ -45,7 +45,7 @@ TEST(FlyOut, StopsBeforeAnObstacle) {
   EXPECT_LT(rollout.minimum_clearance_m, minimum_m);
   EXPECT_LT(rollout.points.back().position_world.x(), 8.0);
   EXPECT_LT(rollout.free_until_s, 8.0 / 11.0);
-  // The last moment that was free, was.
+  // The manoeuvre is free at its last free moment.
   const PlanPoint& before = rollout.points[rollout.points.size() - 2];
   EXPECT_NEAR(before.t_s, rollout.free_until_s, 1e-9);
   EXPECT_LT(before.position_world.x(), 8.0 - minimum_m);

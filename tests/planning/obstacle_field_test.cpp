@@ -56,7 +56,7 @@ TEST(ObstacleField, ClearanceAgreesWithWalkingAlongTheWing) {
       touching += expected < 0;
     }
   }
-  EXPECT_GT(near, 100);  // the draw has asked about something
+  EXPECT_GT(near, 100);  // the random draw covered the near range
   EXPECT_GT(touching, 10);
 }
 

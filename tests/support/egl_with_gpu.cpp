@@ -1,7 +1,7 @@
 /// libEGL on a machine that has a GPU, for machines that have none: its list of devices names a software
 /// device and then a GPU, whose display is Mesa's own software. Each display that is asked for is a line in
-/// the file that EGL_WITH_GPU_LOG names. With EGL_WITH_GPU_BROKEN set the GPU has no display, as where its
-/// driver and the kernel's part of it do not fit. Everything else is the real library's.
+/// the file that EGL_WITH_GPU_LOG names. With EGL_WITH_GPU_BROKEN set the GPU has no display, as on a machine
+/// whose driver and kernel module do not match. Everything else is the real library's.
 
 #include <dlfcn.h>
 

@@ -6,7 +6,7 @@
 
 namespace understory::support {
 
-/// A sensor.yaml in EuRoC's layout, of a camera that never was.
+/// A sensor.yaml in EuRoC's layout, of an invented camera.
 inline std::string euroc_sensor_text(const Eigen::Isometry3d& T_body_sensor, double focal_px,
                                      double center_x_px) {
   std::ostringstream text;

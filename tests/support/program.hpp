@@ -10,7 +10,7 @@
 
 namespace understory::support {
 
-/// What the program said (both streams) and how it ended.
+/// The program's output (both streams) and exit status.
 struct Outcome {
   int status = -1;
   std::string text;
