@@ -7,8 +7,8 @@
 
 namespace understory {
 
-/// A context of EGL, drawing into pbuffers. Throws std::runtime_error in one line where library, device or
-/// context cannot be had.
+/// A context of EGL that draws into pbuffers. Throws std::runtime_error in one line where library, device or
+/// context is missing.
 std::unique_ptr<OffscreenBackend> egl_backend(EglDevice device);
 
 }  // namespace understory

@@ -118,7 +118,7 @@ class Opening {
     return egl.config != nullptr;
   }
 
-  /// EGL gives deeper colours first: take what was asked for, not more.
+  /// EGL lists deeper colours first. Take exactly the requested depth.
   Handle config_of(Handle display) const {
     ChooseConfig choose = nullptr;
     GetConfigAttribute get = nullptr;

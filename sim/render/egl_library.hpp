@@ -4,8 +4,8 @@
 
 namespace understory {
 
-/// libEGL as far as offscreen pictures need it, opened with dlopen, and the one display that this process
-/// draws on. The names are those of the EGL specification.
+/// The functions of libEGL that offscreen pictures need, opened with dlopen, and the one display on which
+/// this process draws. Names are those of the EGL specification.
 struct EglLibrary {
   using Handle = void*;
   using Function = void (*)();
@@ -27,13 +27,13 @@ enum class EglDevice {
   any_one  ///< hardware where there is some, otherwise Mesa's software
 };
 
-/// The same library and display for the life of the process, whatever `device` says the second time. Throws
-/// std::runtime_error in one line, naming the Debian packages, where there is none such. The environment's
-/// UNDERSTORY_EGL names another library file.
+/// Library and display stay the same for the life of the process, whatever `device` a second call gives.
+/// Throws std::runtime_error in one line, naming the Debian packages, where there is none. The environment
+/// variable UNDERSTORY_EGL names another library file.
 const EglLibrary& egl_library(EglDevice device);
 
-/// False where no EGL could find a GPU that this user may open: asked of the kernel's device files, so that
-/// libEGL need not be opened to know.
+/// False where no EGL could find a GPU that this user may open. It looks at the kernel's device files, so
+/// that libEGL need not be opened.
 bool has_gpu_device_file();
 
 }  // namespace understory

@@ -14,11 +14,12 @@ class OffscreenBackend {
 
   /// Which of the two libraries: osmesa or egl.
   virtual RendererKind kind() const = 0;
-  /// Makes the context current on this thread unless it is already, its default framebuffer a picture of this
-  /// size: RGBA, 8 bits each, and 24 bits of depth. Throws std::runtime_error where the library refuses.
+  /// Makes the context current on this thread unless it is already. Its default framebuffer is then a picture
+  /// of this size: RGBA, 8 bits each, and 24 bits of depth. Throws std::runtime_error where the library
+  /// refuses.
   virtual void make_current(int width_px, int height_px) = 0;
-  /// What was drawn, complete: RGBA, rows from the bottom up, of the size last made current; valid until the
-  /// next call of either function.
+  /// The finished picture: RGBA, rows from the bottom up, of the size last made current. Valid until the next
+  /// call of either function.
   virtual const std::uint8_t* finished_pixels() = 0;
   /// The OpenGL function of this name; the context must be current.
   virtual void* function(const char* name) const = 0;

@@ -45,8 +45,8 @@ Backend software_backend() {
   }
 }
 
-/// The two libraries break each other, and MuJoCo keeps one's functions: what the first context of a process
-/// was made with, all are.
+/// The two libraries break each other, and MuJoCo keeps the functions of one. All contexts of a process
+/// therefore use the library of the first.
 Backend backend_of(RendererKind kind) {
   static RendererKind opened = RendererKind::automatic;
   if (kind == RendererKind::automatic) kind = opened;

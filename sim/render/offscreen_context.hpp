@@ -9,12 +9,12 @@
 
 namespace understory {
 
-/// Which way the GL library works on this machine.
+/// How the GL library works on this machine.
 struct OffscreenOptions {
   RendererKind renderer = RendererKind::osmesa;
-  /// Threads llvmpipe rasterises with beside the caller's; 0: none. One process flies one flight and a
-  /// campaign runs one process a core, so helpers would only get into each other's way. An LP_NUM_THREADS set
-  /// outside wins. The images are the same whatever the choice.
+  /// Threads llvmpipe rasterises with beside the caller's; 0: none. A campaign runs one process a core, so
+  /// more threads would only compete. An LP_NUM_THREADS in the environment wins. The images do not depend on
+  /// it.
   int raster_threads = 0;
 };
 
@@ -29,8 +29,8 @@ class OffscreenContext {
 
   /// Makes the context current on this thread unless it is already, drawing into a picture of this size.
   void make_current(int width_px, int height_px) { backend_->make_current(width_px, height_px); }
-  /// What was drawn, complete: RGBA, 8 bits each, rows from the bottom up, of the size last made current;
-  /// valid until the next call of either. Where nothing was drawn, alpha is 0.
+  /// The finished picture: RGBA, 8 bits each, rows from the bottom up, of the size last made current. Valid
+  /// until the next call of either function. Alpha is 0 where nothing was drawn.
   const std::uint8_t* finished_pixels() { return backend_->finished_pixels(); }
   /// Makes a level of a 2D texture, 0 the largest: RGB, 8 bits each, row after row without gaps.
   void upload_level(unsigned texture, int level, int width_px, int height_px, const std::uint8_t* rgb) const;

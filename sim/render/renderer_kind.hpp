@@ -7,8 +7,8 @@
 
 namespace understory {
 
-/// Who draws the pictures. A machine's matter, not a scenario's: on a CPU all draw the same bits (Mesa's
-/// llvmpipe, one version); a GPU draws its own, so compare digests of flights drawn alike.
+/// Which library draws. It belongs to the machine, not to the scenario. On a CPU all draw the same bits
+/// (Mesa's llvmpipe, one version). A GPU draws its own, so compare digests only between flights drawn alike.
 enum class RendererKind {
   osmesa,    ///< software, through libOSMesa
   egl,       ///< a GPU where there is one, otherwise software, through libEGL

@@ -14,8 +14,7 @@
 namespace understory {
 namespace {
 
-/// One sun, no shadows: shaded trunks, evenly lit ground. Lighting is computed per vertex and costs next to
-/// nothing.
+/// One sun, no shadows: shaded trunks, evenly lit ground. Lighting per vertex costs almost nothing.
 void light(mjvScene& scene) {
   scene.nlight = 1;
   mjvLight& sun = scene.lights[0];
@@ -47,7 +46,7 @@ cv::Mat object_numbers(const std::uint8_t* pixels, int row_px, const Eye& eye) {
   return objects;
 }
 
-/// As images of objects number it, from its geom's name.
+/// The number of a geom in images of objects, from its name.
 int object_of(const std::string& geom_name) {
   constexpr std::string_view prefix = "scenery_";
   if (geom_name == "scenery_ground") return object_ground;
@@ -95,8 +94,8 @@ SceneRenderer::~SceneRenderer() {
   mjr_freeContext(&context_);
 }
 
-/// MuJoCo would have the renderer make the textures' smaller copies, which is most of its start. So it is
-/// shown textures of one pixel, sets them up as it likes, and they are filled here.
+/// MuJoCo would let OpenGL compute the textures' mipmaps, which takes most of its start. So MuJoCo gets
+/// textures of one pixel to set up, and they are filled here.
 void SceneRenderer::make_context() {
   const auto filled_here = [&](int texture) {
     return model_.tex_type[texture] == mjTEXTURE_2D &&
@@ -155,7 +154,7 @@ void SceneRenderer::update_scene(const mjData& data, bool with_aircraft) {
   light(scene_);
 }
 
-/// Nearest first, so that what is hidden is not shaded; what no eye sees is not given to MuJoCo at all.
+/// Nearest first, so that hidden pixels are not shaded. Geoms that no camera sees are not given to MuJoCo.
 void SceneRenderer::fill_scene(const std::array<Eye, 2>& eyes) {
   std::vector<std::pair<double, const SceneryGeom*>> seen;
   for (const SceneryGeom& item : scenery_) {

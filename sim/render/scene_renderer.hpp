@@ -28,11 +28,11 @@ class SceneRenderer {
   std::array<cv::Mat, 2> gray_pair(const std::array<Eye, 2>& eyes);
   /// Depth in the left eye's view: CV_32FC1, metres along the optical axis.
   cv::Mat left_depth(const std::array<Eye, 2>& eyes);
-  /// The same depth, and what is seen at it, from one drawing.
+  /// The same depth and the objects, from one drawing.
   TrueView true_left_view(const std::array<Eye, 2>& eyes);
   /// One eye's view of everything, the aircraft's skin too: BGR, 8 bits, for people.
   cv::Mat colour_with_aircraft(const mjData& data, const Eye& eye);
-  /// To compare with: from now on all scenery is drawn, however far and wherever it is.
+  /// For comparison: from now on all scenery is drawn, however far away and wherever it is.
   void stop_culling() { culls_ = false; }
   /// The renderer's own name and version.
   std::string name() const { return gl_.renderer(); }

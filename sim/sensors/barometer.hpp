@@ -14,11 +14,11 @@ namespace understory {
 struct BarometerConfig {
   double noise_m = 0.3;        ///< rms per sample
   double step_m = 0.1;         ///< resolution
-  double drift_m = 0.5;        ///< sigma that the wandering offset tends to
+  double drift_m = 0.5;        ///< stationary sigma of the wandering offset
   double drift_time_s = 60.0;  ///< its time constant: weather, heat, airframe pressure
-  /// What the propeller's wash adds per newton of thrust. An 8 inch propeller's disc (0.032 m^2) raises the
-  /// dynamic pressure by 31 Pa per newton, 2.6 m of altitude (momentum theory); a port inside the fuselage
-  /// feels a part of it, here a tenth (typical), and reads too high.
+  /// Altitude error from the propeller's wash, per newton of thrust. An 8 inch propeller's disc (0.032 m^2)
+  /// raises the dynamic pressure by 31 Pa per newton, 2.6 m of altitude (momentum theory); a port inside the
+  /// fuselage feels a part of it, here a tenth (typical), and reads too high.
   double wash_m_per_n = 0;
 };
 

@@ -11,7 +11,7 @@ bool in_force(const FaultConfig& fault, std::int64_t t_ns) {
   return t_ns >= from_ns && t_ns < from_ns + std::llround(fault.duration_s * 1e9);
 }
 
-/// As far as `limit` either way.
+/// Clamps to -limit .. limit.
 double cut(double reading, double limit) { return std::clamp(reading, -limit, limit); }
 Eigen::Vector3d cut(const Eigen::Vector3d& reading, double limit) {
   return reading.cwiseMax(-limit).cwiseMin(limit);

@@ -16,9 +16,9 @@ enum class FaultySensor { imu, gyro, accelerometer, pitot, barometer, magnetomet
 
 enum class FaultKind {
   freeze,    ///< repeats its last reading (the camera its last pair) under new times
-  dropout,   ///< says nothing; gyro and accelerometer come in one sample, so without one neither arrives
+  dropout,   ///< nothing arrives; gyro and accelerometer share a sample, so without one neither arrives
   bias,      ///< adds `value`, to every axis; on a satellite fix to its position
-  saturate,  ///< reaches no further than +- `value`, on every axis
+  saturate,  ///< limits readings to +- `value` on every axis
   block,     ///< of the pitot: ice or an insect in the mouth, the drain open; reads `value`
 };
 
@@ -56,16 +56,18 @@ void visit_fields(Visitor& visit, FaultConfig& fault) {
   visit("value", fault.value, -10000.0, 10000.0);
 }
 
-/// The kinds a sensor can have, as "freeze | dropout"; `kind` is one of them, or it makes no sense.
+/// The kinds of fault that a sensor can have, as "freeze | dropout".
 std::string_view fault_kinds_of(FaultySensor sensor);
 bool can_have(FaultySensor sensor, FaultKind kind);
 
-/// Stands between sensors and autopilot and breaks what passes as the schedule says. Knows no truth.
+/// Stands between sensors and autopilot and applies the scheduled faults to samples. It does not know the
+/// truth.
 class Faults {
  public:
   explicit Faults(std::vector<FaultConfig> schedule) : schedule_(std::move(schedule)) {}
 
-  /// Breaks a sample as the schedule says; false: it never arrives. In order of time for each sensor.
+  /// Applies the faults of the sample's time. False: the sample is lost. To be called in order of time for
+  /// each sensor.
   bool pass(ImuSample& sample);
   bool pass(PitotSample& sample);
   bool pass(BarometerSample& sample);
@@ -74,7 +76,7 @@ class Faults {
   bool pass(StereoFrame& frame);
 
  private:
-  /// What a sensor said last while it was not frozen.
+  /// A sensor's last reading before it froze.
   struct LastReadings {
     std::optional<Eigen::Vector3d> angular_rate_body_radps, specific_force_body_mps2, field_body_ut;
     std::optional<double> airspeed_mps, altitude_m;

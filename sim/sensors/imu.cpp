@@ -48,8 +48,8 @@ ImuSample Imu::measure(const Truth& truth) {
   ImuSample sample;
   sample.t_ns = truth.t_ns;
   const Eigen::Vector3d shake_n = shake(truth);
-  // The imbalance pulls far from the centre of mass, so it swings the nose too. With the lever along x, the
-  // rate (the integral of lever x force over a turn) points the way the force does.
+  // The imbalance acts far from the centre of mass, so it turns the nose too. With the lever along x, the
+  // rate (the integral of lever x force over a turn) has the direction of the force.
   const Eigen::Vector3d rate = gyro_gain_ * truth.angular_rate_body_radps + gyro_bias_radps_ +
                                gyro_wander_.at(truth.t_ns) + config_.gyro_vibration_radpspn * shake_n +
                                noise_.gaussian_vector(config_.gyro_noise_radps);

@@ -9,24 +9,24 @@
 
 namespace understory {
 
-/// Six-axis IMU of the consumer class (InvenSense MPU-6000 product specification 3.4, ICM-20602 1.0).
-/// A sample is the truth of its physics step plus errors: no internal filter is modelled, so the noise per
-/// sample is that of the sensor's own low-pass. Saturates at the range, steps by the resolution. Effects at
-/// zero are off; what a real part has is the grade `consumer` (sim/sensors/sensor_grades.hpp,
-/// docs/sensors.md).
+/// Six-axis IMU of the consumer class (InvenSense MPU-6000 product specification 3.4, ICM-20602 1.0). A
+/// sample is the truth of its physics step plus errors. No internal filter is modelled, so the noise per
+/// sample is that after the sensor's low-pass. Readings saturate at the range and are rounded to the
+/// resolution. Effects at zero are off; the grade `consumer` sets those of a real part
+/// (sim/sensors/sensor_grades.hpp, docs/sensors.md).
 struct ImuConfig {
   double gyro_noise_radps = 0.0024;  ///< rms per sample, 0.14 deg/s: 0.01 deg/s/sqrt(Hz) over 200 Hz
-  double gyro_bias_radps =
-      0.0087;  ///< sigma of the flight's constant, 0.5 deg/s: what a still start leaves over
+  double gyro_bias_radps = 0.0087;   ///< sigma of the constant bias, 0.5 deg/s: remains after a start at rest
   double gyro_bias_instability_radps = 0;  ///< floor of the Allan deviation: sim/sensors/bias_wander.hpp
   double gyro_walk_radpsps_rthz = 0;       ///< rate random walk, rad/s per root second (IEEE 952's K)
-  double gyro_scale = 0;                   ///< sigma of the flight's constant per axis, 0.01: one per cent
-  double gyro_misalignment = 0;  ///< sigma per pair of axes: the share of one that shows on the other (rad)
-  double gyro_vibration_radpspn = 0;       ///< amplitude per newton of thrust
-  double gyro_range_radps = 17.4533;       ///< 1000 deg/s
-  double gyro_step_radps = 0.000532;       ///< 16 bits over the range: 32.8 counts per deg/s
-  double accelerometer_noise_mps2 = 0.05;  ///< rms per sample: 400 ug/sqrt(Hz) over 200 Hz is 0.055
-  double accelerometer_bias_mps2 = 0.05;   ///< sigma of the flight's constant, after calibration (5 mg)
+  double gyro_scale = 0;                   ///< sigma of the constant scale error per axis, 0.01: one per cent
+  double gyro_misalignment =
+      0;  ///< sigma per pair of axes: share of one axis that appears on the other (rad)
+  double gyro_vibration_radpspn = 0;               ///< amplitude per newton of thrust
+  double gyro_range_radps = 17.4533;               ///< 1000 deg/s
+  double gyro_step_radps = 0.000532;               ///< 16 bits over the range: 32.8 counts per deg/s
+  double accelerometer_noise_mps2 = 0.05;          ///< rms per sample: 400 ug/sqrt(Hz) over 200 Hz is 0.055
+  double accelerometer_bias_mps2 = 0.05;           ///< sigma of the constant bias after calibration (5 mg)
   double accelerometer_bias_instability_mps2 = 0;  ///< floor of the Allan deviation
   double accelerometer_walk_mps2ps_rthz = 0;       ///< acceleration random walk, m/s^2 per root second
   double accelerometer_scale = 0;                  ///< as the gyro's
@@ -62,18 +62,18 @@ void visit_fields(Visitor& visit, ImuConfig& config) {
   visit("propeller_hz_at_1n", config.propeller_hz_at_1n, 1.0, 1000.0);
 }
 
-/// Every sensor draws the flight's constants from its seed when it is built, then answers with one sample of
-/// the truth it is shown. Same seed and truths: same samples.
+/// Every sensor draws the constants of the flight from its seed when it is built. Then it returns one sample
+/// for each truth. The same seed and truths give the same samples.
 class Imu {
  public:
   Imu(const ImuConfig& config, std::uint64_t seed);
   ImuSample measure(const Truth& truth);
-  /// The flight's constants, for scoring; what wanders comes on top.
+  /// The constants of the flight, for scoring; wandering errors come on top.
   const Eigen::Vector3d& gyro_bias_radps() const { return gyro_bias_radps_; }
   const Eigen::Vector3d& accelerometer_bias_mps2() const { return accelerometer_bias_mps2_; }
 
  private:
-  /// The pull of the propeller's imbalance, which grows with the thrust (N) and turns in the plane across the
+  /// The force of the propeller's imbalance. It grows with the thrust (N) and rotates in the plane across the
   /// shaft, body y and z.
   Eigen::Vector3d shake(const Truth& truth);
 
@@ -81,7 +81,7 @@ class Imu {
   NoiseSource noise_;
   Eigen::Vector3d gyro_bias_radps_;
   Eigen::Vector3d accelerometer_bias_mps2_;
-  Eigen::Matrix3d gyro_gain_;  ///< what it makes of a rate: scale on the diagonal, misalignment beside it
+  Eigen::Matrix3d gyro_gain_;  ///< scale on the diagonal, misalignment elsewhere
   Eigen::Matrix3d accelerometer_gain_;
   BiasWander gyro_wander_;
   BiasWander accelerometer_wander_;

@@ -15,9 +15,9 @@ struct MagnetometerConfig {
   double field_ut = 48.0;            ///< strength
   double inclination_rad = 1.16937;  ///< 67 deg below the horizon
   double noise_ut = 0.5;             ///< rms per axis and sample
-  double hard_iron_ut = 0.5;         ///< sigma of the flight's constant, per axis
-  /// Sigma of the six numbers of the symmetric matrix by which iron on board bends the field: soft iron and
-  /// scale, as shares of the field.
+  double hard_iron_ut = 0.5;         ///< sigma of the constant error, per axis
+  /// Sigma of the six numbers of the symmetric matrix by which iron on board distorts the field: soft iron
+  /// and scale, as shares of the field.
   double soft_iron = 0;
   double range_ut = 130.0;
   double step_ut = 0.073;

@@ -6,7 +6,7 @@
 namespace understory {
 namespace {
 
-/// The share of the dynamic pressure that still arrives in a tube turned away from the air.
+/// The share of the dynamic pressure that reaches a tube at an angle to the air.
 double recovered(const Eigen::Vector3d& air_velocity_body, const PitotConfig& config) {
   if (config.recovery_loss <= 0) return 1;
   const double angle_rad = std::atan2(air_velocity_body.tail<2>().norm(), air_velocity_body.x());

@@ -12,7 +12,7 @@ constexpr double imu_rate_hz = 200;
 /// MPU-6000: noise densities and tolerances from its product specification, PS-MPU-6000A-00 revision 3.4;
 /// floor of the Allan deviation and the averaging time at which it lies from Greenheck (Marquette University,
 /// 2015, section 2.2, as quoted in AirSim's ImuSimpleParams.hpp): gyro 4.6 deg/h at 500 s, accelerometer 36
-/// ug at 800 s. The random walk is what puts the minimum there: N^2/t = K^2 t/3, so K = sqrt(3) N / t.
+/// ug at 800 s. The random walk places the minimum there: N^2/t = K^2 t/3, so K = sqrt(3) N / t.
 ImuConfig mpu_6000() {
   ImuConfig imu;
   const double gyro_density = 0.005 * degree;                           // rad/s/sqrt(Hz)
@@ -43,7 +43,7 @@ SensorsConfig consumer() {
   return sensors;
 }
 
-/// Every error by `factor`. Ranges, resolutions, rates, delays and time constants stay.
+/// Multiplies every error by `factor`. Ranges, resolutions, rates, delays and time constants stay.
 SensorsConfig worse(SensorsConfig sensors, double factor) {
   ImuConfig& imu = sensors.imu;
   PitotConfig& pitot = sensors.pitot;

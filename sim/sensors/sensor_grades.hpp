@@ -4,12 +4,12 @@
 
 namespace understory {
 
-/// How good a scenario's sensors are (`sensors.grade`); keys given beside it win. What each number is and
-/// where it comes from: docs/sensors.md. GPS stays off in every grade.
+/// Quality of a scenario's sensors (`sensors.grade`); keys given beside it win. docs/sensors.md gives each
+/// number and its source. GPS is off in every grade.
 enum class SensorGrade {
   ideal,     ///< no errors at all; ranges, rates and delays stay
   plain,     ///< white noise and constants only: the defaults of the structs
-  consumer,  ///< everything a part of this class does, from data sheets and published measurements
+  consumer,  ///< every error of a part of this class, from data sheets and published measurements
   rough,     ///< every error three times the consumer grade's
 };
 

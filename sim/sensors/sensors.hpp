@@ -8,7 +8,7 @@
 
 namespace understory {
 
-/// Whether a sensor of this rate falls on whole physics steps (1200 Hz), as every rate of a scenario must.
+/// Whether samples of this rate fall on whole physics steps (1200 Hz), as every rate of a scenario must.
 bool divides_physics_rate(int rate_hz);
 
 /// Rates must divide 1200 Hz (divides_physics_rate; whoever loads a scenario checks).
