@@ -10,7 +10,7 @@
 #include <cstring>
 
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/output/this_program.hpp"
+#include "scenarios/output/program.hpp"
 
 namespace understory {
 

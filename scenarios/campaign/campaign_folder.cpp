@@ -8,8 +8,7 @@
 
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/output/program_digest.hpp"
-#include "scenarios/output/versions.hpp"
+#include "scenarios/output/program.hpp"
 
 namespace understory {
 namespace {

@@ -6,7 +6,7 @@
 #include <pugixml.hpp>
 #include <sstream>
 
-#include "scenarios/output/versions.hpp"
+#include "scenarios/output/program.hpp"
 
 namespace understory {
 namespace {

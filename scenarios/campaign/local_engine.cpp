@@ -19,8 +19,8 @@
 
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/output/program.hpp"
 #include "scenarios/output/stop_signals.hpp"
-#include "scenarios/output/this_program.hpp"
 
 namespace understory {
 namespace {

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "scenarios/bench/closed_loop_flights.hpp"
+#include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/output/file_output.hpp"
 

@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 
 #include "perception/io/stereo_recording.hpp"
 #include "scenarios/bench/bench.hpp"
 #include "scenarios/bench/stereo_scenes.hpp"
+#include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
@@ -41,7 +41,7 @@ int run_bench(BenchArguments arguments) {
   }
   std::filesystem::path rig_file = arguments.rig;
   if (rig_file.empty())
-    rig_file = arguments.inputs.empty() ? project_root() / "models" / "rigs" / "raw" / "long.xml"
+    rig_file = arguments.inputs.empty() ? data_root() / "models" / "rigs" / "raw" / "long.xml"
                                         : std::filesystem::path(arguments.inputs.front());
   CalibratedRig rig;
   std::vector<StereoFrame> frames;
@@ -74,32 +74,27 @@ int run_bench(BenchArguments arguments) {
 
 }  // namespace
 
-void add_bench_command(CLI::App& app, Command& chosen) {
+void add_bench_command(CommandLine& line) {
   const auto arguments = std::make_shared<BenchArguments>();
-  CLI::App* command =
-      app.add_subcommand("bench", "time the detector against OpenCV's remap and matchers, or whole flights");
-  CLI::Option* inputs = command->add_option(
-      "INPUT", arguments->inputs, "recorded pairs, as for detect (default: rendered pairs, none twice)");
-  command->add_option("--rig", arguments->rig,
-                      "as for rig (default: the long rig's raw cameras, or INPUT's own)");
-  add_calibration_options(*command, *arguments);
-  command->add_option("--pairs", arguments->pairs, "how many")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 10000));
-  command->add_option("--rounds", arguments->rounds, "over all pairs")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 100000));
-  command->add_option("--json", arguments->json, "also write the rows there");
+  Command& command =
+      line.add({"bench", "time the detector against OpenCV's remap and matchers, or whole flights",
+                "understory bench --pairs 16 --json bench.json"});
+  const auto inputs = command.texts("INPUT", "FILE", arguments->inputs,
+                                    "recorded pairs, as for detect (default: rendered pairs, none twice)");
+  command.text("--rig", "RIG", arguments->rig,
+               "as for rig (default: the long rig's raw cameras, or INPUT's own)");
+  add_calibration_options(command, *arguments);
+  command.whole("--pairs", arguments->pairs, 1, 10000, "how many");
+  command.whole("--rounds", arguments->rounds, 1, 100000, "over all pairs");
+  command.text("--json", "FILE", arguments->json, "also write the rows there");
   command
-      ->add_flag("--closed-loop", arguments->closed_loop,
-                 "time whole flights through the library's forests instead, alone and two side by side")
-      ->excludes(inputs);
-  command->add_option("--flights", arguments->flights.flights, "with --closed-loop: of each kind")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1000));
-  add_settings_option(*command, arguments->flights.settings);
-  add_renderer_option(*command, arguments->flights.renderer);
-  command->callback([arguments, &chosen] { chosen = [arguments] { return run_bench(*arguments); }; });
+      .flag("--closed-loop", arguments->closed_loop,
+            "time whole flights through the library's forests instead, alone and two side by side")
+      .excludes(inputs);
+  command.whole("--flights", arguments->flights.flights, 1, 1000, "with --closed-loop: of each kind");
+  add_settings_option(command, arguments->flights.settings);
+  add_renderer_option(command, arguments->flights.renderer);
+  command.runs([arguments] { return run_bench(*arguments); });
 }
 
 }  // namespace understory

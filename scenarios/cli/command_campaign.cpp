@@ -1,15 +1,13 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <thread>
 
 #include "scenarios/campaign/campaign_file.hpp"
 #include "scenarios/campaign/campaign_folder.hpp"
 #include "scenarios/campaign/local_engine.hpp"
 #include "scenarios/campaign/slurm_engine.hpp"
+#include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/campaign_report.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
@@ -23,15 +21,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+enum class Engine { local, slurm };
+constexpr std::array<std::pair<std::string_view, Engine>, 2> engine_names{
+    {{"local", Engine::local}, {"slurm", Engine::slurm}}};
+
 struct CampaignArguments {
   std::string file;
   std::string out;    // empty: results/<name>
   std::string junit;  // empty: none
-  std::string engine = "local";
+  Engine engine = Engine::local;
   RendererKind renderer = RendererKind::osmesa;
   SlurmConfig slurm;
   int jobs = 0;  // 0: a flight a core
-  bool waits = true;
+  bool no_wait = false;
   bool resume = false;
   bool print_tasks = false;
   bool keeps_runs = false;
@@ -41,7 +43,7 @@ struct CampaignArguments {
 void require_rigs(const Campaign& campaign, const std::string& file) {
   for (const Condition& condition : campaign.conditions) {
     try {
-      rig_of(scenario_from_text(condition.scenario_text, condition.name), project_root() / "models");
+      rig_of(scenario_from_text(condition.scenario_text, condition.name), data_root() / "models");
     } catch (const ScenarioError& error) {
       throw ScenarioError(fmt::format("{}: condition {}: {}", file, condition.name, error.what()));
     }
@@ -60,7 +62,7 @@ int print_tasks(const CampaignFolder& folder, const Campaign& campaign) {
   const fs::path program = fs::read_symlink("/proc/self/exe");
   for (const CampaignTask& task : tasks_of(campaign)) {
     if (const auto file = read_flight(folder, task); file && file->row.flown()) continue;
-    std::string line = "'" + program.string() + "'";
+    std::string line = fmt::format("'{}'", program.string());
     for (const std::string& argument : flight_arguments(folder, campaign, task, false))
       line += " '" + argument + "'";
     fmt::print("{}\n", line);
@@ -73,8 +75,7 @@ enum class Finish { all_over, stopped };
 
 Finish fly_here(const CampaignFolder& folder, const Campaign& campaign, const CampaignArguments& arguments) {
   LocalEngineConfig config;
-  config.jobs = arguments.jobs > 0 ? arguments.jobs
-                                   : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  config.jobs = jobs_or_cores(arguments.jobs);
   config.keeps_runs = arguments.keeps_runs;
   ProgressLine line;
   const bool finished = fly_locally(folder, campaign, in_flying_order(campaign), config,
@@ -88,7 +89,7 @@ Finish fly_on_slurm(const CampaignFolder& folder, const Campaign& campaign,
   const std::string job = submit_to_slurm(folder, campaign, arguments.slurm);
   fmt::print("Slurm job {}: {} shards\n", job, arguments.slurm.shards);
   std::fflush(stdout);
-  if (!arguments.waits) return Finish::stopped;
+  if (arguments.no_wait) return Finish::stopped;
   ProgressLine line;
   const bool finished =
       wait_for_slurm(folder, campaign, job, [&](const CampaignProgress& progress) { show(line, progress); });
@@ -106,7 +107,7 @@ int run_campaign(const CampaignArguments& arguments) {
   if (arguments.print_tasks) return print_tasks(folder, campaign);
 
   const FolderLock lock(folder);
-  const bool on_slurm = arguments.engine == "slurm";
+  const bool on_slurm = arguments.engine == Engine::slurm;
   const Finish finish =
       on_slurm ? fly_on_slurm(folder, campaign, arguments) : fly_here(folder, campaign, arguments);
   const Collected collected = collect(folder, campaign);
@@ -122,31 +123,26 @@ int run_campaign(const CampaignArguments& arguments) {
 
 }  // namespace
 
-void add_campaign_command(CLI::App& app, Command& chosen) {
+void add_campaign_command(CommandLine& line) {
   const auto arguments = std::make_shared<CampaignArguments>();
-  CLI::App* command = app.add_subcommand("campaign", "fly many seeds in many conditions, a process each");
-  command->add_option("file", arguments->file, "what to fly: see docs/campaigns.md")->required();
-  command->add_option("--out", arguments->out, "results folder (default: results/<name>)");
-  command->add_option("--jobs", arguments->jobs, "flights at a time (default: one a core)")
-      ->check(CLI::Range(1, 1024));
-  add_renderer_option(*command, arguments->renderer);
-  command->add_option("--engine", arguments->engine, "local, or slurm: a job array")
-      ->check(CLI::IsMember({"local", "slurm"}))
-      ->capture_default_str();
-  command->add_option("--shards", arguments->slurm.shards, "slurm: tasks of the job array")
-      ->check(CLI::Range(1, 10000))
-      ->capture_default_str();
-  command
-      ->add_option("--sbatch", arguments->slurm.options,
-                   "slurm: an option of sbatch, --sbatch=--partition=short")
-      ->allow_extra_args(false);
-  command->add_flag("!--no-wait", arguments->waits, "slurm: submit and leave");
-  command->add_flag("--resume", arguments->resume, "go on with what the folder holds");
-  command->add_flag("--print-tasks", arguments->print_tasks,
-                    "fly nothing: print a command for each flight; collect gathers what they leave");
-  command->add_option("--junit", arguments->junit, "write a test case per flight as JUnit XML");
-  command->add_flag("--keep-runs", arguments->keeps_runs, "keep each flight's run folder in runs/");
-  command->callback([arguments, &chosen] { chosen = [arguments] { return run_campaign(*arguments); }; });
+  Command& command = line.add({"campaign", "fly many seeds in many conditions, a process each",
+                               "understory campaign scenarios/campaigns/gate.yaml --out results/gate",
+                               "every flight was flown, whatever its ending", "a flight could not be flown"});
+  command.text("file", "FILE", arguments->file, "what to fly: see docs/campaigns.md").required();
+  command.text("--out", "FOLDER", arguments->out, "results folder (default: results/NAME)");
+  add_jobs_option(command, arguments->jobs, "flights");
+  add_renderer_option(command, arguments->renderer);
+  command.choice("--engine", arguments->engine, engine_names, "processes of this machine, or a job array");
+  command.whole("--shards", arguments->slurm.shards, 1, 10000, "slurm: tasks of the job array");
+  command.texts("--sbatch", "OPTION", arguments->slurm.options,
+                "slurm: an option of sbatch, --sbatch=--partition=short");
+  command.flag("--no-wait", arguments->no_wait, "slurm: submit and leave");
+  command.flag("--resume", arguments->resume, "go on with what the folder holds");
+  command.flag("--print-tasks", arguments->print_tasks,
+               "fly nothing: print a command for each flight; collect gathers what they leave");
+  command.text("--junit", "FILE", arguments->junit, "write a test case per flight as JUnit XML");
+  command.flag("--keep-runs", arguments->keeps_runs, "keep each flight's run folder in runs/");
+  command.runs([arguments] { return run_campaign(*arguments); });
 }
 
 }  // namespace understory

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "scenarios/campaign/campaign_folder.hpp"
@@ -9,15 +8,15 @@
 
 namespace understory {
 
-void add_collect_command(CLI::App& app, Command& chosen) {
+void add_collect_command(CommandLine& line) {
   const auto folder = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("collect", "gather the results that a campaign's flights left");
-  command->add_option("folder", *folder, "the campaign's results folder")->required();
-  command->callback([folder, &chosen] {
-    chosen = [folder] {
-      const CampaignFolder results{*folder};
-      return report(results, collect(results, read_campaign(results)));
-    };
+  Command& command = line.add({"collect", "gather the results that a campaign's flights left",
+                               "understory collect results/gate", "every flight was flown",
+                               "a flight is missing or could not be flown"});
+  command.text("folder", "FOLDER", *folder, "the campaign's results folder").required();
+  command.runs([folder] {
+    const CampaignFolder results{*folder};
+    return report(results, collect(results, read_campaign(results)));
   });
 }
 

@@ -1,22 +1,28 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 
+#include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/detect/detection_run.hpp"
+#include "scenarios/scenario/rule_preset.hpp"
 
 namespace understory {
 namespace {
+
+constexpr std::array<std::pair<std::string_view, Interpolation>, 2> interpolation_names{
+    {{"nearest", Interpolation::nearest}, {"bilinear", Interpolation::bilinear}}};
+/// Without the tuned rule, which is of one rig.
+constexpr std::array<std::pair<std::string_view, RulePreset>, 2> detect_rule_names{
+    {{"paper", RulePreset::paper}, {"robust", RulePreset::robust}}};
 
 struct DetectArguments : CalibrationArguments {
   DetectionOptions options;
   std::vector<std::string> inputs;
   std::string rig;
-  std::string rule = "robust";
-  std::string rectify = "nearest";
+  RulePreset rule = RulePreset::robust;
   std::string poses;
   std::string out = "detections";
 };
@@ -43,8 +49,7 @@ DetectionOptions options_of(const DetectArguments& arguments) {
   options.inputs.assign(arguments.inputs.begin(), arguments.inputs.end());
   if (!arguments.rig.empty()) options.rig = rig_path(arguments.rig);
   options.calibration = calibration_options(arguments);
-  options.rule = arguments.rule == "paper" ? paper_rule() : robust_rule();
-  options.interpolation = arguments.rectify == "bilinear" ? Interpolation::bilinear : Interpolation::nearest;
+  options.rule = arguments.rule == RulePreset::paper ? paper_rule() : robust_rule();
   options.poses = arguments.poses;
   options.output_folder = arguments.out;
   return options;
@@ -63,36 +68,30 @@ int run_detect(const DetectArguments& arguments) {
 
 }  // namespace
 
-void add_detect_command(CLI::App& app, Command& chosen) {
+void add_detect_command(CommandLine& line) {
   const auto arguments = std::make_shared<DetectArguments>();
-  CLI::App* command = app.add_subcommand("detect", "find obstacles in recorded stereo images");
-  command
-      ->add_option("INPUT", arguments->inputs,
-                   "a EuRoC folder; a left and a right folder of images; a left and a right image; or a "
-                   "side-by-side video")
-      ->required()
-      ->expected(1, 2);
-  command->add_option("--rig", arguments->rig,
-                      "rig or calibration: a file, a folder, or a name in models/rigs (default: the EuRoC "
-                      "folder's own)");
-  add_calibration_options(*command, *arguments);
-  command->add_option("--rectify", arguments->rectify, "raw images to the nearest pixel or bilinear")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"nearest", "bilinear"}));
-  command->add_option("--rule", arguments->rule, "paper or robust")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"paper", "robust"}));
-  command
-      ->add_option("--set", arguments->options.settings,
-                   "key=value of the detector or the map: depths_m=[10.1,7,5] (several depths at once), "
-                   "pushbroom.minimum_edge_sum=300, map.max_age_s=10")
-      ->allow_extra_args(false)
-      ->trigger_on_parse(false);
-  command->add_option("--poses", arguments->poses,
-                      "poses of the body: TUM (t tx ty tz qx qy qz qw) or EuRoC ground truth; makes map.ply");
-  command->add_option("--out", arguments->out, "folder for what is found")->capture_default_str();
-  command->add_flag("--video", arguments->options.video, "one film instead of a picture per frame");
-  command->callback([arguments, &chosen] { chosen = [arguments] { return run_detect(*arguments); }; });
+  Command& command = line.add({"detect", "find obstacles in recorded stereo images",
+                               "understory detect left/ right/ --rig calibration/ --out detections",
+                               "every pair was looked at"});
+  command.texts("INPUT", "FILE", arguments->inputs,
+                "a EuRoC folder; a left and a right folder of images; a left and a right image; or a "
+                "side-by-side video",
+                1, 2);
+  command.text("--rig", "RIG", arguments->rig,
+               "rig or calibration: a file, a folder, or a name in models/rigs (default: the EuRoC folder's "
+               "own)");
+  add_calibration_options(command, *arguments);
+  command.choice("--rectify", arguments->options.interpolation, interpolation_names,
+                 "raw images to the nearest pixel or bilinear");
+  command.choice("--rule", arguments->rule, detect_rule_names, "which numbers the detector starts from");
+  command.texts("--set", "KEY=VALUE", arguments->options.settings,
+                "of the detector or the map: depths_m=[10.1,7,5] (several depths at once), "
+                "pushbroom.minimum_edge_sum=300, map.max_age_s=10");
+  command.text("--poses", "FILE", arguments->poses,
+               "poses of the body: TUM (t tx ty tz qx qy qz qw) or EuRoC ground truth; makes map.ply");
+  command.text("--out", "FOLDER", arguments->out, "for what is found");
+  command.flag("--video", arguments->options.video, "one film instead of a picture per frame");
+  command.runs([arguments] { return run_detect(*arguments); });
 }
 
 }  // namespace understory

@@ -1,13 +1,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <map>
 #include <memory>
-#include <thread>
 
+#include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_reader.hpp"
 #include "scenarios/evaluation/evaluation.hpp"
@@ -46,8 +44,6 @@ void visit_fields(Visitor& visit, EvaluationSettings& settings) {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::map<std::string, RulePreset> rules_by_name() { return {rule_names.begin(), rule_names.end()}; }
 
 struct EvaluateArguments {
   std::vector<std::string> inputs;
@@ -88,8 +84,7 @@ EvaluationSettings settings_of(const EvaluateArguments& arguments, const std::st
 int run_evaluate(const EvaluateArguments& arguments) {
   EvaluationOptions options;
   settings_of(arguments, "");  // what is wrong with them shows before anything is recorded
-  options.jobs = arguments.jobs > 0 ? arguments.jobs
-                                    : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  options.jobs = jobs_or_cores(arguments.jobs);
   fs::path out = arguments.out;
   std::error_code ignored;
   const bool is_suite = arguments.inputs.size() == 1 && fs::is_regular_file(arguments.inputs[0], ignored);
@@ -116,30 +111,21 @@ int run_evaluate(const EvaluateArguments& arguments) {
 
 }  // namespace
 
-void add_evaluate_command(CLI::App& app, Command& chosen) {
+void add_evaluate_command(CommandLine& line) {
   const auto arguments = std::make_shared<EvaluateArguments>();
-  CLI::App* command = app.add_subcommand(
-      "evaluate", "judge detections against recorded truth, and against StereoBM as the paper did");
-  command
-      ->add_option("INPUT", arguments->inputs,
-                   "EuRoC folders as `record` leaves them; or one file of what to record and evaluate")
-      ->required();
-  command
-      ->add_option(
-          "--rule", arguments->rule,
-          "the rule in the table's first line: tuned (for the recordings' rig; default), robust or paper")
-      ->transform(CLI::CheckedTransformer(rules_by_name()));
-  command->add_option("--with", arguments->with, "file of keys to put over the rule, as `tune` leaves it")
-      ->allow_extra_args(false)
-      ->trigger_on_parse(false);
-  add_settings_option(*command, arguments->settings);
-  command->add_option("--every", arguments->every, "take every n-th frame")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1000));
-  command->add_option("--jobs", arguments->jobs, "recordings at once (default: as many as cores)")
-      ->check(CLI::Range(1, 1024));
-  command->add_option("--out", arguments->out, "folder for the results (default: evaluations/NAME)");
-  command->callback([arguments, &chosen] { chosen = [arguments] { return run_evaluate(*arguments); }; });
+  Command& command =
+      line.add({"evaluate", "judge detections against recorded truth, and against StereoBM as the paper did",
+                "understory evaluate recordings/forest --out evaluations/forest"});
+  command.texts("INPUT", "FILE", arguments->inputs,
+                "EuRoC folders as `record` leaves them; or one file of what to record and evaluate", 1);
+  command.choice("--rule", arguments->rule, rule_names,
+                 "the rule in the table's first line (tuned: for the recordings' rig)");
+  add_with_option(command, arguments->with);
+  add_settings_option(command, arguments->settings);
+  command.whole("--every", arguments->every, 1, 1000, "take every n-th frame");
+  add_jobs_option(command, arguments->jobs, "recordings");
+  command.text("--out", "FOLDER", arguments->out, "for the results (default: evaluations/NAME)");
+  command.runs([arguments] { return run_evaluate(*arguments); });
 }
 
 }  // namespace understory

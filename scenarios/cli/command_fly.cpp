@@ -2,12 +2,12 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "scenarios/campaign/flight_row_io.hpp"
 #include "scenarios/campaign/flown_row.hpp"
 #include "scenarios/campaign/junit.hpp"
+#include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/cli/flight_terminal.hpp"
 #include "scenarios/flight/fly.hpp"
@@ -18,7 +18,6 @@ namespace understory {
 namespace {
 
 struct FlyArguments : ScenarioArguments {
-  std::string seed;
   std::string out;  // empty: runs/<name>-<seed>, or with a row no run folder at all
   std::string row;  // empty: none, as the next
   std::string junit;
@@ -44,9 +43,9 @@ FlightCost cost_of(const FlightResult& result) {
 
 int run_fly(const FlyArguments& arguments) {
   const Scenario scenario =
-      load_scenario(scenario_file(arguments.scenario), arguments.settings, arguments.with);
+      load_scenario(scenario_file(arguments.scenario), arguments.all_settings(), arguments.with_files());
   FlyOptions options;
-  options.models_folder = project_root() / "models";
+  options.models_folder = data_root() / "models";
   require_rig(scenario, arguments, options.models_folder / "rigs");
   options.video = arguments.video;
   options.renderer = arguments.renderer;
@@ -72,23 +71,19 @@ int run_fly(const FlyArguments& arguments) {
 
 }  // namespace
 
-void add_fly_command(CLI::App& app, Command& chosen) {
+void add_fly_command(CommandLine& line) {
   const auto arguments = std::make_shared<FlyArguments>();
-  CLI::App* command = app.add_subcommand("fly", "fly a scenario once");
-  add_scenario_options(*command, *arguments);
-  command->add_option("--seed", arguments->seed, "of course and sensors; goes before the scenario's own");
-  command->add_option("--out", arguments->out, "run folder (default: runs/<name>-<seed>)");
-  add_renderer_option(*command, arguments->renderer);
-  command->add_option("--row", arguments->row,
-                      "write the flight's row here, as campaign and collect read it; no run folder");
-  command->add_option("--junit", arguments->junit, "write the flight as a JUnit test case");
-  command->add_flag("--video", arguments->video, "also make flight.mp4 and still.png");
-  command->add_flag("--quiet", arguments->quiet, "print nothing");
-  command->callback([arguments, &chosen] {
-    // A seed is a setting like any other, only more often given.
-    if (!arguments->seed.empty()) arguments->settings.push_back("seed=" + arguments->seed);
-    chosen = [arguments] { return run_fly(*arguments); };
-  });
+  Command& command = line.add({"fly", "fly a scenario once", "understory fly forest --seed 7 --video",
+                               "the goal was reached", "it was not"});
+  add_scenario_options(command, *arguments);
+  command.text("--out", "FOLDER", arguments->out, "run folder (default: runs/NAME-SEED)");
+  add_renderer_option(command, arguments->renderer);
+  command.text("--row", "FILE", arguments->row,
+               "write the flight's row there, as campaign and collect read it; no run folder");
+  command.text("--junit", "FILE", arguments->junit, "write the flight as a JUnit test case");
+  command.flag("--video", arguments->video, "also make flight.mp4 and still.png");
+  command.flag("--quiet", arguments->quiet, "print nothing");
+  command.runs([arguments] { return run_fly(*arguments); });
 }
 
 }  // namespace understory

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "scenarios/campaign/campaign_folder.hpp"
@@ -21,8 +20,6 @@ struct GateArguments {
 };
 
 int run_gate(const GateArguments& arguments) {
-  if (!(arguments.rule.max_drop >= 0 && arguments.rule.max_drop <= 1))  // NaN would let everything pass
-    throw ScenarioError(fmt::format("--max-drop {}: expected a share from 0 to 1", arguments.rule.max_drop));
   const Comparison comparison =
       compare_campaigns(read_campaign_rows(arguments.baseline), read_campaign_rows(arguments.candidate));
   const GateVerdict verdict = judge(comparison, arguments.rule);
@@ -33,18 +30,18 @@ int run_gate(const GateArguments& arguments) {
 
 }  // namespace
 
-void add_gate_command(CLI::App& app, Command& chosen) {
+void add_gate_command(CommandLine& line) {
   const auto arguments = std::make_shared<GateArguments>();
-  CLI::App* command =
-      app.add_subcommand("gate", "compare two campaigns seed by seed; status 1 where success fell too far");
-  command->add_option("--baseline", arguments->baseline, "campaign folder of the program before the change")
-      ->required();
-  command->add_option("--candidate", arguments->candidate, "campaign folder of the program with the change")
-      ->required();
-  command->add_option("--max-drop", arguments->rule.max_drop, "share of goals that any condition may lose")
-      ->capture_default_str();
-  command->add_option("--junit", arguments->junit, "write a test case per flight as JUnit XML");
-  command->callback([arguments, &chosen] { chosen = [arguments] { return run_gate(*arguments); }; });
+  Command& command = line.add({"gate", "compare two campaigns seed by seed",
+                               "understory gate --baseline results/before --candidate results/after",
+                               "the change may pass", "success fell too far"});
+  command.text("--baseline", "FOLDER", arguments->baseline, "campaign of the program before the change")
+      .required();
+  command.text("--candidate", "FOLDER", arguments->candidate, "campaign of the program with the change")
+      .required();
+  command.number("--max-drop", arguments->rule.max_drop, 0, 1, "share of goals that any condition may lose");
+  command.text("--junit", "FILE", arguments->junit, "write a test case per flight as JUnit XML");
+  command.runs([arguments] { return run_gate(*arguments); });
 }
 
 }  // namespace understory

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
+#include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/cli/flight_terminal.hpp"
 #include "scenarios/recording/path_file.hpp"
@@ -14,13 +14,11 @@ namespace understory {
 namespace {
 
 struct RecordArguments : ScenarioArguments {
-  std::string seed;
   std::string out;
   RendererKind renderer = RendererKind::osmesa;
-  std::string walk_mps;  // empty: flies
-  std::string path;      // empty: none to follow
-  double height_m = WalkConfig{}.height_m;
-  bool has_height = false;
+  std::optional<double> walk_mps;  // nothing: flies
+  std::string path;                // empty: none to follow
+  std::optional<double> height_m;
   bool quiet = false;
 };
 
@@ -51,7 +49,7 @@ std::string report_of(const Carried& carried) {
 /// As given, or in the source tree from any working directory: scenarios/paths/level.tum.
 std::filesystem::path path_file(const std::filesystem::path& given) {
   std::error_code ignored;
-  const std::filesystem::path in_root = project_root() / given;
+  const std::filesystem::path in_root = data_root() / given;
   const bool only_there =
       !std::filesystem::exists(given, ignored) && std::filesystem::exists(in_root, ignored);
   return only_there ? in_root : given;
@@ -63,19 +61,18 @@ std::string record(const RecordArguments& arguments, const Scenario& scenario, F
   const ProgressOnTerminal progress;
   if (progress.shown && !arguments.quiet) options.on_progress = print_flight_progress;
   if (!path.empty()) return report_of(follow_recorded(scenario, path, options));
-  if (arguments.walk_mps.empty()) return report_of(fly_recorded(scenario, options));
-  return report_of(walk_recorded(scenario, {std::stod(arguments.walk_mps), arguments.height_m}, options));
+  if (!arguments.walk_mps) return report_of(fly_recorded(scenario, options));
+  return report_of(walk_recorded(
+      scenario, {*arguments.walk_mps, arguments.height_m.value_or(WalkConfig{}.height_m)}, options));
 }
 
 int run_record(const RecordArguments& arguments) {
-  if (arguments.has_height && arguments.walk_mps.empty())
-    throw ScenarioError("--height: expected beside --walk");
-  if (!arguments.path.empty() && !arguments.walk_mps.empty())
-    throw ScenarioError("--path: expected without --walk");
+  if (arguments.height_m && !arguments.walk_mps) throw ScenarioError("--height: expected beside --walk");
+  if (!arguments.path.empty() && arguments.walk_mps) throw ScenarioError("--path: expected without --walk");
   const Scenario scenario =
-      load_scenario(scenario_file(arguments.scenario), arguments.settings, arguments.with);
+      load_scenario(scenario_file(arguments.scenario), arguments.all_settings(), arguments.with_files());
   FlyOptions options;
-  options.models_folder = project_root() / "models";
+  options.models_folder = data_root() / "models";
   require_rig(scenario, arguments, options.models_folder / "rigs");
   options.renderer = arguments.renderer;
   options.output_folder = arguments.out;
@@ -86,31 +83,23 @@ int run_record(const RecordArguments& arguments) {
 
 }  // namespace
 
-void add_record_command(CLI::App& app, Command& chosen) {
+void add_record_command(CommandLine& line) {
   const auto arguments = std::make_shared<RecordArguments>();
-  CLI::App* command = app.add_subcommand(
-      "record",
-      "fly, walk or be carried through a scenario and keep images, true depth and poses as a EuRoC data set");
-  add_scenario_options(*command, *arguments);
-  command->add_option("--seed", arguments->seed, "of course and sensors; goes before the scenario's own");
-  command->add_option("--out", arguments->out, "folder for the recording; gets mav0")->required();
-  add_renderer_option(*command, arguments->renderer);
-  command->add_flag("--quiet", arguments->quiet, "print nothing");
-  // A flag, so that a scenario's name behind it stays one; as a string, since CLI11 rounds flags' numbers.
-  command
-      ->add_flag("--walk{1.4}", arguments->walk_mps,
-                 "--walk or --walk=SPEED: carry the cameras through at a walk (1.4 m/s)")
-      ->check(CLI::Range(0.1, 5.0));
-  command->add_option("--path", arguments->path,
-                      "carry the cameras along these poses: TUM, EuRoC, or a run's trajectory.csv");
-  CLI::Option* height = command->add_option("--height", arguments->height_m, "of the walk, m")
-                            ->capture_default_str()
-                            ->check(CLI::Range(0.3, 8.0));
-  command->callback([arguments, height, &chosen] {
-    arguments->has_height = height->count() > 0;
-    if (!arguments->seed.empty()) arguments->settings.push_back("seed=" + arguments->seed);
-    chosen = [arguments] { return run_record(*arguments); };
-  });
+  Command& command = line.add(
+      {"record",
+       "fly, walk or be carried through a scenario and keep images, true depth and poses as a EuRoC data set",
+       "understory record forest --out recordings/forest", "the recording is whole"});
+  add_scenario_options(command, *arguments);
+  command.text("--out", "FOLDER", arguments->out, "for the recording; gets mav0").required();
+  add_renderer_option(command, arguments->renderer);
+  command.flag("--quiet", arguments->quiet, "print nothing");
+  command.flag_or_number("--walk", 1.4, arguments->walk_mps, 0.1, 5.0,
+                         "--walk or --walk=SPEED: carry the cameras through at a walk (1.4 m/s)");
+  command.text("--path", "FILE", arguments->path,
+               "carry the cameras along these poses: TUM, EuRoC, or a run's trajectory.csv");
+  command.number("--height", arguments->height_m, 0.3, 8.0,
+                 fmt::format("of the walk, m (default: {})", WalkConfig{}.height_m));
+  command.runs([arguments] { return run_record(*arguments); });
 }
 
 }  // namespace understory

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "perception/io/calibration_file.hpp"
 #include "perception/io/picture_codecs.hpp"
+#include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/detect/rig_figures.hpp"
@@ -49,17 +49,17 @@ int run_rig(const RigArguments& arguments) {
 
 }  // namespace
 
-void add_rig_command(CLI::App& app, Command& chosen) {
+void add_rig_command(CommandLine& line) {
   const auto arguments = std::make_shared<RigArguments>();
-  CLI::App* command = app.add_subcommand("rig", "show what a calibration means: disparities, depths, views");
+  Command& command = line.add({"rig", "show what a calibration means: disparities, depths, views",
+                               "understory rig long --out rig.png"});
   command
-      ->add_option(
-          "FILE", arguments->rig,
-          "a rig file, OpenCV XML or YAML, a folder of them, a EuRoC folder, or a name in models/rigs")
-      ->required();
-  add_calibration_options(*command, *arguments);
-  command->add_option("--out", arguments->out, "draw the rig from above into this .png or .jpg");
-  command->callback([arguments, &chosen] { chosen = [arguments] { return run_rig(*arguments); }; });
+      .text("FILE", "RIG", arguments->rig,
+            "a rig file, OpenCV XML or YAML, a folder of them, a EuRoC folder, or a name in models/rigs")
+      .required();
+  add_calibration_options(command, *arguments);
+  command.text("--out", "FILE", arguments->out, "draw the rig from above into this .png or .jpg");
+  command.runs([arguments] { return run_rig(*arguments); });
 }
 
 }  // namespace understory

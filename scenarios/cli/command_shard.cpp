@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
-#include <thread>
 
 #include "scenarios/campaign/local_engine.hpp"
 #include "scenarios/campaign/slurm_engine.hpp"
@@ -36,21 +34,16 @@ int run_shard(const ShardArguments& arguments) {
 
 }  // namespace
 
-void add_shard_command(CLI::App& app, Command& chosen) {
+void add_shard_command(CommandLine& line) {
   const auto arguments = std::make_shared<ShardArguments>();
-  CLI::App* command =
-      app.add_subcommand("shard", "fly a share of a campaign: what campaign --engine slurm submits");
-  command->add_option("folder", arguments->folder, "the campaign's results folder")->required();
-  command->add_option("--number", arguments->number, "which share, from 0")
-      ->required()
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--of", arguments->of, "how many shares there are")
-      ->required()
-      ->check(CLI::PositiveNumber);
-  command->add_option("--jobs", arguments->jobs, "flights at a time")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  command->callback([arguments, &chosen] { chosen = [arguments] { return run_shard(*arguments); }; });
+  Command& command =
+      line.add({"shard", "fly a share of a campaign: what campaign --engine slurm submits",
+                "understory shard results/gate --number 0 --of 8", "the share's flights were flown"});
+  command.text("folder", "FOLDER", arguments->folder, "the campaign's results folder").required();
+  command.whole("--number", arguments->number, 0, 9999, "which share, from 0").required();
+  command.whole("--of", arguments->of, 1, 10000, "how many shares there are").required();
+  command.whole("--jobs", arguments->jobs, 1, 1024, "flights at a time");
+  command.runs([arguments] { return run_shard(*arguments); });
 }
 
 }  // namespace understory

@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <memory>
-#include <thread>
 
+#include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
@@ -33,12 +31,11 @@ struct Judges {
 };
 
 Judges judges_of(const TuneFile& file, const TuneArguments& arguments, const fs::path& folder) {
-  const int jobs = arguments.jobs > 0 ? arguments.jobs
-                                      : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int jobs = jobs_or_cores(arguments.jobs);
   if (file.over == TuningData::recordings)
     return {std::make_unique<VisionJudge>(file.training_folders, file.every, jobs),
             std::make_unique<VisionJudge>(file.validation_folders, file.every, jobs)};
-  rig_of(file.scenario, project_root() / "models");  // before anything is flown: every flight would fail
+  rig_of(file.scenario, data_root() / "models");  // before anything is flown: every flight would fail
   const std::string renderer(word_for(arguments.renderer));
   const auto judge = [&](const char* part, const std::vector<std::uint64_t>& seeds) {
     return std::make_unique<FlightJudge>(
@@ -82,17 +79,18 @@ int run_tune(const TuneArguments& arguments) {
 
 }  // namespace
 
-void add_tune_command(CLI::App& app, Command& chosen) {
+void add_tune_command(CommandLine& line) {
   const auto arguments = std::make_shared<TuneArguments>();
-  CLI::App* command =
-      app.add_subcommand("tune", "search a scenario's numbers for what does best on recordings or flights");
-  command->add_option("file", arguments->file, "what to tune, for what: see docs/tuning.md")->required();
-  command->add_option("--out", arguments->out, "results folder (default: results/tune-<name>)");
-  command->add_option("--jobs", arguments->jobs, "flights or recordings at a time (default: one a core)")
-      ->check(CLI::Range(1, 1024));
-  add_renderer_option(*command, arguments->renderer);
-  command->add_flag("--resume", arguments->resume, "go on with what the folder holds");
-  command->callback([arguments, &chosen] { chosen = [arguments] { return run_tune(*arguments); }; });
+  Command& command =
+      line.add({"tune", "search a scenario's numbers for what does best on recordings or flights",
+                "understory tune scenarios/tunings/trunks_long.yaml --out results/tuned",
+                "the search is over; best.yaml holds what it found"});
+  command.text("file", "FILE", arguments->file, "what to tune, for what: see docs/tuning.md").required();
+  command.text("--out", "FOLDER", arguments->out, "results folder (default: results/tune-NAME)");
+  add_jobs_option(command, arguments->jobs, "flights or recordings");
+  add_renderer_option(command, arguments->renderer);
+  command.flag("--resume", arguments->resume, "go on with what the folder holds");
+  command.runs([arguments] { return run_tune(*arguments); });
 }
 
 }  // namespace understory

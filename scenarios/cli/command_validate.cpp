@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <memory>
 
+#include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
@@ -51,7 +51,7 @@ int run_validate(const ValidateArguments& arguments) {
   for (const ValidatedPart& part : parts) {
     const auto& only = arguments.only;
     if (!only.empty() && std::find(only.begin(), only.end(), part.name) == only.end()) continue;
-    const ValidationPage page = part.page(project_root());
+    const ValidationPage page = part.page(data_root());
     write_page(page, folder);
     broken += broken_checks(page);
     fmt::print("{}{}\n", check_lines(page), (folder / (page.file + ".md")).string());
@@ -63,15 +63,14 @@ int run_validate(const ValidateArguments& arguments) {
 
 }  // namespace
 
-void add_validate_command(CLI::App& app, Command& chosen) {
+void add_validate_command(CommandLine& line) {
   const auto arguments = std::make_shared<ValidateArguments>();
-  CLI::App* command =
-      app.add_subcommand("validate", "measure the models against what is known; write pages with plots");
-  command->add_option("--out", arguments->out, "folder of the pages (docs: those of the documentation)")
-      ->capture_default_str();
-  command->add_option("--only", arguments->only, "these parts and no others, for instance aircraft")
-      ->delimiter(',');
-  command->callback([arguments, &chosen] { chosen = [arguments] { return run_validate(*arguments); }; });
+  Command& command =
+      line.add({"validate", "measure the models against what is known; write pages with plots",
+                "understory validate --only aircraft", "every tolerance is kept", "one is broken"});
+  command.text("--out", "FOLDER", arguments->out, "of the pages (docs: those of the documentation)");
+  command.texts("--only", "PART", arguments->only, "this part and no other, for instance aircraft");
+  command.runs([arguments] { return run_validate(*arguments); });
 }
 
 }  // namespace understory

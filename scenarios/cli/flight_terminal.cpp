@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "scenarios/cli/commands.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
+#include "sim/render/offscreen_context.hpp"
 
 namespace understory {
 
@@ -18,15 +20,25 @@ void print_flight_progress(const FlightProgress& progress) {
   std::fflush(stdout);
 }
 
+std::string renderer_of_this_machine() {
+  try {
+    OffscreenContext context;
+    context.make_current(16, 16);
+    return context.renderer();
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+}
+
 void require_rig(const Scenario& scenario, const ScenarioArguments& arguments,
                  const std::filesystem::path& rigs) {
   std::error_code ignored;
   if (std::filesystem::exists(rigs / (scenario.rig + ".yaml"), ignored)) return;
   if (std::filesystem::is_regular_file(scenario.rig, ignored)) return;
-  throw ScenarioError(
-      fmt::format("{}: rig: expected a name in {} or a rig file, got '{}'",
-                  where_given(scenario_file(arguments.scenario), arguments.settings, "rig", arguments.with),
-                  rigs.string(), scenario.rig));
+  throw ScenarioError(fmt::format(
+      "{}: rig: expected a name in {} or a rig file, got '{}'",
+      where_given(scenario_file(arguments.scenario), arguments.all_settings(), "rig", arguments.with_files()),
+      rigs.string(), scenario.rig));
 }
 
 }  // namespace understory

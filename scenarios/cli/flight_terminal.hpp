@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "scenarios/cli/commands.hpp"
+#include "scenarios/cli/arguments.hpp"
 #include "scenarios/flight/fly.hpp"
 
 namespace understory {

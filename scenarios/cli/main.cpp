@@ -1,15 +1,17 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 
+#include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/output/versions.hpp"
+#include "scenarios/output/program.hpp"
 
 namespace {
 
@@ -22,31 +24,52 @@ void complain(std::string message) {
   fmt::print(stderr, "understory: {}\n", message);
 }
 
-int run(int argc, char** argv) {
-  CLI::App app("Understory: a small delta wing flies through forests on its own stereo vision");
-  app.set_version_flag("--version", std::string(understory_version));
-  app.require_subcommand(1);
+std::string version() {
+  return fmt::format("understory {} ({})\nrenderer: {}", understory_version, understory_commit,
+                     renderer_of_this_machine());
+}
 
-  Command chosen;
-  add_fly_command(app, chosen);
-  add_record_command(app, chosen);
-  add_campaign_command(app, chosen);
-  add_tune_command(app, chosen);
-  add_shard_command(app, chosen);
-  add_collect_command(app, chosen);
-  add_gate_command(app, chosen);
-  add_validate_command(app, chosen);
-  add_rig_command(app, chosen);
-  add_detect_command(app, chosen);
-  add_evaluate_command(app, chosen);
-  add_bench_command(app, chosen);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
-    throw ScenarioError(fmt::format("{} (understory --help says what there is)", error.what()));
-  }
-  return chosen();
+/// For packages and shells: `understory manual`, `understory completion bash`, and what the latter's script
+/// asks for.
+void add_hidden_commands(CommandLine& line) {
+  Command& manual = line.add({"manual", "print the manual page", "understory manual | man -l -"});
+  manual.hide();
+  manual.runs([&line] {
+    fmt::print("{}", manual_page(line.commands()));
+    return exit_goal;
+  });
+  const auto what = std::make_shared<std::string>();
+  Command& completion =
+      line.add({"completion", "print a script of completions", "understory completion bash"});
+  completion.hide();
+  completion.text("what", "WORD", *what, "bash, SCENARIO or RIG").required();
+  completion.runs([&line, what] {
+    if (*what == "bash")
+      fmt::print("{}", bash_completion(line.commands()));
+    else if (*what == "SCENARIO" || *what == "RIG")
+      fmt::print("{}\n", fmt::join(*what == "RIG" ? rig_names() : scenario_names(), "\n"));
+    else
+      throw ScenarioError(fmt::format("completion {}: expected bash, SCENARIO or RIG", *what));
+    return exit_goal;
+  });
+}
+
+int run(int argc, char** argv) {
+  CommandLine line(version);
+  add_fly_command(line);
+  add_record_command(line);
+  add_detect_command(line);
+  add_evaluate_command(line);
+  add_campaign_command(line);
+  add_shard_command(line);
+  add_collect_command(line);
+  add_gate_command(line);
+  add_tune_command(line);
+  add_validate_command(line);
+  add_rig_command(line);
+  add_bench_command(line);
+  add_hidden_commands(line);
+  return line.run(argc, argv);
 }
 
 }  // namespace

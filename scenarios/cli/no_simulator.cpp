@@ -1,5 +1,3 @@
-#include <CLI/CLI.hpp>
-
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 
@@ -7,14 +5,12 @@
 namespace understory {
 namespace {
 
-void add_refusal(CLI::App& app, Command& chosen, const std::string& name) {
-  CLI::App* command = app.add_subcommand(name, "not in this build: it has no simulator");
-  command->allow_extras();
-  command->callback([name, &chosen] {
-    chosen = [name]() -> int {
-      throw ScenarioError(name +
-                          ": expected a build with the simulator, this one has none (UNDERSTORY_SIM=OFF)");
-    };
+void add_refusal(CommandLine& line, const std::string& name) {
+  Command& command = line.add({name, "not in this build: it has no simulator", "understory detect --help"});
+  command.takes_anything();
+  command.runs([name]() -> int {
+    throw ScenarioError(name +
+                        ": expected a build with the simulator, this one has none (UNDERSTORY_SIM=OFF)");
   });
 }
 
@@ -31,11 +27,13 @@ std::vector<std::filesystem::path> record_suite(const std::filesystem::path& fil
                       ": expected a folder: this build has no simulator to record with (UNDERSTORY_SIM=OFF)");
 }
 
-void add_fly_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "fly"); }
-void add_record_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "record"); }
-void add_campaign_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "campaign"); }
-void add_tune_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "tune"); }
-void add_shard_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "shard"); }
-void add_validate_command(CLI::App& app, Command& chosen) { add_refusal(app, chosen, "validate"); }
+void add_fly_command(CommandLine& line) { add_refusal(line, "fly"); }
+void add_record_command(CommandLine& line) { add_refusal(line, "record"); }
+void add_campaign_command(CommandLine& line) { add_refusal(line, "campaign"); }
+void add_tune_command(CommandLine& line) { add_refusal(line, "tune"); }
+void add_shard_command(CommandLine& line) { add_refusal(line, "shard"); }
+void add_validate_command(CommandLine& line) { add_refusal(line, "validate"); }
+
+std::string renderer_of_this_machine() { return "none: this build has no simulator"; }
 
 }  // namespace understory

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "scenarios/bench/flight_processes.hpp"
+#include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/evaluation/evaluation_suite.hpp"
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 void check(const EvaluationSuite& suite, const fs::path& file) {
   for (const SuiteRecording& recording : suite.recordings) {
     try {
-      rig_of(load_scenario(recording.scenario, recording.settings), project_root() / "models");
+      rig_of(load_scenario(recording.scenario, recording.settings), data_root() / "models");
     } catch (const ScenarioError& error) {
       throw ScenarioError(fmt::format("{}: {}: {}", file.string(), recording.name, error.what()));
     }

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core/version.hpp>
 
-#include "scenarios/output/versions.hpp"
+#include "scenarios/output/program.hpp"
 
 namespace understory {
 namespace {

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <opencv2/core/eigen.hpp>
 
-#include "scenarios/output/versions.hpp"
+#include "scenarios/output/program.hpp"
 
 namespace understory {
 namespace {

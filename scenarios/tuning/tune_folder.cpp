@@ -7,8 +7,7 @@
 #include "scenarios/campaign/flight_row_io.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/output/program_digest.hpp"
-#include "scenarios/output/versions.hpp"
+#include "scenarios/output/program.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/tuning/tuning.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <pugixml.hpp>
 
-#include "scenarios/output/versions.hpp"
+#include "scenarios/output/program.hpp"
 #include "tests/support/flight_rows.hpp"
 
 namespace understory {

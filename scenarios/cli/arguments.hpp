@@ -1,0 +1,62 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "perception/io/calibration_file.hpp"
+#include "scenarios/cli/command_line.hpp"
+#include "sim/render/renderer_kind.hpp"
+
+/// Arguments that several commands take, and what their words mean.
+namespace understory {
+
+/// The scenario's name, --with and --set, as every command that flies has them.
+struct ScenarioArguments {
+  std::string scenario;               ///< a path, or a name in scenarios/library
+  std::vector<std::string> with;      ///< files of keys, over the scenario's own
+  std::vector<std::string> settings;  ///< key=value, over both
+  std::string seed;                   ///< over all; empty: theirs
+
+  std::vector<std::string> all_settings() const;  ///< the seed among them: a setting like any other
+  std::vector<std::filesystem::path> with_files() const { return {with.begin(), with.end()}; }
+};
+void add_scenario_options(Command& command, ScenarioArguments& arguments);
+/// --set alone.
+void add_settings_option(Command& command, std::vector<std::string>& settings);
+/// --with alone.
+void add_with_option(Command& command, std::vector<std::string>& with);
+/// --renderer, as every command that draws has it.
+void add_renderer_option(Command& command, RendererKind& renderer);
+/// --jobs, how many of `what` at a time; 0 where it is not given.
+void add_jobs_option(Command& command, int& jobs, const std::string& what);
+/// `jobs`, or one a core where that is 0.
+int jobs_or_cores(int jobs);
+
+/// --unit, --size and --depth, as every command that reads a calibration has them.
+struct CalibrationArguments {
+  double meters_per_unit = 1;
+  std::string size;               ///< empty: the files say it
+  std::optional<double> depth_m;  ///< nothing: the rig's own
+};
+void add_calibration_options(Command& command, CalibrationArguments& arguments);
+/// What they mean. Throws ScenarioError where they mean nothing.
+CalibrationOptions calibration_options(const CalibrationArguments& arguments);
+
+/// The path a rig argument means: one that exists, or a name in models/rigs. Throws ScenarioError, naming
+/// what there is, where it means none.
+std::filesystem::path rig_path(const std::string& argument);
+/// The file that a scenario argument means: one that exists, or a name in scenarios/library. Throws
+/// ScenarioError, naming what there is, where it means none.
+std::filesystem::path scenario_file(const std::string& argument);
+/// The names that either may be given as.
+std::vector<std::string> rig_names();
+std::vector<std::string> scenario_names();
+
+/// The folder with models/ and scenarios/: $UNDERSTORY_ROOT; else share/understory below a folder above the
+/// program, as it is installed and packaged; else the folder above the program that has them, as in a source
+/// tree. Throws MachineError where there is none.
+std::filesystem::path data_root();
+
+}  // namespace understory
