@@ -17,7 +17,6 @@ void add_shard_command(CommandLine& line);
 void add_collect_command(CommandLine& line);
 void add_gate_command(CommandLine& line);
 void add_tune_command(CommandLine& line);
-void add_validate_command(CommandLine& line);
 void add_detect_command(CommandLine& line);
 void add_evaluate_command(CommandLine& line);
 void add_rig_command(CommandLine& line);

@@ -65,7 +65,6 @@ int run(int argc, char** argv) {
   add_collect_command(line);
   add_gate_command(line);
   add_tune_command(line);
-  add_validate_command(line);
   add_rig_command(line);
   add_bench_command(line);
   add_hidden_commands(line);

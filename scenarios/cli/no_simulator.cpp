@@ -32,7 +32,6 @@ void add_record_command(CommandLine& line) { add_refusal(line, "record"); }
 void add_campaign_command(CommandLine& line) { add_refusal(line, "campaign"); }
 void add_tune_command(CommandLine& line) { add_refusal(line, "tune"); }
 void add_shard_command(CommandLine& line) { add_refusal(line, "shard"); }
-void add_validate_command(CommandLine& line) { add_refusal(line, "validate"); }
 
 std::string renderer_of_this_machine() { return "none: this build has no simulator"; }
 

@@ -254,36 +254,6 @@ TEST(Cli, AnUnwritableFolderIsBadInputAndAFullDiskTheMachines) {
   EXPECT_FALSE(fs::exists(folder.path / "full" / "result.json"));
 }
 
-TEST(Cli, ValidateRefusesWhatItDoesNotKnow) {
-  const Folder folder;
-  expect_refusal("validate --only soaring", "--only soaring: expected one of: aircraft, estimator, mismatch");
-  expect_refusal("validate --only", "--only");
-  expect_refusal("validate everything", "everything");
-  expect_refusal("validate --out " + folder.file("file", "") + "/pages", "expected a writable output");
-}
-
-/// Headings of a page: what it is about, whatever was measured.
-std::vector<std::string> headings(const fs::path& page) {
-  std::vector<std::string> found;
-  std::ifstream stream(page);
-  for (std::string line; std::getline(stream, line);)
-    if (line.starts_with("#")) found.push_back(line);
-  return found;
-}
-
-TEST(Cli, ValidateWritesTheFlightModelsPageAndHoldsItsTolerances) {
-  const Folder folder;
-  const Outcome outcome = understory("validate --only aircraft --out " + folder.path.string());
-  EXPECT_EQ(outcome.status, 0) << outcome.text;
-  EXPECT_NE(outcome.text.find("ok      replayed jog, horizontal at 1.5 s:"), std::string::npos);
-  EXPECT_EQ(outcome.text.find("broken"), std::string::npos) << outcome.text;
-  const fs::path committed = UNDERSTORY_SOURCE_DIR "/docs/flight_model.md";
-  EXPECT_EQ(headings(folder.path / "flight_model.md"), headings(committed))
-      << "make it again: validate --out docs";
-  for (const auto& figure : fs::directory_iterator(folder.path / "flight_model"))
-    EXPECT_TRUE(fs::exists(fs::path(UNDERSTORY_SOURCE_DIR "/docs/flight_model") / figure.path().filename()));
-}
-
 TEST(Cli, ARendererIsOneOfThree) {
   expect_refusal("fly clear --renderer crayon", "osmesa, egl, auto");
   const Folder folder;

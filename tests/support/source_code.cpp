@@ -36,7 +36,7 @@ std::string code_alone(std::string text) {
       i = blank(i, end_of("*/", i + 2));
     } else if (text.compare(i, 2, "R\"") == 0 && !after_word) {
       const std::size_t open = text.find('(', i);
-      i = blank(i, end_of(")" + text.substr(i + 2, open - i - 2) + "\"", open));
+      i = blank(i, end_of(')' + text.substr(i + 2, open - i - 2) + '"', open));
     } else if (c == '"' || (c == '\'' && !after_word)) {  // after a word it separates digits
       std::size_t end = i + 1;
       while (end < text.size() && text[end] != c) end += text[end] == '\\' ? 2 : 1;
@@ -220,7 +220,7 @@ std::vector<std::string> includes_of(std::istream& text) {
     std::istringstream words(line);
     std::string directive, header;
     words >> directive;
-    if (directive == "#") words >> directive, directive.insert(0, "#");
+    if (directive == "#") words >> directive, directive.insert(directive.begin(), '#');
     if (directive == "#include" && words >> header && header.size() > 2) {
       includes.push_back(header.substr(1, header.size() - 2));
     }
