@@ -25,7 +25,7 @@ AvoidancePlanner::AvoidancePlanner(const PlannerConfig& config, const FlightMode
 Plan AvoidancePlanner::plan(const FlightState& start, std::int64_t t_ns,
                             const std::vector<ObstaclePoint>& points, double distance_flown_m,
                             bool outdated) {
-  ++replan_index_;
+  ++counts_.replans;
   const double asked_m = maximum_clearance_m(
       config_.trajectory,
       std::max(config_.trajectory.minimum_clearance_m, config_.trajectory.minimum_kept_clearance_m));
@@ -39,11 +39,11 @@ Plan AvoidancePlanner::plan(const FlightState& start, std::int64_t t_ns,
     return adopt(t_ns, {}, PlanOrigin::straight, std::move(straight));
   }
 
-  const int flown_on_ompl = counts_.solved + counts_.kept_ompl;
+  const std::int64_t flown_on_ompl = counts_.solved + counts_.kept_ompl;
   const Plan plan = avoid(task, start, t_ns, outdated);
   if (!straight.reached_horizon) {
-    ++counts_.blocked;
-    counts_.blocked_ompl += counts_.solved + counts_.kept_ompl - flown_on_ompl;
+    ++counts_.obstacle_ahead;
+    counts_.obstacle_ahead_ompl += counts_.solved + counts_.kept_ompl - flown_on_ompl;
   }
   return plan;
 }
@@ -75,11 +75,11 @@ Plan AvoidancePlanner::keep(std::int64_t t_ns, const Manoeuvre& manoeuvre, Rollo
 std::optional<Plan> AvoidancePlanner::search(const FlightTask& task, const FlightState& start,
                                              std::int64_t t_ns, const Manoeuvre& left, bool may_keep) {
   const TrajectoryConfig& limits = config_.trajectory;
-  const std::uint64_t search_seed = seed_ * 1'000'003 + replan_index_;
+  const std::uint64_t search_seed = seed_ * 1'000'003 + static_cast<std::uint64_t>(counts_.replans);
   const auto improved = [&](const Manoeuvre& manoeuvre, double minimum_clearance_m) {
     return improve_manoeuvre(task, start, manoeuvre, minimum_clearance_m, config_.improvement, search_seed);
   };
-  ++counts_.searched;
+  ++counts_.searches;
   const std::optional<Manoeuvre> answer = search_manoeuvre(task, start, left, config_.search, search_seed);
   ImprovedManoeuvre found{{}, INFINITY}, kept{{}, INFINITY};
   if (answer) {

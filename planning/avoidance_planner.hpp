@@ -9,6 +9,7 @@
 #include "planning/manoeuvre_search.hpp"
 #include "planning/obstacle_field.hpp"
 #include "planning/plan.hpp"
+#include "planning/planner_counts.hpp"
 
 namespace understory {
 
@@ -39,21 +40,8 @@ void visit_fields(Visitor& visit, PlannerConfig& config) {
   visit("improvement", config.improvement);
 }
 
-/// How the replans of a flight were answered. straight + solved + kept + fallback is their number.
-struct PlannerCounts {
-  int straight = 0;      ///< nothing within comfortable clearance of the straight way
-  int solved = 0;        ///< OMPL's answer of this replan taken
-  int kept = 0;          ///< the plan in force still good
-  int kept_ompl = 0;     ///< of `kept`: the rest of an OMPL answer; the others go straight
-  int fallback = 0;      ///< no free manoeuvre found: the primitive with the maximum clearance
-  int blocked = 0;       ///< straight on would come nearer to an obstacle than the minimum clearance
-  int blocked_ompl = 0;  ///< of `blocked`: flown on an OMPL answer, of this replan or kept
-  int searched = 0;      ///< how often OMPL was asked (a kept plan is searched against anew now and then)
-  int found = 0;         ///< how often it answered with a free manoeuvre
-};
-
-/// Receding-horizon avoidance. The first of these that is possible is flown: straight on where that is free;
-/// the plan in force while it is free and good; what OMPL finds; the primitive with the maximum clearance.
+/// Receding-horizon avoidance: straight on where that is free, else the plan in force while it is free and
+/// good, else what OMPL finds, else the primitive of greatest clearance.
 class AvoidancePlanner {
  public:
   AvoidancePlanner(const PlannerConfig& config, const FlightModel& model, const Mission& mission,
@@ -86,7 +74,6 @@ class AvoidancePlanner {
   std::uint64_t seed_;
   std::vector<Manoeuvre> primitives_;
   PlannerCounts counts_;
-  std::uint64_t replan_index_ = 0;
   Manoeuvre manoeuvre_;  ///< in force, counted from manoeuvre_t_ns_
   std::int64_t manoeuvre_t_ns_ = 0;
   PlanOrigin manoeuvre_origin_ = PlanOrigin::straight;

@@ -25,8 +25,8 @@ ConditionSummary summary_of(const std::vector<FlightRow>& rows) {
     speeds_mps.push_back(row.mean_speed_mps);
     errors_m.push_back(row.position_error_mean_m);
     lifetimes.push_back(lifetime_of(row));
-    summary.obstacle_ahead += row.obstacle_ahead;
-    summary.obstacle_ahead_ompl += row.obstacle_ahead_ompl;
+    summary.obstacle_ahead += row.planner.obstacle_ahead;
+    summary.obstacle_ahead_ompl += row.planner.obstacle_ahead_ompl;
   }
   summary.flown = static_cast<int>(lifetimes.size());
   summary.failed_to_run = static_cast<int>(rows.size()) - summary.flown;

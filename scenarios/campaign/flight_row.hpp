@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "planning/planner_counts.hpp"
+
 namespace understory {
 
 /// What became of one flight of a campaign.
@@ -36,10 +38,7 @@ struct FlightRow {
   std::int64_t detections = 0;
   std::int64_t remembered_points = 0;
   std::int64_t minimum_points_on_a_bar = -1;  ///< -1 (empty, null): not counted on this course
-  std::int64_t replans = 0, straight = 0, solved = 0, kept = 0, kept_ompl = 0, fallback = 0;
-  std::int64_t obstacle_ahead = 0;       ///< replans in which straight on would touch what the map holds
-  std::int64_t obstacle_ahead_ompl = 0;  ///< of those: flown on OMPL's answer
-  std::int64_t searches = 0, found = 0;
+  PlannerCounts planner;
   double simulated_s = 0;
   std::string digest;  ///< of the flight, bit for bit (run_digest.hpp)
 

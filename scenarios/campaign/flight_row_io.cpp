@@ -47,16 +47,7 @@ void visit_columns(Row& row, Is&& is, Measured&& measured) {
   measured("detections", row.detections);
   measured("remembered_points", row.remembered_points);
   measured("minimum_points_on_a_bar", row.minimum_points_on_a_bar);
-  measured("replans", row.replans);
-  measured("straight", row.straight);
-  measured("solved", row.solved);
-  measured("kept", row.kept);
-  measured("kept_ompl", row.kept_ompl);
-  measured("fallback", row.fallback);
-  measured("obstacle_ahead", row.obstacle_ahead);
-  measured("obstacle_ahead_ompl", row.obstacle_ahead_ompl);
-  measured("searches", row.searches);
-  measured("found", row.found);
+  visit_fields(measured, row.planner);
   measured("simulated_s", row.simulated_s);
   measured("digest", row.digest);
 }

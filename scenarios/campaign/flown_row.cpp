@@ -21,16 +21,7 @@ FlightRow flown_row(const Scenario& scenario, const FlightResult& result) {
   for (const auto& [bar, points] : result.points_on_obstacles)
     if (row.minimum_points_on_a_bar < 0 || points < row.minimum_points_on_a_bar)
       row.minimum_points_on_a_bar = points;
-  row.replans = result.replans;
-  row.straight = result.replans_straight;
-  row.solved = result.replans_solved;
-  row.kept = result.replans_kept;
-  row.kept_ompl = result.replans_kept_ompl;
-  row.fallback = result.replans_fallback;
-  row.obstacle_ahead = result.replans_blocked;
-  row.obstacle_ahead_ompl = result.replans_blocked_ompl;
-  row.searches = result.searches;
-  row.found = result.searches_found;
+  row.planner = result.planner;
   row.simulated_s = result.simulated_s;
   row.digest = result.digest;
   return row;

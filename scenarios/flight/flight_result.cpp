@@ -61,16 +61,11 @@ std::string to_json(const FlightResult& result) {
   json["frames"] = result.frames;
   json["detections"] = result.detections;
   json["remembered_points"] = result.remembered_points;
-  json["replans"] = {{"count", result.replans},
-                     {"straight", result.replans_straight},
-                     {"solved", result.replans_solved},
-                     {"kept", result.replans_kept},
-                     {"kept_ompl", result.replans_kept_ompl},
-                     {"fallback", result.replans_fallback},
-                     {"searches", result.searches},
-                     {"searches_found", result.searches_found},
-                     {"obstacle_ahead", result.replans_blocked},
-                     {"obstacle_ahead_ompl", result.replans_blocked_ompl}};
+  const auto put_count = [&](std::string_view name, std::int64_t count) {
+    const std::string key(name == "replans" ? "count" : name == "found" ? "searches_found" : name);
+    json["replans"][key] = count;
+  };
+  visit_fields(put_count, result.planner);
   if (!result.points_on_obstacles.empty()) {
     for (const auto& [name, count] : result.points_on_obstacles) json["points_on_obstacles"][name] = count;
   }
@@ -103,11 +98,12 @@ std::string to_report(const FlightResult& result) {
                    result.position_error_max_m, result.attitude_error_max_rad * 57.29577951308232));
   line("detections", fmt::format("{} in {} frames, {} points remembered", result.detections, result.frames,
                                  result.remembered_points));
-  line("replans", fmt::format("{}: {} straight, {} solved by OMPL, {} kept ({} of OMPL's), {} fallback",
-                              result.replans, result.replans_straight, result.replans_solved,
-                              result.replans_kept, result.replans_kept_ompl, result.replans_fallback));
+  const PlannerCounts& planner = result.planner;
+  line("replans",
+       fmt::format("{}: {} straight, {} solved by OMPL, {} kept ({} of OMPL's), {} fallback", planner.replans,
+                   planner.straight, planner.solved, planner.kept, planner.kept_ompl, planner.fallback));
   line("obstacle ahead", fmt::format("in {} replans, {} of them flown on OMPL's answer",
-                                     result.replans_blocked, result.replans_blocked_ompl));
+                                     planner.obstacle_ahead, planner.obstacle_ahead_ompl));
   line("real-time factor",
        fmt::format("{:.2f} ({:.1f} s of wall time)",
                    result.wall_s > 0 ? result.simulated_s / result.wall_s : 0.0, result.wall_s));

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "planning/planner_counts.hpp"
+
 namespace understory {
 
 /// How a flight ended.
@@ -49,17 +51,7 @@ struct FlightResult {
   std::int64_t frames = 0;
   std::int64_t detections = 0;         ///< hits, all frames
   std::int64_t remembered_points = 0;  ///< points ever taken into the map
-  std::int64_t replans = 0;
-  std::int64_t replans_straight = 0;
-  std::int64_t replans_solved = 0;  ///< by OMPL
-  std::int64_t replans_kept = 0;
-  std::int64_t replans_kept_ompl = 0;  ///< of the kept: what is left of an OMPL answer
-  /// Times OMPL was asked: no good plan in force, or a kept one's turn to be checked.
-  std::int64_t searches = 0;
-  std::int64_t searches_found = 0;  ///< times it found a free manoeuvre
-  std::int64_t replans_fallback = 0;
-  std::int64_t replans_blocked = 0;  ///< with an obstacle ahead: straight on would touch what the map holds
-  std::int64_t replans_blocked_ompl = 0;  ///< of those: flown on an OMPL answer, fresh or kept
+  PlannerCounts planner;
   /// For each obstacle of a short course (goalposts): remembered points within 0.5 m of it before it was
   /// passed.
   std::vector<std::pair<std::string, std::int64_t>> points_on_obstacles;

@@ -82,22 +82,6 @@ struct Overheard {
   }
 };
 
-void take_counts(const Autopilot& autopilot, const Stopwatch& stopwatch, FlightResult& result) {
-  const PlannerCounts& counts = autopilot.counts();
-  result.replans_straight = counts.straight;
-  result.replans_solved = counts.solved;
-  result.searches = counts.searched;
-  result.searches_found = counts.found;
-  result.replans_kept = counts.kept;
-  result.replans_kept_ompl = counts.kept_ompl;
-  result.replans_fallback = counts.fallback;
-  result.replans_blocked = counts.blocked;
-  result.replans_blocked_ompl = counts.blocked_ompl;
-  result.replans = counts.straight + counts.solved + counts.kept + counts.fallback;
-  result.timings = stopwatch.timings();
-  result.wall_s = stopwatch.elapsed_s();
-}
-
 }  // namespace
 
 FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
@@ -194,7 +178,9 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   }
 
   record.finish(*ending);
-  take_counts(autopilot, stopwatch, record.result());
+  record.result().planner = autopilot.counts();
+  record.result().timings = stopwatch.timings();
+  record.result().wall_s = stopwatch.elapsed_s();
   if (film) film->finish();
   if (!options.output_folder.empty()) record.write(options.output_folder);
   return record.result();

@@ -28,7 +28,7 @@ FlightState follow_plan(const FlightModel& model, FlightState state, const Plan&
   return state;
 }
 
-int total(const PlannerCounts& counts) {
+std::int64_t total(const PlannerCounts& counts) {
   return counts.straight + counts.solved + counts.kept + counts.fallback;
 }
 
@@ -68,6 +68,7 @@ TEST(AvoidancePlanner, PlansNeverTouchAKnownTrunk) {
     }
     sum.straight += planner.counts().straight, sum.solved += planner.counts().solved;
     sum.kept += planner.counts().kept, sum.fallback += planner.counts().fallback;
+    EXPECT_EQ(total(planner.counts()), planner.counts().replans);
   }
   EXPECT_GT(sum.solved, 10);  // the forests required dodges
   EXPECT_GT(sum.kept, 10);

@@ -14,10 +14,10 @@ std::vector<FlightRow> rows() {
   std::vector<FlightRow> all{flown_row("forest", 1, "goal", 75.4), flown_row("forest", 2, "collision", 30),
                              flown_row("dense", 1, "ground", 10),  flown_row("forest", 3, "goal", 75.2),
                              failed_row("forest", 4, "signal 9"),  failed_row("paper", 1, "refused")};
-  all[0].obstacle_ahead = 30;
-  all[0].obstacle_ahead_ompl = 27;
-  all[1].obstacle_ahead = 10;
-  all[1].obstacle_ahead_ompl = 3;
+  all[0].planner.obstacle_ahead = 30;
+  all[0].planner.obstacle_ahead_ompl = 27;
+  all[1].planner.obstacle_ahead = 10;
+  all[1].planner.obstacle_ahead_ompl = 3;
   all[1].mean_speed_mps = 10.9;
   return all;
 }
