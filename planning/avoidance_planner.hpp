@@ -40,8 +40,8 @@ void visit_fields(Visitor& visit, PlannerConfig& config) {
   visit("improvement", config.improvement);
 }
 
-/// Receding-horizon avoidance: straight on where that is free, else the plan in force while it is free and
-/// good, else what OMPL finds, else the primitive of greatest clearance.
+/// Receding-horizon avoidance. The first of these that is possible is flown: straight on where that is free;
+/// the plan in force while it is free and good; what OMPL finds; the primitive with the maximum clearance.
 class AvoidancePlanner {
  public:
   AvoidancePlanner(const PlannerConfig& config, const FlightModel& model, const Mission& mission,

@@ -8,7 +8,7 @@
 
 #include "scenarios/bench/flight_processes.hpp"
 #include "scenarios/config/config_tree.hpp"
-#include "scenarios/flight/elapsed.hpp"
+#include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/output/file_output.hpp"
 
 namespace understory {

@@ -6,7 +6,7 @@
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/cli/flight_terminal.hpp"
-#include "scenarios/recording/path_file.hpp"
+#include "scenarios/recording/carried_path.hpp"
 #include "scenarios/recording/record.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
@@ -30,7 +30,7 @@ struct ProgressOnTerminal {
   }
 };
 
-std::string report_of(const RecordedFlight& flight) {
+std::string report_of(const FlownRecording& flight) {
   return to_report(flight.result) + fmt::format("  {:<18}{}\n", "frames", flight.frames);
 }
 

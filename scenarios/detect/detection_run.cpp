@@ -11,7 +11,7 @@
 #include "scenarios/config/bad_input.hpp"
 #include "scenarios/detect/detection_input.hpp"
 #include "scenarios/detect/detection_pictures.hpp"
-#include "scenarios/flight/elapsed.hpp"
+#include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/report/picture_folder.hpp"
 

@@ -12,7 +12,7 @@
 
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/quiet_standard_error.hpp"
-#include "scenarios/flight/elapsed.hpp"
+#include "scenarios/flight/stopwatch.hpp"
 
 namespace understory {
 namespace {

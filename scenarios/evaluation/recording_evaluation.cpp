@@ -11,7 +11,7 @@
 #include "scenarios/evaluation/precision_recall_curves.hpp"
 #include "scenarios/evaluation/random_detector.hpp"
 #include "scenarios/evaluation/true_depth_hits.hpp"
-#include "scenarios/flight/elapsed.hpp"
+#include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/scenario/detection_depths.hpp"
 
 namespace understory {

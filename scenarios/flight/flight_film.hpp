@@ -1,32 +1,33 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <opencv2/core/mat.hpp>
+#include <optional>
 
-#include "planning/autopilot.hpp"
+#include "perception/rectify.hpp"
+#include "scenarios/flight/flight_observer.hpp"
 #include "scenarios/report/video_writer.hpp"
-#include "sim/cameras/stereo_cameras.hpp"
 
 namespace understory {
 
 /// flight.mp4: what the left camera sees under the paper's overlay, beside a chase view; and still.png, the
-/// moment with the most detections. Shows the flight at its own speed, 30 pictures a second. Keeps
-/// references.
-class FlightFilm {
+/// moment with the most detections. Shows the flight at its own speed, 30 pictures a second.
+class FlightFilm : public FlightObserver {
  public:
-  FlightFilm(const std::filesystem::path& folder, const StereoRig& rig, StereoCameras& cameras,
-             double frame_rate_hz);
+  /// Files go into `folder`. `frame_rate_hz`: of the frames that reach the autopilot.
+  FlightFilm(const std::filesystem::path& folder, double frame_rate_hz);
 
-  /// Each frame as the autopilot has just digested it.
-  void observe(const StereoFrame& frame, const Autopilot& autopilot, const StateSource& state_source,
-               const mjData& data);
+  bool needs_images() const override { return true; }
+  const char* stage() const override { return "film"; }
+  void on_frame(const Flight& flight) override;
   void finish();
 
  private:
   std::filesystem::path folder_;
-  StereoRig rig_;
-  StereoCameras& cameras_;
+  int every_;  ///< frames per picture
   VideoFile video_;
-  int every_ = 4;  ///< frames per picture
+  std::optional<Rectifier> rectifier_;  ///< of raw pairs: the detector rectifies only what it looks at
   std::int64_t frames_ = 0;
   std::size_t maximum_hits_ = 0;
   cv::Mat still_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,10 +40,11 @@ struct FlightResult {
   std::string touched;     ///< name of the obstacle nearest at a collision
   double simulated_s = 0;  ///< since the start at rest
   double wall_s = 0;
-  double distance_m = 0;             ///< true path length since release
-  double progress_m = 0;             ///< maximum true x reached
-  double mean_speed_mps = 0;         ///< true, over ground, since release
-  double min_clearance_m = 0;        ///< true; +infinity without obstacles (null in JSON)
+  double distance_m = 0;      ///< true path length since release
+  double progress_m = 0;      ///< maximum true x reached
+  double mean_speed_mps = 0;  ///< true, over ground, since release
+  /// True; +infinity without obstacles (null in JSON).
+  double min_clearance_m = std::numeric_limits<double>::infinity();
   double position_error_mean_m = 0;  ///< estimate against truth, since release
   double position_error_max_m = 0;
   double position_error_end_m = 0;

@@ -5,17 +5,19 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <span>
 
 #include "perception/io/hit_files.hpp"
 #include "scenarios/flight/clearance.hpp"
+#include "scenarios/flight/flight.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 namespace {
 
-/// The minimum true clearance is sampled at this fraction of the physics rate: 200 Hz, 6 cm of flight.
-constexpr std::int64_t clearance_every_steps = 6;
+/// trajectory.csv and the minimum true clearance are sampled at 200 Hz, every 6 cm of flight.
+constexpr std::int64_t row_every_steps = physics_rate_hz / 200;
 
 constexpr const char* trajectory_header =
     "t_s,x_m,y_m,z_m,qw,qx,qy,qz,vx_world_mps,vy_world_mps,vz_world_mps,p_radps,q_radps,r_radps,"
@@ -49,77 +51,27 @@ void prepare_run_folder(const Scenario& scenario, const std::filesystem::path& f
   write_whole_file(folder / "scenario.yaml", scenario_to_text(scenario));
 }
 
-RunRecord::RunRecord(const Scenario& scenario, std::vector<Obstacle> obstacles)
-    : scenario_(scenario), obstacles_(std::move(obstacles)), trajectory_(trajectory_header) {
-  result_.scenario = scenario.name;
-  result_.seed = scenario.seed;
-  result_.sensor_seed = scenario.sensor_seed();
-  result_.detector = word_for(scenario.perception.detector);
-  result_.state_source = word_for(scenario.estimation.source);
-  result_.min_clearance_m = std::numeric_limits<double>::infinity();
-}
-
-void RunRecord::observe(const Truth& truth, bool released) {
-  digest_.add(truth.T_world_body);
-  if (released) {
-    if (released_s_ > 0) {
-      result_.distance_m +=
-          (truth.T_world_body.translation() - last_truth_.T_world_body.translation()).norm();
-    } else {
-      released_s_ = static_cast<double>(truth.t_ns) * 1e-9;
-    }
-    result_.progress_m = std::max(result_.progress_m, truth.T_world_body.translation().x());
-  }
-  if (steps_++ % clearance_every_steps == 0) {
-    result_.min_clearance_m = std::min(result_.min_clearance_m, clearance_at(truth));
-  }
-  last_truth_ = truth;
-}
-
-double RunRecord::clearance_at(const Truth& truth) {
-  if (truth.t_ns != clearance_t_ns_) {
-    clearance_t_ns_ = truth.t_ns;
-    clearance_m_ = understory::clearance_m(truth.T_world_body, scenario_.airframe, obstacles_);
-  }
-  return clearance_m_;
-}
-
-void RunRecord::observe(const Truth& truth, const State& state, const Controls& controls, bool released) {
-  digest_.add(state.T_world_body);
-  digest_.add(controls.left_elevon_rad);
-  digest_.add(controls.right_elevon_rad);
-  digest_.add(controls.thrust_n);
-  const Eigen::Vector3d velocity_world = state.T_world_body.linear() * state.velocity_body_mps;
-  fmt::format_to(std::back_inserter(trajectory_), "{:.6f}", static_cast<double>(truth.t_ns) * 1e-9);
-  append(trajectory_, truth.T_world_body, truth.velocity_world_mps, truth.angular_rate_body_radps);
-  append(trajectory_, state.T_world_body, velocity_world, state.angular_rate_body_radps);
-  fmt::format_to(std::back_inserter(trajectory_), ",{:.5f},{:.5f},{:.4f},{:.5f},{:.5f},{:.4f},{:.4f}\n",
-                 controls.left_elevon_rad, controls.right_elevon_rad, controls.thrust_n,
-                 truth.left_elevon_rad, truth.right_elevon_rad, truth.thrust_n, clearance_at(truth));
-  if (!released) return;
-  const double error_m = (state.T_world_body.translation() - truth.T_world_body.translation()).norm();
-  const Eigen::AngleAxisd turn(
-      Eigen::Matrix3d(state.T_world_body.linear().transpose() * truth.T_world_body.linear()));
-  error_sum_m_ += error_m;
-  velocity_error_sum_mps_ += (velocity_world - truth.velocity_world_mps).norm();
-  error_count_ += 1;
-  result_.position_error_max_m = std::max(result_.position_error_max_m, error_m);
-  result_.position_error_end_m = error_m;
-  result_.attitude_error_max_rad = std::max(result_.attitude_error_max_rad, std::abs(turn.angle()));
-}
-
-void RunRecord::observe(const StereoFrame& frame, std::size_t hit_count) {
+void RunRecord::on_frame(const Flight& flight) {
+  const StereoFrame& frame = flight.frame();
+  const std::size_t hits = flight.hits().size();
   digest_.add(static_cast<std::uint64_t>(frame.t_ns));
-  digest_.add(bytes_of(frame.left));
-  digest_.add(bytes_of(frame.right));
-  digest_.add(static_cast<std::uint64_t>(hit_count));
+  // Images that are rendered for an observer alone must not change the digest.
+  const bool looked_at = looks(flight.scenario().perception.detector);
+  digest_.add(looked_at ? bytes_of(frame.left) : std::span<const std::byte>());
+  digest_.add(looked_at ? bytes_of(frame.right) : std::span<const std::byte>());
+  digest_.add(static_cast<std::uint64_t>(hits));
   result_.frames += 1;
-  result_.detections += static_cast<std::int64_t>(hit_count);
+  result_.detections += static_cast<std::int64_t>(hits);
+  add_points(flight);
 }
 
-void RunRecord::remember_of_frame(const std::vector<ObstaclePoint>& points, std::int64_t t_ns,
-                                  const Eigen::Isometry3d& T_true_estimated) {
-  for (const ObstaclePoint& point : points) {
+/// The map's points that this frame brought in (not those it only saw again). They are counted on true
+/// obstacles by where the aircraft really was, whatever the odometry frame has drifted until then.
+void RunRecord::add_points(const Flight& flight) {
+  const std::int64_t t_ns = flight.frame().t_ns;
+  const Eigen::Isometry3d T_true_estimated =
+      flight.truth_at(t_ns).T_world_body * flight.state_at(t_ns).T_world_body.inverse();
+  for (const ObstaclePoint& point : flight.map().points()) {
     if (point.t_ns != t_ns || point.sightings != 1) continue;
     points_.push_back(point);
     true_positions_world_.push_back(T_true_estimated * point.position_world);
@@ -127,39 +79,106 @@ void RunRecord::remember_of_frame(const std::vector<ObstaclePoint>& points, std:
   result_.remembered_points = static_cast<std::int64_t>(points_.size());
 }
 
-void RunRecord::finish(Ending ending) {
-  result_.ending = ending;
-  result_.simulated_s = static_cast<double>(last_truth_.t_ns) * 1e-9;
-  const double flown_s = result_.simulated_s - released_s_;
-  if (released_s_ > 0 && flown_s > 0) result_.mean_speed_mps = result_.distance_m / flown_s;
+void RunRecord::on_step(const Flight& flight) {
+  digest_.add(flight.truth().T_world_body);
+  if (flight.launched()) add_path(flight);
+  if (flight.clock().step() % row_every_steps == 0) add_row(flight);
+}
+
+void RunRecord::add_path(const Flight& flight) {
+  const Eigen::Vector3d& position_world = flight.truth().T_world_body.translation();
+  if (released_ns_) result_.distance_m += (position_world - last_position_world_).norm();
+  if (!released_ns_) released_ns_ = flight.clock().t_ns();
+  last_position_world_ = position_world;
+  result_.progress_m = std::max(result_.progress_m, position_world.x());
+}
+
+/// Truth, estimate and controls side by side.
+void RunRecord::add_row(const Flight& flight) {
+  const Truth& truth = flight.truth();
+  const State& state = flight.state();
+  const Controls& controls = flight.controls();
+  digest_.add(state.T_world_body);
+  digest_.add(controls.left_elevon_rad);
+  digest_.add(controls.right_elevon_rad);
+  digest_.add(controls.thrust_n);
+  const double clearance_now_m =
+      clearance_m(truth.T_world_body, flight.scenario().airframe, flight.obstacles());
+  result_.min_clearance_m = std::min(result_.min_clearance_m, clearance_now_m);
+  fmt::format_to(std::back_inserter(trajectory_), "{:.6f}", flight.clock().t_s());
+  append(trajectory_, truth.T_world_body, truth.velocity_world_mps, truth.angular_rate_body_radps);
+  append(trajectory_, state.T_world_body, state.T_world_body.linear() * state.velocity_body_mps,
+         state.angular_rate_body_radps);
+  fmt::format_to(std::back_inserter(trajectory_), ",{:.5f},{:.5f},{:.4f},{:.5f},{:.5f},{:.4f},{:.4f}\n",
+                 controls.left_elevon_rad, controls.right_elevon_rad, controls.thrust_n,
+                 truth.left_elevon_rad, truth.right_elevon_rad, truth.thrust_n, clearance_now_m);
+  if (flight.launched()) add_errors(flight);
+}
+
+void RunRecord::add_errors(const Flight& flight) {
+  const Truth& truth = flight.truth();
+  const State& state = flight.state();
+  const double error_m = (state.T_world_body.translation() - truth.T_world_body.translation()).norm();
+  const Eigen::AngleAxisd turn(
+      Eigen::Matrix3d(state.T_world_body.linear().transpose() * truth.T_world_body.linear()));
+  position_error_sum_m_ += error_m;
+  velocity_error_sum_mps_ +=
+      (state.T_world_body.linear() * state.velocity_body_mps - truth.velocity_world_mps).norm();
+  error_count_ += 1;
+  result_.position_error_max_m = std::max(result_.position_error_max_m, error_m);
+  result_.position_error_end_m = error_m;
+  result_.attitude_error_max_rad = std::max(result_.attitude_error_max_rad, std::abs(turn.angle()));
+}
+
+FlightResult RunRecord::finish(const Flight& flight) {
+  const Scenario& scenario = flight.scenario();
+  result_.scenario = scenario.name;
+  result_.seed = scenario.seed;
+  result_.sensor_seed = scenario.sensor_seed();
+  result_.detector = word_for(scenario.perception.detector);
+  result_.state_source = word_for(scenario.estimation.source);
+  result_.ending = flight.ending().value();
+  result_.simulated_s = flight.clock().t_s();
+  const double flown_s = released_ns_ ? result_.simulated_s - static_cast<double>(*released_ns_) * 1e-9 : 0;
+  if (flown_s > 0) result_.mean_speed_mps = result_.distance_m / flown_s;
   if (error_count_ > 0) {
-    result_.position_error_mean_m = error_sum_m_ / static_cast<double>(error_count_);
+    result_.position_error_mean_m = position_error_sum_m_ / static_cast<double>(error_count_);
     result_.velocity_error_mean_mps = velocity_error_sum_mps_ / static_cast<double>(error_count_);
   }
-  const double now_clearance = clearance_m(last_truth_.T_world_body, scenario_.airframe, obstacles_);
-  result_.min_clearance_m = std::min(result_.min_clearance_m, now_clearance);
-  if (ending == Ending::collision) {
-    double minimum = std::numeric_limits<double>::infinity();
-    for (const Obstacle& obstacle : obstacles_) {
-      const double here = clearance_m(last_truth_.T_world_body, scenario_.airframe, {obstacle});
-      if (here < minimum) result_.touched = obstacle.name;
-      minimum = std::min(minimum, here);
-    }
-  }
-  if (obstacles_.size() <= 8) {  // a course of few, named bars: say what was seen of each
-    for (const Obstacle& bar : obstacles_) {
-      const auto near = [&](const Eigen::Vector3d& point_world) {
-        return obstacle_distance_m({point_world, point_world}, bar) < 0.5;
-      };
-      result_.points_on_obstacles.emplace_back(
-          bar.name, std::count_if(true_positions_world_.begin(), true_positions_world_.end(), near));
-    }
-  }
+  const double clearance_now_m =
+      clearance_m(flight.truth().T_world_body, scenario.airframe, flight.obstacles());
+  result_.min_clearance_m = std::min(result_.min_clearance_m, clearance_now_m);
+  if (result_.ending == Ending::collision) say_what_was_touched(flight);
+  if (flight.obstacles().size() <= 8) count_points_on_obstacles(flight.obstacles());
+  result_.planner = flight.planner_counts();
+  if (flight.cameras() != nullptr) result_.renderer = flight.cameras()->renderer();
+  result_.timings = flight.stopwatch().timings();
+  result_.wall_s = flight.stopwatch().elapsed_s();
   result_.digest = digest_.hex();
+  return result_;
+}
+
+void RunRecord::say_what_was_touched(const Flight& flight) {
+  double minimum_m = std::numeric_limits<double>::infinity();
+  for (const Obstacle& obstacle : flight.obstacles()) {
+    const double here_m = clearance_m(flight.truth().T_world_body, flight.scenario().airframe, {obstacle});
+    if (here_m < minimum_m) result_.touched = obstacle.name;
+    minimum_m = std::min(minimum_m, here_m);
+  }
+}
+
+/// A course of few, named bars: what was seen of each.
+void RunRecord::count_points_on_obstacles(const std::vector<Obstacle>& obstacles) {
+  for (const Obstacle& bar : obstacles) {
+    const auto near = [&](const Eigen::Vector3d& point_world) {
+      return obstacle_distance_m({point_world, point_world}, bar) < 0.5;
+    };
+    result_.points_on_obstacles.emplace_back(bar.name, std::ranges::count_if(true_positions_world_, near));
+  }
 }
 
 void RunRecord::write(const std::filesystem::path& folder) const {
-  write_whole_file(folder / "trajectory.csv", trajectory_);
+  write_whole_file(folder / "trajectory.csv", std::string(trajectory_header) + trajectory_);
   write_whole_file(folder / "map.ply", points_to_ply(points_));
   write_whole_file(folder / "result.json", to_json(result_));
 }

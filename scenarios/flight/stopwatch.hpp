@@ -2,21 +2,55 @@
 
 #include <algorithm>
 #include <chrono>
-#include <string>
+#include <cstddef>
+#include <string_view>
 #include <vector>
 
-#include "scenarios/flight/elapsed.hpp"
 #include "scenarios/flight/flight_result.hpp"
 
 namespace understory {
 
+/// Wall time since `begin`, s. For people and benchmarks; decides nothing in a flight.
+inline double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
 /// Wall time per named stage, for people. Nothing reads it back while a flight runs.
 class Stopwatch {
+  using Clock = std::chrono::steady_clock;
+
  public:
-  /// Runs `work` and books its time under `stage`; gives back what `work` gives.
+  /// Books the time until it goes out of scope.
+  class Booking {
+   public:
+    Booking(Stopwatch& stopwatch, std::size_t timing) : stopwatch_(stopwatch), timing_(timing) {}
+    ~Booking() {
+      const double seconds = seconds_since(begin_);
+      StageTiming& timing = stopwatch_.timings_[timing_];
+      timing.count += 1;
+      timing.total_s += seconds;
+      timing.maximum_s = std::max(timing.maximum_s, seconds);
+    }
+    Booking(const Booking&) = delete;
+    Booking& operator=(const Booking&) = delete;
+
+   private:
+    Stopwatch& stopwatch_;
+    std::size_t timing_;
+    Clock::time_point begin_ = Clock::now();
+  };
+
+  [[nodiscard]] Booking time(std::string_view stage) {
+    const auto known =
+        std::ranges::find_if(timings_, [stage](const StageTiming& timing) { return timing.stage == stage; });
+    const auto place = static_cast<std::size_t>(known - timings_.begin());
+    if (known == timings_.end()) timings_.push_back({std::string(stage), 0, 0, 0});
+    return {*this, place};
+  }
+  /// The same for `work`, whose value it gives back.
   template <typename Work>
-  decltype(auto) time(const char* stage, Work&& work) {
-    const Booking booking{*this, stage};
+  decltype(auto) time(std::string_view stage, Work&& work) {
+    const Booking booking = time(stage);
     return work();
   }
 
@@ -24,42 +58,8 @@ class Stopwatch {
   double elapsed_s() const { return seconds_since(start_); }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
-  struct Booking {
-    Stopwatch& stopwatch;
-    const char* stage;
-    Clock::time_point begin = Clock::now();
-    ~Booking() { stopwatch.book(stage, seconds_since(begin)); }
-  };
-
-  void book(const char* stage, double seconds) {
-    StageTiming& timing = timings_[place_of(stage)];
-    timing.count += 1;
-    timing.total_s += seconds;
-    timing.maximum_s = std::max(timing.maximum_s, seconds);
-  }
-
-  /// Several thousand times a simulated second, nearly always with a pointer that has come before.
-  std::size_t place_of(const char* stage) {
-    const auto known = std::find_if(places_.begin(), places_.end(),
-                                    [stage](const Place& place) { return place.name == stage; });
-    if (known != places_.end()) return known->timing;
-    const auto named = std::find_if(timings_.begin(), timings_.end(),
-                                    [stage](const StageTiming& timing) { return timing.stage == stage; });
-    places_.push_back({stage, static_cast<std::size_t>(named - timings_.begin())});
-    if (named == timings_.end()) timings_.push_back(StageTiming{stage, 0, 0, 0});
-    return places_.back().timing;
-  }
-
-  struct Place {
-    const char* name;  ///< a literal
-    std::size_t timing;
-  };
-
   Clock::time_point start_ = Clock::now();
   std::vector<StageTiming> timings_;
-  std::vector<Place> places_;
 };
 
 }  // namespace understory

@@ -8,7 +8,7 @@
 
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/named_seed.hpp"
-#include "scenarios/flight/due.hpp"
+#include "scenarios/flight/flight.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/report/video_writer.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
@@ -62,7 +62,7 @@ EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario,
     : folder_(folder / "mav0"),
       part_(folder / "mav0.part"),
       rig_(rig.rig),
-      truth_every_steps_(Due(scenario).imu_steps) {
+      truth_every_steps_(physics_rate_hz / scenario.sensors.sensors.imu_rate_hz) {
   std::error_code ignored;
   if (fs::exists(fs::symlink_status(folder_, ignored)))
     throw ScenarioError(
@@ -99,7 +99,21 @@ EurocRecording::~EurocRecording() {
   fs::remove_all(part_, ignored);
 }
 
+void EurocRecording::on_frame(const Flight& flight) {
+  observe(flight.truth());
+  add(flight.frame(), *flight.cameras());
+}
+
+void EurocRecording::on_step(const Flight& flight) {
+  observe(flight.truth());
+  if (!flight.clock().imu()) return;
+  const std::optional<ImuSample>& sample = flight.newest<ImuSample>();
+  if (sample && sample->t_ns == flight.clock().t_ns()) add(*sample);
+  add_estimate(flight.state());
+}
+
 void EurocRecording::observe(const Truth& truth) {
+  if (!recent_.empty() && recent_.back().t_ns == truth.t_ns) return;
   recent_.push_back(truth);
   while (recent_.front().t_ns < truth.t_ns - kept_ns) recent_.pop_front();
   if (steps_++ % truth_every_steps_ == 0) add_true_state(truth);
@@ -143,7 +157,7 @@ void EurocRecording::add_estimate(const State& state) {
                                                  state.gyro_bias_radps, state.accelerometer_bias_mps2}));
 }
 
-void EurocRecording::add(const StereoFrame& frame, StereoCameras& cameras) {
+void EurocRecording::add(const StereoFrame& frame, const StereoCameras& cameras) {
   const Truth truth = truth_at(frame.t_ns);
   add_true_state(truth);
   const std::string name = fmt::format("{}.png", recorded_ns(frame.t_ns));

@@ -9,6 +9,7 @@
 #include "estimation/samples.hpp"
 #include "estimation/state.hpp"
 #include "perception/stereo_frame.hpp"
+#include "scenarios/flight/flight_observer.hpp"
 #include "scenarios/recording/euroc_texts.hpp"
 #include "scenarios/scenario/scenario.hpp"
 #include "sim/aircraft/truth.hpp"
@@ -19,7 +20,7 @@ namespace understory {
 /// Keeps what cameras and IMU saw, and what was true, in the EuRoC/ASL layout: <folder>/mav0
 /// (docs/record.md). It bears that name only when it is whole ("mav0.part" until then). Images are written as
 /// they come, the tables by finish().
-class EurocRecording {
+class EurocRecording : public FlightObserver {
  public:
   /// `expected_s`: how much of simulated time is to come; that many images must fit the disk. Throws
   /// ScenarioError where the folder cannot be written or has a recording already or the
@@ -27,18 +28,23 @@ class EurocRecording {
   /// is too full.
   EurocRecording(const std::filesystem::path& folder, const Scenario& scenario, const CalibratedRig& rig,
                  double expected_s);
-  ~EurocRecording();  ///< removes what finish() has not made whole
+  ~EurocRecording() override;  ///< removes what finish() has not made whole
   EurocRecording(const EurocRecording&) = delete;
   EurocRecording& operator=(const EurocRecording&) = delete;
 
-  /// Every physics step, before what is seen in it.
+  // Of a flight:
+  bool needs_images() const override { return true; }
+  void on_frame(const Flight& flight) override;
+  void on_step(const Flight& flight) override;
+
+  // Of cameras that are carried:
+  /// Every physics step, before what is seen in it; a moment already known is left alone.
   void observe(const Truth& truth);
   void add(const ImuSample& sample);
-  void add_estimate(const State& state);
-  /// Within a second of its moment. `cameras`, those that took it, draw the true depth and
-  /// the objects. Throws MachineError
-  /// where the disk is full.
-  void add(const StereoFrame& frame, StereoCameras& cameras);
+  /// Within a second of its moment. `cameras`, those that took it, draw the true depth and the objects.
+  /// Throws MachineError where the disk is full.
+  void add(const StereoFrame& frame, const StereoCameras& cameras);
+
   /// Throws ScenarioError where there is no frame.
   void finish();
 
@@ -47,6 +53,7 @@ class EurocRecording {
  private:
   Truth truth_at(std::int64_t t_ns) const;
   void add_true_state(const Truth& truth);
+  void add_estimate(const State& state);
 
   std::filesystem::path folder_, part_;
   StereoRig rig_;

@@ -5,29 +5,36 @@
 
 #include "perception/io/pose_file.hpp"
 #include "scenarios/flight/fly.hpp"
-#include "scenarios/recording/carry.hpp"
 #include "scenarios/recording/walk.hpp"
 #include "scenarios/scenario/scenario.hpp"
 
 namespace understory {
 
-struct RecordedFlight {
+struct FlownRecording {
   FlightResult result;
   std::int64_t frames = 0;
 };
 
 /// Flies `scenario` and leaves, beside the run's files, its recording in options.output_folder
-/// (EurocRecording). The flight is the one that fly() flies. Throws as both do. Hooks of the caller's own are
-/// replaced, but for on_progress.
-RecordedFlight fly_recorded(const Scenario& scenario, FlyOptions options);
+/// (EurocRecording). The flight is the one that fly() flies. Throws as both do.
+FlownRecording fly_recorded(const Scenario& scenario, FlyOptions options);
+
+/// Of a scenario's cameras and IMU carried with estimator and autopilot off. Leaves scenario.yaml and the
+/// recording (EurocRecording) in options.output_folder: the truth as pose, no estimates. Every frame arrives:
+/// a scenario's faults and lost frames are of flights.
+struct Carried {
+  double carried_s = 0;
+  double carried_m = 0;  ///< along the way
+  std::int64_t frames = 0;
+};
 
 struct RecordedWalk {
   WalkPath path;
   Carried carried;
 };
 
-/// Carries the scenario's cameras and IMU past its obstacles on foot (carry_recorded). Ends at the goal plane
-/// or after time_limit_s. Throws as walk_path and EurocRecording do.
+/// Carries them past the scenario's obstacles on foot. Ends at the goal plane or after time_limit_s. Throws
+/// as walk_path and EurocRecording do.
 RecordedWalk walk_recorded(const Scenario& scenario, const WalkConfig& config, const FlyOptions& options);
 
 /// Carries them along `poses` of read_path, smoothly, from the first to the last, whatever stands there. Time

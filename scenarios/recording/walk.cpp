@@ -10,7 +10,7 @@
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/named_seed.hpp"
 #include "scenarios/flight/clearance.hpp"
-#include "scenarios/recording/carried_truth.hpp"
+#include "scenarios/recording/carried_path.hpp"
 
 namespace understory {
 namespace {

@@ -1,5 +1,7 @@
 #include "sim/aircraft/aircraft.hpp"
 
+#include <mujoco/mujoco.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>

@@ -45,10 +45,10 @@ class Aircraft {
   /// Keeps a reference to the model. The launch rail points along world x; the release point is the world's
   /// (0, 0). Throws std::runtime_error where the rail would begin underground. A step is the model's own
   /// (1/1200 s from build_world; tests of convergence set others, whole numbers of hertz).
-  Aircraft(const mjModel& model, const Airframe& airframe, const LaunchConfig& launch, Wind wind,
+  Aircraft(const mjModel_& model, const Airframe& airframe, const LaunchConfig& launch, Wind wind,
            const ActuatorsConfig& actuators = {});
   /// In a steady wind.
-  Aircraft(const mjModel& model, const Airframe& airframe, const LaunchConfig& launch,
+  Aircraft(const mjModel_& model, const Airframe& airframe, const LaunchConfig& launch,
            const Eigen::Vector3d& wind_world_mps)
       : Aircraft(model, airframe, launch, Wind(wind_world_mps)) {}
 
@@ -61,8 +61,7 @@ class Aircraft {
   const Truth& truth() const { return truth_; }
   bool launched() const { return step_ >= release_step_; }  ///< has left the rail
   Contact contact() const;  ///< by MuJoCo's own contacts at this step, aircraft against anything
-  const mjData& data() const { return *data_; }
-  mjData& data() { return *data_; }
+  const mjData_& data() const { return *data_; }
 
   /// Puts the body, already launched, somewhere in flight with its surfaces and delayed commands at
   /// `controls`: for tests and experiments that start in the air. Time runs on.
@@ -91,7 +90,7 @@ class Aircraft {
   void set_elevons();
   void read_truth(const Eigen::Vector3d& rail_acceleration_world_mps2);
 
-  const mjModel& model_;
+  const mjModel_& model_;
   DataPointer data_;
   Airframe airframe_;
   LaunchConfig launch_;

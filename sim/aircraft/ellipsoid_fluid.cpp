@@ -1,6 +1,7 @@
 #include "sim/aircraft/ellipsoid_fluid.hpp"
 
 #include <fmt/format.h>
+#include <mujoco/mujoco.h>
 
 #include <cmath>
 #include <cstring>

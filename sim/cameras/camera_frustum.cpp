@@ -15,24 +15,6 @@ std::array<Eye, 2> eyes_of(const StereoRig& rig, const Eigen::Isometry3d& T_worl
   return {left, right};
 }
 
-mjvGLCamera to_gl(const Eye& eye) {
-  mjvGLCamera camera{};
-  const Eigen::Matrix3d rotation = eye.T_world_camera.linear();
-  for (int i = 0; i < 3; ++i) {
-    camera.pos[i] = static_cast<float>(eye.T_world_camera.translation()[i]);
-    camera.forward[i] = static_cast<float>(rotation(i, 2));
-    camera.up[i] = static_cast<float>(-rotation(i, 1));  // OpenCV's y looks down
-  }
-  // Edges on the near plane. MuJoCo takes the centre and derives the half width from the viewport's aspect.
-  const double metres_per_pixel = near_m / eye.focal_px;
-  camera.frustum_center = static_cast<float>((0.5 * (eye.width_px - 1) - eye.center_x_px) * metres_per_pixel);
-  camera.frustum_top = static_cast<float>((eye.center_y_px + 0.5) * metres_per_pixel);
-  camera.frustum_bottom = static_cast<float>((eye.center_y_px + 0.5 - eye.height_px) * metres_per_pixel);
-  camera.frustum_near = static_cast<float>(near_m);
-  camera.frustum_far = static_cast<float>(far_m);
-  return camera;
-}
-
 bool may_see(const Eye& eye, const GeomBox& box) {
   // Inward normals, camera frame, of left, right, top, bottom and of the plane at the eye itself.
   const double f = eye.focal_px;

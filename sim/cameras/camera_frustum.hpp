@@ -1,7 +1,5 @@
 #pragma once
 
-#include <mujoco/mujoco.h>
-
 #include <Eigen/Geometry>
 #include <array>
 
@@ -25,9 +23,6 @@ constexpr double far_m = 500.0;  ///< beyond the ground's rim
 
 /// The two eyes of a rig on a body: left first. The right eye is baseline_m along the left one's x.
 std::array<Eye, 2> eyes_of(const StereoRig& rig, const Eigen::Isometry3d& T_world_body);
-
-/// The same eye for OpenGL: y up and looking along -z. The only place where the axes flip.
-mjvGLCamera to_gl(const Eye& eye);
 
 /// A box in the world: the extent of a geom along its own axes.
 struct GeomBox {

@@ -1,5 +1,7 @@
 #include "sim/cameras/stereo_cameras.hpp"
 
+#include <mujoco/mujoco.h>
+
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <stdexcept>
@@ -59,8 +61,7 @@ struct StereoCameras::Implementation {
   bool takes_time() const { return exposure_ns > 0 || right_delay_ns > 0; }
 
   /// Both images of an exposure that ends now: the mean of views spread evenly over it.
-  std::array<cv::Mat, 2> exposed(const mjData& data, std::int64_t t_ns) {
-    const Eigen::Isometry3d now = aircraft_pose(model, data);
+  std::array<cv::Mat, 2> exposed(const Eigen::Isometry3d& now, std::int64_t t_ns) {
     std::array<cv::Mat, 2> views, sums;
     if (!takes_time()) {
       views = scene.gray_pair(optics.eyes(now, now));
@@ -90,12 +91,11 @@ StereoCameras::StereoCameras(const World& world, const StereoRig& rig, const Cam
 
 StereoCameras::~StereoCameras() = default;
 
-void StereoCameras::observe(const mjData& data, std::int64_t t_ns) {
-  if (!implementation_->takes_time()) return;
-  implementation_->poses.observe(aircraft_pose(implementation_->model, data), t_ns);
+void StereoCameras::observe(const Eigen::Isometry3d& T_world_body, std::int64_t t_ns) {
+  if (implementation_->takes_time()) implementation_->poses.observe(T_world_body, t_ns);
 }
 
-StereoFrame StereoCameras::capture(const mjData& data, std::int64_t t_ns) {
+StereoFrame StereoCameras::capture(const Eigen::Isometry3d& T_world_body, std::int64_t t_ns) {
   Implementation& self = *implementation_;
   StereoFrame frame{t_ns - self.config.exposure_lag_ns(), {}, {}};
   if (self.config.lens_cap) {
@@ -103,7 +103,7 @@ StereoFrame StereoCameras::capture(const mjData& data, std::int64_t t_ns) {
     frame.left = cv::Mat::zeros(size, CV_8UC1);
     frame.right = cv::Mat::zeros(size, CV_8UC1);
   } else {
-    const auto images = self.exposed(data, t_ns);
+    const auto images = self.exposed(T_world_body, t_ns);
     frame.left = images[0];
     frame.right = images[1];
   }
@@ -114,19 +114,15 @@ StereoFrame StereoCameras::capture(const mjData& data, std::int64_t t_ns) {
   return frame;
 }
 
-cv::Mat StereoCameras::depth(const mjData& data) {
-  return depth(aircraft_pose(implementation_->model, data));
-}
-
-cv::Mat StereoCameras::depth(const Eigen::Isometry3d& T_world_body) {
+cv::Mat StereoCameras::depth(const Eigen::Isometry3d& T_world_body) const {
   return implementation_->scene.left_depth(eyes_of(implementation_->rig, T_world_body));
 }
 
-TrueView StereoCameras::true_view(const Eigen::Isometry3d& T_world_body) {
+TrueView StereoCameras::true_view(const Eigen::Isometry3d& T_world_body) const {
   return implementation_->scene.true_left_view(eyes_of(implementation_->rig, T_world_body));
 }
 
-cv::Mat StereoCameras::chase_view(const mjData& data, int width_px, int height_px) {
+cv::Mat StereoCameras::chase_view(const mjData& data, int width_px, int height_px) const {
   const Eigen::Isometry3d aircraft = aircraft_pose(implementation_->model, data);
   const Eigen::Vector3d forward = aircraft.linear().col(0);
   const double yaw_rad = std::atan2(forward.y(), forward.x());

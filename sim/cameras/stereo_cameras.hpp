@@ -35,18 +35,16 @@ class StereoCameras {
   ~StereoCameras();
 
   /// Where the body is, at every physics step: what an image that takes time is made of.
-  void observe(const mjData& data, std::int64_t t_ns);
-  /// Both images, gray 8-bit with noise, of the world of `data`, with the exposure's end now, at t_ns; the
-  /// frame's own time lies CameraConfig::exposure_lag_ns() before.
-  StereoFrame capture(const mjData& data, std::int64_t t_ns);
-  /// Depth in the left image, rectified, at the moment of `data`: CV_32FC1, metres along the optical axis.
-  cv::Mat depth(const mjData& data);
-  /// The same from where the body was at another moment.
-  cv::Mat depth(const Eigen::Isometry3d& T_world_body);
+  void observe(const Eigen::Isometry3d& T_world_body, std::int64_t t_ns);
+  /// Both images, gray 8-bit with noise, with the body there and the exposure's end now, at t_ns; the frame's
+  /// own time lies CameraConfig::exposure_lag_ns() before.
+  StereoFrame capture(const Eigen::Isometry3d& T_world_body, std::int64_t t_ns);
+  /// Depth in the left image, rectified, with the body there: CV_32FC1, metres along the optical axis.
+  cv::Mat depth(const Eigen::Isometry3d& T_world_body) const;
   /// What is where in the left image, rectified, with the body there: the same depth, and the objects.
-  TrueView true_view(const Eigen::Isometry3d& T_world_body);
-  /// What a camera following the aircraft sees, BGR 8-bit, for people.
-  cv::Mat chase_view(const mjData& data, int width_px, int height_px);
+  TrueView true_view(const Eigen::Isometry3d& T_world_body) const;
+  /// What a camera following the aircraft of `data` (Aircraft::data()) sees, BGR 8-bit, for people.
+  cv::Mat chase_view(const mjData_& data, int width_px, int height_px) const;
   /// The renderer's own name and version, for records.
   std::string renderer() const;
 

@@ -1,5 +1,7 @@
 #include "sim/render/scene_renderer.hpp"
 
+#include <mujoco/mujoco.h>
+
 #include <algorithm>
 #include <bit>
 #include <string>
@@ -9,7 +11,6 @@
 
 #include "sim/cameras/image_sensor.hpp"
 #include "sim/scene/texture_levels.hpp"
-#include "sim/scene/world.hpp"
 
 namespace understory {
 namespace {
@@ -74,24 +75,58 @@ GeomBox box_of(const mjModel& model, const mjvGeom& geom) {
   return box;
 }
 
+/// The same eye for OpenGL: y up and looking along -z. The only place where the axes flip.
+mjvGLCamera to_gl(const Eye& eye) {
+  mjvGLCamera camera{};
+  const Eigen::Matrix3d rotation = eye.T_world_camera.linear();
+  for (int i = 0; i < 3; ++i) {
+    camera.pos[i] = static_cast<float>(eye.T_world_camera.translation()[i]);
+    camera.forward[i] = static_cast<float>(rotation(i, 2));
+    camera.up[i] = static_cast<float>(-rotation(i, 1));  // OpenCV's y looks down
+  }
+  // Edges on the near plane. MuJoCo takes the centre and derives the half width from the viewport's aspect.
+  const double metres_per_pixel = near_m / eye.focal_px;
+  camera.frustum_center = static_cast<float>((0.5 * (eye.width_px - 1) - eye.center_x_px) * metres_per_pixel);
+  camera.frustum_top = static_cast<float>((eye.center_y_px + 0.5) * metres_per_pixel);
+  camera.frustum_bottom = static_cast<float>((eye.center_y_px + 0.5 - eye.height_px) * metres_per_pixel);
+  camera.frustum_near = static_cast<float>(near_m);
+  camera.frustum_far = static_cast<float>(far_m);
+  return camera;
+}
+
+struct SceneryGeom {
+  mjvGeom geom;
+  GeomBox box;
+  bool obstacle;  ///< not drawn beyond the view distance; the ground is
+};
+
 }  // namespace
+
+struct SceneRenderer::Scene {
+  mjrContext context{};
+  mjvScene shown{};
+  std::vector<SceneryGeom> scenery;
+};
 
 SceneRenderer::SceneRenderer(const mjModel& model, double view_distance_m, int width_px, int height_px,
                              RendererKind renderer)
-    : model_(model), view_distance_m_(view_distance_m), gl_({.renderer = renderer}) {
+    : model_(model),
+      view_distance_m_(view_distance_m),
+      gl_({.renderer = renderer}),
+      scene_(std::make_unique<Scene>()) {
   gl_.make_current(width_px, height_px);
   make_context();
-  mjr_setBuffer(mjFB_WINDOW, &context_);
-  mjv_defaultScene(&scene_);
-  mjv_makeScene(&model_, &scene_, model_.ngeom + 100);
-  plain_rendering(scene_);
+  mjr_setBuffer(mjFB_WINDOW, &scene_->context);
+  mjv_defaultScene(&scene_->shown);
+  mjv_makeScene(&model_, &scene_->shown, model_.ngeom + 100);
+  plain_rendering(scene_->shown);
   gather_scenery();
 }
 
 SceneRenderer::~SceneRenderer() {
   gl_.make_current(64, 64);  // MuJoCo deletes its GL objects in the current context
-  mjv_freeScene(&scene_);
-  mjr_freeContext(&context_);
+  mjv_freeScene(&scene_->shown);
+  mjr_freeContext(&scene_->context);
 }
 
 /// MuJoCo would let OpenGL compute the textures' mipmaps, which takes most of its start. So MuJoCo gets
@@ -109,10 +144,10 @@ void SceneRenderer::make_context() {
   mjModel shown = model_;
   shown.tex_width = widths_px.data();
   shown.tex_height = heights_px.data();
-  mjr_defaultContext(&context_);
-  mjr_makeContext(&shown, &context_, mjFONTSCALE_100);
+  mjr_defaultContext(&scene_->context);
+  mjr_makeContext(&shown, &scene_->context, mjFONTSCALE_100);
   for (int i = 0; i < model_.ntex; ++i) {
-    const unsigned texture = context_.texture[i];
+    const unsigned texture = scene_->context.texture[i];
     if (filled_here(i)) {
       const int width_px = model_.tex_width[i], height_px = model_.tex_height[i];
       const std::uint8_t* rgb = model_.tex_rgb + model_.tex_adr[i];
@@ -121,7 +156,7 @@ void SceneRenderer::make_context() {
       for (const TextureLevel& copy : smaller_copies(width_px, height_px, rgb))
         gl_.upload_level(texture, ++level, copy.width_px, copy.height_px, copy.rgb.data());
     }
-    if (context_.textureType[i] == mjTEXTURE_2D) gl_.use_nearest_mipmap(texture);
+    if (scene_->context.textureType[i] == mjTEXTURE_2D) gl_.use_nearest_mipmap(texture);
   }
 }
 
@@ -130,12 +165,12 @@ void SceneRenderer::gather_scenery() {
   const DataPointer data(mj_makeData(&model_));
   mj_kinematics(&model_, data.get());
   update_scene(*data, false);
-  for (int i = 0; i < scene_.ngeom; ++i) {
-    mjvGeom geom = scene_.geoms[i];
+  for (int i = 0; i < scene_->shown.ngeom; ++i) {
+    mjvGeom geom = scene_->shown.geoms[i];
     const char* name = mj_id2name(&model_, mjOBJ_GEOM, geom.objid);
     const int object = object_of(name != nullptr ? name : "");
     geom.segid = object - 1;
-    scenery_.push_back({geom, box_of(model_, geom), object != object_ground});
+    scene_->scenery.push_back({geom, box_of(model_, geom), object != object_ground});
   }
 }
 
@@ -150,33 +185,33 @@ void SceneRenderer::update_scene(const mjData& data, bool with_aircraft) {
   mjv_defaultCamera(&camera);
   // mjv_updateScene takes mutable data and writes none of it.
   mjv_updateScene(&model_, const_cast<mjData*>(&data), &option, nullptr, &camera,
-                  mjCAT_STATIC | mjCAT_DYNAMIC, &scene_);
-  light(scene_);
+                  mjCAT_STATIC | mjCAT_DYNAMIC, &scene_->shown);
+  light(scene_->shown);
 }
 
 /// Nearest first, so that hidden pixels are not shaded. Geoms that no camera sees are not given to MuJoCo.
 void SceneRenderer::fill_scene(const std::array<Eye, 2>& eyes) {
   std::vector<std::pair<double, const SceneryGeom*>> seen;
-  for (const SceneryGeom& item : scenery_) {
+  for (const SceneryGeom& item : scene_->scenery) {
     const double range_m = distance_m(eyes[0].T_world_camera.translation(), item.box);
     if (culls_ && item.obstacle && range_m > view_distance_m_) continue;
     if (!culls_ || may_see(eyes[0], item.box) || may_see(eyes[1], item.box))
       seen.emplace_back(item.obstacle ? range_m : far_m, &item);
   }
   std::stable_sort(seen.begin(), seen.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  scene_.ngeom = 0;
-  for (const auto& [range_m, item] : seen) scene_.geoms[scene_.ngeom++] = item->geom;
-  scene_.camera[0] = to_gl(eyes[0]);
-  scene_.camera[1] = to_gl(eyes[1]);
-  light(scene_);
+  scene_->shown.ngeom = 0;
+  for (const auto& [range_m, item] : seen) scene_->shown.geoms[scene_->shown.ngeom++] = item->geom;
+  scene_->shown.camera[0] = to_gl(eyes[0]);
+  scene_->shown.camera[1] = to_gl(eyes[1]);
+  light(scene_->shown);
 }
 
 const std::uint8_t* SceneRenderer::render(const std::array<Eye, 2>& eyes) {
   // Another renderer may have drawn since.
   gl_.make_current(2 * eyes[0].width_px, eyes[0].height_px);
   fill_scene(eyes);
-  scene_.stereo = mjSTEREO_SIDEBYSIDE;
-  mjr_render({0, 0, 2 * eyes[0].width_px, eyes[0].height_px}, &scene_, &context_);
+  scene_->shown.stereo = mjSTEREO_SIDEBYSIDE;
+  mjr_render({0, 0, 2 * eyes[0].width_px, eyes[0].height_px}, &scene_->shown, &scene_->context);
   return gl_.finished_pixels();
 }
 
@@ -193,16 +228,17 @@ cv::Mat SceneRenderer::left_depth(const std::array<Eye, 2>& eyes) {
 }
 
 TrueView SceneRenderer::true_left_view(const std::array<Eye, 2>& eyes) {
-  scene_.flags[mjRND_SEGMENT] = scene_.flags[mjRND_IDCOLOR] = 1;  // flat: a geom's number for its colour
+  scene_->shown.flags[mjRND_SEGMENT] = scene_->shown.flags[mjRND_IDCOLOR] =
+      1;  // flat: a geom's number for its colour
   const std::uint8_t* pixels = render(eyes);
-  scene_.flags[mjRND_SEGMENT] = scene_.flags[mjRND_IDCOLOR] = 0;
+  scene_->shown.flags[mjRND_SEGMENT] = scene_->shown.flags[mjRND_IDCOLOR] = 0;
   return {read_depth(eyes[0]), object_numbers(pixels, 2 * eyes[0].width_px, eyes[0])};
 }
 
 cv::Mat SceneRenderer::read_depth(const Eye& eye) {
   cv::Mat depth(eye.height_px, eye.width_px, CV_32FC1);
   std::vector<float> values(depth.total());
-  mjr_readPixels(nullptr, values.data(), {0, 0, depth.cols, depth.rows}, &context_);
+  mjr_readPixels(nullptr, values.data(), {0, 0, depth.cols, depth.rows}, &scene_->context);
   for (int row = 0; row < depth.rows; ++row) {
     const float* source = values.data() + static_cast<std::size_t>(depth.rows - 1 - row) * depth.cols;
     std::transform(source, source + depth.cols, depth.ptr<float>(row),
@@ -213,10 +249,10 @@ cv::Mat SceneRenderer::read_depth(const Eye& eye) {
 
 cv::Mat SceneRenderer::colour_with_aircraft(const mjData& data, const Eye& eye) {
   update_scene(data, true);
-  scene_.camera[0] = scene_.camera[1] = to_gl(eye);
-  scene_.stereo = mjSTEREO_NONE;
+  scene_->shown.camera[0] = scene_->shown.camera[1] = to_gl(eye);
+  scene_->shown.stereo = mjSTEREO_NONE;
   gl_.make_current(eye.width_px, eye.height_px);
-  mjr_render({0, 0, eye.width_px, eye.height_px}, &scene_, &context_);
+  mjr_render({0, 0, eye.width_px, eye.height_px}, &scene_->shown, &scene_->context);
   return colour_with_sky(gl_.finished_pixels(), eye);
 }
 

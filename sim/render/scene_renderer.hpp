@@ -1,15 +1,14 @@
 #pragma once
 
-#include <mujoco/mujoco.h>
-
 #include <array>
+#include <memory>
 #include <opencv2/core/mat.hpp>
 #include <string>
-#include <vector>
 
 #include "sim/cameras/camera_frustum.hpp"
 #include "sim/cameras/true_view.hpp"
 #include "sim/render/offscreen_context.hpp"
+#include "sim/scene/world.hpp"
 
 namespace understory {
 
@@ -18,7 +17,7 @@ class SceneRenderer {
  public:
   /// Keeps a reference to the model. The size is that of the first picture; others may follow. Throws
   /// std::runtime_error in one line where no GL library can be loaded.
-  SceneRenderer(const mjModel& model, double view_distance_m, int width_px, int height_px,
+  SceneRenderer(const mjModel_& model, double view_distance_m, int width_px, int height_px,
                 RendererKind renderer);
   ~SceneRenderer();
   SceneRenderer(const SceneRenderer&) = delete;
@@ -31,34 +30,28 @@ class SceneRenderer {
   /// The same depth and the objects, from one drawing.
   TrueView true_left_view(const std::array<Eye, 2>& eyes);
   /// One eye's view of everything, the aircraft's skin too: BGR, 8 bits, for people.
-  cv::Mat colour_with_aircraft(const mjData& data, const Eye& eye);
+  cv::Mat colour_with_aircraft(const mjData_& data, const Eye& eye);
   /// For comparison: from now on all scenery is drawn, however far away and wherever it is.
   void stop_culling() { culls_ = false; }
   /// The renderer's own name and version.
   std::string name() const { return gl_.renderer(); }
 
  private:
-  struct SceneryGeom {
-    mjvGeom geom;
-    GeomBox box;
-    bool obstacle;  ///< not drawn beyond the view distance; the ground is
-  };
+  struct Scene;  ///< MuJoCo's own structures
   void make_context();
   void gather_scenery();
-  void update_scene(const mjData& data, bool with_aircraft);
+  void update_scene(const mjData_& data, bool with_aircraft);
   void fill_scene(const std::array<Eye, 2>& eyes);
   /// RGBA of both eyes side by side, as OffscreenContext::finished_pixels.
   const std::uint8_t* render(const std::array<Eye, 2>& eyes);
   /// Of the left eye's view as last rendered.
   cv::Mat read_depth(const Eye& eye);
 
-  const mjModel& model_;
+  const mjModel_& model_;
   double view_distance_m_;
   bool culls_ = true;
   OffscreenContext gl_;
-  mjrContext context_{};
-  mjvScene scene_{};
-  std::vector<SceneryGeom> scenery_;
+  std::unique_ptr<Scene> scene_;
 };
 
 }  // namespace understory

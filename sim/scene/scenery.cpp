@@ -1,5 +1,7 @@
 #include "sim/scene/scenery.hpp"
 
+#include <mujoco/mujoco.h>
+
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -22,6 +22,6 @@ SceneryXml scenery_xml(const std::vector<Obstacle>& obstacles, const WorldConfig
 
 /// Fills those textures that the compiled model has (see models/textures/README.md). Must come before the
 /// first renderer of the model.
-void paint_textures(mjModel& model, const WorldConfig& config);
+void paint_textures(mjModel_& model, const WorldConfig& config);
 
 }  // namespace understory

@@ -1,5 +1,7 @@
 #include "sim/scene/world.hpp"
 
+#include <mujoco/mujoco.h>
+
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -110,6 +112,9 @@ void set_inertia(mjModel& model, const Airframe& airframe) {
 }
 
 }  // namespace
+
+void DeleteModel::operator()(mjModel_* model) const { mj_deleteModel(model); }
+void DeleteData::operator()(mjData_* data) const { mj_deleteData(data); }
 
 World build_world(const fs::path& models_folder, const Airframe& airframe,
                   const std::vector<Obstacle>& obstacles, const WorldConfig& config) {

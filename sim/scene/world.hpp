@@ -1,7 +1,5 @@
 #pragma once
 
-#include <mujoco/mujoco.h>
-
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -9,6 +7,9 @@
 
 #include "planning/airframe.hpp"
 #include "sim/scene/obstacle.hpp"
+
+struct mjModel_;  // MuJoCo's, opaque to whoever does not include it
+struct mjData_;
 
 namespace understory {
 
@@ -32,13 +33,13 @@ void visit_fields(Visitor& visit, WorldConfig& config) {
 }
 
 struct DeleteModel {
-  void operator()(mjModel* model) const { mj_deleteModel(model); }
+  void operator()(mjModel_* model) const;
 };
 struct DeleteData {
-  void operator()(mjData* data) const { mj_deleteData(data); }
+  void operator()(mjData_* data) const;
 };
-using ModelPointer = std::unique_ptr<mjModel, DeleteModel>;
-using DataPointer = std::unique_ptr<mjData, DeleteData>;
+using ModelPointer = std::unique_ptr<mjModel_, DeleteModel>;
+using DataPointer = std::unique_ptr<mjData_, DeleteData>;
 
 /// Geom groups: collisions (never drawn), the scenery (drawn to everyone), the aircraft's skin (drawn only to
 /// the chase camera: the stereo cameras look ahead of it).

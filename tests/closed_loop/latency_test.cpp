@@ -6,7 +6,7 @@
 #include "perception/io/rig_file.hpp"
 #include "planning/autopilot.hpp"
 #include "scenarios/config/named_seed.hpp"
-#include "scenarios/flight/due.hpp"
+#include "scenarios/flight/flight_clock.hpp"
 #include "scenarios/flight/oracles/true_depth.hpp"
 #include "scenarios/flight/oracles/true_state.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
@@ -55,23 +55,22 @@ struct Loop {
     Autopilot autopilot(scenario.autopilot.autopilot, scenario.airframe, rig, scenario.mission(), eyes,
                         state_source, seed_for(1000, "planner"));
     Imu imu(scenario.sensors.sensors.imu, seed_for(1000, "imu"));
-    const Due due(scenario);
     const auto latency_ns = static_cast<std::int64_t>(scenario.cameras.latency_s * 1e9);
     std::deque<StereoFrame> pending;
     Controls controls;
     std::vector<double> surfaces;
-    for (std::int64_t step = 0; aircraft.truth().t_ns < end_ns; ++step) {
+    for (FlightClock clock(scenario); clock.t_ns() < end_ns; clock.advance()) {
       const Truth& truth = aircraft.truth();
       history.observe(truth);
       surfaces.push_back(truth.left_elevon_rad);
-      if (due.imu(step)) autopilot.on(imu.measure(truth));
-      if (due.camera(step)) pending.push_back({truth.t_ns, {}, {}});
+      if (clock.imu()) autopilot.on(imu.measure(truth));
+      if (clock.camera()) pending.push_back({truth.t_ns, {}, {}});
       while (!pending.empty() && truth.t_ns >= pending.front().t_ns + latency_ns) {
         autopilot.on(pending.front());
         pending.pop_front();
       }
-      if (due.replan(step)) autopilot.replan(truth.t_ns);
-      if (due.imu(step)) controls = autopilot.controls(truth.t_ns);
+      if (clock.replan()) autopilot.replan(truth.t_ns);
+      if (clock.imu()) controls = autopilot.controls(truth.t_ns);
       aircraft.step(controls);
     }
     return surfaces;

@@ -46,12 +46,11 @@ Listener heard(const std::vector<std::string>& settings) {
   Autopilot autopilot(scenario.autopilot.autopilot, scenario.airframe, rig, scenario.mission(), detector,
                       listener, 1);
   OnboardSensors sensors(scenario);
-  const Due due(scenario);
-  for (std::int64_t step = 0; step <= 2 * physics_rate_hz; ++step) {
+  for (FlightClock clock(scenario); clock.step() <= 2 * physics_rate_hz; clock.advance()) {
     Truth truth;
-    truth.t_ns = time_of_step_ns(step);
+    truth.t_ns = clock.t_ns();
     truth.T_world_body.translation().x() = 10 * 1e-9 * static_cast<double>(truth.t_ns);
-    sensors.deliver(due, step, truth, autopilot);
+    sensors.deliver(clock, truth, autopilot);
   }
   return listener;
 }

@@ -1,4 +1,4 @@
-#include "scenarios/recording/path_file.hpp"
+#include "scenarios/recording/carried_path.hpp"
 #include "tests/fuzz/recorded_text.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

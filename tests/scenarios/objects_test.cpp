@@ -13,8 +13,8 @@
 
 #include "perception/io/pose_file.hpp"
 #include "scenarios/flight/oracles/true_depth.hpp"
+#include "scenarios/recording/carried_path.hpp"
 #include "scenarios/recording/euroc_texts.hpp"
-#include "scenarios/recording/path_file.hpp"
 #include "scenarios/recording/record.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"

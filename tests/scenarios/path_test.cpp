@@ -8,11 +8,9 @@
 #include <vector>
 
 #include "perception/io/text_table.hpp"
-#include "scenarios/recording/carried_truth.hpp"
+#include "scenarios/recording/carried_path.hpp"
 #include "scenarios/recording/euroc_texts.hpp"
-#include "scenarios/recording/path_file.hpp"
 #include "scenarios/recording/record.hpp"
-#include "scenarios/recording/smooth_path.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -188,7 +186,7 @@ TEST(Follow, AFlightsTrajectoryLooksLikeTheFlight) {
   const Scenario scenario = library_scenario("forest", {"seed=1003", "cameras.rate_hz=10", "time_limit_s=3",
                                                         "forest.clear_m=8", "perception.detector=none"});
   const fs::path flown = folder.path() / "flown", followed = folder.path() / "followed";
-  const RecordedFlight flight = fly_recorded(scenario, into(flown));
+  const FlownRecording flight = fly_recorded(scenario, into(flown));
   const Carried carried = follow_recorded(scenario, read_path(flown / "trajectory.csv"), into(followed));
   EXPECT_GE(carried.frames, flight.frames - 1);
   int compared = 0, alike = 0;

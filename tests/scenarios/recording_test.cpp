@@ -14,6 +14,7 @@
 #include "perception/io/text_table.hpp"
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "scenarios/flight/clearance.hpp"
+#include "scenarios/flight/flight.hpp"
 #include "scenarios/flight/fly.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/recording/euroc_recording.hpp"
@@ -47,7 +48,17 @@ Scenario short_flight(const std::vector<std::string>& more = {}) {
 }
 
 /// What a flight saw, and its recording under <folder>/recorded.
-struct Flown {
+struct Flown : FlightObserver {
+  void on_frame(const Flight& flight) override {
+    frames.push_back({flight.frame().t_ns, flight.frame().left.clone(), flight.frame().right.clone()});
+  }
+  void on_step(const Flight& flight) override {
+    truths.push_back(flight.truth());
+    if (!flight.clock().imu()) return;
+    samples.push_back(flight.newest<ImuSample>().value());
+    estimates.push_back(flight.state());
+  }
+
   CalibratedRig rig;
   std::vector<Obstacle> trunks;
   std::vector<StereoFrame> frames;
@@ -64,22 +75,7 @@ Flown flown(const Scenario& scenario, const fs::path& folder) {
   flight.rig = rig_of(scenario, options.models_folder);
   flight.trunks = course_obstacles(scenario);
   EurocRecording recording(folder, scenario, flight.rig, 2);
-  options.on_truth = [&](const Truth& truth) {
-    recording.observe(truth);
-    flight.truths.push_back(truth);
-  };
-  options.on_imu = [&](const ImuSample& sample) {
-    recording.add(sample);
-    flight.samples.push_back(sample);
-  };
-  options.on_estimate = [&](const State& state) {
-    recording.add_estimate(state);
-    flight.estimates.push_back(state);
-  };
-  options.on_frame = [&](const StereoFrame& frame, StereoCameras& cameras) {
-    recording.add(frame, cameras);
-    flight.frames.push_back({frame.t_ns, frame.left.clone(), frame.right.clone()});
-  };
+  options.observers = {&recording, &flight};
   flight.result = fly(scenario, options);
   EXPECT_FALSE(fs::exists(folder / "mav0"));  // not before it is whole
   recording.finish();

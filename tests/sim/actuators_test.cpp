@@ -1,6 +1,7 @@
 #include "sim/aircraft/actuators.hpp"
 
 #include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
 
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,7 @@
 #include "sim/aircraft/aircraft.hpp"
 
 #include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
 
 #include <Eigen/Geometry>
 #include <cmath>

@@ -14,7 +14,7 @@ namespace {
 StereoFrame still(const World& world, const CameraConfig& config, const Eigen::Vector3d& position = {0, 0, 0},
                   std::uint64_t seed = 1) {
   StereoCameras cameras(world, paper_rig(), config, {seed, seed});
-  return cameras.capture(*data_at(world, position, level), 0);
+  return cameras.capture(body_at(position, level), 0);
 }
 
 TEST(CameraFaults, TheRightImageStandsLowerByTheMisalignment) {
@@ -61,11 +61,11 @@ TEST(CameraFaults, NoiseVarianceGrowsWithTheSignalAtTheGainOverTheWell) {
   CameraConfig config{.noise_gray = 1.5, .light = 0.5, .gain = 1.6, .full_well_e = 3000};
   // The photon transfer method: half the variance of the difference of two equal exposures, over their mean.
   StereoCameras cameras(world, paper_rig(), config, {1, 2});
-  const DataPointer data = data_at(world, {0, 0, 3}, level);
+  const Eigen::Isometry3d body = body_at({0, 0, 3}, level);
   std::array<double, 256> count{}, sum{}, squares{};
   for (int pair = 0; pair < 8; ++pair) {
-    const cv::Mat one = cameras.capture(*data, 2 * pair).left,
-                  other = cameras.capture(*data, 2 * pair + 1).left;
+    const cv::Mat one = cameras.capture(body, 2 * pair).left,
+                  other = cameras.capture(body, 2 * pair + 1).left;
     CameraConfig clean = config;
     clean.noise_gray = clean.full_well_e = 0;
     static const cv::Mat signal = still(world, clean, {0, 0, 3}).left;
@@ -124,13 +124,13 @@ TEST(CameraFaults, CornersDarkenWithTheFourthPowerOfTheCosine) {
 /// `end_ns`. Positions at t = 0 are the origin's.
 StereoFrame moving(const World& world, const CameraConfig& config, double speed_mps, std::int64_t end_ns) {
   StereoCameras cameras(world, paper_rig(), config, {1, 1});
-  DataPointer data;
+  Eigen::Isometry3d body;
   for (std::int64_t step = 0; time_of_step_ns(step) <= end_ns; ++step) {
     const double t_s = 1e-9 * static_cast<double>(time_of_step_ns(step));
-    data = data_at(world, {0, speed_mps * t_s, 0}, level);
-    cameras.observe(*data, time_of_step_ns(step));
+    body = body_at({0, speed_mps * t_s, 0}, level);
+    cameras.observe(body, time_of_step_ns(step));
   }
-  return cameras.capture(*data, end_ns);
+  return cameras.capture(body, end_ns);
 }
 
 TEST(CameraFaults, ALateRightEyeSeesABallDisplacedBySpeedTimesDelay) {
@@ -177,12 +177,12 @@ TEST(CameraFaults, ABlurredPairIsTheMeanOfItsViews) {
   config.exposure_s = 2 * 1.0 / physics_rate_hz;
   config.exposure_views = 2;  // at a quarter and three quarters: half a step before and after the middle
   StereoCameras cameras(world, paper_rig(), config, {1, 1});
-  DataPointer data;
+  Eigen::Isometry3d body;
   for (int step = 0; step < 10; ++step) {
-    data = data_at(world, {0.3 * step, 0.1 * step, 3}, level);
-    cameras.observe(*data, time_of_step_ns(step));
+    body = body_at({0.3 * step, 0.1 * step, 3}, level);
+    cameras.observe(body, time_of_step_ns(step));
   }
-  const StereoFrame frame = cameras.capture(*data, time_of_step_ns(9));
+  const StereoFrame frame = cameras.capture(body, time_of_step_ns(9));
   const StereoFrame one = still(world, noiseless(), {0.3 * 7.5, 0.1 * 7.5, 3}),
                     other = still(world, noiseless(), {0.3 * 8.5, 0.1 * 8.5, 3});
   cv::Mat mean;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <mujoco/mujoco.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <numbers>
@@ -42,9 +44,15 @@ inline World bare_world(const std::string& geoms) {
   return world;
 }
 
-inline DataPointer data_at(const World& world, const Eigen::Vector3d& position,
-                           const Eigen::Quaterniond& attitude) {
+inline Eigen::Isometry3d body_at(const Eigen::Vector3d& position, const Eigen::Quaterniond& attitude) {
+  return Eigen::Translation3d(position) * attitude;
+}
+
+/// MuJoCo's state of the world with its aircraft there.
+inline DataPointer data_at(const World& world, const Eigen::Isometry3d& T_world_body) {
   DataPointer data(mj_makeData(world.model.get()));
+  const Eigen::Vector3d& position = T_world_body.translation();
+  const Eigen::Quaterniond attitude(T_world_body.linear());
   const double pose[] = {position.x(), position.y(), position.z(), attitude.w(),
                          attitude.x(), attitude.y(), attitude.z()};
   std::copy(std::begin(pose), std::end(pose), data->qpos);

@@ -57,7 +57,7 @@ TEST_P(RawImages, AKnownPointLandsWhereTheCalibrationPutsIt) {
   const CalibratedRig cameras = calibrated();
   const World nothing = bare_world("");
   StereoCameras skyward(nothing, cameras.rig, noiseless(), {1, 1}, cameras.calibration);
-  const StereoFrame sky = skyward.capture(*data_at(nothing, {0, 0, 0}, level), 0);
+  const StereoFrame sky = skyward.capture(body_at({0, 0, 0}, level), 0);
   int seen = 0;
   for (const double across : {-0.30, 0.02, 0.35})
     for (const double down : {-0.2, 0.15}) {
@@ -65,7 +65,7 @@ TEST_P(RawImages, AKnownPointLandsWhereTheCalibrationPutsIt) {
       const Eigen::Vector3d right = left - Eigen::Vector3d(cameras.rig.baseline_m, 0, 0);
       const World world = black_ball({left.z(), -left.x(), -left.y()}, 0.15);
       StereoCameras eyes(world, cameras.rig, noiseless(), {1, 1}, cameras.calibration);
-      const StereoFrame frame = eyes.capture(*data_at(world, {0, 0, 0}, level), 0);
+      const StereoFrame frame = eyes.capture(body_at({0, 0, 0}, level), 0);
       const auto expect_at = [&](const cv::Mat& image, const cv::Mat& empty, const cv::Point2d& expected) {
         if (!cv::Rect2d(10, 10, image.cols - 20, image.rows - 20).contains(expected)) return;
         const Eigen::Vector2d at = shade(image, empty).mean_px;
@@ -82,12 +82,12 @@ TEST_P(RawImages, AKnownPointLandsWhereTheCalibrationPutsIt) {
 TEST_P(RawImages, RectifiedTheyAreTheIdealPair) {
   const CalibratedRig cameras = calibrated();
   const World world = forest_world();
-  const DataPointer data = data_at(world, {-4, 0.4, 3}, level);
+  const Eigen::Isometry3d body = body_at({-4, 0.4, 3}, level);
   StereoCameras raw_eyes(world, cameras.rig, noiseless(), {1, 1}, cameras.calibration);
   StereoCameras ideal_eyes(world, cameras.rig, noiseless(), {1, 1});
-  const StereoFrame ideal = ideal_eyes.capture(*data, 0);
+  const StereoFrame ideal = ideal_eyes.capture(body, 0);
   Rectifier rectifier(*cameras.calibration, Interpolation::bilinear);
-  const StereoFrame raw = raw_eyes.capture(*data, 0);
+  const StereoFrame raw = raw_eyes.capture(body, 0);
   const StereoFrame rectified = rectifier.rectify(raw);
   // Where the raw camera looks at all: a white image, rectified.
   Rectifier whites(*cameras.calibration, Interpolation::bilinear);
@@ -115,11 +115,11 @@ TEST_P(RawImages, TheDetectorFindsAWallAtItsDepthInThem) {
   // Straight down from the detection depth onto the textured ground.
   StereoCameras eyes(world, cameras.rig, {.noise_gray = 2}, {1, 1}, cameras.calibration);
   const StereoFrame frame =
-      eyes.capture(*data_at(world, {10, 0, detector.detection_depth_m()}, straight_down), 0);
+      eyes.capture(body_at({10, 0, detector.detection_depth_m()}, straight_down), 0);
   const auto hits = detector.detect(frame);
   EXPECT_GT(hits.size(), 300u);
   const World above = forest_world(false);
-  EXPECT_LT(detector.detect(eyes.capture(*data_at(above, {10, 0, 2 * GetParam().depth_m}, straight_down), 0))
+  EXPECT_LT(detector.detect(eyes.capture(body_at({10, 0, 2 * GetParam().depth_m}, straight_down), 0))
                 .size(),
             hits.size() / 10);
 }
@@ -128,7 +128,7 @@ TEST_P(RawImages, DetectorsThatKnowNoRawPairsGetRectifiedOnes) {
   const CalibratedRig cameras = calibrated();
   const World world = forest_world();
   StereoCameras eyes(world, cameras.rig, noiseless(), {1, 1}, cameras.calibration);
-  const StereoFrame frame = eyes.capture(*data_at(world, {-4, 0.4, 3}, level), 0);
+  const StereoFrame frame = eyes.capture(body_at({-4, 0.4, 3}, level), 0);
   RectifyingDetector detector(*cameras.calibration, std::make_unique<FullStereoDetector>(
                                                         cameras.rig, StereoBmConfig{}, FullStereoCrop{}));
   const auto hits = detector.detect(frame);
@@ -154,7 +154,7 @@ TEST(RawMisalignment, IsInTheRawImagesOwnPixels) {
     CameraConfig config = noiseless();
     config.vertical_misalignment_px = px;
     StereoCameras eyes(world, cameras.rig, config, {1, 1}, cameras.calibration);
-    const StereoFrame frame = eyes.capture(*data_at(world, {0, 0, 0}, level), 0);
+    const StereoFrame frame = eyes.capture(body_at({0, 0, 0}, level), 0);
     return dark_centroid(frame.right(cv::Rect(80, 30, 220, 170)));
   };
   EXPECT_NEAR(right(3).y() - right(0).y(), 3, 0.1);

@@ -31,13 +31,13 @@ void draw(RendererKind renderer, const fs::path& to) {
   for (int i = 0; i < 6; ++i) {
     const Eigen::Quaterniond attitude(Eigen::AngleAxisd(0.3 * i - 0.7, Eigen::Vector3d::UnitX()) *
                                       Eigen::AngleAxisd(0.1 * i - 0.2, Eigen::Vector3d::UnitZ()));
-    const DataPointer data = data_at(world, {1.7 * i, 0.4 * i - 1, 3}, attitude);
-    const StereoFrame frame = cameras.capture(*data, i);
+    const Eigen::Isometry3d body = body_at({1.7 * i, 0.4 * i - 1, 3}, attitude);
+    const StereoFrame frame = cameras.capture(body, i);
     append(file, frame.left);
     append(file, frame.right);
-    append(file, cameras.depth(*data));
+    append(file, cameras.depth(body));
     append(file, cameras.true_view(Eigen::Translation3d(1.7 * i, 0.4 * i - 1, 3) * attitude).objects);
-    append(file, cameras.chase_view(*data, 320, 200));
+    append(file, cameras.chase_view(*data_at(world, body), 320, 200));
   }
 }
 

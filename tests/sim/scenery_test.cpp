@@ -1,6 +1,7 @@
 #include "sim/scene/scenery.hpp"
 
 #include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
 
 #include <Eigen/Geometry>
 #include <cmath>

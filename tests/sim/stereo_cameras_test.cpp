@@ -14,7 +14,7 @@ namespace {
 TEST(StereoCameras, DepthOfAWallIsItsDistanceAlongTheAxisEverywhere) {
   const World world = bare_world("<geom type='box' size='.5 50 50' pos='5.5 0 0'/>");
   StereoCameras cameras(world, paper_rig(), noiseless(), {1, 1});
-  const cv::Mat depth = cameras.depth(*data_at(world, {0, 0, 0}, level));
+  const cv::Mat depth = cameras.depth(body_at({0, 0, 0}, level));
   double minimum = 0, maximum = 0;
   cv::minMaxLoc(depth, &minimum, &maximum);
   EXPECT_NEAR(minimum, 5.0, 0.001);
@@ -27,7 +27,7 @@ TEST(StereoCameras, DepthOfTheGroundIsTheRaysOwn) {
   StereoCameras cameras(world, rig, noiseless(), {1, 1});
   const double height_m = 2.0, pitch_rad = 0.3;  // nose down
   const Eigen::Quaterniond attitude(Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()));
-  const cv::Mat depth = cameras.depth(*data_at(world, {10, 0, height_m}, attitude));
+  const cv::Mat depth = cameras.depth(body_at({10, 0, height_m}, attitude));
   for (int row = 130; row < 240; row += 10)
     for (int column = 3; column < 376; column += 31) {
       const Eigen::Vector3d ray_camera((column - rig.center_left_x_px) / rig.focal_px,
@@ -46,7 +46,7 @@ TEST(StereoCameras, ABallAppearsWhereTheRigSays) {
         bare_world("<geom type='sphere' size='.12' rgba='0 0 0 1' pos='" + std::to_string(at.x()) + " " +
                    std::to_string(at.y()) + " " + std::to_string(at.z()) + "'/>");
     StereoCameras cameras(world, rig, noiseless(), {1, 1});
-    const StereoFrame frame = cameras.capture(*data_at(world, {0, 0, 0}, level), 0);
+    const StereoFrame frame = cameras.capture(body_at({0, 0, 0}, level), 0);
     const double x = -at.y(), y = -at.z(), z = at.x();
     const Eigen::Vector2d left = dark_centroid(frame.left), right = dark_centroid(frame.right);
     EXPECT_NEAR(left.x(), rig.focal_px * x / z + rig.center_left_x_px, 0.6);
@@ -60,7 +60,7 @@ TEST(StereoCameras, APlaneAtTheDetectionDistanceMatchesAtTheRigsDisparity) {
   const World world = forest_world(false);
   const StereoRig rig = paper_rig();
   StereoCameras cameras(world, rig, {.noise_gray = 2}, {1, 1});
-  const StereoFrame frame = cameras.capture(*data_at(world, {10, 0, 4.81}, straight_down), 0);
+  const StereoFrame frame = cameras.capture(body_at({10, 0, 4.81}, straight_down), 0);
   int best = 0;
   double minimum = std::numeric_limits<double>::max();
   for (int disparity = 95; disparity < 120; ++disparity) {
@@ -74,11 +74,11 @@ TEST(StereoCameras, APlaneAtTheDetectionDistanceMatchesAtTheRigsDisparity) {
 
 TEST(StereoCameras, SameSeedSameImagesOtherSeedOtherNoiseOnTheSamePicture) {
   const World world = forest_world();
-  const DataPointer data = data_at(world, {0, 0, 3}, level);
+  const Eigen::Isometry3d body = body_at({0, 0, 3}, level);
   const auto pair = [&](std::uint64_t seed, double noise, int frames) {
     StereoCameras cameras(world, paper_rig(), {.noise_gray = noise}, {seed, seed});
     StereoFrame frame;
-    for (int i = 0; i < frames; ++i) frame = cameras.capture(*data, i);
+    for (int i = 0; i < frames; ++i) frame = cameras.capture(body, i);
     return frame;
   };
   const StereoFrame clean = pair(1, 0, 1), first = pair(1, 2, 1), again = pair(1, 2, 1),
@@ -101,7 +101,7 @@ TEST(StereoCameras, SameSeedSameImagesOtherSeedOtherNoiseOnTheSamePicture) {
 TEST(StereoCameras, LensCapAndInvisibleObstaclesHideThem) {
   const World forest = forest_world(), invisible = forest_world(false);
   StereoCameras capped(forest, paper_rig(), {.lens_cap = true, .noise_gray = 2}, {1, 1});
-  const StereoFrame dark = capped.capture(*data_at(forest, {0, 0, 3}, level), 0);
+  const StereoFrame dark = capped.capture(body_at({0, 0, 3}, level), 0);
   double maximum = 0;
   cv::minMaxLoc(dark.left, nullptr, &maximum);
   EXPECT_LT(maximum, 15);
@@ -109,8 +109,8 @@ TEST(StereoCameras, LensCapAndInvisibleObstaclesHideThem) {
 
   StereoCameras seeing(forest, paper_rig(), noiseless(), {1, 1}),
       blind(invisible, paper_rig(), noiseless(), {1, 1});
-  const cv::Mat near_trees = seeing.depth(*data_at(forest, {0, 0, 3}, level))(cv::Rect(0, 0, 376, 100));
-  const cv::Mat sky_only = blind.depth(*data_at(invisible, {0, 0, 3}, level))(cv::Rect(0, 0, 376, 100));
+  const cv::Mat near_trees = seeing.depth(body_at({0, 0, 3}, level))(cv::Rect(0, 0, 376, 100));
+  const cv::Mat sky_only = blind.depth(body_at({0, 0, 3}, level))(cv::Rect(0, 0, 376, 100));
   double nearest = 0, nearest_blind = 0;
   cv::minMaxLoc(near_trees, &nearest);
   cv::minMaxLoc(sky_only, &nearest_blind);
@@ -120,24 +120,24 @@ TEST(StereoCameras, LensCapAndInvisibleObstaclesHideThem) {
 
 TEST(StereoCameras, ChaseViewLeavesTheStereoPairAsItWas) {
   const World world = forest_world();
-  const DataPointer data = data_at(world, {0, 0, 3}, level);
+  const Eigen::Isometry3d body = body_at({0, 0, 3}, level);
   StereoCameras cameras(world, paper_rig(), noiseless(), {1, 1});
-  const StereoFrame before = cameras.capture(*data, 0);
-  const cv::Mat view = cameras.chase_view(*data, 500, 300);
+  const StereoFrame before = cameras.capture(body, 0);
+  const cv::Mat view = cameras.chase_view(*data_at(world, body), 500, 300);
   EXPECT_EQ(view.size(), cv::Size(500, 300));
   EXPECT_EQ(view.type(), CV_8UC3);
-  const StereoFrame after = cameras.capture(*data, 1);
+  const StereoFrame after = cameras.capture(body, 1);
   EXPECT_TRUE(equal(before.left, after.left) && equal(before.right, after.right));
 }
 
 TEST(StereoCameras, TwoPairsTakeTurnsOnOneThread) {
   const World forest = forest_world(), invisible = forest_world(false);
-  const DataPointer data = data_at(forest, {0, 0, 3}, level), empty = data_at(invisible, {0, 0, 3}, level);
+  const Eigen::Isometry3d body = body_at({0, 0, 3}, level);
   StereoCameras first(forest, paper_rig(), noiseless(), {1, 1});
-  const StereoFrame alone = first.capture(*data, 0);
+  const StereoFrame alone = first.capture(body, 0);
   StereoCameras second(invisible, paper_rig(), noiseless(), {1, 1});
-  EXPECT_FALSE(equal(alone.left, second.capture(*empty, 0).left));
-  EXPECT_TRUE(equal(alone.left, first.capture(*data, 1).left));
+  EXPECT_FALSE(equal(alone.left, second.capture(body, 0).left));
+  EXPECT_TRUE(equal(alone.left, first.capture(body, 1).left));
 }
 
 TEST(StereoCameras, MissingLibraryIsOneLineThatNamesThePackage) {

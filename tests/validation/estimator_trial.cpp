@@ -116,21 +116,20 @@ std::vector<TrialMoment> run_trial(const RecordedFlight& flight, const TrialConf
   scenario.sensors.seed = config.sensor_seed;
   scenario.faults = config.faults;
   OnboardSensors sensors(scenario);
-  const Due due(scenario);
   const std::size_t first =
       config.ground_velocity_unknown ? static_cast<std::size_t>(flight.release_step) : std::size_t{0};
   Filter filter(config.ground_velocity_unknown ? woken_at(flight.truths.at(first), config.filter)
                                                : config.filter);
   SightingAgain sighting(flight, config);
+  FlightClock clock(scenario, static_cast<std::int64_t>(first));
   std::vector<TrialMoment> moments;
   std::array<double, aid_count> seen{};
   seen.fill(std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = first; i < flight.truths.size(); ++i) {
-    const auto step = static_cast<std::int64_t>(i);
+  for (std::size_t i = first; i < flight.truths.size(); ++i, clock.advance()) {
     const Truth& truth = flight.truths[i];
-    sensors.deliver(due, step, truth, filter);
+    sensors.deliver(clock, truth, filter);
     sighting.step(truth.t_ns, filter);
-    if (!due.imu(step)) continue;
+    if (!clock.imu()) continue;
     TrialMoment& moment = moments.emplace_back();
     moment.truth = truth;
     moment.estimate = filter.state();

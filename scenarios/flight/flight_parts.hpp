@@ -4,7 +4,11 @@
 #include <memory>
 #include <vector>
 
+#include "estimation/state_source.hpp"
 #include "perception/io/calibration_file.hpp"
+#include "perception/obstacle_detector.hpp"
+#include "planning/autopilot.hpp"
+#include "scenarios/flight/oracles/truth_history.hpp"
 #include "scenarios/scenario/scenario.hpp"
 #include "sim/aircraft/aircraft.hpp"
 #include "sim/cameras/stereo_cameras.hpp"
@@ -13,8 +17,8 @@
 
 namespace understory {
 
-/// The simulator's parts as a scenario says them, for whoever moves through its course. All throw in one
-/// line.
+// The parts of a flight as a scenario says them: the one place where a scenario's word becomes a part. All
+// throw in one line.
 
 /// The compiled scene. MachineError where the project's models do not compile.
 World world_of(const Scenario& scenario, const std::filesystem::path& models_folder,
@@ -26,5 +30,16 @@ std::unique_ptr<StereoCameras> cameras_of(const Scenario& scenario, const World&
 
 /// Its aircraft on the catapult; `world` must outlive it. ScenarioError where it cannot stand there.
 Aircraft aircraft_of(const Scenario& scenario, const World& world);
+
+/// What turns pairs into hits. ScenarioError where the rig cannot look at the depths asked for. An oracle
+/// keeps a reference to the history.
+std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const CalibratedRig& rig,
+                                              const std::vector<Obstacle>& obstacles,
+                                              const TruthHistory& history);
+
+/// What the autopilot takes for its state. An oracle keeps a reference to the history.
+std::unique_ptr<StateSource> state_source_of(const Scenario& scenario, const TruthHistory& history);
+
+AutopilotConfig autopilot_config_of(const Scenario& scenario);
 
 }  // namespace understory

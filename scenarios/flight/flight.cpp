@@ -1,0 +1,117 @@
+#include "scenarios/flight/flight.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "scenarios/config/named_seed.hpp"
+#include "scenarios/flight/flight_parts.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
+
+namespace understory {
+namespace {
+
+std::int64_t nanoseconds(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
+
+/// Rendering an image that nobody looks at would be most of the flight's cost.
+bool needs_images(const Scenario& scenario, const std::vector<FlightObserver*>& observers) {
+  return looks(scenario.perception.detector) ||
+         std::ranges::any_of(observers, [](const auto* observer) { return observer->needs_images(); });
+}
+
+}  // namespace
+
+Flight::Flight(const Scenario& scenario, const FlightMachine& machine, std::vector<FlightObserver*> observers)
+    : scenario_(scenario),
+      observers_(std::move(observers)),
+      rig_(rig_of(scenario, machine.models_folder)),
+      obstacles_(course_obstacles(scenario)),
+      world_(stopwatch_.time("setup", [&] { return world_of(scenario, machine.models_folder, obstacles_); })),
+      aircraft_(aircraft_of(scenario, world_)),
+      cameras_(needs_images(scenario, observers_)
+                   ? stopwatch_.time("context",
+                                     [&] { return cameras_of(scenario, world_, rig_, machine.renderer); })
+                   : nullptr),
+      sensors_(scenario),
+      drops_(scenario.cameras.drop_probability, seed_for(scenario.sensor_seed(), "camera_drops")),
+      computer_(nanoseconds(scenario.perception.cost_s())),
+      detector_(detector_of(scenario, rig_, obstacles_, history_)),
+      state_source_(state_source_of(scenario, history_)),
+      autopilot_(autopilot_config_of(scenario), scenario.airframe, rig_.rig, scenario.mission(), *detector_,
+                 *state_source_, seed_for(scenario.seed, "planner")),
+      referee_(scenario),
+      clock_(scenario) {}
+
+void Flight::step() {
+  if (ending_) return;
+  history_.observe(truth());
+  sense();
+  expose();
+  while (std::optional<StereoFrame> frame = computer_.looked_at(clock_.t_ns())) look_at(std::move(*frame));
+  act();
+  tell(&FlightObserver::on_step);
+  ending_ = referee_.judge(truth(), aircraft_.contact(), launched());
+  if (!ending_) advance();
+}
+
+void Flight::sense() {
+  const auto timed = stopwatch_.time("estimate");
+  sensors_.deliver(clock_, truth(), autopilot_);
+}
+
+/// A frame reaches the autopilot's computer one latency later. A busy computer drops frames: what it will not
+/// look at need not be rendered.
+void Flight::expose() {
+  const std::int64_t t_ns = clock_.t_ns();
+  if (cameras_) cameras_->observe(truth().T_world_body, t_ns);
+  if (!clock_.camera() || drops_.next()) return;
+  const std::int64_t latency_ns = nanoseconds(scenario_.cameras.latency_s);
+  const std::int64_t arrival_ns = t_ns + latency_ns;
+  const bool taken = computer_.will_take(arrival_ns, clock_.next_camera_t_ns() + latency_ns) ||
+                     !scenario_.every_frame_arrives();
+  StereoFrame frame{t_ns - scenario_.cameras.cameras.exposure_lag_ns(), {}, {}};
+  if (cameras_ && taken) {
+    const auto timed = stopwatch_.time("render");
+    frame = cameras_->capture(truth().T_world_body, t_ns);
+  }
+  if (sensors_.faults().pass(frame)) computer_.send(std::move(frame), arrival_ns);
+}
+
+void Flight::look_at(StereoFrame frame) {
+  frame_ = std::move(frame);
+  {
+    const auto timed = stopwatch_.time("detect");
+    autopilot_.on(frame_);
+  }
+  tell(&FlightObserver::on_frame);
+}
+
+void Flight::act() {
+  if (clock_.replan()) {
+    const auto timed = stopwatch_.time("replan");
+    autopilot_.replan(clock_.t_ns());
+  }
+  if (clock_.imu()) {
+    const auto timed = stopwatch_.time("control");
+    controls_ = autopilot_.controls(clock_.t_ns());
+  }
+}
+
+void Flight::tell(void (FlightObserver::*event)(const Flight&)) {
+  for (FlightObserver* observer : observers_) {
+    const auto timed = stopwatch_.time(observer->stage());
+    (observer->*event)(*this);
+  }
+}
+
+void Flight::advance() {
+  const auto timed = stopwatch_.time("physics");
+  aircraft_.step(controls_);
+  clock_.advance();
+}
+
+cv::Mat Flight::chase_view(int width_px, int height_px) const {
+  return cameras_->chase_view(aircraft_.data(), width_px, height_px);
+}
+
+}  // namespace understory

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "perception/io/calibration_file.hpp"
+#include "planning/autopilot.hpp"
+#include "scenarios/flight/flight_clock.hpp"
+#include "scenarios/flight/flight_computer.hpp"
+#include "scenarios/flight/flight_observer.hpp"
+#include "scenarios/flight/onboard_sensors.hpp"
+#include "scenarios/flight/oracles/truth_history.hpp"
+#include "scenarios/flight/referee.hpp"
+#include "scenarios/flight/stopwatch.hpp"
+#include "scenarios/scenario/scenario.hpp"
+#include "sim/aircraft/aircraft.hpp"
+#include "sim/cameras/frame_drops.hpp"
+#include "sim/cameras/stereo_cameras.hpp"
+#include "sim/render/renderer_kind.hpp"
+#include "sim/scene/world.hpp"
+
+namespace understory {
+
+/// What of a flight is the machine's and not the scenario's.
+struct FlightMachine {
+  std::filesystem::path models_folder;
+  RendererKind renderer = RendererKind::osmesa;
+};
+
+/// A flight that one can hold, step and ask. It is decided by its scenario alone: not by who watches, nor by
+/// other flights that were or are open in this process. Flights may be open side by side on one thread, with
+/// one renderer: MuJoCo's OpenGL functions are one per process, and the other renderer is refused.
+class Flight {
+ public:
+  /// On the catapult, nothing due yet done. The observers are told in their order and must outlive it.
+  /// Throws, in one line, ScenarioError for what a person gave wrongly (rig, launch) and MachineError where
+  /// the machine fails (models, GL library).
+  Flight(const Scenario& scenario, const FlightMachine& machine, std::vector<FlightObserver*> observers = {});
+  Flight(const Flight&) = delete;
+  Flight& operator=(const Flight&) = delete;
+
+  /// All that is due at clock(), then one step of physics. Does nothing once the flight has ended.
+  void step();
+
+  const Scenario& scenario() const { return scenario_; }
+  const CalibratedRig& rig() const { return rig_; }
+  const std::vector<Obstacle>& obstacles() const { return obstacles_; }
+
+  /// The moment of truth(). After step() it is the next one, of which nothing is done yet.
+  const FlightClock& clock() const { return clock_; }
+  bool launched() const { return aircraft_.launched(); }  ///< has left the catapult
+  const std::optional<Ending>& ending() const { return ending_; }
+
+  const Truth& truth() const { return aircraft_.truth(); }
+  /// The newest truth not later than t_ns, for 0.6 s back.
+  const Truth& truth_at(std::int64_t t_ns) const { return history_.at(t_ns); }
+
+  /// The newest sample of its kind that has reached the autopilot, faults included: ImuSample, PitotSample,
+  /// BarometerSample, MagnetometerSample or GpsSample.
+  template <typename Sample>
+  const std::optional<Sample>& newest() const {
+    return sensors_.newest<Sample>();
+  }
+  /// The newest frame that has reached the autopilot; its images are empty where nothing looks at them.
+  const StereoFrame& frame() const { return frame_; }
+  const std::vector<StereoHit>& hits() const { return autopilot_.hits(); }  ///< in that frame
+  const State& state() const { return autopilot_.state(); }
+  State state_at(std::int64_t t_ns) const { return state_source_->state_at(t_ns); }
+  const LocalMap& map() const { return autopilot_.map(); }
+  const Plan& plan() const { return autopilot_.plan(); }
+  const PlannerCounts& planner_counts() const { return autopilot_.counts(); }
+  const Controls& controls() const { return controls_; }  ///< in force
+
+  /// To draw what is true beside what was seen; nothing where neither detector nor observer needs images.
+  const StereoCameras* cameras() const { return cameras_.get(); }
+  /// What a camera following the aircraft sees now, BGR 8-bit. Needs cameras().
+  cv::Mat chase_view(int width_px, int height_px) const;
+
+  /// Wall time of each stage until now, and since the flight was made.
+  const Stopwatch& stopwatch() const { return stopwatch_; }
+
+ private:
+  void sense();
+  void expose();
+  void look_at(StereoFrame frame);
+  void act();
+  void tell(void (FlightObserver::*event)(const Flight&));
+  void advance();
+
+  Stopwatch stopwatch_;
+  Scenario scenario_;
+  std::vector<FlightObserver*> observers_;
+  CalibratedRig rig_;
+  std::vector<Obstacle> obstacles_;
+  World world_;
+  Aircraft aircraft_;
+  std::unique_ptr<StereoCameras> cameras_;
+  OnboardSensors sensors_;
+  FrameDrops drops_;
+  FlightComputer computer_;
+  TruthHistory history_;
+  std::unique_ptr<ObstacleDetector> detector_;
+  std::unique_ptr<StateSource> state_source_;
+  Autopilot autopilot_;
+  Referee referee_;
+  FlightClock clock_;
+  StereoFrame frame_;
+  Controls controls_;
+  std::optional<Ending> ending_;
+};
+
+}  // namespace understory

@@ -1,0 +1,97 @@
+#include "scenarios/recording/record.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scenarios/config/named_seed.hpp"
+#include "scenarios/flight/flight_clock.hpp"
+#include "scenarios/flight/flight_parts.hpp"
+#include "scenarios/flight/run_record.hpp"
+#include "scenarios/flight/stopwatch.hpp"
+#include "scenarios/recording/carried_path.hpp"
+#include "scenarios/recording/euroc_recording.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
+
+namespace understory {
+namespace {
+
+/// Long enough for any flight that gets there: dodging included, none is slower.
+double longest_flight_s(const Scenario& scenario) {
+  constexpr double slow_mps = 8;
+  return std::min(scenario.time_limit_s, scenario.launch.rest_s + 1 + scenario.goal_x_m() / slow_mps);
+}
+
+/// A way to carry a scenario's cameras and IMU.
+struct Carriage {
+  CalibratedRig rig;  ///< rig_of's
+  std::vector<Obstacle> obstacles;
+  std::function<Truth(std::int64_t t_ns)> truth_at;  ///< asked for in turn, step by step from 0
+  std::int64_t end_ns = 0;                           ///< no step counts from here on
+};
+
+Carried carry_recorded(const Scenario& scenario, const Carriage& carriage, const FlyOptions& options) {
+  const Stopwatch stopwatch;
+  EurocRecording recording(options.output_folder, scenario, carriage.rig,
+                           static_cast<double>(carriage.end_ns) * 1e-9);
+  prepare_run_folder(scenario, options.output_folder);
+  const World world = world_of(scenario, options.models_folder, carriage.obstacles);
+  const auto cameras = cameras_of(scenario, world, carriage.rig, options.renderer);
+  Imu imu(scenario.sensors.sensors.imu, seed_for(scenario.sensor_seed(), "imu"));
+  Carried carried;
+  Eigen::Vector3d before_world = carriage.truth_at(0).T_world_body.translation();
+  for (FlightClock clock(scenario); clock.t_ns() < carriage.end_ns; clock.advance()) {
+    const Truth truth = carriage.truth_at(clock.t_ns());
+    carried.carried_s = clock.t_s();
+    carried.carried_m += (truth.T_world_body.translation() - before_world).norm();
+    before_world = truth.T_world_body.translation();
+    recording.observe(truth);
+    cameras->observe(truth.T_world_body, truth.t_ns);
+    if (clock.imu()) recording.add(imu.measure(truth));
+    if (clock.camera()) recording.add(cameras->capture(truth.T_world_body, truth.t_ns), *cameras);
+    if (options.on_progress && clock.step() % 120 == 0)
+      options.on_progress({carried.carried_s, stopwatch.elapsed_s(), before_world.x(), scenario.goal_x_m(),
+                           truth.velocity_world_mps.norm(), std::numeric_limits<double>::infinity()});
+  }
+  recording.finish();
+  carried.frames = recording.frames();
+  return carried;
+}
+
+}  // namespace
+
+FlownRecording fly_recorded(const Scenario& scenario, FlyOptions options) {
+  EurocRecording recording(options.output_folder, scenario, rig_of(scenario, options.models_folder),
+                           longest_flight_s(scenario));
+  options.observers.push_back(&recording);
+  const FlightResult result = fly(scenario, options);
+  recording.finish();
+  return {result, recording.frames()};
+}
+
+RecordedWalk walk_recorded(const Scenario& scenario, const WalkConfig& config, const FlyOptions& options) {
+  Carriage carriage;
+  carriage.rig = rig_of(scenario, options.models_folder);
+  carriage.obstacles = course_obstacles(scenario);
+  const WalkPath path = walk_path(config, scenario, carriage.rig.rig, carriage.obstacles);
+  carriage.truth_at = [&](std::int64_t t_ns) { return walk_truth(path, t_ns); };
+  const double way_s = (scenario.goal_x_m() - path.from_x_m) / config.speed_mps;
+  carriage.end_ns = std::llround(std::min(way_s, scenario.time_limit_s) * 1e9);
+  return {path, carry_recorded(scenario, carriage, options)};
+}
+
+Carried follow_recorded(const Scenario& scenario, const std::vector<TimedPose>& poses,
+                        const FlyOptions& options) {
+  const SmoothPath path(thinned(poses));
+  Carriage carriage;
+  carriage.rig = rig_of(scenario, options.models_folder);
+  carriage.obstacles = course_obstacles(scenario);
+  carriage.truth_at = [&](std::int64_t t_ns) {
+    return carried_truth([&](double t_s) { return path.at(t_s); }, t_ns, scenario.airframe.gravity_mps2);
+  };
+  carriage.end_ns = std::llround(path.length_s() * 1e9) + 1;  // the last pose, too
+  return carry_recorded(scenario, carriage, options);
+}
+
+}  // namespace understory
