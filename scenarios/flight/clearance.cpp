@@ -31,8 +31,8 @@ double segment_distance_m(const Segment& a, const Segment& b) {
 
 namespace {
 
-/// Between a segment and an upright rectangle, given by its diagonal: 0 where it goes through; otherwise an
-/// edge of the rectangle is nearest, or an end of the segment is that lies over its face.
+/// Distance between a segment and an upright rectangle, given by its diagonal: 0 where the segment passes
+/// through it. Otherwise an edge of the rectangle is nearest, or an end of the segment that faces it.
 double rectangle_distance_m(const Segment& segment, const Segment& diagonal) {
   const Eigen::Vector3d across = diagonal.to - diagonal.from;
   const Eigen::Vector3d side(across.x(), across.y(), 0), up(0, 0, across.z());
@@ -76,7 +76,7 @@ double clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airfra
   constexpr double rounding_m = 1e-9;
   double minimum = std::numeric_limits<double>::infinity();
   for (const Obstacle& bar : obstacles) {
-    // The boxes' distance tells most bars of a forest from the nearest.
+    // The distance of bounding boxes excludes most bars of a forest.
     Eigen::AlignedBox3d box(bar.from_world.cwiseMin(bar.to_world), bar.from_world.cwiseMax(bar.to_world));
     const double matters_m = minimum + bar.radius_m + rounding_m;
     if (matters_m < 0 || around.squaredExteriorDistance(box) > matters_m * matters_m) continue;

@@ -14,10 +14,10 @@ struct Segment {
   Eigen::Vector3d to = Eigen::Vector3d::Zero();
 };
 
-/// Least distance between two segments, m (Ericson, Real-Time Collision Detection 2005, section 5.1.9).
+/// Minimum distance between two segments, m (Ericson, Real-Time Collision Detection 2005, section 5.1.9).
 double segment_distance_m(const Segment& a, const Segment& b);
 
-/// Least distance between a segment and an obstacle's surface, m; not positive where they touch.
+/// Minimum distance between a segment and an obstacle's surface, m; not positive where they touch.
 double obstacle_distance_m(const Segment& segment, const Obstacle& obstacle);
 
 /// The true minimum distance between the aircraft and the obstacles' surfaces, m; negative where they

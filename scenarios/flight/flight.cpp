@@ -13,7 +13,7 @@ namespace {
 
 std::int64_t nanoseconds(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
 
-/// Rendering an image that nobody looks at would be most of the flight's cost.
+/// An image that nobody looks at is not rendered: rendering is most of a flight's cost.
 bool needs_images(const Scenario& scenario, const std::vector<FlightObserver*>& observers) {
   return looks(scenario.perception.detector) ||
          std::ranges::any_of(observers, [](const auto* observer) { return observer->needs_images(); });
@@ -59,8 +59,8 @@ void Flight::sense() {
   sensors_.deliver(clock_, truth(), autopilot_);
 }
 
-/// A frame reaches the autopilot's computer one latency later. A busy computer drops frames: what it will not
-/// look at need not be rendered.
+/// A frame reaches the autopilot's computer one latency later. A busy computer drops frames, and these need
+/// not be rendered.
 void Flight::expose() {
   const std::int64_t t_ns = clock_.t_ns();
   if (cameras_) cameras_->observe(truth().T_world_body, t_ns);

@@ -25,32 +25,32 @@
 
 namespace understory {
 
-/// What of a flight is the machine's and not the scenario's.
+/// What a flight takes from the machine and not from the scenario.
 struct FlightMachine {
   std::filesystem::path models_folder;
   RendererKind renderer = RendererKind::osmesa;
 };
 
-/// A flight that one can hold, step and ask. It is decided by its scenario alone: not by who watches, nor by
-/// other flights that were or are open in this process. Flights may be open side by side on one thread, with
+/// A flight that one can hold, step and ask. Its scenario alone decides it; observers and other flights in
+/// this process, earlier or open now, have no effect. Flights may be open side by side on one thread, with
 /// one renderer: MuJoCo's OpenGL functions are one per process, and the other renderer is refused.
 class Flight {
  public:
-  /// On the catapult, nothing due yet done. The observers are told in their order and must outlive it.
-  /// Throws, in one line, ScenarioError for what a person gave wrongly (rig, launch) and MachineError where
-  /// the machine fails (models, GL library).
+  /// Starts on the catapult, before the first step. Observers are called in their order and must outlive the
+  /// flight. Throws ScenarioError, in one line, at bad input (rig, launch), MachineError where the machine
+  /// fails (models, GL library).
   Flight(const Scenario& scenario, const FlightMachine& machine, std::vector<FlightObserver*> observers = {});
   Flight(const Flight&) = delete;
   Flight& operator=(const Flight&) = delete;
 
-  /// All that is due at clock(), then one step of physics. Does nothing once the flight has ended.
+  /// Does everything due at clock(), then one step of physics. Does nothing after the flight has ended.
   void step();
 
   const Scenario& scenario() const { return scenario_; }
   const CalibratedRig& rig() const { return rig_; }
   const std::vector<Obstacle>& obstacles() const { return obstacles_; }
 
-  /// The moment of truth(). After step() it is the next one, of which nothing is done yet.
+  /// The time of truth(). After step() it is the next step, for which nothing has been done yet.
   const FlightClock& clock() const { return clock_; }
   bool launched() const { return aircraft_.launched(); }  ///< has left the catapult
   const std::optional<Ending>& ending() const { return ending_; }
@@ -75,7 +75,7 @@ class Flight {
   const PlannerCounts& planner_counts() const { return autopilot_.counts(); }
   const Controls& controls() const { return controls_; }  ///< in force
 
-  /// To draw what is true beside what was seen; nothing where neither detector nor observer needs images.
+  /// To draw the truth beside the images; null where neither detector nor observer needs images.
   const StereoCameras* cameras() const { return cameras_.get(); }
   /// What a camera following the aircraft sees now, BGR 8-bit. Needs cameras().
   cv::Mat chase_view(int width_px, int height_px) const;

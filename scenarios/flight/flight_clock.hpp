@@ -6,7 +6,7 @@
 
 namespace understory {
 
-/// Time as a count of physics steps, and what is due at each: nothing ever drifts or is compared as a float.
+/// Time as a count of physics steps, and what is due at each. Nothing drifts, and no float is compared.
 class FlightClock {
  public:
   explicit FlightClock(const Scenario& scenario, std::int64_t step = 0)
@@ -32,7 +32,7 @@ class FlightClock {
   bool gps() const { return gps_enabled_ && step_ % gps_steps_ == 0; }
   bool camera() const { return step_ % camera_steps_ == 0; }
   bool replan() const { return step_ % replan_steps_ == 0; }
-  /// When the next frame's exposure ends, of one that ends now.
+  /// End of the next frame's exposure, where one ends now.
   std::int64_t next_camera_t_ns() const { return time_of_step_ns(step_ + camera_steps_); }
 
  private:

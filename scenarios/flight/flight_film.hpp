@@ -11,8 +11,8 @@
 
 namespace understory {
 
-/// flight.mp4: what the left camera sees under the paper's overlay, beside a chase view; and still.png, the
-/// moment with the most detections. Shows the flight at its own speed, 30 pictures a second.
+/// flight.mp4: the left camera's image with the paper's overlay beside a chase view, in real time, 30
+/// pictures a second. still.png: the picture with the most detections.
 class FlightFilm : public FlightObserver {
  public:
   /// Files go into `folder`. `frame_rate_hz`: of the frames that reach the autopilot.
@@ -27,7 +27,7 @@ class FlightFilm : public FlightObserver {
   std::filesystem::path folder_;
   int every_;  ///< frames per picture
   VideoFile video_;
-  std::optional<Rectifier> rectifier_;  ///< of raw pairs: the detector rectifies only what it looks at
+  std::optional<Rectifier> rectifier_;  ///< for raw pairs, since the detector rectifies only part of an image
   std::int64_t frames_ = 0;
   std::size_t maximum_hits_ = 0;
   cv::Mat still_;

@@ -17,8 +17,7 @@
 
 namespace understory {
 
-// The parts of a flight as a scenario says them: the one place where a scenario's word becomes a part. All
-// throw in one line.
+// Makes the parts of a flight from a scenario. All throw in one line.
 
 /// The compiled scene. MachineError where the project's models do not compile.
 World world_of(const Scenario& scenario, const std::filesystem::path& models_folder,
@@ -28,7 +27,8 @@ World world_of(const Scenario& scenario, const std::filesystem::path& models_fol
 std::unique_ptr<StereoCameras> cameras_of(const Scenario& scenario, const World& world,
                                           const CalibratedRig& rig, RendererKind renderer);
 
-/// Its aircraft on the catapult; `world` must outlive it. ScenarioError where it cannot stand there.
+/// Its aircraft on the catapult; `world` must outlive it. ScenarioError where the catapult would begin
+/// underground.
 Aircraft aircraft_of(const Scenario& scenario, const World& world);
 
 /// What turns pairs into hits. ScenarioError where the rig cannot look at the depths asked for. An oracle
@@ -37,7 +37,7 @@ std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const Ca
                                               const std::vector<Obstacle>& obstacles,
                                               const TruthHistory& history);
 
-/// What the autopilot takes for its state. An oracle keeps a reference to the history.
+/// The autopilot's source of state. An oracle keeps a reference to the history.
 std::unique_ptr<StateSource> state_source_of(const Scenario& scenario, const TruthHistory& history);
 
 AutopilotConfig autopilot_config_of(const Scenario& scenario);

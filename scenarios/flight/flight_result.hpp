@@ -21,7 +21,7 @@ enum class Ending {
 
 std::string_view word_for(Ending ending);
 
-/// Wall time one stage of the loop took. Measured for people; decides nothing.
+/// Wall time of one stage of the loop, for people. It decides nothing.
 struct StageTiming {
   std::string stage;
   std::int64_t count = 0;
@@ -37,7 +37,7 @@ struct FlightResult {
   std::string detector;
   std::string state_source;
   Ending ending = Ending::time;
-  std::string touched;     ///< name of the obstacle nearest at a collision
+  std::string touched;     ///< name of the nearest obstacle at a collision
   double simulated_s = 0;  ///< since the start at rest
   double wall_s = 0;
   double distance_m = 0;      ///< true path length since release

@@ -23,7 +23,7 @@ struct FlightProgress {
 
 struct FlyOptions {
   std::filesystem::path models_folder;
-  std::filesystem::path output_folder;  ///< made where missing; gets the run's files; empty: none are written
+  std::filesystem::path output_folder;  ///< gets the run's files, created where missing; empty: no files
   bool video = false;                   ///< also flight.mp4 and still.png
   RendererKind renderer = RendererKind::osmesa;            ///< the machine's: not part of the scenario
   std::vector<FlightObserver*> observers;                  ///< beside the run's own record
@@ -31,8 +31,7 @@ struct FlyOptions {
 };
 
 /// Flies a scenario once and leaves its run folder: scenario.yaml first, result.json last. Throws
-/// ScenarioError for what a person gave wrongly (rig, folder) and MachineError where the machine fails (GL
-/// library, disk).
+/// ScenarioError at bad input (rig, folder), MachineError where the machine fails (GL library, disk).
 FlightResult fly(const Scenario& scenario, const FlyOptions& options);
 
 }  // namespace understory

@@ -10,14 +10,14 @@
 
 namespace understory {
 
-/// The aircraft's sensors but for the cameras, each with a generator of its own, and the faults that stand
-/// between them and the autopilot.
+/// The aircraft's sensors except the cameras, each with its own generator, and the faults between sensors and
+/// autopilot.
 class OnboardSensors {
  public:
   explicit OnboardSensors(const Scenario& scenario);
 
-  /// Measures what is due now and hands `receiver`, an Autopilot or a StateSource, what arrives now; a
-  /// satellite fix arrives late.
+  /// Measures what is due now and gives `receiver`, an Autopilot or a StateSource, the samples that arrive
+  /// now. A GPS fix arrives late.
   template <typename Receiver>
   void deliver(const FlightClock& clock, const Truth& truth, Receiver& receiver);
   /// The newest sample of its kind that was handed over.
@@ -25,7 +25,7 @@ class OnboardSensors {
   const std::optional<Sample>& newest() const {
     return std::get<std::optional<Sample>>(newest_);
   }
-  /// For the cameras' frames, which the loop itself delivers.
+  /// For the cameras' frames, which the flight delivers.
   Faults& faults() { return faults_; }
 
  private:

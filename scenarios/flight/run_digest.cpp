@@ -39,8 +39,7 @@ void RunDigest::add(const Eigen::Isometry3d& pose) {
 void RunDigest::add(std::span<const std::byte> bytes) {
   constexpr std::size_t word_bytes = sizeof(std::uint64_t);
   add(static_cast<std::uint64_t>(bytes.size()));
-  // A word must wait until the one before it is folded in: eight chains side by side take a fifth of one's
-  // time.
+  // Each word waits for the one before it. Eight chains side by side take a fifth of the time of one.
   std::array<std::uint64_t, 8> chains{1, 2, 3, 4, 5, 6, 7, 8};
   constexpr std::size_t round_bytes = chains.size() * word_bytes;
   std::size_t at = 0;

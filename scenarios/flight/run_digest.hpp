@@ -8,10 +8,10 @@
 
 namespace understory {
 
-/// A running 64-bit fingerprint of everything a flight produced, bit for bit: equal scenario, seed and binary
-/// give equal digests on one machine. Eight bytes at a time are folded in by splitmix64's mixer (Steele, Lea
-/// & Flood 2014): not cryptographic, but every bit of every word reaches every bit of the result.
-/// Images go into eight chains side by side, the words in turn, which are then folded in themselves.
+/// A running 64-bit hash of everything a flight produced, bit for bit. Equal scenario, seed and binary give
+/// equal digests on one machine. Eight bytes at a time are folded in by splitmix64's mixer (Steele, Lea &
+/// Flood 2014): not cryptographic, but every bit of every word reaches every bit of the result. Images go
+/// into eight chains side by side, the words in turn, which are then folded in themselves.
 class RunDigest {
  public:
   void add(std::uint64_t word);

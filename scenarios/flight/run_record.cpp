@@ -46,7 +46,7 @@ std::span<const std::byte> bytes_of(const cv::Mat& image) {
 void prepare_run_folder(const Scenario& scenario, const std::filesystem::path& folder) {
   prepare_output_folder(folder);
   for (const char* file : {"result.json", "trajectory.csv", "map.ply", "flight.mp4", "still.png"}) {
-    std::filesystem::remove(folder / file);  // of an earlier run: must not pass for this one's
+    std::filesystem::remove(folder / file);  // of an earlier run
   }
   write_whole_file(folder / "scenario.yaml", scenario_to_text(scenario));
 }
@@ -65,8 +65,8 @@ void RunRecord::on_frame(const Flight& flight) {
   add_points(flight);
 }
 
-/// The map's points that this frame brought in (not those it only saw again). They are counted on true
-/// obstacles by where the aircraft really was, whatever the odometry frame has drifted until then.
+/// The points that this frame added to the map, without those it saw again. They are assigned to obstacles
+/// from the true pose, because the odometry frame drifts.
 void RunRecord::add_points(const Flight& flight) {
   const std::int64_t t_ns = flight.frame().t_ns;
   const Eigen::Isometry3d T_true_estimated =
@@ -167,7 +167,7 @@ void RunRecord::say_what_was_touched(const Flight& flight) {
   }
 }
 
-/// A course of few, named bars: what was seen of each.
+/// On a course of few named bars: the points seen on each.
 void RunRecord::count_points_on_obstacles(const std::vector<Obstacle>& obstacles) {
   for (const Obstacle& bar : obstacles) {
     const auto near = [&](const Eigen::Vector3d& point_world) {

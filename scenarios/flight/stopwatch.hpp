@@ -15,12 +15,12 @@ inline double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// Wall time per named stage, for people. Nothing reads it back while a flight runs.
+/// Wall time per named stage, for people. No flight reads it.
 class Stopwatch {
   using Clock = std::chrono::steady_clock;
 
  public:
-  /// Books the time until it goes out of scope.
+  /// Counts the time until it goes out of scope.
   class Booking {
    public:
     Booking(Stopwatch& stopwatch, std::size_t timing) : stopwatch_(stopwatch), timing_(timing) {}
@@ -47,7 +47,7 @@ class Stopwatch {
     if (known == timings_.end()) timings_.push_back({std::string(stage), 0, 0, 0});
     return {*this, place};
   }
-  /// The same for `work`, whose value it gives back.
+  /// Times `work` and returns its value.
   template <typename Work>
   decltype(auto) time(std::string_view stage, Work&& work) {
     const Booking booking = time(stage);

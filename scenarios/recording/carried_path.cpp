@@ -21,7 +21,7 @@ bool is_trajectory(const std::vector<TableLine>& lines) {
   return !lines.empty() && !lines.front().cells.empty() && lines.front().cells.front() == "t_s";
 }
 
-/// As TUM's lines, each in its place, so that messages name the file's own.
+/// As lines of TUM's form with the file's line numbers, for messages.
 std::string as_tum(const std::vector<TableLine>& lines, const std::string& name) {
   std::string text;
   int number = 1;
@@ -69,7 +69,7 @@ std::vector<TimedPose> thinned(const std::vector<TimedPose>& poses) {
   for (const TimedPose& pose : poses)
     if (kept.empty() || pose.t_ns - kept.back().t_ns >= closest_ns) kept.push_back(pose);
   if (poses.size() < 2 || kept.back().t_ns == poses.back().t_ns) return kept;
-  if (kept.size() > 1) kept.pop_back();  // rather a longer last piece than a short one
+  if (kept.size() > 1) kept.pop_back();  // a longer last piece instead of a short one
   kept.push_back(poses.back());
   return kept;
 }
@@ -87,8 +87,7 @@ SmoothPath::SmoothPath(const std::vector<TimedPose>& poses) {
   solve_second_derivatives();
 }
 
-/// The tridiagonal system that makes slopes meet at every knot, with none at the ends, by elimination from
-/// the front.
+/// Solves the tridiagonal system of a natural cubic spline by forward elimination.
 void SmoothPath::solve_second_derivatives() {
   const std::size_t count = values_.size();
   second_derivatives_.assign(count, Channels::Zero());

@@ -11,26 +11,24 @@
 
 namespace understory {
 
-/// Poses to carry cameras along: TUM's or EuRoC's form (perception/io/pose_file.hpp), or a run folder's
-/// trajectory.csv, of which the true pose counts. Throws ScenarioError in one line where there are fewer than
-/// two, or where one cannot follow another: times that do not increase, more than 100 m/s, a quarter turn at
-/// once.
+/// Poses along which cameras are carried: TUM's or EuRoC's form (perception/io/pose_file.hpp), or the true
+/// poses of a run's trajectory.csv. Throws ScenarioError in one line where there are fewer than two, times do
+/// not increase, or two poses need more than 100 m/s or a quarter turn.
 std::vector<TimedPose> read_path(const std::filesystem::path& file);
 
-/// Those at least 0.05 s apart, with both ends. Files round: at 200 Hz a tenth of a millimetre is 8 m/s^2 to
-/// and fro.
+/// Those at least 0.05 s apart, with both ends, because files round positions: a tenth of a millimetre at 200
+/// Hz is 8 m/s^2.
 std::vector<TimedPose> thinned(const std::vector<TimedPose>& poses);
 
-/// A way through given poses that an IMU can be carried along: natural cubic splines (de Boor, A Practical
-/// Guide to Splines, 1978, chapter IV) of the position and of the quaternion's components, brought back to
-/// length 1. So accelerations are continuous, and a straight line at constant speed stays one. Time runs from
-/// the first pose.
+/// A smooth path through given poses: natural cubic splines (de Boor, A Practical Guide to Splines, 1978,
+/// chapter IV) of the position and of the quaternion's components, normalised. Accelerations are continuous,
+/// and a straight line at constant speed remains one. Time runs from the first pose.
 class SmoothPath {
  public:
   /// `poses`: at least two, their times strictly increasing, each attitude less than half a turn from the one
   /// before.
   explicit SmoothPath(const std::vector<TimedPose>& poses);
-  /// Before the start and after the end the first and the last piece go on.
+  /// Outside its time the first and the last piece continue.
   Eigen::Isometry3d at(double t_s) const;
   double length_s() const { return times_s_.back(); }
 
@@ -42,7 +40,7 @@ class SmoothPath {
   std::vector<Channels> values_, second_derivatives_;
 };
 
-/// Where a body that is carried is, after so many seconds. Smooth: twice differentiable at least.
+/// The pose of a carried body after a time, s. At least twice differentiable.
 using CarriedPose = std::function<Eigen::Isometry3d(double t_s)>;
 
 /// What is true of it at t_ns: pose, and from it by central differences (over 0.2 ms) velocity, rates and

@@ -26,8 +26,7 @@ std::string text_of(const char* header, const std::map<std::int64_t, std::string
   return text;
 }
 
-/// Images hardly shrink where they are noisy, depth and objects do: their bytes unpacked bound what PNG makes
-/// of them.
+/// Noisy images hardly compress, so the uncompressed size estimates the size of the PNGs.
 std::uintmax_t expected_bytes(const Scenario& scenario, const StereoRig& rig, double expected_s) {
   const double per_frame = 6.0 * rig.width_px * rig.height_px;
   return static_cast<std::uintmax_t>(per_frame * scenario.cameras.rate_hz * expected_s);
@@ -70,7 +69,7 @@ EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario,
   const std::vector<Obstacle> obstacles = course_obstacles(scenario);
   require_numbers_for(obstacles);
   prepare_output_folder(folder);
-  fs::remove_all(part_, ignored);  // of a recording that was broken off
+  fs::remove_all(part_, ignored);  // of an interrupted recording
   require_free_space(part_, expected_bytes(scenario, rig.rig, expected_s));
   for (const char* sensor :
        {"cam0/data", "cam1/data", "depth0/data", "objects0/data", "imu0", "state_groundtruth_estimate0"})
@@ -119,7 +118,7 @@ void EurocRecording::observe(const Truth& truth) {
   if (steps_++ % truth_every_steps_ == 0) add_true_state(truth);
 }
 
-/// An image's moment may lie between two steps, the first one's before all of them.
+/// An image's time may lie between two steps; that of the first image lies before all of them.
 Truth EurocRecording::truth_at(std::int64_t t_ns) const {
   auto after = recent_.begin();
   while (after != recent_.end() && after->t_ns < t_ns) ++after;

@@ -17,9 +17,8 @@
 
 namespace understory {
 
-/// Keeps what cameras and IMU saw, and what was true, in the EuRoC/ASL layout: <folder>/mav0
-/// (docs/record.md). It bears that name only when it is whole ("mav0.part" until then). Images are written as
-/// they come, the tables by finish().
+/// Keeps images, IMU samples and the truth in the EuRoC/ASL layout: <folder>/mav0 (docs/record.md),
+/// "mav0.part" until it is complete. Images are written as they come, the tables by finish().
 class EurocRecording : public FlightObserver {
  public:
   /// `expected_s`: how much of simulated time is to come; that many images must fit the disk. Throws
@@ -28,7 +27,7 @@ class EurocRecording : public FlightObserver {
   /// is too full.
   EurocRecording(const std::filesystem::path& folder, const Scenario& scenario, const CalibratedRig& rig,
                  double expected_s);
-  ~EurocRecording() override;  ///< removes what finish() has not made whole
+  ~EurocRecording() override;  ///< removes an unfinished recording
   EurocRecording(const EurocRecording&) = delete;
   EurocRecording& operator=(const EurocRecording&) = delete;
 
@@ -38,7 +37,7 @@ class EurocRecording : public FlightObserver {
   void on_step(const Flight& flight) override;
 
   // Of cameras that are carried:
-  /// Every physics step, before what is seen in it; a moment already known is left alone.
+  /// To be called at every physics step, before its images.
   void observe(const Truth& truth);
   void add(const ImuSample& sample);
   /// Within a second of its moment. `cameras`, those that took it, draw the true depth and the objects.

@@ -16,11 +16,11 @@ namespace understory {
 // The texts of a EuRoC/ASL folder, as its readers expect them. Frames: EuRoC's body is ours (x forward, y
 // left, z up, at the centre of mass), a camera has OpenCV's axes.
 
-/// A recording's clock at simulated t_ns, nanoseconds. Starts at 10^18, in 2001: never zero, and of 19 digits
-/// like the data set's own, so that names of images sort and read as times.
+/// A recording's clock at simulated t_ns, nanoseconds. Starts at 10^18, in 2001: never zero, and with 19
+/// digits like EuRoC's own, so that names of images sort as times.
 constexpr std::int64_t recorded_ns(std::int64_t t_ns) { return 1'000'000'000'000'000'000 + t_ns; }
 
-/// A camera as its sensor.yaml says it.
+/// A camera as in its sensor.yaml.
 struct RecordedCamera {
   CameraCalibration camera;  ///< rectified images: no distortion, rectification the identity
   Eigen::Isometry3d T_body_camera = Eigen::Isometry3d::Identity();
@@ -60,7 +60,7 @@ std::string imu_line(const ImuSample& sample);
 /// objects0/objects.csv: what the numbers in the images of objects stand for, the ground first. World frame.
 std::string objects_text(const std::vector<Obstacle>& obstacles);
 
-/// What a line of a state's data.csv says; t_ns is simulated time.
+/// A line of a state's data.csv; t_ns is simulated time.
 struct RecordedState {
   std::int64_t t_ns = 0;
   Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();

@@ -17,18 +17,18 @@
 namespace understory {
 namespace {
 
-/// Long enough for any flight that gets there: dodging included, none is slower.
+/// Longer than any flight to the goal.
 double longest_flight_s(const Scenario& scenario) {
   constexpr double slow_mps = 8;
   return std::min(scenario.time_limit_s, scenario.launch.rest_s + 1 + scenario.goal_x_m() / slow_mps);
 }
 
-/// A way to carry a scenario's cameras and IMU.
+/// How a scenario's cameras and IMU are carried.
 struct Carriage {
   CalibratedRig rig;  ///< rig_of's
   std::vector<Obstacle> obstacles;
-  std::function<Truth(std::int64_t t_ns)> truth_at;  ///< asked for in turn, step by step from 0
-  std::int64_t end_ns = 0;                           ///< no step counts from here on
+  std::function<Truth(std::int64_t t_ns)> truth_at;  ///< called step by step from 0
+  std::int64_t end_ns = 0;                           ///< end of the recording
 };
 
 Carried carry_recorded(const Scenario& scenario, const Carriage& carriage, const FlyOptions& options) {

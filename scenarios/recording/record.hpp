@@ -19,9 +19,9 @@ struct FlownRecording {
 /// (EurocRecording). The flight is the one that fly() flies. Throws as both do.
 FlownRecording fly_recorded(const Scenario& scenario, FlyOptions options);
 
-/// Of a scenario's cameras and IMU carried with estimator and autopilot off. Leaves scenario.yaml and the
-/// recording (EurocRecording) in options.output_folder: the truth as pose, no estimates. Every frame arrives:
-/// a scenario's faults and lost frames are of flights.
+/// A recording of carried cameras and IMU, without estimator and autopilot. Leaves scenario.yaml and the
+/// recording (EurocRecording) in options.output_folder: the truth as pose, no estimates. Every frame arrives,
+/// without the scenario's faults and lost frames.
 struct Carried {
   double carried_s = 0;
   double carried_m = 0;  ///< along the way

@@ -15,7 +15,7 @@
 namespace understory {
 namespace {
 
-constexpr double shoulder_room_m = 0.5;  // from the lane to the next bark
+constexpr double shoulder_room_m = 0.5;  // between the lane and the next trunk
 constexpr double pi = 3.14159265358979323846;
 constexpr double degree = pi / 180;
 
@@ -27,7 +27,7 @@ double room_beside(const Segment& lane, const std::vector<Obstacle>& obstacles) 
 
 Eigen::Isometry3d pose_at(const WalkPath& path, double t_s) {
   const double speed_mps = path.config.speed_mps;
-  const double step_hz = 1.8 * speed_mps / 1.4;  // steps keep their length
+  const double step_hz = 1.8 * speed_mps / 1.4;  // the length of a step stays the same
   const auto swing = [&](double hz, std::size_t phase) {
     return std::sin(2 * pi * hz * t_s + path.phases_rad[phase]);
   };

@@ -33,9 +33,9 @@ struct WalkPath {
 WalkPath walk_path(const WalkConfig& config, const Scenario& scenario, const StereoRig& rig,
                    const std::vector<Obstacle>& obstacles);
 
-/// The body on its way at t_ns (from 0): pose, and from it by central differences velocity, rates and
-/// specific force. Sway: up and down 2 cm and pitch 0.6 deg at every step (1.8 Hz at 1.4 m/s), from side to
-/// side 2.5 cm, roll 1 deg and yaw 1 deg at every second, and a slow look about of 2 deg.
+/// The walking body at t_ns (from 0): pose, and from it by central differences velocity, rates and specific
+/// force. Sway with every step (1.8 Hz at 1.4 m/s): 2 cm up and down, 0.6 deg of pitch. With every second
+/// step: 2.5 cm from side to side, 1 deg of roll and yaw. Also a slow yaw of 2 deg.
 Truth walk_truth(const WalkPath& path, std::int64_t t_ns);
 
 }  // namespace understory

@@ -8,8 +8,8 @@
 namespace understory {
 
 /// Throws ScenarioError, one line, where the rig cannot look at one of the rule's depths or where thresholds
-/// are not as many as depths. The line names the keys as the caller's user writes them: `depths_key`, and the
-/// section the thresholds stand in.
+/// are not as many as depths. The line names the keys as the user writes them: `depths_key`, and the section
+/// of the thresholds.
 void check_depths(const PushbroomConfig& rule, const StereoRig& rig, const std::string& depths_key,
                   const std::string& section);
 

@@ -6,9 +6,9 @@
 
 namespace understory {
 
-/// Palisades: round palings, all alike, on two rails. One runs beside the course, others stand across it,
-/// with a gate at y = 0, lower than the flight. At the right distance a paling's neighbour lies where the
-/// detector looks for it itself: with the long rig and 0.4 m between palings, at 22 m instead of 10.
+/// Fences of equal round palings on two rails, lower than the flight. One runs beside the course, others
+/// stand across it with a gate at y = 0. At a certain distance the neighbour of a paling lies at the
+/// disparity that the detector searches: with the long rig and 0.4 m between palings at 22 m instead of 10.
 struct FenceConfig {
   double height_m = 2;     ///< of the palings
   double spacing_m = 0.4;  ///< from one paling's axis to the next

@@ -7,8 +7,8 @@
 
 namespace understory {
 
-/// A forest on the launch side's terms: x ahead, y to the left. Also says how far any course is, trees or
-/// none.
+/// A forest in the launch frame: x ahead, y to the left. Its length also sets the goal plane of every other
+/// course.
 struct ForestConfig {
   double square_metres_per_tree = 49;  ///< mean ground area a tree has: 49 is 7 m spacing, 25 is dense
   double radius_min_m = 0.10;          ///< trunk radii are uniform between these two

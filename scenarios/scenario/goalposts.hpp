@@ -13,9 +13,8 @@ namespace understory {
 struct GoalpostsConfig {
   double ahead_m = 35;     ///< x of the near upright
   double width_m = 5.639;  ///< between the insides of the uprights
-  /// The goal's plane against straight across the course; the far upright stands farther ahead. Straight
-  /// across, the far upright would pass outside the cameras' view at the detection depth (our choice; the
-  /// paper gives no angle).
+  /// Angle of the goal's plane; 0 is straight across the course. The far upright stands farther ahead. At 0
+  /// it would pass outside the cameras' view at the detection depth (our choice; the paper gives no angle).
   double turn_rad = 0.7;
   double height_m = 9.144;  ///< top of the uprights
   double crossbar_top_m = 3.048;

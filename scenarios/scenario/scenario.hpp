@@ -31,8 +31,8 @@
 #include "sim/sensors/sensor_grades.hpp"
 #include "sim/sensors/sensors.hpp"
 
-/// Everything a flight depends on. Each part is its module's own config struct, so that a field is named,
-/// bounded and explained once; the sections here only add what the composition itself decides.
+/// Everything on which a flight depends. Each part is its module's own config struct, so that a field is
+/// named, bounded and explained in one place. The sections here add what belongs to the composition.
 namespace understory {
 
 enum class Course { forest, goalposts, clear, windows, fence };
@@ -90,8 +90,8 @@ struct VisitorWithout {
   }
 };
 
-/// Altitudes the flight must keep to once it has climbed into them; leaving ends it. Flying over the trees or
-/// along the ground would prove nothing.
+/// Altitudes within which the flight must stay after it has climbed into them; leaving them ends it. A flight
+/// over the trees or along the ground would prove nothing.
 struct BandConfig {
   double minimum_altitude_m = 1;
   double maximum_altitude_m = 6;
@@ -187,7 +187,7 @@ struct Scenario {
   EstimationSection estimation;
   AutopilotSection autopilot;
 
-  /// What the stack is told of its task.
+  /// The mission as the stack knows it.
   Mission mission() const {
     return {0,
             goal_x_m(),
@@ -196,7 +196,7 @@ struct Scenario {
             band.maximum_altitude_m,
             band.cruise_altitude_m};
   }
-  /// The airframe of the simulator, mismatch included. The stack is never shown it.
+  /// The simulator's airframe, mismatch included. The stack never sees it.
   Airframe flown_airframe() const { return mismatched(airframe, mismatch); }
   /// Where the trees stand that wind.shelter_factor is about.
   ForestStand stand() const {
@@ -211,9 +211,9 @@ struct Scenario {
     return config;
   }
   double goal_x_m() const { return forest.clear_m + forest.length_m; }
-  /// Frames that are looked at in a second.
+  /// Frames looked at per second.
   double frame_rate_hz() const { return 1 / std::max(1.0 / cameras.rate_hz, perception.cost_s()); }
-  /// Whether every frame reaches the stack, so that it can be told beforehand which will be looked at.
+  /// Whether every frame reaches the stack. Then it is known beforehand which frames will be looked at.
   bool every_frame_arrives() const {
     return cameras.drop_probability == 0 && std::ranges::none_of(faults, [](const FaultConfig& fault) {
              return fault.sensor == FaultySensor::camera;

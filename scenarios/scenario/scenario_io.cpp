@@ -14,7 +14,7 @@ namespace {
 
 using Sources = std::vector<ConfigNode>;  ///< the file, then every --with, then every --set
 
-/// The run folder's name by default, so no more than a plain word.
+/// It names the run folder, so it must be a plain word.
 bool is_plain_word(const std::string& name) {
   const auto is_plain = [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
@@ -23,7 +23,7 @@ bool is_plain_word(const std::string& name) {
          std::all_of(name.begin(), name.end(), is_plain);
 }
 
-/// What single ranges cannot say.
+/// Conditions between several keys.
 void check(const Scenario& scenario, const Sources& sources, const std::string& name) {
   const auto expect = [&](bool holds, const std::string& what) {
     if (holds) return;
@@ -71,7 +71,7 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
          "perception.stereo_sgbm.smoothness_1: expected less than smoothness_2");
   expect(perception.full_stereo.minimum_depth_m < perception.full_stereo.maximum_depth_m,
          "perception.full_stereo.minimum_depth_m: expected less than maximum_depth_m");
-  // The estimator remembers where it was for a second, and waits for no older frame than half of it.
+  // The estimator remembers its state for a second and accepts frames up to half a second old.
   const double cost_s = perception.cost_s();
   expect(scenario.cameras.latency_s + cost_s + std::min(cost_s, 1.0 / scenario.cameras.rate_hz) <= 0.5,
          "perception.compute.factor: expected a frame to be looked at within 0.5 s of its exposure");
@@ -82,7 +82,7 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
   }
 }
 
-/// Where the catapult holds the aircraft: known to whoever sets it up, so the filter may start from it.
+/// The aircraft's place on the catapult. It is known before the flight, so the filter may start from it.
 Eigen::Vector3d rail_start_world(const LaunchConfig& launch) {
   return {-launch.rail_length_m * std::cos(launch.climb_angle_rad), 0,
           launch.altitude_m - launch.rail_length_m * std::sin(launch.climb_angle_rad)};

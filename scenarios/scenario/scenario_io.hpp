@@ -24,14 +24,14 @@ Scenario load_changed_scenario(const std::filesystem::path& file, const std::vec
 Scenario scenario_from_text(const std::string& text, const std::string& name,
                             const std::vector<std::string>& settings = {});
 
-/// "file:line" or "--set ..." where a key was given; the file where it stands at its default.
+/// "file:line" or "--set ..." where a key was given; the file for a key at its default.
 std::string where_given(const std::filesystem::path& file, const std::vector<std::string>& settings,
                         std::string_view key, const std::vector<std::filesystem::path>& with = {});
 
 /// The effective scenario, every default written, as YAML that reads back to the same scenario.
 std::string scenario_to_text(const Scenario& scenario);
 
-/// The obstacles that the scenario's course and seed say.
+/// The obstacles of the scenario's course and seed.
 std::vector<Obstacle> course_obstacles(const Scenario& scenario);
 
 }  // namespace understory

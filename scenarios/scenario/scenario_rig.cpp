@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Both describe one pair of cameras: another unit of length or another rig's file shows here.
+/// Both must describe the same cameras. A wrong unit of length or another rig's file is detected here.
 void require_alike(const StereoRig& rectified, const StereoRig& rig, const fs::path& file) {
   const auto alike = [](double a, double b) { return std::abs(a - b) < 0.01 * b; };
   if (!alike(rectified.focal_px, rig.focal_px) || !alike(rectified.baseline_m, rig.baseline_m) ||

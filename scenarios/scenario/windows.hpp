@@ -6,11 +6,10 @@
 
 namespace understory {
 
-/// A facade across the way behind the goal, all windows alike (sim/scene/facade.hpp): texture that repeats,
-/// as misled the paper's detector without its invariance filter (Barry & Tedrake 2015, horizontal
-/// invariance).
+/// A facade of equal windows across the way behind the goal (sim/scene/facade.hpp): repeated texture, which
+/// misled the paper's detector without its invariance filter (docs/sources.md [1]).
 struct WindowsConfig {
-  double behind_goal_m = 12;  ///< from the goal plane to its face: a flight ends before it
+  double behind_goal_m = 12;  ///< from the goal plane to its face; flights end before it
   double width_m = 60;
   double height_m = 20;
 };

@@ -4,7 +4,7 @@
 
 namespace understory {
 
-/// The blind aircraft: what the course itself lets pass.
+/// A detector without hits: the blind aircraft. It measures how easy a course is.
 class NoDetector : public ObstacleDetector {
  public:
   const std::vector<StereoHit>& detect(const StereoFrame&) override { return none_; }

@@ -9,17 +9,17 @@
 
 namespace understory {
 
-/// Perfect vision with the pushbroom's sight: a hit for every 5x5 block of the left image (rows 0..205, the
-/// original detector's) whose centre ray meets a bar or wall first at a depth within one pixel of disparity
-/// of the detection depth. The depth is analytic (ray against round bar or box); the images are not looked
-/// at. Hits carry the true point.
+/// Perfect detection at the pushbroom's depth: a hit for every 5x5 block of the left image (rows 0..205, as
+/// the original detector) whose centre ray first meets a bar or wall within one pixel of disparity of the
+/// detection depth. The depth is analytic (ray against round bar or box); images are not used. Hits carry the
+/// true point.
 class TrueDepth : public ObstacleDetector {
  public:
-  /// Keeps a reference to the history, which must hold the moment of every frame it is given.
+  /// Keeps a reference to the history, which must cover the time of every frame.
   TrueDepth(const StereoRig& rig, std::vector<Obstacle> obstacles, const TruthHistory& history);
   const std::vector<StereoHit>& detect(const StereoFrame& frame) override;
 
-  /// The depths between which a block counts, m: one pixel either way of the nearest whole disparity.
+  /// The depth interval of a hit, m: one pixel either side of the nearest whole disparity.
   double minimum_depth_m() const { return minimum_depth_m_; }
   double maximum_depth_m() const { return maximum_depth_m_; }
 
@@ -32,7 +32,7 @@ class TrueDepth : public ObstacleDetector {
   std::vector<StereoHit> hits_;
 };
 
-/// Where a ray first meets a wall, in the world, in the same measure.
+/// Where a ray first meets a wall, world frame, as for bars below.
 double ray_meets_wall(const Eigen::Vector3d& origin_world, const Eigen::Vector3d& direction_world,
                       const Obstacle& wall);
 

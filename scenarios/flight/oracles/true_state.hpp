@@ -5,7 +5,7 @@
 
 namespace understory {
 
-/// The truth in the filter's place: no error, no covariance. Keeps a reference to the history.
+/// The truth in place of the filter: no error, no covariance. Keeps a reference to the history.
 class TrueState : public StateSource {
  public:
   explicit TrueState(const TruthHistory& history) : history_(history) {}

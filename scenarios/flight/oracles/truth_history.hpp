@@ -8,13 +8,11 @@
 
 namespace understory {
 
-/// What was true in the last moments, for the oracles that stand in for vision or filter. The loop feeds it
-/// every physics step; it keeps 0.6 s.
+/// The truth of the last 0.6 s, for the oracles. The flight adds to it at every physics step.
 class TruthHistory {
  public:
   void observe(const Truth& truth);
-  /// The newest truth not later than t_ns; the oldest kept where t_ns lies before it. Asserts that any was
-  /// observed.
+  /// The newest truth not later than t_ns, or the oldest. Asserts that there is one.
   const Truth& at(std::int64_t t_ns) const;
 
  private:
