@@ -21,4 +21,7 @@ if(UNDERSTORY_SANITIZE)
     -fsanitize=${UNDERSTORY_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
     $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(understory_settings INTERFACE -fsanitize=${UNDERSTORY_SANITIZE})
+  # Under a sanitizer Eigen aligns memory by hand, and frees by hand what libpagmo took from malloc. The sanitizer's
+  # malloc aligns as glibc's does.
+  target_compile_definitions(understory_settings INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()

@@ -1,21 +1,43 @@
-# What runs on an aircraft, as a CMake package: find_package(understory COMPONENTS perception estimation).
-# docs/example uses it from outside the tree; tests/package builds that.
+# What is installed, in two components: the program with its data, and what runs on an aircraft as a CMake package,
+# find_package(understory COMPONENTS perception estimation). docs/example uses the second from outside the tree;
+# tests/package builds that and runs the program from a prefix that was moved.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
+# The program looks for its data below share/understory of the prefix that it lies in, and for its module of picture
+# codecs along its run path.
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
+install(TARGETS understory)
+install(TARGETS understory_picture_codecs LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/understory)
+install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/understory)
+install(DIRECTORY scenarios DESTINATION ${CMAKE_INSTALL_DATADIR}/understory FILES_MATCHING PATTERN "*.yaml" PATTERN "*.tum")
+
+# A sanitized program may not run where it is built: no pages of it.
+if(NOT UNDERSTORY_SANITIZE)
+  set(manual ${PROJECT_BINARY_DIR}/understory.1.gz)
+  set(completion ${PROJECT_BINARY_DIR}/completion/understory)
+  add_custom_command(OUTPUT ${manual} ${completion} DEPENDS understory VERBATIM
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/completion
+    COMMAND sh -ec "$<TARGET_FILE:understory> manual | gzip -9n >${manual}"
+    COMMAND sh -ec "$<TARGET_FILE:understory> completion bash >${completion}")
+  add_custom_target(program_pages ALL DEPENDS ${manual} ${completion})
+  install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+endif()
+
 # One target a component: the readers come with the detector.
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME development)
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/understory)
 set_target_properties(perception_io PROPERTIES EXPORT_NAME perception)
 set_target_properties(perception PROPERTIES EXPORT_NAME detection)
 install(TARGETS understory_settings opencv_core_parts opencv_file_parts perception_types pushbroom_kernel perception
                 picture_codecs perception_io estimation_types estimation
         EXPORT understory-targets)
-install(TARGETS understory)
-install(TARGETS understory_picture_codecs LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/understory)
-install(EXPORT understory-targets NAMESPACE understory:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/understory)
+install(EXPORT understory-targets NAMESPACE understory:: DESTINATION ${package_folder})
 install(DIRECTORY perception estimation DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/understory
         FILES_MATCHING PATTERN "*.hpp")
 configure_package_config_file(cmake/understory-config.cmake.in understory-config.cmake
-                              INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/understory)
+                              INSTALL_DESTINATION ${package_folder})
 write_basic_package_version_file(understory-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/understory-config.cmake ${PROJECT_BINARY_DIR}/understory-config-version.cmake
-        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/understory)
+        DESTINATION ${package_folder})

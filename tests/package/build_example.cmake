@@ -1,4 +1,5 @@
-# Run by CTest: BUILD (the project's build folder), EXAMPLE, RIG, COMPILER and WORK are given.
+# Run by CTest: BUILD (the project's build folder), SOURCE (its source tree), EXAMPLE, RIG, COMPILER, SIM (whether the
+# program flies) and WORK are given.
 file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})
 function(must)
@@ -13,11 +14,23 @@ must(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 must(${CMAKE_COMMAND} -S ${EXAMPLE} -B ${WORK}/build -G Ninja -D CMAKE_PREFIX_PATH=${WORK}/prefix
      -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_BUILD_TYPE=Release)
 must(${CMAKE_COMMAND} --build ${WORK}/build)
-# The installed program finds its module of picture codecs, wherever the prefix was moved to.
+# The installed program finds its module of picture codecs and its data wherever the prefix was moved to, from any
+# folder, and knows nothing of the source tree.
 file(RENAME ${WORK}/prefix ${WORK}/moved)
-must(${WORK}/moved/bin/understory rig ${RIG} --out ${WORK}/rig.png)
+must(${WORK}/moved/bin/understory rig long --out ${WORK}/rig.png)
 if(NOT EXISTS ${WORK}/rig.png)
   message(FATAL_ERROR "the installed program drew no rig: ${output}")
+endif()
+if(SIM)
+  file(WRITE ${WORK}/brief.yaml "forest: {length_m: 10}\n")
+  must(${CMAKE_COMMAND} -E chdir ${WORK} ${WORK}/moved/bin/understory fly clear --with brief.yaml --video --out flight)
+  if(NOT EXISTS ${WORK}/flight/flight.mp4)
+    message(FATAL_ERROR "the installed program filmed no flight: ${output}")
+  endif()
+endif()
+file(STRINGS ${WORK}/moved/bin/understory paths REGEX "${SOURCE}/(models|scenarios|perception|sim|planning|estimation)")
+if(paths)
+  message(FATAL_ERROR "the installed program names the source tree: ${paths}")
 endif()
 # Two gray pictures of the rig's size, written by hand: the simplest image format there is.
 string(REPEAT "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ!?" 1410 pixels)

@@ -1,0 +1,58 @@
+# Debian packages of what understory_install.cmake installs: `cmake --workflow --preset package` builds and packs
+# understory (the program, its models and scenarios) and libunderstory-dev.
+set(CPACK_PACKAGE_NAME understory)
+set(CPACK_PACKAGE_VENDOR "the Understory developers")
+set(CPACK_PACKAGE_CONTACT "The Understory developers <understory@localhost>")
+set(CPACK_PACKAGE_HOMEPAGE_URL "")
+set(CPACK_GENERATOR DEB)
+set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+    OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME understory)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "${PROJECT_DESCRIPTION}
+ Flies a simulated delta wing through forests on its own stereo vision,
+ headless, on a CPU, the same way every time: single flights, recordings,
+ campaigns with statistics, a gate for continuous integration, and the
+ detector on recorded images.")
+# What is linked, and what is opened at run time: OSMesa draws everywhere, EGL where a GPU is.
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS libosmesa6)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "libegl1, libgl1-mesa-dri")
+
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libunderstory-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "detector and estimator of Understory, to build with
+ Static libraries, headers and CMake configuration of the pushbroom stereo
+ detector with its readers, and of the error-state filter, as they run on an
+ aircraft: find_package(understory COMPONENTS perception estimation).")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
+    "libeigen3-dev, libopencv-dev, libyaml-cpp-dev, libfmt-dev, libtbb-dev, libhwy-dev")
+
+# Debian asks for a copyright file and a changelog in each package.
+file(READ LICENSE license)
+string(REGEX REPLACE "^.*reserved\\.\n+" "" license "${license}")
+string(REGEX REPLACE "\n\n" "\n.\n" license "${license}")
+string(STRIP "${license}" license)
+string(REGEX REPLACE "\n" "\n " license " ${license}")
+configure_file(cmake/debian/copyright.in debian/copyright @ONLY)
+configure_file(cmake/debian/changelog.in debian/changelog @ONLY)
+set(pages ${PROJECT_BINARY_DIR}/debian)
+add_custom_command(OUTPUT ${pages}/changelog.gz ${pages}/changelog.Debian.gz VERBATIM
+  DEPENDS ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${pages}/changelog
+  COMMAND sh -ec "gzip -9n <${PROJECT_SOURCE_DIR}/CHANGELOG.md >${pages}/changelog.gz"
+  COMMAND sh -ec "gzip -9n <${pages}/changelog >${pages}/changelog.Debian.gz")
+add_custom_target(debian_pages ALL DEPENDS ${pages}/changelog.gz ${pages}/changelog.Debian.gz)
+foreach(component program development)
+  string(TOUPPER ${component} key)
+  install(FILES ${pages}/copyright ${pages}/changelog.gz ${pages}/changelog.Debian.gz COMPONENT ${component}
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_${key}_PACKAGE_NAME})
+endforeach()
+include(CPack)
