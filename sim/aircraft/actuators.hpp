@@ -4,23 +4,23 @@
 
 namespace understory {
 
-/// What stands between a command and what acts on the air. The identified model has none of it (its airframe
-/// answers one input delay later, at once and in full), so every part is off by default, at 0. The flight
-/// record cannot tell delay from lag (docs/flight_model.md): the values named here are typical, none is
-/// fitted.
+/// Dynamics between a command and its effect on the air. The identified model has none (its airframe answers
+/// one input delay later, at once and in full), so every part is off by default, at 0. The flight record
+/// cannot separate delay from lag (docs/flight_model.md), so the values in the comments are typical and none
+/// is fitted.
 struct ActuatorsConfig {
   double elevon_time_s = 0;      ///< first-order lag of the servos; 0.030 in docs/sources.md [14]
   double elevon_rate_radps = 0;  ///< maximum; 8.7 is 0.12 s per 60 deg, from data sheets of 9 g servos
   double motor_time_s = 0;       ///< first-order lag of the thrust; about 0.05 with a 7 in propeller
-  /// Airspeed at which the propeller's thrust ends: pitch times revolutions, 5 in at 10,000 rpm is 21 m/s.
-  /// Thrust falls linearly up to there (nearly true of measured propellers: Brandt & Selig 2011, "Propeller
+  /// Airspeed at which the propeller's thrust is zero: pitch times revolutions, 5 in at 10,000 rpm is 21 m/s.
+  /// Thrust falls linearly up to it (nearly true of measured propellers: Brandt & Selig 2011, "Propeller
   /// Performance Data at Low Reynolds Numbers").
   double pitch_speed_mps = 0;
-  /// Airspeed at which the thrust is what was commanded: the identified model's trim, where its newtons were
-  /// found. Slower than this there is more.
+  /// Airspeed at which the thrust equals the command: the identified model's trim. Below it the thrust is
+  /// larger.
   double thrust_speed_mps = 12.27;
-  /// Share of the slipstream's full speed that the elevons feel, 1 right in it. The disc (radius 0.09 m) is
-  /// behind and inboard of the elevons (from 0.13 m out): 0.1 is a guess at what reaches them.
+  /// Share of the slipstream's speed at the elevons; 1 if they are in it. The disc (radius 0.09 m) is behind
+  /// and inboard of the elevons (from 0.13 m out), so 0.1 is a guess.
   double propwash_share = 0;
   double propeller_diameter_m = 0.18;  ///< 7 in, as drawn in models/airframe
   /// Motor torque per thrust, D C_P / (2 pi C_T): 0.014 m with C_P / C_T = 0.5 (Brandt & Selig 2011).
@@ -45,15 +45,16 @@ class Actuators {
  public:
   explicit Actuators(const ActuatorsConfig& config) : config_(config) {}
 
-  void settle(const Controls& controls) { now_ = controls; }  ///< as if held for long
+  void settle(const Controls& controls) { now_ = controls; }  ///< the state after holding `controls` for long
   void advance(const Controls& commanded, double step_s);
 
-  /// Where the surfaces are.
+  /// Positions of the surfaces and the thrust.
   double left_elevon_rad() const { return now_.left_elevon_rad; }
   double right_elevon_rad() const { return now_.right_elevon_rad; }
-  /// Thrust at this airspeed along body x. Never below zero: a propeller past its pitch speed is not braking.
+  /// Thrust at this airspeed along body x. Never below zero: above its pitch speed the propeller does not
+  /// brake.
   double thrust_n(double forward_airspeed_mps) const;
-  /// What the propeller adds to the air's speed along body x at the elevons (momentum theory, far wake).
+  /// Speed that the propeller adds to the air along body x at the elevons (momentum theory, far wake).
   double elevon_wash_mps(double forward_airspeed_mps, double air_density_kgpm3) const;
   double motor_torque_nm(double forward_airspeed_mps) const;
 

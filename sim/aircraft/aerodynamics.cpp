@@ -12,8 +12,8 @@ struct PlateForce {
   double across;  ///< along the second axis of the plane (records' z, or y)
 };
 
-/// Reference line at the angle `flow` to the air, the plate itself at `flow - deflection`. Lift stands on the
-/// local velocity, drag runs against it.
+/// The reference line is at the angle `flow` to the air, the plate at `flow - deflection`. Lift is
+/// perpendicular to the local velocity, drag opposes it.
 PlateForce plate_force(double along_mps, double across_mps, double deflection_rad, double area_m2,
                        double density, double lift_factor, double drag_factor) {
   const double flow = std::atan2(across_mps, along_mps);
@@ -24,7 +24,7 @@ PlateForce plate_force(double along_mps, double across_mps, double deflection_ra
   return {lift * std::sin(flow) - drag * std::cos(flow), -lift * std::cos(flow) - drag * std::sin(flow)};
 }
 
-// From here on in the records' axes: x forward, y right, z down.
+// From here on in the axes of the flight records: x forward, y right, z down.
 
 struct RecordsFlow {
   Eigen::Vector3d velocity;

@@ -6,20 +6,20 @@
 
 namespace understory {
 
-/// Between the flight records' axes (x forward, y right, z down) and the house's body axes (x forward, y
-/// left, z up). Half a turn about x: its own inverse, and right for velocities, rates, forces and moments
-/// alike.
+/// Converts between the flight records' axes (x forward, y right, z down) and our body axes (x forward, y
+/// left, z up): half a turn about x, which is its own inverse. Valid for velocities, rates, forces and
+/// moments.
 inline Eigen::Vector3d flip_yz(const Eigen::Vector3d& vector) {
   return {vector.x(), -vector.y(), -vector.z()};
 }
 
-/// What acts on the body, at its centre of mass, body axes.
+/// Force and moment on the body, at its centre of mass, body axes.
 struct Wrench {
   Eigen::Vector3d force_body_n = Eigen::Vector3d::Zero();
   Eigen::Vector3d moment_body_nm = Eigen::Vector3d::Zero();
 };
 
-/// What the air feels of the aircraft.
+/// The aircraft's motion through the air and the positions of its controls.
 struct AirState {
   Eigen::Vector3d air_velocity_body_mps = Eigen::Vector3d::Zero();  ///< of the body relative to the air
   Eigen::Vector3d angular_rate_body_radps = Eigen::Vector3d::Zero();
@@ -27,13 +27,13 @@ struct AirState {
   double right_elevon_rad = 0;
   double thrust_n = 0;
   double motor_torque_nm = 0;  ///< on the propeller, positive turning clockwise seen from behind
-  double elevon_wash_mps = 0;  ///< what the propeller adds to the air's speed along body x at the elevons
+  double elevon_wash_mps = 0;  ///< speed that the propeller adds along body x at the elevons
 };
 
 /// The identified flat-plate model (flight records of the original aircraft, 2014 to 2017): wing, two
 /// elevons, two winglets, body drag, rate damping, thrust and the motor's reaction. CL = 2 sin a cos a, CD =
-/// 2 sin^2 a: it never stalls, so whoever flies it caps the angle of attack at 25 to 30 deg. Gravity is not
-/// in it. Pure; limits of elevons and thrust are the caller's.
+/// 2 sin^2 a: it never stalls, so callers must limit the angle of attack to 25 to 30 deg. Without gravity.
+/// Limits of elevons and thrust are the caller's task.
 Wrench aerodynamic_wrench(const Airframe& airframe, const AirState& air);
 
 /// Angle between the chord and the oncoming air, rad, positive nose above the path.

@@ -14,7 +14,7 @@ namespace {
 
 Eigen::Map<Eigen::Vector3d> vector_at(mjtNum* numbers) { return Eigen::Map<Eigen::Vector3d>(numbers); }
 
-/// Level flight's angle of attack at the release speed, whether or not the motor could hold that speed.
+/// Angle of attack of level flight at the release speed, even if the motor could not hold that speed.
 double release_angle_of_attack_rad(const Airframe& airframe, double speed_mps) {
   constexpr double identified_trim_rad = 0.1915;  // 10.97 deg at 12.27 m/s
   Airframe strong = airframe;
@@ -114,9 +114,9 @@ bool Aircraft::anything_near() const {
   });
 }
 
-/// Kinematics, contacts and velocity terms of the new moment: mj_step1. MuJoCo looks at every pair of geoms,
-/// which in a forest costs more than all the rest, so where nothing is within reach its collision stage, and
-/// only that, is left out: the contacts would be none.
+/// Kinematics, contacts and velocity terms of the new step: mj_step1. MuJoCo checks every pair of geoms,
+/// which in a forest costs more than everything else. Where no obstacle is within reach, only the collision
+/// stage is skipped; there would be no contacts.
 void Aircraft::update_moment() {
   mjData* data = data_.get();
   if (anything_near()) {
@@ -140,7 +140,7 @@ Controls Aircraft::delayed(const Controls& controls) {
   return delay_line_[static_cast<std::size_t>((step_ + 1) % size)];
 }
 
-/// Even acceleration that ends exactly at the release point, with the release speed, on the release step.
+/// Constant acceleration that ends exactly at the release point, with the release speed, on the release step.
 void Aircraft::follow_rail() {
   const double duration_s = static_cast<double>(release_step_ - rest_steps_) * step_s_;
   const double elapsed_s = static_cast<double>(std::max<std::int64_t>(0, step_ - rest_steps_)) * step_s_;
@@ -153,7 +153,7 @@ void Aircraft::follow_rail() {
   data_->time = static_cast<double>(step_) * step_s_;
 }
 
-/// Of the moment in truth_, with the actuators where they are now.
+/// The aerodynamic force at truth_, with the present positions of the actuators.
 AirState Aircraft::air() const {
   AirState air;
   air.air_velocity_body_mps =
@@ -187,7 +187,7 @@ void Aircraft::set_body(const Eigen::Isometry3d& T_world_body, const Eigen::Vect
   vector_at(data_->qvel + 3) = angular_rate_body_radps;
 }
 
-/// The hinges are moved, not simulated: whatever dynamics the servos have is in the actuators.
+/// The hinges are positioned, not simulated. The servos' dynamics are in the actuators.
 void Aircraft::set_elevons() {
   const auto set = [this](const char* name, double angle_rad) {
     const int joint = mj_name2id(&model_, mjOBJ_JOINT, name);
@@ -209,8 +209,8 @@ void Aircraft::read_truth(const Eigen::Vector3d& rail_acceleration_world_mps2) {
   truth_.wind_world_mps = wind_.at(truth_.T_world_body.translation());
   const AirState felt = air();
   if (step_ > release_step_) {
-    // The air's force at this very moment: a difference of velocities would be that of the step before, in
-    // axes that have turned since, and in a dodge the estimator would integrate that to 0.1 m/s.
+    // The present force of the air. A difference of velocities would belong to the previous step, in axes
+    // that have turned since; in a dodge the estimator would integrate that to 0.1 m/s.
     truth_.specific_force_body_mps2 = aerodynamic_wrench(airframe_, felt).force_body_n / airframe_.mass_kg;
   } else {
     const Eigen::Vector3d gravity_world(0, 0, -airframe_.gravity_mps2);

@@ -36,14 +36,14 @@ enum class Contact { none, ground, obstacle };
 /// The delta wing in the world: MuJoCo integrates its body at 1200 Hz under the identified flat-plate
 /// aerodynamics, in the air that `wind` makes.
 ///
-/// On the rail the body is at rest for rest_s, then accelerates evenly from rail_length_m before the release
-/// point, pitched above the rail by the level trim's angle of attack at the release speed: it leaves with the
-/// lift that carries it and no rotation. Elevons and motor follow their commands after the input delay, as
-/// `actuators` says: by default at once and in full.
+/// On the rail the body rests for rest_s, then accelerates evenly from rail_length_m before the release
+/// point. It is pitched above the rail by the angle of attack of level trim at the release speed, so it
+/// leaves with enough lift and without rotation. Elevons and motor follow their commands after the input
+/// delay with the dynamics of `actuators`, by default at once and in full.
 class Aircraft {
  public:
   /// Keeps a reference to the model. The launch rail points along world x; the release point is the world's
-  /// (0, 0). Throws std::runtime_error where the rail would begin underground. A step is the model's own
+  /// (0, 0). Throws std::runtime_error where the rail would begin underground. The time step is the model's
   /// (1/1200 s from build_world; tests of convergence set others, whole numbers of hertz).
   Aircraft(const mjModel_& model, const Airframe& airframe, const LaunchConfig& launch, Wind wind,
            const ActuatorsConfig& actuators = {});
@@ -63,8 +63,8 @@ class Aircraft {
   Contact contact() const;  ///< by MuJoCo's own contacts at this step, aircraft against anything
   const mjData_& data() const { return *data_; }
 
-  /// Puts the body, already launched, somewhere in flight with its surfaces and delayed commands at
-  /// `controls`: for tests and experiments that start in the air. Time runs on.
+  /// Places the body in flight, with surfaces and delayed commands at `controls`, for tests and experiments
+  /// that start in the air. Time continues.
   void place(const Eigen::Isometry3d& T_world_body, const Eigen::Vector3d& velocity_world_mps,
              const Eigen::Vector3d& angular_rate_body_radps, const Controls& controls);
 

@@ -36,10 +36,10 @@ void DrydenTurbulence::advance(double distance_m, const Eigen::Vector3d& length_
   advance(up_, distance_m / length_m.z());
 }
 
-/// d first = -first + n, d second = -second + first over a step d of lengths: the transition is
-/// exp(-d) [1 0; d 1], the noise's covariance the integral of exp(-2s) [1 s; s s^2], here by its Cholesky
-/// factor. For steps below 1e-4 lengths the last pivot drowns in rounding and is cut at zero: by then it is
-/// millions of times less than what `first` hands on.
+/// d first = -first + n, d second = -second + first over a step d of lengths: the transition is exp(-d) [1 0;
+/// d 1], the noise's covariance the integral of exp(-2s) [1 s; s s^2], here by its Cholesky factor. For steps
+/// below 1e-4 lengths the last pivot is lost in rounding and is clamped to zero; it is then millions of times
+/// smaller than the contribution of `first`.
 void DrydenTurbulence::advance(Cascade& state, double lengths) {
   const double kept = std::exp(-lengths);
   const double kept_twice = kept * kept;

@@ -13,15 +13,14 @@ struct DrydenScales {
   Eigen::Vector3d sigma_mps;
 };
 
-/// L_w = h, L_u = L_v = h / (0.177 + 0.000823 h)^1.2, sigma_w = 0.1 W20,
-/// sigma_u = sigma_v = sigma_w / (0.177 + 0.000823 h)^0.4, h in feet above ground, W20 the mean wind at 20 ft
-/// (6.1 m). The model holds from 10 to 1000 ft; heights outside are taken at its ends. (MIL-HDBK-1797
-/// writes 2 L for what is L here, for v and w.)
+/// L_w = h, L_u = L_v = h / (0.177 + 0.000823 h)^1.2, sigma_w = 0.1 W20, sigma_u = sigma_v = sigma_w / (0.177
+/// + 0.000823 h)^0.4, h in feet above ground, W20 the mean wind at 20 ft (6.1 m). The model is valid from 10
+/// to 1000 ft; heights outside use its ends. (MIL-HDBK-1797 writes 2 L for what is L here, for v and w.)
 DrydenScales low_altitude_dryden(double altitude_m, double wind20_mps);
 
-/// A frozen field that the aircraft flies through (Taylor): its state goes on with the distance flown in the
-/// air, so a standing aircraft in still air meets nothing new. Each component is white noise through the
-/// forming filter of its spectrum, Omega in rad/m, one-sided:
+/// A frozen field through which the aircraft flies (Taylor). Its state advances with the distance flown
+/// through the air, so nothing changes for an aircraft at rest in still air. Each component is white noise
+/// through the forming filter of its spectrum, Omega in rad/m, one-sided:
 ///   u:    2 L / pi / (1 + (L Omega)^2)
 ///   v, w: L / pi (1 + 3 (L Omega)^2) / (1 + (L Omega)^2)^2
 /// Discretised exactly for a step of any length over which L does not change. Rotation of the air (p_g, q_g,
@@ -33,7 +32,7 @@ class DrydenTurbulence {
 
   void advance(double distance_m, const Eigen::Vector3d& length_m);
 
-  /// The gust now, each component of variance 1, whatever lengths it went through: times sigma_mps it is m/s.
+  /// The present gust, each component with variance 1. Multiply by sigma_mps for m/s.
   Eigen::Vector3d unit_gust() const;
 
  private:

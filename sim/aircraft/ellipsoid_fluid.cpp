@@ -13,9 +13,9 @@ namespace understory {
 namespace {
 
 constexpr double thickness_m =
-    0.010;  // as thick as a foam plate: what is flat must only be thin beside its chord
+    0.010;  // as thick as a foam plate; it must only be thin compared with its chord
 
-/// An ellipsoid's outline of semi-axes a and b has the area pi a b: this makes that of a rectangle.
+/// The area of an ellipse is pi a b. This factor makes it that of a rectangle.
 double semi_axis(double side_m) { return side_m / std::sqrt(std::numbers::pi); }
 
 std::string plate(double x, double y, double z, double size_x, double size_y, double size_z,

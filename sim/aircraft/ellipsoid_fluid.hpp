@@ -8,8 +8,7 @@
 
 namespace understory {
 
-/// Coefficients of MuJoCo's fluid model, `fluidcoef` (MuJoCo documentation, Computation, Fluid forces); its
-/// own defaults.
+/// Coefficients of MuJoCo's fluid model, `fluidcoef` (docs/sources.md [7]), with MuJoCo's defaults.
 struct EllipsoidCoefficients {
   double blunt_drag = 0.5;
   double slender_drag = 0.25;

@@ -4,7 +4,7 @@
 
 namespace understory {
 
-/// By how much the aircraft that flies differs from the airframe the stack believes in. Percent of the
+/// Difference between the aircraft that flies and the airframe that the stack believes in, in percent of the
 /// stack's value: 10 is a tenth more, 0 the same.
 struct MismatchConfig {
   double mass_percent = 0;     ///< mass_kg, and inertia_kgm2 with it: the same aircraft, denser

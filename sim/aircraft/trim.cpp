@@ -53,7 +53,7 @@ std::optional<Trim> straight_trim(const Airframe& airframe, double airspeed_mps,
     }
     Eigen::Vector3d correction = -jacobian.fullPivLu().solve(now);
     const double angles = correction.head<2>().cwiseAbs().maxCoeff();
-    if (angles > 0.2) correction *= 0.2 / angles;  // stay near: the plates' curves repeat every half turn
+    if (angles > 0.2) correction *= 0.2 / angles;  // small steps: the plates' curves repeat every half turn
     unknowns += correction;
   }
   return std::nullopt;

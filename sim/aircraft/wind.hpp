@@ -11,7 +11,7 @@ namespace understory {
 /// through the air, amplitude / 2 (1 - cos(pi x / length)), and then stays.
 struct GustConfig {
   double start_s = 2;    ///< of simulated time; the standard launch releases at 0.5 s
-  double length_m = 10;  ///< over which it builds up; MIL-F-8785C: tuned to the mode that is to be shaken
+  double length_m = 10;  ///< over which it builds up; MIL-F-8785C: tuned to the mode to be excited
   Eigen::Vector3d amplitude_world_mps = Eigen::Vector3d::Zero();  ///< zero: no gust
 };
 
@@ -22,9 +22,9 @@ void visit_fields(Visitor& visit, GustConfig& config) {
   visit("amplitude_world_mps", config.amplitude_world_mps, -20.0, 20.0);
 }
 
-/// What the air does beside the mean wind. Everything is off by default.
+/// Wind beside the mean. Everything is off by default.
 struct WindConfig {
-  double reference_height_m = 6.096;  ///< where the scenario's mean wind blows: 20 ft (MIL-F-8785C's W20)
+  double reference_height_m = 6.096;  ///< height of the scenario's mean wind: 20 ft (MIL-F-8785C's W20)
   /// Of the logarithmic profile, mean(h) = mean(reference) ln(h / roughness) / ln(reference / roughness)
   /// above 3 ft. MIL-F-8785C: 0.0457 (0.15 ft) at airfields, 0.61 (2 ft) elsewhere. 0: no shear.
   double roughness_m = 0;

@@ -6,8 +6,8 @@
 
 namespace understory {
 
-/// What the cameras do to the picture that falls on them. All but noise_gray is off by default, and off means
-/// neither arithmetic nor draws (docs/cameras.md measures each effect and its cost).
+/// Effects of the cameras on the image. All but noise_gray are off by default and then cost neither
+/// arithmetic nor random draws. docs/cameras.md measures each effect and its cost.
 struct CameraConfig {
   bool lens_cap = false;    ///< black images (proof against self-deception); noise still applies
   double noise_gray = 2.0;  ///< standard deviation of the sensor noise, gray levels, independent per pixel

@@ -7,8 +7,8 @@
 
 namespace understory {
 
-/// One eye: where it stands in the world and how it maps rays to pixels. OpenCV axes; the centre of the top
-/// left pixel is (0, 0), so the picture reaches from -0.5 to width - 0.5.
+/// One camera: its pose in the world and how it maps rays to pixels. OpenCV axes; the centre of the top left
+/// pixel is (0, 0), so the picture reaches from -0.5 to width - 0.5.
 struct Eye {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   double focal_px = 0;
@@ -18,10 +18,10 @@ struct Eye {
   int height_px = 0;
 };
 
-constexpr double near_m = 0.1;   ///< the airframe's nose is behind the cameras; nothing nearer matters
+constexpr double near_m = 0.1;   ///< the airframe's nose is behind the cameras
 constexpr double far_m = 500.0;  ///< beyond the ground's rim
 
-/// The two eyes of a rig on a body: left first. The right eye is baseline_m along the left one's x.
+/// The two cameras of a rig on a body, left first. The right one is at baseline_m along x of the left one.
 std::array<Eye, 2> eyes_of(const StereoRig& rig, const Eigen::Isometry3d& T_world_body);
 
 /// A box in the world: the extent of a geom along its own axes.
@@ -30,7 +30,7 @@ struct GeomBox {
   Eigen::Vector3d half_size = Eigen::Vector3d::Zero();            ///< m
 };
 
-/// False only where the eye cannot see any of the box: a conservative test.
+/// False only where the camera sees no part of the box: a conservative test.
 bool may_see(const Eye& eye, const GeomBox& box);
 /// From a point to the nearest point of the box, m; 0 inside.
 double distance_m(const Eigen::Vector3d& point_world, const GeomBox& box);

@@ -5,7 +5,7 @@
 
 namespace understory {
 
-/// Frames lost on the way, each by itself with the same probability; at 0 nothing is drawn.
+/// Lost frames: independent, with the same probability. At 0 no random number is drawn.
 class FrameDrops {
  public:
   FrameDrops(double probability, std::uint64_t seed) : probability_(probability), generator_(seed) {}

@@ -14,7 +14,7 @@ constexpr std::size_t table_size = std::size_t{1} << 19;
 constexpr float horizon_gray = 215;  // an overcast sky, short of saturation
 constexpr float zenith_gray = 190;
 
-/// How far up a pixel looks: 0 at the horizon and below, 1 from 45 degrees up, linear in the pixel
+/// Elevation of a pixel's ray: 0 at the horizon and below, 1 from 45 degrees up, linear in the pixel
 /// coordinates.
 struct SkyRow {
   float at_left, per_pixel;
@@ -40,7 +40,7 @@ ImageNoise::ImageNoise(double deviation_gray, std::uint64_t seed)
 void ImageNoise::add_to(cv::Mat& gray) {
   if (silent_) return;
   const int columns =
-      gray.cols;  // a local: bytes written might alias a member, and the loop would stay scalar
+      gray.cols;  // a local copy: bytes could alias a member, and the loop would not become SIMD
   for (int row = 0; row < gray.rows; ++row) {
     const std::int8_t* noise =
         table_.data() + generator_() % (table_size - static_cast<std::size_t>(columns));

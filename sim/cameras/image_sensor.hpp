@@ -9,10 +9,9 @@
 
 namespace understory {
 
-/// Gaussian noise for whole images at a fraction of a draw per pixel: a table of 2^19 rounded draws is made
-/// once, and every image row reads it from a place of its own, drawn afresh from the seeded generator.
-/// Rounding adds 1/12 to the variance. Two rows of a pair share a stretch of the table about once in a
-/// thousand.
+/// Gaussian noise for whole images with less than one random draw per pixel. A table of 2^19 rounded draws is
+/// made once. Every image row reads it from a random position. Rounding adds 1/12 to the variance. About one
+/// pair of rows in a thousand overlaps in the table.
 class ImageNoise {
  public:
   ImageNoise(double deviation_gray, std::uint64_t seed);

@@ -10,11 +10,12 @@
 
 namespace understory {
 
-/// From the picture on the sensor to what is read from it: the lens's falloff, the light, the electrons a
-/// pixel holds and their shot noise, the amplifier. With S the gray level that falls on a pixel,
+/// From the picture on the sensor to the gray level read: falloff of the lens, light, full well, shot noise,
+/// amplifier. With S the gray level on a pixel,
 ///   seen = min(light * falloff * S, 255),   read = gain * (seen + sqrt(255 / full_well_e * seen) * z),
-/// z standard normal (for Poisson's law: pixels hold hundreds of electrons), so that the variance of what is
-/// read grows with its mean at the slope gain * 255 / full_well_e: the photon transfer curve (EMVA 1288).
+/// z standard normal (for Poisson's law: pixels hold hundreds of electrons), so that the variance of the
+/// reading grows with its mean with the slope gain * 255 / full_well_e: the photon transfer curve (EMVA
+/// 1288).
 class PixelResponse {
  public:
   /// `falloff`: of each eye, CV_32FC1 of the images' size, 1 at full brightness; may be empty for none.

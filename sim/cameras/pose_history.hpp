@@ -6,7 +6,7 @@
 
 namespace understory {
 
-/// Where the body was in the last moments, for images that take time.
+/// The body's recent poses, for images with an exposure time.
 class PoseHistory {
  public:
   explicit PoseHistory(std::int64_t kept_ns) : kept_ns_(kept_ns) {}

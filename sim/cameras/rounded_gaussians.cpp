@@ -17,7 +17,7 @@ double drawn(std::mt19937_64& generator) {
   return value < 1.0 ? value : std::nextafter(1.0, 0.0);
 }
 
-/// What Marsaglia's polar method multiplies a point of the unit disc with, by its squared distance.
+/// The factor of Marsaglia's polar method for a point of the unit disc, from its squared distance.
 double stretch(double square) { return std::sqrt(-2 * std::log(square) / square); }
 
 /// Bounds of stretch() between two steps of the squared distance, a little wide for its rounding.
@@ -53,7 +53,8 @@ std::vector<std::int8_t> rounded_gaussians(std::size_t count, double deviation, 
       y = 2.0 * drawn(generator) - 1.0;
       square = x * x + y * y;
     } while (square > 1.0 || square == 0.0);
-    // Where both bounds round alike, what lies between them does too: most logarithms need not be known.
+    // Where both bounds round to the same value, so does everything between them. Most logarithms are then
+    // unnecessary.
     const auto step = static_cast<std::size_t>(std::min(square * bound_count, bound_count - 1.0));
     const int size_x = size_at(x, bounds[step].minimum), size_y = size_at(y, bounds[step].minimum);
     if (size_x == size_at(x, bounds[step].maximum) && size_y == size_at(y, bounds[step].maximum)) {

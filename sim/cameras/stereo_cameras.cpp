@@ -60,7 +60,7 @@ struct StereoCameras::Implementation {
 
   bool takes_time() const { return exposure_ns > 0 || right_delay_ns > 0; }
 
-  /// Both images of an exposure that ends now: the mean of views spread evenly over it.
+  /// Both images of an exposure that ends now: the mean of views spread evenly over the exposure.
   std::array<cv::Mat, 2> exposed(const Eigen::Isometry3d& now, std::int64_t t_ns) {
     std::array<cv::Mat, 2> views, sums;
     if (!takes_time()) {

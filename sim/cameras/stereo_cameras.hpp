@@ -16,7 +16,7 @@
 
 namespace understory {
 
-/// Of the generators that a pair of cameras owns.
+/// Seeds of a camera pair's generators.
 struct CameraSeeds {
   std::uint64_t noise = 0;
   std::uint64_t shot = 0;
@@ -27,8 +27,8 @@ struct CameraSeeds {
 class StereoCameras {
  public:
   /// Throws std::runtime_error in one line where no GL library can be loaded. Not thread safe; create and use
-  /// on one thread. `raw`: absent, images come rectified, as `rig` says; present, they come as these cameras
-  /// give them, and `rig` must be rectified_rig(*raw). Paints the textures of the world's model.
+  /// on one thread. Without `raw` images are rectified, as `rig` describes. With `raw` they are those of the
+  /// raw cameras, and `rig` must be rectified_rig(*raw). Paints the textures of the world's model.
   StereoCameras(const World& world, const StereoRig& rig, const CameraConfig& config, CameraSeeds seeds,
                 const std::optional<StereoCalibration>& raw = std::nullopt,
                 RendererKind renderer = RendererKind::osmesa);

@@ -10,15 +10,15 @@
 namespace understory {
 namespace {
 
-/// Pixels of the rendered view for one of the raw image at its middle. Rendering has no smoothing of its own:
-/// with more pixels than the camera the bilinear step between them costs less contrast.
+/// Pixels of the rendered view for one of the raw image at its middle. Rendering does not smooth. With more
+/// pixels than the camera, bilinear sampling loses less contrast.
 constexpr double oversampling = 1.25;
-/// Rays flatter than 63 degrees off the axis are left out: a pinhole view would need endless pixels for them.
+/// Rays more than 63 degrees off the axis are left out, because a pinhole view would need too many pixels for
+/// them.
 constexpr double steepest = 2.0;
 
-/// How far off the axis (tangent of the angle) the radial distortion still grows outward. Beyond, its
-/// polynomials fold back onto pixels that others have already: outside what they were fitted to, no ray
-/// belongs to a pixel.
+/// The angle to the axis (its tangent) up to which the radial distortion grows outward. Beyond, its
+/// polynomials fold back onto pixels that already have a ray; no ray belongs there.
 double fold_of(const std::vector<double>& distortion) {
   std::vector<double> k = distortion;  // k1 k2 p1 p2 k3 k4 k5 k6
   k.resize(8, 0.0);
@@ -33,7 +33,7 @@ double fold_of(const std::vector<double>& distortion) {
   return steepest;
 }
 
-/// Inverts the distortion by iteration and keeps what distorts back to the same pixel.
+/// Inverts the distortion by iteration and keeps rays that distort back to the same pixel.
 cv::Mat rays_of(const CameraCalibration& camera, const cv::Size& size) {
   std::vector<cv::Point2d> pixels, rays, again;
   for (int row = 0; row < size.height; ++row)
@@ -83,7 +83,7 @@ StereoOptics::StereoOptics(const StereoRig& rig, const CameraConfig& config,
   make_views();
 }
 
-/// The views of both eyes get one focal length and one size, as they are rendered side by side.
+/// Both views get the same focal length and size, because they are rendered side by side.
 void StereoOptics::make_views() {
   view_size_ = {};
   constexpr int margin_px = 2;  // for the bilinear step

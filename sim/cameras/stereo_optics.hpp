@@ -10,9 +10,9 @@
 
 namespace understory {
 
-/// What the two lenses do to rays: which pinhole view has to be rendered for each eye, and how that view
-/// becomes the camera's image. The truth beside what the stack believes: a misaligned or bent rig differs
-/// here, in the right eye.
+/// The optics of the two cameras: which pinhole view is rendered for each, and how that view becomes the
+/// camera's image. These are the true optics; a misaligned or bent rig differs from the stack's in the right
+/// camera.
 class StereoOptics {
  public:
   /// `raw`: absent, the images are the rectified pair that `rig` describes and the views are the images.
@@ -21,18 +21,16 @@ class StereoOptics {
   StereoOptics(const StereoRig& rig, const CameraConfig& config,
                const std::optional<StereoCalibration>& raw = std::nullopt);
 
-  /// The views to render, left first, for a body that need not have stood still between the two. Of equal
-  /// size.
+  /// The views to render, left first, of equal size. The body may have moved between the two.
   std::array<Eye, 2> eyes(const Eigen::Isometry3d& T_world_body_left,
                           const Eigen::Isometry3d& T_world_body_right) const;
-  /// The camera's image of a rendered view, CV_8UC1; 0 where a raw pixel sees nothing that its calibration
-  /// explains. eye: 0 left, 1 right.
+  /// The camera's image of a rendered view, CV_8UC1; 0 at raw pixels without a ray. eye: 0 left, 1 right.
   cv::Mat image(int eye, const cv::Mat& view) const;
   /// cos^power of the angle between each pixel's ray and its camera's own axis, CV_32FC1.
   cv::Mat falloff(int eye, double power) const;
 
  private:
-  /// A raw camera's pixels as rays, and the pinhole view along its axis that holds them all.
+  /// A raw camera's pixels as rays, and the pinhole view along its axis that contains them.
   struct RawCamera {
     Eigen::Matrix3d R_rectified_raw;
     cv::Mat rays;                     ///< CV_64FC2: x/z, y/z of each raw pixel; NaN where there is none

@@ -9,7 +9,7 @@
 
 namespace understory {
 
-/// What an obstacle is to people.
+/// Kind of an obstacle, for people.
 enum class ObstacleKind { trunk, post, crossbar, rail, wall };
 
 inline constexpr std::array<std::string_view, 5> obstacle_kind_names{"trunk", "post", "crossbar", "rail",
@@ -18,14 +18,13 @@ constexpr std::string_view word_for(ObstacleKind kind) {
   return obstacle_kind_names[static_cast<std::size_t>(kind)];
 }
 
-/// Numbers of what is drawn, as images of objects bear them: nothing (the sky), the ground, then a course's
-/// obstacles in their order.
+/// Numbers in images of objects: nothing (the sky), the ground, then a course's obstacles in their order.
 inline constexpr std::uint16_t object_nothing = 0;
 inline constexpr std::uint16_t object_ground = 1;
 inline constexpr std::uint16_t object_first_obstacle = 2;
 
-/// A round bar between two points: a trunk, a goal post, a crossbar. Or a wall: upright, a rectangle whose
-/// diagonal goes from the one point to the other, twice the radius thick. World frame, m.
+/// A round bar between two points (trunk, goal post, crossbar), or a wall: an upright rectangle with its
+/// diagonal between the points, twice the radius thick. World frame, m.
 struct Obstacle {
   std::string name;
   Eigen::Vector3d from_world = Eigen::Vector3d::Zero();  ///< for a trunk: its foot

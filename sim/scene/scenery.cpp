@@ -49,7 +49,7 @@ TextureRequest ground_request(const WorldConfig& config) {
           .seed = config.texture_seed + 1};
 }
 
-/// Tints over gray: the cameras read green, so only people see the colour.
+/// Tints over gray. The cameras read only green, so the colours are for people.
 struct Tint {
   double red, blue;
 };
@@ -92,7 +92,7 @@ std::string geom_xml(const std::string& name, const char* material, const Eigen:
       turn.z());
 }
 
-/// A slab: MuJoCo compiles no mesh without volume. Only the upper face is ever seen.
+/// A slab, because MuJoCo compiles no mesh without volume. Only its upper face is seen.
 TrunkMesh ground_mesh() {
   TrunkMesh mesh;
   for (const double z : {-1.0, 0.0})
@@ -128,7 +128,7 @@ SceneryXml scenery_xml(const std::vector<Obstacle>& obstacles, const WorldConfig
                mesh_xml("scenery_ground", ground_mesh());
   xml.bodies = geom_xml("scenery_ground", "litter", Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity());
   if (!config.obstacles_visible) return xml;
-  bool has_facade = false;  // its texture: others need not carry it
+  bool has_facade = false;  // only scenes with one need its texture
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const Obstacle& obstacle = obstacles[i];
     const std::string name = fmt::format("scenery_{}", i);

@@ -8,8 +8,7 @@
 
 namespace understory {
 
-/// MJCF to put into <asset> and <worldbody>: what is seen. All of it collides with nothing and is in
-/// group_scenery.
+/// MJCF for <asset> and <worldbody>: everything visible. It collides with nothing and is in group_scenery.
 struct SceneryXml {
   std::string assets;
   std::string bodies;

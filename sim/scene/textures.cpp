@@ -73,8 +73,8 @@ Betweens betweens(int cells, int pixels) {
   return all;
 }
 
-/// Random values on a lattice that wraps, read between its nodes with a smooth weight: one octave. It is read
-/// row by row, and what is the same for all pixels between two rows of nodes is reckoned once: every flight
+/// One octave: random values on a wrapping lattice, interpolated with a smooth weight. It is evaluated row by
+/// row, and values common to all pixels between two rows of nodes are computed once, because every flight
 /// paints its ground.
 class Octave {
  public:
@@ -161,7 +161,7 @@ Moments moments(const std::vector<double>& values) {
 }
 
 Moments moments(const std::vector<std::uint8_t>& gray) {
-  // Four tallies, since neighbours are often alike and one would wait for itself.
+  // Four histograms, because equal neighbours would otherwise wait for the same counter.
   std::array<std::array<std::int64_t, 256>, 4> tallies{};
   for (std::size_t i = 0; i < gray.size(); ++i) ++tallies[i % 4][gray[i]];
   std::array<std::int64_t, 256> counts{};
@@ -185,8 +185,8 @@ GrayTexture make_texture(const TextureRequest& request) {
   GrayTexture texture{request.width_px, request.height_px, {}};
   const std::vector<double> noise = noise_of(request);
 
-  // Clipping at black and white takes from the spread: ask for a little more until what is left is what was
-  // wanted.
+  // Clipping at black and white reduces the contrast. Increase it until the clipped result has the requested
+  // contrast.
   const Moments raw = moments(noise);
   double gain = request.contrast * request.mean_gray / raw.deviation, offset = request.mean_gray;
   texture.gray.resize(noise.size());

@@ -12,8 +12,7 @@ struct GrayTexture {
   std::vector<std::uint8_t> gray;
 };
 
-/// What a procedural texture is asked to be. `contrast` is the standard deviation over the mean of its gray
-/// levels.
+/// Parameters of a procedural texture. `contrast` is the standard deviation over the mean of its gray levels.
 struct TextureRequest {
   int width_px = 0;
   int height_px = 0;
@@ -26,7 +25,7 @@ struct TextureRequest {
   std::uint64_t seed = 1;
 };
 
-/// Sum of octaves of value noise, rescaled to the mean and contrast asked for. Equal requests give equal
+/// Sum of octaves of value noise, scaled to the requested mean and contrast. Equal parameters give equal
 /// textures.
 GrayTexture make_texture(const TextureRequest& request);
 

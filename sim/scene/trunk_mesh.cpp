@@ -7,12 +7,12 @@
 namespace understory {
 namespace {
 
-/// Corners a little outside and flats a little inside the true circle, by the same amount.
+/// Corners lie outside the true circle and flats inside it, by the same amount.
 double corner_radius_m(double radius_m, int sides) {
   return 2 * radius_m / (1 + std::cos(std::numbers::pi / sides));
 }
 
-/// As few as keep to the promised silhouette: vertices are what a distant trunk costs.
+/// The minimum number that keeps the silhouette within tolerance: vertices are the cost of a distant trunk.
 int sides_of(double radius_m) {
   int sides = 6;
   while (corner_radius_m(radius_m, sides) - radius_m > silhouette_tolerance_m) sides += 2;

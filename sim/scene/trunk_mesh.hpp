@@ -16,7 +16,7 @@ struct TrunkMesh {
   std::vector<Eigen::Vector3i> faces;    ///< counter-clockwise from outside
 };
 
-/// How far the drawn outline may lie from the colliding one, m.
+/// Maximum distance between the drawn outline and the colliding one, m.
 constexpr double silhouette_tolerance_m = 0.0065;
 
 /// A prism (closed, but for a foot on the ground) whose silhouette stays within the tolerance of the bar's: 6

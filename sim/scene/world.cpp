@@ -73,11 +73,11 @@ void write_collisions(std::ostream& xml, const std::vector<Obstacle>& obstacles)
   }
 }
 
-/// The extent is fixed, since the near and far planes hang on it and one more tree would otherwise move them:
-/// 0.1 m and 120 m. No multisampling: it ruins depth. Nothing is drawn into MuJoCo's own offscreen buffer: a
-/// pixel will do. A contact (condim 1) is one row of constraints and there are no other rows: room for more
-/// is memory that MuJoCo writes over in every mjData, four times a flight (53 MB each with room for a
-/// thousand).
+/// The extent is fixed, because the near and far planes depend on it (0.1 m and 120 m) and one more tree
+/// would move them. No multisampling, because it ruins depth. Nothing is drawn into MuJoCo's own offscreen
+/// buffer, so one pixel is enough. A contact (condim 1) is one row of constraints, and there are no others.
+/// MuJoCo clears the memory for them in every mjData, four times a flight (53 MB each for a thousand), so it
+/// is kept small.
 std::string scene_xml(const Airframe& airframe, const std::vector<Obstacle>& obstacles,
                       const WorldConfig& config) {
   const SceneryXml scenery = scenery_xml(obstacles, config);
@@ -99,13 +99,13 @@ std::string scene_xml(const Airframe& airframe, const std::vector<Obstacle>& obs
   return xml.str();
 }
 
-/// One place for mass and inertia: the model file's are replaced. The elevons' share (a millionth of a gram
-/// each) is inside the body's, so what MuJoCo sums is the airframe's to one part in 10^8.
+/// Mass and inertia of the model file are replaced by the airframe's. The elevons (a millionth of a gram
+/// each) are added, so MuJoCo's sum equals the airframe's to one part in 10^8.
 void set_inertia(mjModel& model, const Airframe& airframe) {
   const int body = mj_name2id(&model, mjOBJ_BODY, "aircraft");
   model.body_mass[body] = airframe.mass_kg;
   for (int axis = 0; axis < 3; ++axis) model.body_inertia[3 * body + axis] = airframe.inertia_kgm2[axis];
-  const mjStatistic pinned = model.stat;  // mj_setConst measures the extent anew; the view hangs on ours
+  const mjStatistic pinned = model.stat;  // mj_setConst would recompute the extent, on which the view depends
   const DataPointer data(mj_makeData(&model));
   mj_setConst(&model, data.get());
   model.stat = pinned;
@@ -135,7 +135,7 @@ World build_world(const fs::path& models_folder, const Airframe& airframe,
     }
   }
   set_inertia(*model, airframe);
-  model->vis.quality.shadowsize = 0;  // what the cameras have no use for and would pay for
+  model->vis.quality.shadowsize = 0;  // unused by the cameras, and expensive
   model->vis.quality.offsamples = 0;
   return {std::move(model), obstacles, config};
 }

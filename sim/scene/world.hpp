@@ -13,7 +13,7 @@ struct mjData_;
 
 namespace understory {
 
-/// What a scene is made of and how it looks.
+/// Contents and look of a scene.
 struct WorldConfig {
   bool obstacles_visible = true;   ///< false: they collide and are not drawn (proof against self-deception)
   bool obstacles_tangible = true;  ///< false: drawn, and harmless
@@ -47,8 +47,7 @@ enum GeomGroup { group_scenery = 0, group_aircraft_skin = 1, group_collision = 3
 
 /// The compiled scene: ground, obstacles and one aircraft, at 1200 Hz with gravity. The aircraft's body is
 /// named "aircraft" (free joint "aircraft_free"), its hinges "left_elevon" and "right_elevon", the ground's
-/// geom "ground". The textures' pixels are left to the cameras, which paint them (sim/scene/scenery.hpp):
-/// physics has no use for them.
+/// geom "ground". The cameras paint the textures' pixels (sim/scene/scenery.hpp); physics does not need them.
 struct World {
   ModelPointer model;
   std::vector<Obstacle> obstacles;
@@ -56,8 +55,7 @@ struct World {
 };
 
 /// Composes models/airframe/delta_wing.xml with the obstacles and compiles it. Throws std::runtime_error,
-/// naming the file, where MuJoCo refuses it. Mass and inertia come from `airframe`, so that there is one
-/// place to change them.
+/// naming the file, where MuJoCo refuses it. Mass and inertia come from `airframe`.
 World build_world(const std::filesystem::path& models_folder, const Airframe& airframe,
                   const std::vector<Obstacle>& obstacles, const WorldConfig& config);
 
