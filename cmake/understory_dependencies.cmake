@@ -4,7 +4,6 @@ find_package(yaml-cpp REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)
-find_package(Boost REQUIRED)                  # headers only: Boost.Math's distributions
 find_package(pugixml REQUIRED)
 find_package(nanoflann REQUIRED)
 

@@ -1,36 +1,138 @@
 #include "scenarios/bench/bench.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <chrono>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+#include <utility>
 
-#include "scenarios/bench/bench_cases.hpp"
+#include "perception/full_stereo/full_stereo_detector.hpp"
+#include "perception/pushbroom/pushbroom_stereo.hpp"
+#include "perception/rectify.hpp"
+#include "scenarios/flight/stopwatch.hpp"
+#include "scenarios/statistics/samples.hpp"
 
 namespace understory {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr int passes_in_turn = 10;
+constexpr const char* remap_name = "OpenCV remap of the pair, nearest";
+constexpr const char* matching_name = "OpenCV StereoBM, 64 disparities, block 9";
+constexpr const char* one_depth_name = "detect, 5x5 stride";
 
-double percentile(std::vector<double> values, double share) {
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+/// OpenCV's ways to see, with the images rectified beforehand.
+void add_yardsticks(const CalibratedRig& rig, const std::vector<StereoFrame>& raw,
+                    const std::vector<StereoFrame>& rectified, std::vector<BenchCase>& cases) {
+  if (rig.calibration) {
+    const auto map_of = [&](const CameraCalibration& camera) {
+      const std::vector<std::int16_t> places = nearest_places(camera, rig.rig.width_px, rig.rig.height_px);
+      return cv::Mat(rig.rig.height_px, rig.rig.width_px, CV_16SC2, const_cast<std::int16_t*>(places.data()))
+          .clone();
+    };
+    cases.push_back({remap_name, 1, "", 1,
+                     [&raw, left = map_of(rig.calibration->left), right = map_of(rig.calibration->right),
+                      out = cv::Mat()](std::size_t i) mutable {
+                       cv::remap(raw[i].left, out, left, cv::noArray(), cv::INTER_NEAREST);
+                       cv::remap(raw[i].right, out, right, cv::noArray(), cv::INTER_NEAREST);
+                     }});
+  }
+  cases.push_back(
+      {matching_name, 1, "", 4,
+       [&rectified, matcher = cv::StereoBM::create(64, 9), out = cv::Mat()](std::size_t i) mutable {
+         matcher->compute(rectified[i].left, rectified[i].right, out);
+       }});
+  cases.push_back(
+      {"OpenCV StereoSGBM, 64 disparities, block 9", 1, matching_name, 10,
+       [&rectified, matcher = cv::StereoSGBM::create(0, 64, 9), out = cv::Mat()](std::size_t i) mutable {
+         matcher->compute(rectified[i].left, rectified[i].right, out);
+       }});
+}
+
+/// Full stereo in the detector's place, as it flies: what perception.compute is fed with.
+void add_full_stereo(const CalibratedRig& rig, const std::vector<StereoFrame>& rectified,
+                     std::vector<BenchCase>& cases) {
+  const auto add = [&](const char* name, FullStereoDetector detector) {
+    cases.push_back(
+        {name, 1, matching_name, 10, [&rectified, detector = std::move(detector)](std::size_t i) mutable {
+           detector.detect(rectified[i]);
+         }});
+  };
+  add("full stereo by StereoBM, 112 disparities", {rig.rig, StereoBmConfig{}, {}});
+  add("full stereo by StereoSGBM, 112 disparities", {rig.rig, StereoSgbmConfig{}, {}});
+}
+
+/// Depths at and around the rig's own: whole pixels of disparity apart.
+std::vector<double> depths_around(const StereoRig& rig, int count) {
+  const double px = rig.disparity_px(rig.detection_depth_m);
+  std::vector<double> depths_m;
+  for (int i = 0; i < count; ++i) depths_m.push_back(rig.depth_m(px + 3 * i));
+  return depths_m;
+}
+
+void add_detectors(const CalibratedRig& rig, const std::vector<StereoFrame>& raw,
+                   const std::vector<StereoFrame>& rectified, std::vector<BenchCase>& cases) {
+  const auto detect = [&](const std::string& name, const PushbroomConfig& config,
+                          const std::string& yardstick) {
+    cases.push_back({name, config.threads, yardstick, 1,
+                     [&rectified, detector = PushbroomStereo(rig.rig, config)](std::size_t i) mutable {
+                       detector.detect(rectified[i]);
+                     }});
+  };
+  const auto detect_raw = [&](const std::string& name, const PushbroomConfig& config) {
+    if (!rig.calibration) return;
+    cases.push_back({name, config.threads, remap_name, 1,
+                     [&raw, detector = PushbroomStereo(*rig.calibration, rig.rig.detection_depth_m, config)](
+                         std::size_t i) mutable { detector.detect(raw[i]); }});
+  };
+  PushbroomConfig paper = paper_rule(), ours = robust_rule();
+  paper.last_row_px = ours.last_row_px = last_row_px_of(rig.rig.height_px);
+  PushbroomConfig two_threads = paper, dense = paper, four = paper;
+  two_threads.threads = 2;
+  dense.every_pixel = true;
+  four.depths_m = depths_around(rig.rig, 4);
+  detect(one_depth_name, paper, matching_name);
+  detect("detect, our rule", ours, matching_name);
+  detect("detect, 4 depths", four, one_depth_name);
+  if (rig.calibration)
+    cases.push_back(
+        {"rectify, nearest", 1, remap_name, 1,
+         [&raw, rectifier = std::make_shared<Rectifier>(*rig.calibration, Interpolation::nearest)](
+             std::size_t i) { rectifier->rectify(raw[i]); }});
+  detect_raw("rectify and detect", paper);
+  detect_raw("rectify and detect, two threads", two_threads);
+  detect_raw("rectify and detect, every pixel", dense);
+  detect_raw("rectify and detect, our rule", ours);
 }
 
 }  // namespace
 
+BenchPairs bench_pairs(const CalibratedRig& rig, const std::vector<StereoFrame>& frames) {
+  BenchPairs pairs{frames, frames};
+  if (!rig.calibration) return pairs;
+  Rectifier rectifier(*rig.calibration, Interpolation::nearest);
+  for (StereoFrame& frame : pairs.rectified) {
+    const StereoFrame turned = rectifier.rectify(frame);
+    frame = {frame.t_ns, turned.left.clone(), turned.right.clone()};
+  }
+  return pairs;
+}
+
+std::vector<BenchCase> bench_cases(const CalibratedRig& rig, const BenchPairs& pairs) {
+  cv::setNumThreads(1);
+  std::vector<BenchCase> cases;
+  add_yardsticks(rig, pairs.delivered, pairs.rectified, cases);
+  add_full_stereo(rig, pairs.rectified, cases);
+  add_detectors(rig, pairs.delivered, pairs.rectified, cases);
+  return cases;
+}
+
 std::vector<BenchRow> bench_detectors(const CalibratedRig& rig, const std::vector<StereoFrame>& frames,
-                                      const BenchOptions& options) {
+                                      int rounds, const std::function<void(int round)>& on_round) {
   const BenchPairs pairs = bench_pairs(rig, frames);
   std::vector<BenchCase> cases = bench_cases(rig, pairs);
   std::vector<std::vector<double>> times_ms(cases.size());
-  for (int round = 0; round < options.rounds; ++round) {
-    options.on_progress(round, options.rounds);
+  for (int round = 0; round < rounds; ++round) {
+    on_round(round);
     for (std::size_t c = 0; c < cases.size(); ++c) {
       if (round % cases[c].every_rounds != 0) continue;
       const int passes = cases[c].every_rounds > 1 ? 1 : passes_in_turn;
@@ -38,9 +140,9 @@ std::vector<BenchRow> bench_detectors(const CalibratedRig& rig, const std::vecto
         cases[c].run(i);  // not timed: what ran before is forgotten
       for (int pass = 0; pass < passes; ++pass) {
         for (std::size_t i = 0; i < frames.size(); ++i) {
-          const auto before = Clock::now();
+          const auto before = std::chrono::steady_clock::now();
           cases[c].run(i);
-          times_ms[c].push_back(std::chrono::duration<double, std::milli>(Clock::now() - before).count());
+          times_ms[c].push_back(1e3 * seconds_since(before));
         }
       }
     }
@@ -49,9 +151,9 @@ std::vector<BenchRow> bench_detectors(const CalibratedRig& rig, const std::vecto
   for (std::size_t c = 0; c < cases.size(); ++c) {
     BenchRow row{cases[c].name,
                  cases[c].threads,
-                 percentile(times_ms[c], 0.5),
-                 percentile(times_ms[c], 0.9),
-                 percentile(times_ms[c], 0.99),
+                 quantile(times_ms[c], 0.5),
+                 quantile(times_ms[c], 0.9),
+                 quantile(times_ms[c], 0.99),
                  cases[c].yardstick,
                  0};
     for (const BenchRow& other : rows)
@@ -59,33 +161,6 @@ std::vector<BenchRow> bench_detectors(const CalibratedRig& rig, const std::vecto
     rows.push_back(row);
   }
   return rows;
-}
-
-std::string to_table(const std::vector<BenchRow>& rows) {
-  std::string text =
-      fmt::format("{:<44}{:>8}{:>11}{:>9}{:>9}  {}\n", "", "threads", "median ms", "p90", "p99", "against");
-  for (const BenchRow& row : rows) {
-    text += fmt::format("{:<44}{:>8}{:>11.4f}{:>9.4f}{:>9.4f}", row.name, row.threads, row.median_ms,
-                        row.p90_ms, row.p99_ms);
-    if (row.ratio > 0 && row.ratio < 0.05)
-      text += fmt::format("  {:.0f} times faster than {}", 1 / row.ratio, row.yardstick);
-    else if (row.ratio > 0)
-      text += fmt::format("  {:.2f} of {}", row.ratio, row.yardstick);
-    text += "\n";
-  }
-  return text;
-}
-
-std::string to_json(const std::vector<BenchRow>& rows) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const BenchRow& row : rows) {
-    nlohmann::ordered_json one{{"name", row.name},     {"threads", row.threads}, {"median_ms", row.median_ms},
-                               {"p90_ms", row.p90_ms}, {"p99_ms", row.p99_ms},   {"yardstick", nullptr},
-                               {"ratio", nullptr}};
-    if (row.ratio > 0) one["yardstick"] = row.yardstick, one["ratio"] = row.ratio;
-    list.push_back(one);
-  }
-  return list.dump(2) + "\n";
 }
 
 }  // namespace understory

@@ -6,34 +6,36 @@
 
 #include "perception/io/calibration_file.hpp"
 #include "perception/stereo_frame.hpp"
+#include "scenarios/bench/bench_rows.hpp"
 
 namespace understory {
 
-/// What one thing costs for one pair, over all pairs and rounds.
-struct BenchRow {
+/// Something to time on the pair of this number.
+struct BenchCase {
   std::string name;
   int threads = 1;
-  double median_ms = 0;
-  double p90_ms = 0;
-  double p99_ms = 0;
-  std::string yardstick;  ///< name of the row it is measured against; empty for a yardstick itself
-  double ratio = 0;       ///< median over the yardstick's; 0 for a yardstick
+  std::string yardstick;  ///< name of the case it is measured against; empty for a yardstick itself
+  int every_rounds = 1;   ///< slow ones sit most rounds out
+  std::function<void(std::size_t)> run;
 };
 
-struct BenchOptions {
-  int rounds = 20;  ///< over all pairs; slow yardsticks fewer
-  std::function<void(int round, int rounds)> on_progress = [](int, int) {};
+/// The pairs to time on, as the cameras deliver them and rectified (the same where they come so).
+struct BenchPairs {
+  std::vector<StereoFrame> delivered, rectified;
 };
+
+BenchPairs bench_pairs(const CalibratedRig& rig, const std::vector<StereoFrame>& frames);
+
+/// OpenCV's yardsticks, then the detector's ways; a yardstick stands before what is measured against it.
+/// `pairs` must outlive the cases. Sets OpenCV to one thread.
+std::vector<BenchCase> bench_cases(const CalibratedRig& rig, const BenchPairs& pairs);
 
 /// Times OpenCV's remap, StereoBM and StereoSGBM and the detector's ways on `frames` (as the rig delivers
 /// them: raw where it has raw cameras), all in one run, taking turns round by round, so that what else the
 /// machine does falls on all alike. In its turn each goes over all pairs a few times, the first untimed: a
-/// pair comes back after all others, from the outer caches. OpenCV runs on one thread.
+/// pair comes back after all others, from the outer caches. Slow yardsticks sit most of the `rounds` out.
+/// OpenCV runs on one thread.
 std::vector<BenchRow> bench_detectors(const CalibratedRig& rig, const std::vector<StereoFrame>& frames,
-                                      const BenchOptions& options);
-
-/// A table for a person, and the same as a JSON list of rows.
-std::string to_table(const std::vector<BenchRow>& rows);
-std::string to_json(const std::vector<BenchRow>& rows);
+                                      int rounds, const std::function<void(int round)>& on_round);
 
 }  // namespace understory

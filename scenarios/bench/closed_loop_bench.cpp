@@ -1,94 +1,88 @@
 #include "scenarios/bench/closed_loop_bench.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
-#include <algorithm>
-#include <fstream>
-#include <nlohmann/json.hpp>
+#include <chrono>
+#include <map>
 
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/output/program_processes.hpp"
 
 namespace understory {
+namespace {
 
-ClosedLoopRow closed_loop_row(const std::string& name, int processes, const std::vector<TimedFlight>& flights,
-                              double elapsed_s, const ClosedLoopRow* yardstick) {
-  ClosedLoopRow row{name, processes, static_cast<int>(flights.size()), 0, 0, 0, {}, 0, "", 0};
-  double simulated_s = 0, wall_s = 0, frames = 0;
-  std::map<std::string, double> stage_s;
-  for (const TimedFlight& flight : flights) {
-    simulated_s += flight.simulated_s;
-    wall_s += flight.wall_s;
-    frames += flight.frames;
-    row.cpu_per_simulated_s += flight.cpu_s;
-    row.peak_memory_mb = std::max(row.peak_memory_mb, flight.peak_memory_mb);
-    for (const auto& [stage, seconds] : flight.stage_s) stage_s[stage] += seconds;
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+struct Batch {
+  std::vector<TimedFlight> flights;
+  double elapsed_s = 0;
+};
+
+/// Every seed of the scenario, `processes` at a time.
+Batch fly_batch(const ClosedLoopBenchOptions& options, const fs::path& scenario, int processes,
+                const std::string& setting) {
+  const fs::path runs = fs::temp_directory_path() / fmt::format("understory-bench-{}", getpid());
+  prepare_output_folder(runs);
+  const auto run_folder = [&](std::uint64_t seed) { return runs / fmt::format("{}", seed); };
+  std::map<std::uint64_t, Clock::time_point> started;
+  Batch batch;
+  int failed_status = 0;
+  ProgramProcesses flights(processes, [&](std::uint64_t seed, int status, const EndedProcess& process) {
+    if (status != 0 && status != 1) {  // the goal reached or not: timed alike
+      failed_status = status;
+      return;
+    }
+    TimedFlight flight = timed_flight(run_folder(seed) / "result.json");
+    flight.wall_s = seconds_since(started.at(seed));
+    flight.peak_memory_mb = process.peak_memory_mb;
+    flight.cpu_s = process.cpu_s;
+    batch.flights.push_back(flight);
+  });
+  const Clock::time_point begin = Clock::now();
+  for (std::uint64_t seed = options.first_seed; seed <= options.last_seed && failed_status == 0; ++seed) {
+    std::vector<std::string> arguments{"fly", scenario.string(), "--quiet", "--out",
+                                       run_folder(seed).string()};
+    arguments.insert(arguments.end(), {"--seed", fmt::format("{}", seed)});
+    arguments.insert(arguments.end(), options.arguments.begin(), options.arguments.end());
+    if (!setting.empty()) arguments.insert(arguments.end(), {"--set", setting});
+    flights.start(seed, arguments);
+    started[seed] = Clock::now();
   }
-  row.pairs_per_s = frames / elapsed_s;
-  row.cpu_per_simulated_s /= simulated_s;
-  row.simulated_per_s = simulated_s / elapsed_s;
-  double other = 1;
-  for (const std::string& stage : told_stages) {
-    const double share = stage_s[stage] / wall_s;
-    row.shares.emplace_back(stage, share);
-    other -= share;
-  }
-  row.shares.emplace_back("other", other);
-  if (yardstick != nullptr) {
-    row.yardstick = yardstick->name;
-    row.ratio = yardstick->simulated_per_s / row.simulated_per_s;
-  }
-  return row;
+  flights.wait_for_all();
+  batch.elapsed_s = seconds_since(begin);
+  fs::remove_all(runs);
+  if (failed_status == 2) throw ScenarioError("bench: a flight refused its input (see above)");
+  if (failed_status != 0)
+    throw MachineError(fmt::format("bench: a flight ended with status {}", failed_status));
+  return batch;
 }
 
-TimedFlight timed_flight(const std::filesystem::path& result_file) {
-  try {
-    std::ifstream file(result_file);
-    const auto result = nlohmann::json::parse(file);
-    TimedFlight flight;
-    flight.simulated_s = result.at("simulated_s");
-    flight.frames = result.at("frames");
-    for (const auto& [stage, timing] : result.at("timings").items())
-      flight.stage_s[stage] = timing.at("total_s");
-    return flight;
-  } catch (const nlohmann::json::exception& error) {
-    throw MachineError(fmt::format("{}: {}", result_file.string(), error.what()));
-  }
-}
+}  // namespace
 
-std::string to_table(const std::vector<ClosedLoopRow>& rows) {
-  std::string text =
-      fmt::format("{:<42}{:>8}{:>9}{:>7}{:>13}", "", "flights", "pairs/s", "cpu", "x real time");
-  for (const std::string& stage : told_stages) text += fmt::format("{:>9}", stage);
-  text += fmt::format("{:>8}{:>7}  {}\n", "other", "MB", "time against");
-  for (const ClosedLoopRow& row : rows) {
-    text += fmt::format("{:<42}{:>8}{:>9.1f}{:>7.3f}{:>13.2f}", row.name, row.flights, row.pairs_per_s,
-                        row.cpu_per_simulated_s, row.simulated_per_s);
-    for (const auto& [stage, share] : row.shares)
-      text += fmt::format("{:>{}.1f} %", 100 * share, stage == "other" ? 6 : 7);
-    text += fmt::format("{:>7.0f}", row.peak_memory_mb);
-    if (row.ratio > 0) text += fmt::format("  {:.2f} of {}", row.ratio, row.yardstick);
-    text += "\n";
+std::vector<ClosedLoopRow> bench_closed_loop(const ClosedLoopBenchOptions& options) {
+  std::vector<ClosedLoopRow> rows;
+  const auto add = [&](const std::string& name, const fs::path& scenario, int processes,
+                       const std::string& setting, std::ptrdiff_t yardstick) {
+    options.on_progress(name);
+    const Batch batch = fly_batch(options, scenario, processes, setting);
+    const ClosedLoopRow* against = yardstick < 0 ? nullptr : &rows[static_cast<std::size_t>(yardstick)];
+    rows.push_back(closed_loop_row(name, processes, batch.flights, batch.elapsed_s, against));
+    return std::ssize(rows) - 1;
+  };
+  for (const fs::path& scenario : options.scenarios) {
+    const std::string name = scenario.stem().string();
+    const std::ptrdiff_t alone = add(name + ", one at a time", scenario, 1, "", -1);
+    add(name + ", two side by side", scenario, 2, "", alone);
   }
-  return text;
-}
-
-std::string to_json(const std::vector<ClosedLoopRow>& rows) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const ClosedLoopRow& row : rows) {
-    nlohmann::ordered_json one{{"name", row.name},
-                               {"processes", row.processes},
-                               {"flights", row.flights},
-                               {"pairs_per_s", row.pairs_per_s},
-                               {"cpu_per_simulated_s", row.cpu_per_simulated_s},
-                               {"simulated_per_s", row.simulated_per_s}};
-    for (const auto& [stage, share] : row.shares) one["shares"][stage] = share;
-    one["peak_memory_mb"] = row.peak_memory_mb;
-    one["yardstick"] = nullptr;
-    one["ratio"] = nullptr;
-    if (row.ratio > 0) one["yardstick"] = row.yardstick, one["ratio"] = row.ratio;
-    list.push_back(one);
-  }
-  return list.dump(2) + "\n";
+  const std::string name = options.sparse.stem().string();
+  const std::ptrdiff_t narrow =
+      add(name + ", trees to 20 m aside", options.sparse, 1, "forest.half_width_m=20", -1);
+  add(name + ", to 200 m: ten times the trees", options.sparse, 1, "forest.half_width_m=200", narrow);
+  return rows;
 }
 
 }  // namespace understory

@@ -1,53 +1,27 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <map>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "scenarios/bench/bench_rows.hpp"
+
 namespace understory {
 
-/// One flight of the program, from its process's start to its end.
-struct TimedFlight {
-  double simulated_s = 0;
-  double wall_s = 0;  ///< the process's own, loading of libraries included
-  double frames = 0;  ///< stereo pairs
-  std::map<std::string, double>
-      stage_s;                ///< wall time per stage of the loop (scenarios/flight/stopwatch.hpp)
-  double peak_memory_mb = 0;  ///< maximum resident set
-  double cpu_s = 0;           ///< the process's own
+struct ClosedLoopBenchOptions {
+  std::vector<std::filesystem::path> scenarios;  ///< each flown one at a time, then two side by side
+  std::filesystem::path sparse;                  ///< flown with ten times the trees, far and wide
+  std::uint64_t first_seed = 1000, last_seed = 1003;
+  std::vector<std::string> arguments;  ///< of every flight: --set, --renderer
+  std::function<void(const std::string& what)> on_progress = [](const std::string&) {};
 };
 
-/// The stages whose shares are told; what is left of the wall time is "other". "setup" is the world,
-/// "context" the start of the renderer: OpenGL's libraries, textures, the shaders that llvmpipe compiles.
-inline const std::vector<std::string> told_stages{"render",  "detect", "replan",  "estimate", "control",
-                                                  "physics", "setup",  "context", "record"};
-
-/// What flights of one kind cost.
-struct ClosedLoopRow {
-  std::string name;
-  int processes = 1;  ///< side by side
-  int flights = 0;
-  double pairs_per_s = 0;          ///< stereo pairs, of all processes together, per second
-  double cpu_per_simulated_s = 0;  ///< seconds of a core per simulated second: hardly minds other load
-  double simulated_per_s = 0;  ///< simulated seconds, of all processes together, per second: real time is 1
-  std::vector<std::pair<std::string, double>> shares;  ///< of the flights' own wall time; they add up to 1
-  double peak_memory_mb = 0;                           ///< of the greediest flight
-  std::string yardstick;  ///< name of the row it is measured against; empty for a yardstick itself
-  double ratio = 0;       ///< elapsed time per simulated second over the yardstick's; 0 for a yardstick
-};
-
-/// `elapsed_s`: from the first flight's start to the last one's end. `yardstick`: nullptr, or the row to
-/// measure against.
-ClosedLoopRow closed_loop_row(const std::string& name, int processes, const std::vector<TimedFlight>& flights,
-                              double elapsed_s, const ClosedLoopRow* yardstick);
-
-/// What a flight's result.json tells. Throws MachineError where it cannot be read.
-TimedFlight timed_flight(const std::filesystem::path& result_file);
-
-/// A table for a person, and the same as a JSON list of rows, which bear the names of bench.hpp's where they
-/// mean the same.
-std::string to_table(const std::vector<ClosedLoopRow>& rows);
-std::string to_json(const std::vector<ClosedLoopRow>& rows);
+/// Times whole flights, a process each, in the machine's own time: only rows of one run on an idle machine
+/// mean anything together. A flight with ten times the trees is as long and as dense as its yardstick: the
+/// forest reaches 200 m to either side instead of 20. Throws ScenarioError where a flight refuses its input,
+/// MachineError where one breaks.
+std::vector<ClosedLoopRow> bench_closed_loop(const ClosedLoopBenchOptions& options);
 
 }  // namespace understory

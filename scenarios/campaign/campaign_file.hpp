@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/campaign/campaign.hpp"
+#include "scenarios/campaign/campaign_folder.hpp"
 #include "scenarios/config/config_tree.hpp"
 
 namespace understory {

@@ -9,6 +9,7 @@
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/program.hpp"
+#include "scenarios/report/table.hpp"
 
 namespace understory {
 namespace {
@@ -26,15 +27,15 @@ std::optional<std::string> text_of(const fs::path& file) {
 }
 
 std::string manifest_of(const Campaign& campaign) {
-  Json json;
-  json["format"] = results_format;
-  json["program"] = {{"understory", understory_version}, {"digest", program_digest()}};
-  json["name"] = campaign.name;
-  json["renderer"] = campaign.renderer;
-  json["timeout_s"] = campaign.timeout_s;
-  json["conditions"] = Json::array();
-  for (const Condition& condition : campaign.conditions) json["conditions"].push_back(condition.name);
-  json["seeds"] = campaign.seeds;
+  std::vector<std::string> conditions;
+  for (const Condition& condition : campaign.conditions) conditions.push_back(condition.name);
+  const Json json{{"format", results_format},
+                  {"program", {{"understory", understory_version}, {"digest", program_digest()}}},
+                  {"name", campaign.name},
+                  {"renderer", campaign.renderer},
+                  {"timeout_s", campaign.timeout_s},
+                  {"conditions", conditions},
+                  {"seeds", campaign.seeds}};
   return json.dump(1) + "\n";
 }
 
@@ -76,6 +77,24 @@ void require_same(const CampaignFolder& folder, const Campaign& campaign) {
 }
 
 }  // namespace
+
+std::vector<CampaignTask> tasks_of(const Campaign& campaign) {
+  std::vector<CampaignTask> tasks;
+  for (std::size_t condition = 0; condition < campaign.conditions.size(); ++condition)
+    for (const std::uint64_t seed : campaign.seeds)
+      tasks.push_back({fmt::format("{}-{}", campaign.conditions[condition].name, seed), condition, seed});
+  return tasks;
+}
+
+std::vector<CampaignTask> in_flying_order(const Campaign& campaign) {
+  const std::vector<CampaignTask> tasks = tasks_of(campaign);
+  const std::size_t seeds = campaign.seeds.size();
+  std::vector<CampaignTask> order;
+  for (std::size_t seed = 0; seed < seeds; ++seed)
+    for (std::size_t condition = 0; condition < campaign.conditions.size(); ++condition)
+      order.push_back(tasks[condition * seeds + seed]);
+  return order;
+}
 
 void prepare_campaign_folder(const CampaignFolder& folder, const Campaign& campaign, bool resume) {
   if (fs::exists(folder.path / manifest_name)) {
@@ -131,7 +150,8 @@ void write_flight(const CampaignFolder& folder, const Campaign& campaign, const 
 
 Collected collect(const CampaignFolder& folder, const Campaign& campaign) {
   Collected collected;
-  std::string lines, costs = "id,wall_s,peak_memory_mb\n";
+  std::string lines;
+  Table costs{{"id", "wall_s", "peak_memory_mb"}};
   for (const CampaignTask& task : tasks_of(campaign)) {
     const auto file = read_flight(folder, task);
     if (!file) {
@@ -139,12 +159,13 @@ Collected collect(const CampaignFolder& folder, const Campaign& campaign) {
       continue;
     }
     lines += to_json_line(file->row) + "\n";
-    costs += fmt::format("{},{:.3f},{:.1f}\n", task.id, file->cost.wall_s, file->cost.peak_memory_mb);
+    costs.rows.push_back({task.id, fmt::format("{:.3f}", file->cost.wall_s),
+                          fmt::format("{:.1f}", file->cost.peak_memory_mb)});
     collected.rows.push_back(file->row);
   }
   write_whole_file(folder.path / "flights.csv", to_csv(collected.rows));
   write_whole_file(folder.path / "flights.jsonl", lines);
-  write_whole_file(folder.path / "costs.csv", costs);
+  write_whole_file(folder.path / "costs.csv", to_csv(costs));
   return collected;
 }
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "scenarios/campaign/campaign_summary.hpp"
-#include "scenarios/statistics/wilson.hpp"
+#include "scenarios/statistics/proportions.hpp"
 
 namespace understory {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenarios/statistics/bootstrap.hpp"
-#include "scenarios/statistics/wilson.hpp"
+#include "scenarios/statistics/proportions.hpp"
+#include "scenarios/statistics/samples.hpp"
 
 namespace understory {
 namespace {
@@ -91,10 +91,10 @@ std::vector<ConditionSummary> summarise(const std::vector<FlightRow>& rows) {
   return summaries;
 }
 
-PrintedTable summary_table(const std::vector<ConditionSummary>& summaries) {
-  PrintedTable table{{"condition", "flown", "goal", "success % (95 %)", "collision", "ground", "bounds",
-                      "time", "m/s", "median m", "error m", "OMPL %", "not flown"},
-                     {}};
+Table summary_table(const std::vector<ConditionSummary>& summaries) {
+  Table table{{"condition", "flown", "goal", "success % (95 %)", "collision", "ground", "bounds", "time",
+               "m/s", "median m", "error m", "OMPL %", "not flown"},
+              {}};
   const auto text = [](int count) { return fmt::format("{}", count); };
   for (const ConditionSummary& summary : summaries)
     table.rows.push_back({summary.condition, text(summary.flown), text(summary.goals), success_text(summary),

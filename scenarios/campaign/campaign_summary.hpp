@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "scenarios/campaign/flight_row.hpp"
-#include "scenarios/report/printed_table.hpp"
+#include "scenarios/report/table.hpp"
 #include "scenarios/statistics/survival.hpp"
 
 namespace understory {
@@ -36,6 +36,6 @@ std::vector<ConditionSummary> summarise(const std::vector<FlightRow>& rows);
 /// A row per condition; to_text or to_markdown prints it. `median m`: the distance by which half the flights
 /// have ended, "> 75" where more than half got that far; `OMPL %`: replans with an obstacle ahead flown on
 /// OMPL's answer.
-PrintedTable summary_table(const std::vector<ConditionSummary>& summaries);
+Table summary_table(const std::vector<ConditionSummary>& summaries);
 
 }  // namespace understory

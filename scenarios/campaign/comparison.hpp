@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "scenarios/campaign/flight_row.hpp"
-#include "scenarios/statistics/bootstrap.hpp"
-#include "scenarios/statistics/paired_outcomes.hpp"
+#include "scenarios/statistics/proportions.hpp"
+#include "scenarios/statistics/samples.hpp"
 
 namespace understory {
 

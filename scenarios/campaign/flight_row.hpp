@@ -1,12 +1,18 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "planning/planner_counts.hpp"
 
 namespace understory {
+
+struct FlightResult;
+
+/// Of rows and of the folders that hold them: results of another format are refused.
+inline constexpr int results_format = 1;
 
 /// What became of one flight of a campaign.
 enum class RunStatus {
@@ -26,11 +32,11 @@ struct FlightRow {
   RunStatus status = RunStatus::refused;
   std::string reason;                 ///< why it was not flown, one line; empty for a flown one
   std::string outcome;                ///< flight_result.hpp's word for its ending; empty unless flown
-  double cruise_speed_mps = 0;        ///< asked
+  double cruise_speed_mps = 0;        ///< asked, as the next two
   double square_metres_per_tree = 0;  ///< of the forest
+  double goal_m = 0;                  ///< x of the goal plane
   double distance_m = 0;              ///< flown: true path length since release
   double progress_m = 0;              ///< maximum true x reached
-  double goal_m = 0;                  ///< x of the goal plane
   double mean_speed_mps = 0;          ///< true, over ground
   double min_clearance_m = 0;         ///< true; +infinity (empty in CSV, null in JSON) without obstacles
   double position_error_mean_m = 0;
@@ -45,5 +51,33 @@ struct FlightRow {
   bool flown() const { return status == RunStatus::flown; }
   bool reached_goal() const { return flown() && outcome == "goal"; }
 };
+
+/// What a flight took on its machine: kept beside its row, since no two runs agree on it.
+struct FlightCost {
+  double wall_s = 0;
+  double peak_memory_mb = 0;  ///< 10^6 bytes, resident
+};
+
+/// One flight's file: its row and its cost.
+struct FlightFile {
+  FlightRow row;
+  FlightCost cost;
+};
+
+/// The row of a flight that came to an ending. Sets all but id, condition and what was asked.
+FlightRow flown_row(const FlightResult& result);
+
+/// One line of JSON without its newline; numbers in full precision, null where there is nothing to say.
+std::string to_json_line(const FlightRow& row);
+
+/// A flight's file as JSON, and back: nothing where the text is not whole, or of another format.
+std::string to_json(const FlightFile& file);
+std::optional<FlightFile> flight_file_from_json(const std::string& text);
+
+/// CSV with a header and a row per flight, six digits a number, empty where there is nothing to say.
+std::string to_csv(const std::vector<FlightRow>& rows);
+/// Reads it back. Throws ScenarioError, naming `name` and the line, where the columns are of another version
+/// or a row is not whole.
+std::vector<FlightRow> rows_from_csv(const std::string& text, const std::string& name);
 
 }  // namespace understory

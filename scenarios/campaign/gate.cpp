@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenarios/report/printed_table.hpp"
-#include "scenarios/statistics/wilson.hpp"
+#include "scenarios/report/table.hpp"
+#include "scenarios/statistics/proportions.hpp"
 
 namespace understory {
 namespace {
@@ -46,18 +46,18 @@ std::vector<std::string> success_row(const ConditionComparison& condition) {
       fmt::format("{}", condition.bit_for_bit)};
 }
 
-PrintedTable success_table(const Comparison& comparison) {
-  PrintedTable table{{"success, %", "pairs", "baseline goals", "candidate goals", "difference", "worse",
-                      "better", "p", "bit for bit"},
-                     {}};
+Table success_table(const Comparison& comparison) {
+  Table table{{"success, %", "pairs", "baseline goals", "candidate goals", "difference", "worse", "better",
+               "p", "bit for bit"},
+              {}};
   for (const ConditionComparison& condition : comparison.conditions)
     table.rows.push_back(success_row(condition));
   if (comparison.conditions.size() > 1) table.rows.push_back(success_row(comparison.all));
   return table;
 }
 
-PrintedTable metric_table(const Comparison& comparison) {
-  PrintedTable table{{"means", "figure", "pairs", "baseline", "candidate", "difference"}, {}};
+Table metric_table(const Comparison& comparison) {
+  Table table{{"means", "figure", "pairs", "baseline", "candidate", "difference"}, {}};
   for (const ConditionComparison& condition : comparison.conditions) {
     if (condition.bit_for_bit == condition.goals.pairs()) continue;  // nothing has changed
     for (const MetricComparison& metric : condition.metrics) {
@@ -131,7 +131,7 @@ std::string to_report(const Comparison& comparison, const GateVerdict& verdict, 
   text +=
       "  intervals 95 %: goals by Wilson, difference by Newcombe's paired method; p: McNemar's exact "
       "test\n\n";
-  const PrintedTable metrics = metric_table(comparison);
+  const Table metrics = metric_table(comparison);
   if (!metrics.rows.empty())
     text +=
         to_text(metrics) +

@@ -11,14 +11,12 @@
 namespace understory {
 namespace {
 
-enum class Result { passed, failure, error };
-
 struct TestCase {
   std::string suite;
   std::string name;
   double time_s = 0;
-  Result result = Result::passed;
-  std::string message;  ///< of a failure or an error
+  std::string fault = {};    ///< "failure" or "error"; empty: passed
+  std::string message = {};  ///< of the fault
 };
 
 /// Bytes of the UTF-8 letter at `at` that XML 1.0 can hold; 0 where there is none. Beyond its control
@@ -59,12 +57,12 @@ void set(pugi::xml_node node, const char* name, const std::string& value) {
 void append_counts(pugi::xml_node node, const std::vector<TestCase>& cases) {
   double time_s = 0;
   for (const TestCase& test : cases) time_s += test.time_s;
-  const auto count = [&](Result result) {
-    return fmt::format("{}", std::ranges::count(cases, result, &TestCase::result));
+  const auto count = [&](const char* fault) {
+    return fmt::format("{}", std::ranges::count(cases, fault, &TestCase::fault));
   };
   set(node, "tests", fmt::format("{}", cases.size()));
-  set(node, "failures", count(Result::failure));
-  set(node, "errors", count(Result::error));
+  set(node, "failures", count("failure"));
+  set(node, "errors", count("error"));
   set(node, "time", fmt::format("{:.3f}", time_s));
 }
 
@@ -73,8 +71,7 @@ void append_case(pugi::xml_node suite, const TestCase& test) {
   set(node, "classname", test.suite);
   set(node, "name", test.name);
   set(node, "time", fmt::format("{:.3f}", test.time_s));
-  if (test.result == Result::passed) return;
-  set(node.append_child(test.result == Result::failure ? "failure" : "error"), "message", test.message);
+  if (!test.fault.empty()) set(node.append_child(test.fault.c_str()), "message", test.message);
 }
 
 std::string to_junit(const std::string& name, const std::vector<TestCase>& cases) {
@@ -110,20 +107,20 @@ std::string ending_of(const FlightRow& row) {
   return fmt::format("{} at {:.1f} m of {:.1f} m", row.outcome, row.progress_m, row.goal_m);
 }
 
+/// A flight that was flown passes, whatever its ending.
 TestCase case_of(const FlightRow& row) {
-  TestCase test{row.condition, fmt::format("{}", row.seed), row.simulated_s, Result::passed, ""};
-  if (!row.flown()) {
-    test.result = Result::error;
-    test.message = row.reason.empty() ? "failed to run" : row.reason;
-  }
+  TestCase test{row.condition, fmt::format("{}", row.seed), row.simulated_s};
+  if (row.flown()) return test;
+  test.fault = "error";
+  test.message = row.reason.empty() ? "failed to run" : row.reason;
   return test;
 }
 
 TestCase case_of(const ConditionComparison& condition, const GateRule& rule) {
   const PairedOutcomes& goals = condition.goals;
-  TestCase test{"gate", condition.condition, 0, Result::passed, ""};
+  TestCase test{"gate", condition.condition};
   if (!dropped_too_far(condition, rule)) return test;
-  test.result = Result::failure;
+  test.fault = "failure";
   test.message = fmt::format(
       "success fell from {} to {} of {}, by {:.1f} percentage points ({:.1f} allowed), p = {:.3g}",
       goals.first(), goals.second(), goals.pairs(), -100 * goals.difference(), 100 * rule.max_drop,
@@ -136,12 +133,10 @@ TestCase case_of(const ConditionComparison& condition, const GateRule& rule) {
 std::string campaign_junit(const std::vector<FlightRow>& rows) {
   std::vector<TestCase> cases;
   for (const FlightRow& row : rows) {
-    TestCase test = case_of(row);
-    if (row.flown() && !row.reached_goal()) {
-      test.result = Result::failure;
-      test.message = ending_of(row);
-    }
-    cases.push_back(test);
+    TestCase& test = cases.emplace_back(case_of(row));
+    if (!row.flown() || row.reached_goal()) continue;
+    test.fault = "failure";
+    test.message = ending_of(row);
   }
   return to_junit("campaign", cases);
 }
@@ -152,15 +147,13 @@ std::string gate_junit(const Comparison& comparison, const GateRule& rule) {
     cases.push_back(case_of(condition, rule));
   for (const ConditionComparison& condition : comparison.conditions)
     for (const FlightPair& pair : condition.pairs) {
-      TestCase test = case_of(pair.candidate);
-      if (pair.got_worse()) {
-        test.result = Result::failure;
-        test.message = ending_of(pair.candidate) + "; reached its goal in the baseline";
-      }
-      cases.push_back(test);
+      TestCase& test = cases.emplace_back(case_of(pair.candidate));
+      if (!pair.got_worse()) continue;
+      test.fault = "failure";
+      test.message = ending_of(pair.candidate) + "; reached its goal in the baseline";
     }
   for (const FlightRow& row : comparison.missing)
-    cases.push_back({row.condition, fmt::format("{}", row.seed), 0, Result::error,
+    cases.push_back({row.condition, fmt::format("{}", row.seed), 0, "error",
                      "in the baseline, missing in the candidate"});
   for (const FlightRow& row : comparison.added) cases.push_back(case_of(row));
   return to_junit("gate", cases);

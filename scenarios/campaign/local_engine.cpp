@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,8 +17,10 @@
 #include <thread>
 
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/program.hpp"
+#include "scenarios/output/program_processes.hpp"
 #include "scenarios/output/stop_signals.hpp"
 
 namespace understory {
@@ -117,12 +118,10 @@ class Flights {
   template <typename OnOver>
   void land(OnOver&& on_over) {
     for (auto flight = air_.begin(); flight != air_.end();) {
-      int wait_status = 0;
-      struct rusage usage {};
-      const pid_t over = wait4(flight->first, &wait_status, WNOHANG, &usage);
-      const std::chrono::duration<double> taken = Clock::now() - flight->second.since;
-      if (over == 0) {
-        if (!flight->second.hung && taken.count() > campaign_.timeout_s) {
+      const EndedProcess process = wait_for_process(flight->first, WNOHANG);
+      const double taken_s = seconds_since(flight->second.since);
+      if (process.pid == 0) {
+        if (!flight->second.hung && taken_s > campaign_.timeout_s) {
           flight->second.hung = true;
           kill(flight->first, SIGKILL);
         }
@@ -134,11 +133,10 @@ class Flights {
       flight = air_.erase(flight);
       auto file = read_flight(folder_, task);
       if (!file) {
-        if (everything_stops(wait_status, hung)) return;
-        const FlightCost cost{taken.count(), static_cast<double>(usage.ru_maxrss) * 1.024e-3};
-        file = FlightFile{
-            row_of_failure(wait_status, hung, campaign_.timeout_s, last_line_of(folder_.log_file(task))),
-            cost};
+        if (everything_stops(process.wait_status, hung)) return;
+        file = FlightFile{row_of_failure(process.wait_status, hung, campaign_.timeout_s,
+                                         last_line_of(folder_.log_file(task))),
+                          {taken_s, process.peak_memory_mb}};
         write_flight(folder_, campaign_, task, *file);
       } else {
         fs::remove(folder_.log_file(task));
@@ -207,17 +205,12 @@ FolderLock::~FolderLock() { close(file_); }
 
 std::vector<std::string> flight_arguments(const CampaignFolder& folder, const Campaign& campaign,
                                           const CampaignTask& task, bool keeps_run) {
-  const fs::path path = fs::absolute(folder.path).lexically_normal();
-  const CampaignFolder whole{path};
-  std::vector<std::string> arguments{"fly",
-                                     whole.condition_file(campaign.conditions[task.condition]).string(),
-                                     "--seed",
-                                     fmt::format("{}", task.seed),
-                                     "--quiet",
-                                     "--row",
-                                     whole.flight_file(task).string()};
+  const CampaignFolder whole{fs::absolute(folder.path).lexically_normal()};
+  const std::string condition = whole.condition_file(campaign.conditions[task.condition]).string();
+  std::vector<std::string> arguments{"fly", condition, "--seed", fmt::format("{}", task.seed), "--quiet"};
+  arguments.insert(arguments.end(), {"--row", whole.flight_file(task).string()});
   arguments.insert(arguments.end(), {"--renderer", campaign.renderer});
-  if (keeps_run) arguments.insert(arguments.end(), {"--out", (path / "runs" / task.id).string()});
+  if (keeps_run) arguments.insert(arguments.end(), {"--out", (whole.path / "runs" / task.id).string()});
   return arguments;
 }
 

@@ -11,7 +11,7 @@
 namespace understory {
 
 int report(const CampaignFolder& folder, const Collected& collected, const std::filesystem::path& junit) {
-  const PrintedTable table = summary_table(summarise(collected.rows));
+  const Table table = summary_table(summarise(collected.rows));
   write_whole_file(folder.path / "summary.md", to_markdown(table));
   const std::string plots = campaign_svg(collected.rows);
   if (!plots.empty()) write_whole_file(folder.path / "campaign.svg", plots);

@@ -1,12 +1,10 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cstdio>
-
-#include "scenarios/bench/closed_loop_flights.hpp"
+#include "scenarios/bench/closed_loop_bench.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/output/progress_line.hpp"
 
 namespace understory {
 
@@ -19,14 +17,10 @@ int run_closed_loop_bench(const ClosedLoopBenchArguments& arguments) {
     options.arguments.insert(options.arguments.end(), {"--set", setting});
   options.arguments.insert(options.arguments.end(),
                            {"--renderer", std::string(word_for(arguments.renderer))});
-  const bool shows_progress = isatty(STDOUT_FILENO) == 1;
-  if (shows_progress)
-    options.on_progress = [](const std::string& what) {
-      fmt::print("\r\033[K{}", what);
-      std::fflush(stdout);
-    };
+  ProgressLine line;
+  options.on_progress = [&](const std::string& what) { line.show(what); };
   const std::vector<ClosedLoopRow> rows = bench_closed_loop(options);
-  if (shows_progress) fmt::print("\r\033[K");
+  line.clear();
   fmt::print("{}", to_table(rows));
   if (!arguments.json.empty()) write_whole_file(arguments.json, to_json(rows));
   return 0;

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cstdio>
 #include <memory>
 
 #include "perception/io/stereo_recording.hpp"
@@ -11,6 +9,7 @@
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/output/progress_line.hpp"
 
 namespace understory {
 namespace {
@@ -56,15 +55,12 @@ int run_bench(BenchArguments arguments) {
   if (frames.front().left.cols != rig.rig.width_px || frames.front().left.rows != rig.rig.height_px)
     throw ScenarioError(fmt::format("{}: expected images of {}x{}, as the rig has them",
                                     arguments.inputs.front(), rig.rig.width_px, rig.rig.height_px));
-  BenchOptions options;
-  options.rounds = arguments.rounds;
-  if (isatty(STDOUT_FILENO) == 1)
-    options.on_progress = [](int round, int rounds) {
-      fmt::print("\r\033[Kround {} of {}", round + 1, rounds);
-      std::fflush(stdout);
-    };
-  const std::vector<BenchRow> rows = bench_detectors(rig, frames, options);
-  if (isatty(STDOUT_FILENO) == 1) fmt::print("\r\033[K");
+  ProgressLine line;
+  const std::vector<BenchRow> rows = bench_detectors(rig, frames, arguments.rounds, [&](int round) {
+    const auto done = static_cast<std::size_t>(round), all = static_cast<std::size_t>(arguments.rounds);
+    line.show(fmt::format("round {} of {}", round + 1, all), done, all - done);
+  });
+  line.clear();
   fmt::print("{} {} pairs, {}x{}, rig {}, looking {:.2f} m ahead\n{}", frames.size(),
              arguments.inputs.empty() ? "rendered" : "recorded", rig.rig.width_px, rig.rig.height_px,
              rig.rig.name, rig.rig.detection_depth_m, to_table(rows));

@@ -4,8 +4,7 @@
 
 #include <memory>
 
-#include "scenarios/campaign/flight_row_io.hpp"
-#include "scenarios/campaign/flown_row.hpp"
+#include "scenarios/campaign/flight_row.hpp"
 #include "scenarios/campaign/junit.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
@@ -28,7 +27,10 @@ struct FlyArguments : ScenarioArguments {
 
 /// As a campaign reads it. The row file's name is the flight's id, the scenario's file that of its condition.
 FlightRow row_of(const FlyArguments& arguments, const Scenario& scenario, const FlightResult& result) {
-  FlightRow row = flown_row(scenario, result);
+  FlightRow row = flown_row(result);
+  row.cruise_speed_mps = scenario.autopilot.autopilot.flight_model.cruise_speed_mps;
+  row.square_metres_per_tree = scenario.forest.square_metres_per_tree;
+  row.goal_m = scenario.goal_x_m();
   row.condition = std::filesystem::path(arguments.scenario).stem().string();
   row.id = arguments.row.empty() ? fmt::format("{}-{}", row.condition, row.seed)
                                  : std::filesystem::path(arguments.row).stem().string();

@@ -1,14 +1,12 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cstdio>
-
-#include "scenarios/bench/flight_processes.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/evaluation/evaluation_suite.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/output/program_processes.hpp"
+#include "scenarios/output/progress_line.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
 
@@ -42,14 +40,13 @@ std::vector<fs::path> record_suite(const fs::path& file, const fs::path& folder,
   const EvaluationSuite suite = load_evaluation_suite(file, scenario_file);
   check(suite, file);
   prepare_output_folder(folder);
-  std::size_t failed = suite.recordings.size(), done = 0;
-  const bool terminal = isatty(STDOUT_FILENO) == 1;
-  FlightProcesses processes(jobs, [&](std::uint64_t tag, int status) {
-    if (status != 0 && failed == suite.recordings.size()) failed = static_cast<std::size_t>(tag);
+  const std::size_t all = suite.recordings.size();
+  std::size_t failed = all, done = 0, here = 0;
+  ProgressLine line;
+  ProgramProcesses processes(jobs, [&](std::uint64_t tag, int status, const EndedProcess&) {
+    if (status != 0 && failed == all) failed = static_cast<std::size_t>(tag);
     ++done;
-    if (!terminal) return;
-    fmt::print("\r\033[K{} of {} recorded", done, suite.recordings.size());
-    std::fflush(stdout);
+    line.show(fmt::format("{} of {} recorded", done, all), ++here, all - done);
   });
   std::vector<fs::path> folders;
   for (const SuiteRecording& recording : suite.recordings) {
@@ -61,8 +58,7 @@ std::vector<fs::path> record_suite(const fs::path& file, const fs::path& folder,
     processes.start(folders.size() - 1, arguments_of(recording, folders.back()));
   }
   processes.wait_for_all();
-  if (terminal) fmt::print("\r\033[K");
-  if (failed < suite.recordings.size())
+  if (failed < all)
     throw ScenarioError(
         fmt::format("{}: expected to record {}, which failed", file.string(), suite.recordings[failed].name));
   return folders;

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
+
+#include "scenarios/statistics/samples.hpp"
 
 namespace understory {
 namespace {
@@ -47,14 +48,6 @@ std::string map_text(const DetectionResult& result) {
 }
 
 }  // namespace
-
-double quantile(std::vector<double> values, double q) {
-  if (values.empty()) return 0;
-  const auto rank = static_cast<std::ptrdiff_t>(std::ceil(q * static_cast<double>(values.size()))) - 1;
-  const auto place = values.begin() + std::clamp<std::ptrdiff_t>(rank, 0, std::ssize(values) - 1);
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
-}
 
 std::string frames_to_csv(const std::vector<FrameRecord>& frames) {
   std::string text = "frame,t_ns,hits,rectify_ms,detect_ms,in_map\n";

@@ -37,9 +37,6 @@ struct DetectionResult {
   std::string files;                              ///< what was written
 };
 
-/// The q-th part (0 .. 1) of `values` lies at or below this one; 0 for no values. Nearest rank.
-double quantile(std::vector<double> values, double q);
-
 /// frame,t_ns,hits,rectify_ms,detect_ms,in_map: a line per frame.
 std::string frames_to_csv(const std::vector<FrameRecord>& frames);
 

@@ -6,7 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include "scenarios/detect/detection_result.hpp"
 #include "scenarios/evaluation/evaluation_pictures.hpp"
 #include "scenarios/evaluation/evaluation_plots.hpp"
 #include "scenarios/evaluation/evaluation_tables.hpp"
@@ -14,6 +13,7 @@
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/report/picture_folder.hpp"
 #include "scenarios/report/video_writer.hpp"
+#include "scenarios/statistics/samples.hpp"
 
 namespace understory {
 namespace {
@@ -27,21 +27,6 @@ std::string heading(const Evaluation& evaluation) {
       "{} recordings, {} frames, {:.1f} s; rig {}, looking {:.2f} m ahead, one pixel is {:.2f} to {:.2f} m\n",
       evaluation.recordings.size(), evaluation.all.frames, evaluation.all.seconds, first.rig.name,
       first.detection_depth_m, first.one_pixel.near_m, first.one_pixel.far_m);
-}
-
-/// Quoted where a cell holds a comma.
-std::string to_csv(const PrintedTable& table) {
-  std::string text;
-  const auto add = [&](const std::vector<std::string>& cells) {
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      const bool quoted = cells[i].find(',') != std::string::npos;
-      text += fmt::format("{}{}{}{}", i > 0 ? "," : "", quoted ? "\"" : "", cells[i], quoted ? "\"" : "");
-    }
-    text += "\n";
-  };
-  add(table.head);
-  for (const auto& row : table.rows) add(row);
-  return text;
 }
 
 Json to_json(const Share& share) {

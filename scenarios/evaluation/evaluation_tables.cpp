@@ -6,10 +6,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "scenarios/detect/detection_result.hpp"
 #include "scenarios/evaluation/obstacle_tables.hpp"
 #include "scenarios/evaluation/share_text.hpp"
-#include "scenarios/statistics/bootstrap.hpp"
+#include "scenarios/statistics/samples.hpp"
 
 namespace understory {
 namespace {
@@ -33,7 +32,7 @@ std::string resampled_text(const Evaluation& evaluation, Share (*of)(const Recor
 }
 
 /// The paper's figures of one sum, the scene's name in front.
-void add_published(const EvaluationSum& sum, bool has_poses, PrintedTable& table) {
+void add_published(const EvaluationSum& sum, bool has_poses, Table& table) {
   const PublishedFigures paper;
   const auto& [ours, papers_rule, random] = sum.published;
   const auto row = [&](const char* what, double published, auto figure, std::string published_random) {

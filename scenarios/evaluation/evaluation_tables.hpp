@@ -4,15 +4,15 @@
 #include <vector>
 
 #include "scenarios/evaluation/evaluation.hpp"
-#include "scenarios/report/printed_table.hpp"
+#include "scenarios/report/table.hpp"
 
 namespace understory {
 
 /// A table with its name, as a file's name and as a title.
 struct EvaluationTable {
-  std::string file;    ///< "algorithms"
-  std::string title;   ///< one line
-  PrintedTable table;  ///< cells are plain numbers or words; units stand in the head
+  std::string file;   ///< "algorithms"
+  std::string title;  ///< one line
+  Table table;        ///< cells are plain numbers or words; units stand in the head
 };
 
 /// All that the recordings allow to say, in the order in which people read it: against the paper's figures,

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "scenarios/detect/detection_result.hpp"
 #include "scenarios/evaluation/share_text.hpp"
+#include "scenarios/statistics/samples.hpp"
 
 namespace understory {
 
@@ -54,10 +54,10 @@ EvaluationTable on_the_path_table(const Evaluation& evaluation) {
   return table;
 }
 
-PrintedTable obstacles_table(const Evaluation& evaluation) {
-  PrintedTable table{{"recording", "object", "name", "kind", "miss_m", "on_the_path", "hidden",
-                      "blocks_in_view", "hits", "first_hit_m", "third_hit_m"},
-                     {}};
+Table obstacles_table(const Evaluation& evaluation) {
+  Table table{{"recording", "object", "name", "kind", "miss_m", "on_the_path", "hidden", "blocks_in_view",
+               "hits", "first_hit_m", "third_hit_m"},
+              {}};
   for (const RecordingEvaluation& recording : evaluation.recordings)
     for (const ObstacleSighting& sighting : recording.sightings[our_rule]) {
       const auto object = std::ranges::find(recording.objects, sighting.object, &RecordedObject::number);

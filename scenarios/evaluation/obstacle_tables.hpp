@@ -11,6 +11,6 @@ EvaluationTable computer_table(const Evaluation& evaluation);
 EvaluationTable on_the_path_table(const Evaluation& evaluation);
 
 /// A line per obstacle passed: what each became under our rule.
-PrintedTable obstacles_table(const Evaluation& evaluation);
+Table obstacles_table(const Evaluation& evaluation);
 
 }  // namespace understory

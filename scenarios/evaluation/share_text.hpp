@@ -5,7 +5,7 @@
 #include <string>
 
 #include "scenarios/evaluation/share.hpp"
-#include "scenarios/statistics/wilson.hpp"
+#include "scenarios/statistics/proportions.hpp"
 
 namespace understory {
 

@@ -1,25 +1,29 @@
 #pragma once
 
-#include <unistd.h>
-
+#include <chrono>
 #include <string>
-
-#include "scenarios/flight/stopwatch.hpp"
 
 namespace understory {
 
-/// One line, again and again on a terminal; elsewhere a line each half minute.
+/// One line, again and again on a terminal and gone with this object, so that nothing stays before a
+/// complaint or a summary; elsewhere a line each half minute.
 class ProgressLine {
  public:
+  ProgressLine();
+  ~ProgressLine() { clear(); }
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
   /// `text`: how far it is. `done` since this line began, `left`: parts of one kind, for an estimate of the
-  /// time left.
-  void show(const std::string& text, std::size_t done, std::size_t left);
-  void clear() const;
+  /// time left; none where nothing is done.
+  void show(const std::string& text, std::size_t done = 0, std::size_t left = 0);
+  void clear();
 
  private:
-  bool is_terminal_ = isatty(STDOUT_FILENO) == 1;
-  double next_line_s_ = 0;
-  Stopwatch stopwatch_;
+  using Clock = std::chrono::steady_clock;
+
+  bool is_terminal_, is_shown_ = false;
+  Clock::time_point begin_ = Clock::now(), shown_ = begin_;
 };
 
 }  // namespace understory

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "scenarios/statistics/bootstrap.hpp"
-#include "scenarios/statistics/wilson.hpp"
+#include "scenarios/statistics/proportions.hpp"
+#include "scenarios/statistics/samples.hpp"
 
 namespace understory {
 namespace {

@@ -3,8 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/statistics/interval.hpp"
-#include "scenarios/statistics/paired_outcomes.hpp"
+#include "scenarios/statistics/proportions.hpp"
 #include "scenarios/tuning/tuning.hpp"
 
 namespace understory {

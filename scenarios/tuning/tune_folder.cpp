@@ -4,7 +4,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "scenarios/campaign/flight_row_io.hpp"
+#include "scenarios/campaign/flight_row.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/program.hpp"

@@ -62,8 +62,8 @@ std::vector<std::size_t> aimed_at(const TuneFile& file) {
 }
 
 /// Of the front: both sides' figures that the objective speaks of, then the parameters.
-PrintedTable front_table(const TuneFile& file, const Tuned& tuned) {
-  PrintedTable table;
+Table front_table(const TuneFile& file, const Tuned& tuned) {
+  Table table;
   table.head = {"trial"};
   for (const std::size_t i : aimed_at(file)) {
     table.head.push_back(file.figures[i]);
@@ -87,9 +87,9 @@ std::string tuned_value(const Parameter& parameter, double value) {
   return fmt::format("{:g}{}", value, value == ends.front() || value == ends.back() ? " (end of range)" : "");
 }
 
-PrintedTable sensitivity_table(const TuneFile& file, const Tuned& tuned) {
+Table sensitivity_table(const TuneFile& file, const Tuned& tuned) {
   const std::size_t goal = file.objective.goals.front().figure;
-  PrintedTable table{
+  Table table{
       {"parameter", "range", "the scenario's", "tuned", file.figures[goal] + " over the range", "spread"},
       {}};
   if (!file.objective.limits.empty()) table.head.push_back("limits kept from .. to");
@@ -162,9 +162,9 @@ std::string pareto_csv(const TuneFile& file, const Tuned& tuned) {
 
 }  // namespace
 
-PrintedTable comparison_table(const TuneFile& file, const Tuned& tuned, const Judge& validation) {
+Table comparison_table(const TuneFile& file, const Tuned& tuned, const Judge& validation) {
   const std::vector<FigureChange> changes = changes_on_validation(file, tuned, validation);
-  PrintedTable table{
+  Table table{
       {"figure", "as it is", "tuned", "difference", "95 %", "as it is (training)", "tuned (training)"}, {}};
   for (std::size_t i = 0; i < file.figures.size(); ++i) {
     const bool is_known = i < changes.size() && std::isfinite(changes[i].difference);

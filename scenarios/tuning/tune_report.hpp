@@ -3,14 +3,14 @@
 #include <filesystem>
 #include <string>
 
-#include "scenarios/report/printed_table.hpp"
+#include "scenarios/report/table.hpp"
 #include "scenarios/tuning/judge.hpp"
 #include "scenarios/tuning/tuning.hpp"
 
 namespace understory {
 
 /// The scenario as it is and tuned, on training and on validation data: a row a figure.
-PrintedTable comparison_table(const TuneFile& file, const Tuned& tuned, const Judge& validation);
+Table comparison_table(const TuneFile& file, const Tuned& tuned, const Judge& validation);
 
 /// summary.md: what was tuned, comparison, front, sensitivities, the keys.
 std::string tune_summary(const TuneFile& file, const Tuned& tuned, const Judge& validation);

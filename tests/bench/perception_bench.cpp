@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "perception/io/calibration_file.hpp"
-#include "scenarios/bench/bench_cases.hpp"
+#include "scenarios/bench/bench.hpp"
 #include "scenarios/bench/stereo_scenes.hpp"
 
 /// The rows of `understory bench` on the long rig's raw cameras, 64 rendered pairs in turn, none twice.

@@ -7,7 +7,6 @@
 
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "perception/rectify.hpp"
-#include "scenarios/bench/closed_loop_bench.hpp"
 #include "scenarios/bench/stereo_scenes.hpp"
 
 namespace understory {
@@ -33,7 +32,7 @@ TEST(StereoScenes, ShowTextureAtTheDetectionDepthAndNeverTheSameTwice) {
 
 TEST(Bench, HasARowForEachClaimWithItsYardstick) {
   const CalibratedRig rig = long_rig();
-  const std::vector<BenchRow> rows = bench_detectors(rig, stereo_scenes(rig, 2, 1), {.rounds = 1});
+  const std::vector<BenchRow> rows = bench_detectors(rig, stereo_scenes(rig, 2, 1), 1, [](int) {});
   const auto list = nlohmann::json::parse(to_json(rows));
   ASSERT_EQ(list.size(), rows.size());
   int with_ratio = 0;

@@ -32,25 +32,19 @@ TEST(CampaignSummary, CountsEachCondition) {
   EXPECT_EQ(forest.collision, 1);
   EXPECT_EQ(forest.failed_to_run, 1);
   EXPECT_NEAR(forest.mean_speed_mps, 11.5, 1e-12);
-  EXPECT_NEAR(survival_at(forest.survival, 30).share, 2.0 / 3, 1e-12);
+  EXPECT_NEAR(forest.survival.steps.at(1).share, 2.0 / 3, 1e-12);
   EXPECT_EQ(forest.survival.last_at, 75);
   EXPECT_EQ(summaries[1].ground, 1);
   EXPECT_EQ(summaries[2].flown, 0);
 }
 
 TEST(CampaignSummary, PrintsARowPerCondition) {
-  const PrintedTable table = summary_table(summarise(rows()));
+  const Table table = summary_table(summarise(rows()));
   EXPECT_EQ(table.rows[0], (std::vector<std::string>{"forest", "3", "2", "66.7 (20.8 to 93.9)", "1", "0", "0",
                                                      "0", "11.50", "> 75", "0.25", "75.0", "1"}));
   EXPECT_EQ(table.rows[1][9], "10.0");
   EXPECT_EQ(table.rows[2],
             (std::vector<std::string>{"paper", "0", "0", "-", "0", "0", "0", "0", "-", "-", "-", "-", "1"}));
-}
-
-TEST(PrintedTable, LinesUpForPeopleAndForMarkdown) {
-  const PrintedTable table{{"a|b", "m²"}, {{"long name", "1"}, {"é", "1000"}}};
-  EXPECT_EQ(to_text(table), "a|b          m²\nlong name     1\né          1000\n");
-  EXPECT_EQ(to_markdown(table), "| a\\|b | m² |\n|---|---:|\n| long name | 1 |\n| é | 1000 |\n");
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <opencv2/core.hpp>
 
 #include "scenarios/config/config_tree.hpp"
-#include "scenarios/detect/detection_result.hpp"
 #include "scenarios/detect/posed_map.hpp"
 #include "scenarios/report/picture_folder.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -12,16 +11,6 @@ namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
-
-TEST(Quantile, IsTheNearestRank) {
-  EXPECT_EQ(quantile({}, 0.5), 0);
-  EXPECT_EQ(quantile({3, 1, 2}, 0.5), 2);
-  EXPECT_EQ(quantile({3, 1, 2}, 0.99), 3);
-  EXPECT_EQ(quantile({3, 1, 2}, 0), 1);
-  std::vector<double> hundred(100);
-  for (int i = 0; i < 100; ++i) hundred[static_cast<std::size_t>(i)] = 100 - i;
-  EXPECT_EQ(quantile(hundred, 0.99), 99);
-}
 
 TEST(PictureFolder, AppearsWholeOrNotAtAll) {
   const support::TemporaryFolder folder;

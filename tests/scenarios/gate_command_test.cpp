@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "scenarios/campaign/flight_row_io.hpp"
+#include "scenarios/campaign/flight_row.hpp"
 #include "tests/support/flight_rows.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "scenarios/statistics/interval.hpp"
+#include "scenarios/statistics/proportions.hpp"
 
 namespace understory {
 
@@ -13,6 +13,9 @@ namespace understory {
 using Statistic = std::function<double(std::span<const double>)>;
 
 double mean_of(std::span<const double> values);
+
+/// The q-th part (0 .. 1) of `values` lies at or below this one; 0 for no values. Nearest rank.
+double quantile(std::vector<double> values, double q);
 
 struct BootstrapOptions {
   int resamples = 10'000;  ///< Efron & Tibshirani 1993, 14.3: at least 1000 for an interval
@@ -22,15 +25,14 @@ struct BootstrapOptions {
 
 /// In the unit of the statistic.
 struct BootstrapEstimate {
-  double value = 0;           ///< of the sample itself; NaN where it is empty
-  double standard_error = 0;  ///< deviation of the resamples' values
+  double value = 0;  ///< of the sample itself; NaN where it is empty
   Interval interval;
 };
 
 /// The nonparametric bootstrap with the BCa interval (bias-corrected and accelerated: Efron 1987, J. Am.
 /// Stat. Assoc. 82; Efron & Tibshirani 1993, An Introduction to the Bootstrap, 14.3), acceleration by
 /// jackknife. For a paired comparison the sample is the pairs' differences. Fewer than two values say nothing
-/// about their spread: standard error NaN, interval -infinity .. infinity. Where all values are the same the
+/// about their spread: the interval is -infinity .. infinity. Where all values are the same the
 /// interval is that value: it knows only what was seen. Below about 15 values it is narrower than it says.
 BootstrapEstimate bootstrap(std::span<const double> sample, const Statistic& statistic = mean_of,
                             const BootstrapOptions& options = {});

@@ -1,10 +1,8 @@
-#include "scenarios/statistics/paired_outcomes.hpp"
+#include "scenarios/statistics/proportions.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
-
-#include "scenarios/statistics/wilson.hpp"
+#include <numbers>
 
 namespace understory {
 namespace {
@@ -25,13 +23,32 @@ double reach(double of_one, double of_other, double phi) {
   return std::sqrt(of_one * of_one - 2 * phi * of_one * of_other + of_other * of_other);
 }
 
+/// That `throws` of a fair coin show at most `heads` heads.
+double at_most_heads(int heads, int throws) {
+  double probability = 0;
+  for (int k = 0; k <= heads; ++k)
+    probability += std::exp(std::lgamma(throws + 1) - std::lgamma(k + 1) - std::lgamma(throws - k + 1) -
+                            throws * std::numbers::ln2);
+  return probability;
+}
+
 }  // namespace
+
+Interval wilson_interval(int successes, int trials) {
+  if (trials == 0) return {0, 1};
+  constexpr double z = z_95;
+  const double n = trials;
+  const double share = successes / n;
+  const double scale = 1 / (1 + z * z / n);
+  const double centre = scale * (share + z * z / (2 * n));
+  const double half = scale * z * std::sqrt(share * (1 - share) / n + z * z / (4 * n * n));
+  return {centre - half, centre + half};
+}
 
 double mcnemar_exact_p(const PairedOutcomes& outcomes) {
   const int changed = outcomes.only_first + outcomes.only_second;
   if (changed == 0) return 1;
-  const boost::math::binomial_distribution<double> coin(changed, 0.5);
-  return std::min(1.0, 2 * boost::math::cdf(coin, std::min(outcomes.only_first, outcomes.only_second)));
+  return std::min(1.0, 2 * at_most_heads(std::min(outcomes.only_first, outcomes.only_second), changed));
 }
 
 Interval paired_difference_interval(const PairedOutcomes& outcomes) {

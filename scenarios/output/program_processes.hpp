@@ -10,27 +10,31 @@
 
 namespace understory {
 
+/// A process that has ended.
+struct EndedProcess {
+  pid_t pid = 0;
+  int wait_status = 0;        ///< as wait() gives it
+  double cpu_s = 0;           ///< of all its threads, in the kernel too
+  double peak_memory_mb = 0;  ///< 10^6 bytes, resident
+};
+
+/// Waits for `pid`, or with -1 for any child; with WNOHANG in `options` only looks: pid 0 where it runs yet.
+EndedProcess wait_for_process(pid_t pid, int options = 0);
+
 /// Runs copies of this very program, a few at a time: one process flies one flight, since OMPL's random
 /// generator is one per process.
-class FlightProcesses {
+class ProgramProcesses {
  public:
   /// Called with the tag of a process and its exit status (128 + signal where it was killed).
-  using OnEnd = std::function<void(std::uint64_t tag, int status)>;
+  using OnEnd = std::function<void(std::uint64_t tag, int status, const EndedProcess& process)>;
 
-  FlightProcesses(int maximum_count, OnEnd on_end)
+  ProgramProcesses(int maximum_count, OnEnd on_end)
       : maximum_count_(maximum_count), on_end_(std::move(on_end)) {}
 
   /// Starts this program with `arguments` (without the program's name); first waits where all places are
-  /// taken.
+  /// taken. Throws MachineError where it cannot be started.
   void start(std::uint64_t tag, const std::vector<std::string>& arguments);
   void wait_for_all();
-
-  /// What the process used whose end is being told.
-  struct Use {
-    double cpu_s = 0;                    ///< of all its threads, in the kernel too
-    std::int64_t peak_memory_bytes = 0;  ///< maximum resident set
-  };
-  const Use& use() const { return use_; }
 
  private:
   void wait_for_one();
@@ -38,7 +42,6 @@ class FlightProcesses {
   int maximum_count_;
   OnEnd on_end_;
   std::map<pid_t, std::uint64_t> running_;
-  Use use_;
 };
 
 }  // namespace understory

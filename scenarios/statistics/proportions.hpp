@@ -1,8 +1,18 @@
 #pragma once
 
-#include "scenarios/statistics/interval.hpp"
-
 namespace understory {
+
+struct Interval {
+  double minimum = 0;
+  double maximum = 1;
+};
+
+/// The normal quantile of 95 % intervals: what every interval of this folder has unless it says otherwise.
+inline constexpr double z_95 = 1.959963984540054;
+
+/// Wilson's score interval for a proportion (Wilson 1927, J. Am. Stat. Assoc. 22), 95 %, without continuity
+/// correction. No trials: 0 .. 1.
+Interval wilson_interval(int successes, int trials);
 
 /// The same trials made twice, each time good or bad: how often both were good, only one, none.
 struct PairedOutcomes {

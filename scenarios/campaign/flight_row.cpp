@@ -1,0 +1,189 @@
+#include "scenarios/campaign/flight_row.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <concepts>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/flight/flight_result.hpp"
+#include "scenarios/report/table.hpp"
+
+namespace understory {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<std::string_view, 5> status_names{"flown", "crashed", "hung", "killed", "refused"};
+
+/// Calls visit(name, field) for the columns in their order: first what every flight has, then, from `outcome`
+/// on, what only a flown one has.
+template <typename Row, typename Visit>
+void visit_columns(Row& row, Visit&& visit) {
+  visit("id", row.id);
+  visit("condition", row.condition);
+  visit("seed", row.seed);
+  visit("status", row.status);
+  visit("reason", row.reason);
+  visit("outcome", row.outcome);
+  visit("cruise_speed_mps", row.cruise_speed_mps);
+  visit("square_metres_per_tree", row.square_metres_per_tree);
+  visit("goal_m", row.goal_m);
+  visit("distance_m", row.distance_m);
+  visit("progress_m", row.progress_m);
+  visit("mean_speed_mps", row.mean_speed_mps);
+  visit("min_clearance_m", row.min_clearance_m);
+  visit("position_error_mean_m", row.position_error_mean_m);
+  visit("position_error_max_m", row.position_error_max_m);
+  visit("detections", row.detections);
+  visit("remembered_points", row.remembered_points);
+  visit("minimum_points_on_a_bar", row.minimum_points_on_a_bar);
+  visit_fields(visit, row.planner);
+  visit("simulated_s", row.simulated_s);
+  visit("digest", row.digest);
+}
+
+template <typename Value>
+bool says_something(const Value& value) {
+  if constexpr (std::floating_point<Value>) return std::isfinite(value);
+  if constexpr (std::same_as<Value, std::int64_t>) return value >= 0;  // a count
+  return true;
+}
+
+/// Calls put(name, value) for each column, put(name, nullptr) where the row says nothing there.
+template <typename Put>
+void put_columns(const FlightRow& row, Put&& put) {
+  bool is_measured = false;
+  visit_columns(row, [&](std::string_view name, const auto& value) {
+    is_measured = is_measured || name == "outcome";
+    if ((is_measured && !row.flown()) || !says_something(value))
+      put(name, nullptr);
+    else if constexpr (std::is_same_v<decltype(value), const RunStatus&>)
+      put(name, std::string(status_names[static_cast<std::size_t>(value)]));
+    else
+      put(name, value);
+  });
+}
+
+Json json_of(const FlightRow& row) {
+  Json json;
+  put_columns(row, [&](std::string_view name, const auto& value) { json[std::string(name)] = value; });
+  return json;
+}
+
+std::string cell_of(std::nullptr_t) { return ""; }
+std::string cell_of(const std::string& text) { return text; }
+std::string cell_of(double number) { return fmt::format("{:.6g}", number); }
+std::string cell_of(std::integral auto count) { return fmt::format("{}", count); }
+
+/// False where the text is no such value. Empty says nothing and leaves the value alone.
+template <typename Value>
+bool take(const std::string& text, Value& value) {
+  if constexpr (std::is_same_v<Value, std::string>) {
+    value = text;
+    return true;
+  } else if constexpr (std::is_same_v<Value, RunStatus>) {
+    const auto found = std::ranges::find(status_names, text);
+    value = static_cast<RunStatus>(found - status_names.begin());
+    return found != status_names.end();
+  } else {
+    if (text.empty()) return true;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size();
+  }
+}
+
+/// A row's text, column by column, as `text_of(name)` has it; false where a value is none.
+template <typename TextOf>
+bool take_row(FlightRow& row, TextOf&& text_of) {
+  row.min_clearance_m = std::numeric_limits<double>::infinity();
+  bool is_whole = true;
+  visit_columns(
+      row, [&](std::string_view name, auto& value) { is_whole = take(text_of(name), value) && is_whole; });
+  return is_whole;
+}
+
+Table empty_table() {
+  Table table;
+  FlightRow any;
+  visit_columns(any, [&](std::string_view name, const auto&) { table.head.emplace_back(name); });
+  return table;
+}
+
+}  // namespace
+
+FlightRow flown_row(const FlightResult& result) {
+  FlightRow row;
+  row.seed = result.seed;
+  row.status = RunStatus::flown;
+  row.outcome = word_for(result.ending);
+  row.distance_m = result.distance_m;
+  row.progress_m = result.progress_m;
+  row.mean_speed_mps = result.mean_speed_mps;
+  row.min_clearance_m = result.min_clearance_m;
+  row.position_error_mean_m = result.position_error_mean_m;
+  row.position_error_max_m = result.position_error_max_m;
+  row.detections = result.detections;
+  row.remembered_points = result.remembered_points;
+  for (const auto& [bar, points] : result.points_on_obstacles)
+    if (row.minimum_points_on_a_bar < 0 || points < row.minimum_points_on_a_bar)
+      row.minimum_points_on_a_bar = points;
+  row.planner = result.planner;
+  row.simulated_s = result.simulated_s;
+  row.digest = result.digest;
+  return row;
+}
+
+std::string to_json_line(const FlightRow& row) { return json_of(row).dump(); }
+
+std::string to_json(const FlightFile& file) {
+  const Json json{{"format", results_format},
+                  {"row", json_of(file.row)},
+                  {"wall_s", file.cost.wall_s},
+                  {"peak_memory_mb", file.cost.peak_memory_mb}};
+  return json.dump(1) + "\n";
+}
+
+std::optional<FlightFile> flight_file_from_json(const std::string& text) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object() || json.value("format", 0) != results_format || !json.contains("row")) return {};
+  FlightFile file;
+  const auto text_of = [&](std::string_view name) {
+    const Json value = json["row"].value(std::string(name), Json(nullptr));
+    return value.is_null() ? std::string() : value.is_string() ? value.get<std::string>() : value.dump();
+  };
+  if (!take_row(file.row, text_of)) return {};
+  file.cost = {json.value("wall_s", 0.0), json.value("peak_memory_mb", 0.0)};
+  return file;
+}
+
+std::string to_csv(const std::vector<FlightRow>& rows) {
+  Table table = empty_table();
+  for (const FlightRow& row : rows) {
+    std::vector<std::string>& cells = table.rows.emplace_back();
+    put_columns(row, [&](std::string_view, const auto& value) { cells.push_back(cell_of(value)); });
+  }
+  return to_csv(table);
+}
+
+std::vector<FlightRow> rows_from_csv(const std::string& text, const std::string& name) {
+  const Table expected = empty_table(), table = table_from_csv(text, name);
+  if (table.head != expected.head)
+    throw ScenarioError(fmt::format("{}:1: expected the columns of results format {}: {}", name,
+                                    results_format, fmt::join(expected.head, ",")));
+  std::vector<FlightRow> rows;
+  for (const std::vector<std::string>& cells : table.rows) {
+    auto cell = cells.begin();
+    if (!take_row(rows.emplace_back(), [&](std::string_view) { return *cell++; }))
+      throw ScenarioError(fmt::format("{}: expected a whole row for flight {}", name, cells.front()));
+  }
+  return rows;
+}
+
+}  // namespace understory

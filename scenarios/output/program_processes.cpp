@@ -1,0 +1,52 @@
+#include "scenarios/output/program_processes.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "scenarios/output/file_output.hpp"
+#include "scenarios/output/program.hpp"
+
+namespace understory {
+
+EndedProcess wait_for_process(pid_t pid, int options) {
+  EndedProcess ended;
+  struct rusage usage {};
+  do ended.pid = wait4(pid, &ended.wait_status, options, &usage);
+  while (ended.pid < 0 && errno == EINTR);
+  if (ended.pid < 0) throw MachineError(fmt::format("cannot wait for a flight: {}", std::strerror(errno)));
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  ended.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  ended.peak_memory_mb = 1.024e-3 * static_cast<double>(usage.ru_maxrss);
+  return ended;
+}
+
+void ProgramProcesses::start(std::uint64_t tag, const std::vector<std::string>& arguments) {
+  while (running_.size() >= static_cast<std::size_t>(maximum_count_)) wait_for_one();
+  const pid_t child = fork();
+  if (child < 0) throw MachineError(fmt::format("cannot start a flight: {}", std::strerror(errno)));
+  if (child == 0) become_this_program(arguments);
+  running_[child] = tag;
+}
+
+void ProgramProcesses::wait_for_one() {
+  const EndedProcess process = wait_for_process(-1);
+  const auto ended = running_.find(process.pid);
+  if (ended == running_.end()) return;
+  const std::uint64_t tag = ended->second;
+  running_.erase(ended);
+  const int status = process.wait_status;
+  on_end_(tag, WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), process);
+}
+
+void ProgramProcesses::wait_for_all() {
+  while (!running_.empty()) wait_for_one();
+}
+
+}  // namespace understory

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace understory {
+
+/// Cells of text, every row as long as the head.
+struct Table {
+  std::vector<std::string> head;
+  std::vector<std::vector<std::string>> rows = {};
+};
+
+/// Columns two spaces apart, for a terminal: the first to the left, the others to the right. Lines end where
+/// their text does.
+std::string to_text(const Table& table);
+
+/// The same as Markdown; a | in a cell is escaped.
+std::string to_markdown(const Table& table);
+
+/// CSV as RFC 4180 has it, lines ended by \n alone: a cell with a comma, a quotation mark or a line break is
+/// quoted.
+std::string to_csv(const Table& table);
+
+/// Reads it back, with line ends of any system. `name` stands for the file in messages. Throws ScenarioError
+/// "name:line: expected ..." where a row is not as long as the head or a quotation mark is out of place.
+Table table_from_csv(const std::string& text, const std::string& name);
+
+}  // namespace understory
