@@ -10,6 +10,7 @@
 
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/scenario/vision_config.hpp"
 
 namespace understory {
 namespace {
@@ -101,6 +102,15 @@ void add_settings_option(Command& command, std::vector<std::string>& settings) {
 
 void add_with_option(Command& command, std::vector<std::string>& with) {
   command.texts("--with", "FILE", with, "keys that go over the scenario's own: what tune leaves");
+}
+
+void add_vision_options(Command& command, VisionConfigSources& sources) {
+  command.choice("--rule", sources.rule, rule_names,
+                 "the thresholds of the pushbroom detector; tuned: those of the recordings' rig");
+  add_with_option(command, sources.with);
+  command.texts("--set", "KEY=VALUE", sources.settings,
+                "of perception and autopilot.map, as in a scenario file: perception.depths_m=[10.1,7,5], "
+                "perception.pushbroom.minimum_edge_sum=300, autopilot.map.max_age_s=10");
 }
 
 void add_renderer_option(Command& command, RendererKind& renderer) {

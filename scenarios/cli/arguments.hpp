@@ -12,6 +12,8 @@
 /// Arguments that several commands take, and what their words mean.
 namespace understory {
 
+struct VisionConfigSources;
+
 /// The scenario's name, --with and --set, as every command that flies has them.
 struct ScenarioArguments {
   std::string scenario;               ///< a path, or a name in scenarios/library
@@ -27,6 +29,8 @@ void add_scenario_options(Command& command, ScenarioArguments& arguments);
 void add_settings_option(Command& command, std::vector<std::string>& settings);
 /// --with alone.
 void add_with_option(Command& command, std::vector<std::string>& with);
+/// --rule, --with and --set, as commands that look at recordings have them.
+void add_vision_options(Command& command, VisionConfigSources& sources);
 /// --renderer, as every command that draws has it.
 void add_renderer_option(Command& command, RendererKind& renderer);
 /// --jobs, how many of `what` at a time; 0 where it is not given.

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "scenarios/campaign/local_engine.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
@@ -9,9 +10,8 @@
 #include "scenarios/output/progress_line.hpp"
 #include "scenarios/output/stop_signals.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
-#include "scenarios/tuning/flight_judge.hpp"
+#include "scenarios/tuning/judge.hpp"
 #include "scenarios/tuning/tune_report.hpp"
-#include "scenarios/tuning/vision_judge.hpp"
 
 namespace understory {
 namespace {
@@ -33,13 +33,12 @@ struct Judges {
 Judges judges_of(const TuneFile& file, const TuneArguments& arguments, const fs::path& folder) {
   const int jobs = jobs_or_cores(arguments.jobs);
   if (file.over == TuningData::recordings)
-    return {std::make_unique<VisionJudge>(file.training_folders, file.every, jobs),
-            std::make_unique<VisionJudge>(file.validation_folders, file.every, jobs)};
+    return {vision_judge(file.training_folders, file.every, jobs),
+            vision_judge(file.validation_folders, file.every, jobs)};
   rig_of(file.scenario, data_root() / "models");  // before anything is flown: every flight would fail
   const std::string renderer(word_for(arguments.renderer));
   const auto judge = [&](const char* part, const std::vector<std::uint64_t>& seeds) {
-    return std::make_unique<FlightJudge>(
-        FlightJudgeConfig{folder / "flown" / part, seeds, renderer, file.timeout_s, jobs});
+    return flight_judge({folder / "flown" / part, seeds, renderer, file.timeout_s, jobs});
   };
   return {judge("training", file.training_seeds), judge("validation", file.validation_seeds)};
 }
@@ -65,11 +64,15 @@ int run_tune(const TuneArguments& arguments) {
   options.on_progress = [&](const TuneProgress& progress) { show(line, file, progress); };
   try {
     const Tuned tuned = tune(file, *judges.training, *judges.validation, options);
-    write_tune_report(folder, file, tuned, *judges.validation);
+    write_tune_report(folder, file, tuned);
     line.clear();
-    fmt::print("{}{}tables, plots and best.yaml: {}\n",
-               to_text(comparison_table(file, tuned, *judges.validation)),
-               tuned.keeps_limits ? "" : "no trial keeps the limits\n", folder.string());
+    fmt::print("{}{}", to_text(comparison_table(file, tuned)),
+               tuned.keeps_limits ? "" : "no trial keeps the limits\n");
+    if (gains(file, tuned))
+      fmt::print("tables, plots and best.yaml: {}\n", folder.string());
+    else
+      fmt::print("no trial is better than the scenario as it is: no best.yaml\ntables and plots: {}\n",
+                 folder.string());
   } catch (const Stopped&) {
     line.clear();
     throw MachineError(fmt::format("{}: stopped; --resume goes on", folder.string()));
@@ -84,7 +87,7 @@ void add_tune_command(CommandLine& line) {
   Command& command =
       line.add({"tune", "search a scenario's numbers for what does best on recordings or flights",
                 "understory tune scenarios/tunings/trunks_long.yaml --out results/tuned",
-                "the search is over; best.yaml holds what it found"});
+                "the search is over; best.yaml holds what it found, where that is better"});
   command.text("file", "FILE", arguments->file, "what to tune, for what: see docs/tuning.md").required();
   command.text("--out", "FOLDER", arguments->out, "results folder (default: results/tune-NAME)");
   add_jobs_option(command, arguments->jobs, "flights or recordings");

@@ -2,18 +2,24 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <iterator>
-#include <optional>
+#include <memory>
+#include <stdexcept>
 
+#include "perception/io/euroc_calibration.hpp"
 #include "perception/io/hit_files.hpp"
+#include "perception/io/pose_file.hpp"
 #include "perception/io/stereo_recording.hpp"
 #include "scenarios/config/bad_input.hpp"
-#include "scenarios/detect/detection_input.hpp"
-#include "scenarios/detect/detection_pictures.hpp"
+#include "scenarios/detect/posed_map.hpp"
 #include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/report/picture_folder.hpp"
+#include "scenarios/report/overlay.hpp"
+#include "scenarios/report/pictures.hpp"
+#include "scenarios/report/table.hpp"
+#include "scenarios/scenario/detection_depths.hpp"
 
 namespace understory {
 namespace {
@@ -21,26 +27,156 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// Runs `work` and adds its wall time to `sum_ms`; gives back what `work` gives.
+/// A calibration file that tells no size fits images of any: its principal point gives away a wrong one.
+void check_principal_point(const StereoCalibration& calibration, const fs::path& rig) {
+  const double u = calibration.left.camera_matrix(0, 2), v = calibration.left.camera_matrix(1, 2);
+  const auto is_central = [](double place, int size) { return place > 0.3 * size && place < 0.7 * size; };
+  if (is_central(u, calibration.width_px) && is_central(v, calibration.height_px)) return;
+  const std::string size = fmt::format("{}x{}", calibration.width_px, calibration.height_px);
+  throw std::runtime_error(fmt::format(
+      "{}: expected a principal point in the middle of the {} images, found ({:.0f}, {:.0f}): calibrated at "
+      "another resolution? (--size {} says it was not)",
+      rig.string(), size, u, v, size));
+}
+
+/// As `file` tells it, where need be with the size of the images.
+CalibratedRig read_rig_for(cv::Size images, const fs::path& file, CalibrationOptions options) {
+  try {
+    return read_calibrated_rig(file, options);
+  } catch (const std::runtime_error&) {
+    if (options.width_px) throw;
+  }
+  options.width_px = images.width;
+  options.height_px = images.height;
+  CalibratedRig camera = read_calibrated_rig(file, options);
+  if (camera.calibration) check_principal_point(*camera.calibration, file);
+  return camera;
+}
+
+/// The rig the options name, or the EuRoC input's own; its size is that of the images.
+CalibratedRig rig_for(const DetectionOptions& options, const StereoRecording& recording) {
+  const bool brings_its_own = options.inputs.size() == 1 && euroc_folder(options.inputs[0]).has_value();
+  if (options.rig.empty() && !brings_its_own)
+    throw ScenarioError(fmt::format("{}: expected a rig (--rig): only EuRoC folders bring their own",
+                                    options.inputs.front().string()));
+  const fs::path file = options.rig.empty() ? options.inputs[0] : options.rig;
+  const cv::Size images = recording.image_size();
+  const CalibratedRig camera =
+      bad_input_if_refused([&] { return read_rig_for(images, file, options.calibration); });
+  if (images != cv::Size(camera.rig.width_px, camera.rig.height_px))
+    throw ScenarioError(fmt::format("{}: expected {}x{} as {} has, found {}x{}",
+                                    recording.first_file().string(), camera.rig.width_px,
+                                    camera.rig.height_px, file.string(), images.width, images.height));
+  return camera;
+}
+
+/// The rule's numbers for the rig given, or for the one that flew, where the recording tells it.
+VisionConfig vision_for(const DetectionOptions& options, const StereoRig& rig) {
+  std::string name = options.rig.empty() ? rig_named_in(options.inputs[0]) : "";
+  if (name.empty()) name = rig.name;
+  const VisionConfig config = read_vision_config(options.vision, name, rig.height_px);
+  check_depths(config.pushbroom, rig, "perception.depths_m", "perception.pushbroom");
+  return config;
+}
+
+/// Of the body; none where the options name no file.
+std::vector<TimedPose> poses_for(const DetectionOptions& options, const StereoRecording& recording) {
+  if (options.poses.empty()) return {};
+  auto poses = bad_input_if_refused([&] { return read_poses(options.poses); });
+  const auto images = recording.times();
+  if (!images)
+    throw ScenarioError(fmt::format("--poses: expected images with times, found none in the names ({})",
+                                    recording.first_file().string()));
+  const auto seconds = [](std::int64_t t_ns) { return 1e-9 * static_cast<double>(t_ns); };
+  const std::int64_t first_ns = poses.front().t_ns, last_ns = poses.back().t_ns;
+  if (images->last_ns < first_ns || images->first_ns > last_ns)
+    throw ScenarioError(
+        fmt::format("{}: expected poses at the images' time, {:.3f} to {:.3f} s, found {:.3f} to {:.3f} s",
+                    options.poses.string(), seconds(images->first_ns), seconds(images->last_ns),
+                    seconds(first_ns), seconds(last_ns)));
+  return poses;
+}
+
+/// Pictures a second of a film of the recording: its own pace, within what players take.
+double film_rate_hz(const StereoRecording& recording) {
+  constexpr double where_unknown_hz = 20, minimum_hz = 1, maximum_hz = 120;
+  const auto times = recording.times();
+  const std::int64_t count = recording.frame_count();
+  if (!times || count < 2) return where_unknown_hz;
+  const double span_s = 1e-9 * static_cast<double>(times->last_ns - times->first_ns);
+  return std::clamp(static_cast<double>(count - 1) / span_s, minimum_hz, maximum_hz);
+}
+
+/// Runs `work` and sets its wall time; gives back what `work` gives.
 template <typename Work>
-decltype(auto) timed(double& sum_ms, Work&& work) {
+decltype(auto) timed(double& taken_ms, Work&& work) {
   const Clock::time_point begin = Clock::now();
   decltype(auto) made = work();
-  sum_ms += 1e3 * seconds_since(begin);
+  taken_ms = 1e3 * seconds_since(begin);
   return made;
 }
 
-void write_results(const fs::path& folder, const DetectionResult& result, const std::vector<FrameHits>& hits,
-                   const std::optional<PosedMap>& map) {
-  write_whole_file(folder / "timings.csv", frames_to_csv(result.frames));
-  if (map) write_whole_file(folder / "map.ply", points_to_ply(map->remembered()));
-  write_whole_file(folder / "points.ply", hits_to_ply(hits));
-  write_whole_file(folder / "points.csv", hits_to_csv(hits));
+/// Every point that ever came into the map, as when it was first seen, and the map itself.
+struct CarriedMap {
+  std::vector<TimedPose> poses;
+  PosedMap map;
+  std::vector<ObstaclePoint> remembered = {};
+
+  /// Where the camera was; nothing, and nothing is done, where the poses do not cover that moment.
+  std::optional<Eigen::Isometry3d> insert(const FrameHits& seen, const StereoRig& rig) {
+    const auto T_world_body = pose_at(poses, seen.t_ns);
+    if (!T_world_body) return {};
+    const Eigen::Isometry3d T_world_camera = *T_world_body * rig.T_body_camera;
+    map.insert(seen.hits, T_world_camera, seen.t_ns);
+    std::ranges::copy_if(map.points(), std::back_inserter(remembered), [&](const ObstaclePoint& point) {
+      return point.t_ns == seen.t_ns && point.sightings == 1;
+    });
+    return T_world_camera;
+  }
+};
+
+/// What a person looks at afterwards: the overlay of every frame, as overlays/000000.png ... or as
+/// overlay.mp4.
+class DetectionPictures {
+ public:
+  DetectionPictures(const DetectionOptions& options, const StereoRecording& recording) {
+    if (options.video)
+      film_ = std::make_unique<VideoFile>(options.output_folder / "overlay.mp4", film_rate_hz(recording));
+    else
+      pictures_ = std::make_unique<PictureFolder>(options.output_folder / "overlays");
+  }
+  void add(const OverlayMoment& moment, const StereoRig& rig) {
+    constexpr int narrow_px = 500;  // images below this are drawn at twice their size
+    const cv::Mat picture = draw_overlay(moment, rig, rig.width_px < narrow_px ? 2 : 1);
+    if (film_)  // H.264 wants even sides: the last column or row goes
+      film_->add(picture(cv::Rect(0, 0, picture.cols / 2 * 2, picture.rows / 2 * 2)));
+    else
+      pictures_->add(picture);
+  }
+  void finish() {
+    if (film_)
+      film_->finish();
+    else
+      pictures_->finish();
+  }
+
+ private:
+  std::unique_ptr<PictureFolder> pictures_;
+  std::unique_ptr<VideoFile> film_;
+};
+
+std::string timings_csv(const std::vector<FrameRecord>& frames) {
+  Table table{{"frame", "t_ns", "hits", "rectify_ms", "detect_ms", "in_map"}};
+  for (const FrameRecord& frame : frames)
+    table.rows.push_back({fmt::format("{}", table.rows.size()), fmt::format("{}", frame.t_ns),
+                          fmt::format("{}", frame.hits), fmt::format("{:.4f}", frame.rectify_ms),
+                          fmt::format("{:.4f}", frame.detect_ms), frame.in_map ? "1" : "0"});
+  return to_csv(table);
 }
 
 /// What is known before the first frame.
 DetectionResult described(const CalibratedRig& camera, const PushbroomStereo& detector,
-                          const DetectionConfig& config, const StereoRecording& recording) {
+                          const VisionConfig& config, const StereoRecording& recording) {
   DetectionResult result;
   result.rig = camera.rig;
   result.rectified_here = camera.calibration.has_value();
@@ -71,43 +207,53 @@ void prepare(const fs::path& folder) {
 }  // namespace
 
 DetectionResult run_detection(const DetectionOptions& options) {
-  const Clock::time_point begin = Clock::now();
   StereoRecording recording = bad_input_if_refused([&] { return StereoRecording(options.inputs); });
   const CalibratedRig camera = rig_for(options, recording);
-  const DetectionConfig config = config_for(options, camera.rig);
-  std::optional<PosedMap> map = map_for(options, recording, camera.rig, config.map);
+  const VisionConfig config = vision_for(options, camera.rig);
+  CarriedMap map{poses_for(options, recording), PosedMap(config.map)};
   std::optional<Rectifier> rectifier;
   if (camera.calibration) rectifier.emplace(*camera.calibration, options.interpolation);
   PushbroomStereo detector(camera.rig, config.pushbroom);
   prepare(options.output_folder);
   DetectionResult result = described(camera, detector, config, recording);
-  DetectionPictures pictures(options.output_folder, camera.rig, depths_text(result),
-                             options.video ? film_rate_hz(recording) : 0);
+  const std::string depths = depths_text(result);
+  DetectionPictures pictures(options, recording);
   std::vector<FrameHits> hits;
   std::int64_t hit_count = 0;
   StereoFrame frame;
   while (bad_input_if_refused([&] { return recording.read(frame); })) {
-    FrameRecord record;
+    FrameRecord& record = result.frames.emplace_back();
     record.t_ns = frame.t_ns;
     const StereoFrame rectified =
         rectifier ? timed(record.rectify_ms, [&] { return rectifier->rectify(frame); }) : frame;
     FrameHits& seen = hits.emplace_back();
-    seen = {std::ssize(result.frames), frame.t_ns,
+    seen = {std::ssize(hits) - 1, frame.t_ns,
             timed(record.detect_ms, [&]() -> decltype(auto) { return detector.detect(rectified); })};
     record.hits = std::ssize(seen.hits);
-    record.in_map = map && map->insert(seen.hits, frame.t_ns);
-    pictures.add(rectified.left, seen.hits, record.in_map ? &*map : nullptr);
-    result.frames.push_back(record);
+    OverlayMoment moment;
+    moment.left = rectified.left;
+    moment.hits = seen.hits;
+    moment.caption = fmt::format("frame {}: {} hits at {}", seen.frame, record.hits, depths);
+    if (const auto T_world_camera = map.insert(seen, camera.rig)) {
+      record.in_map = true;
+      moment.remembered = map.map.points();
+      moment.T_world_camera = *T_world_camera;
+    }
+    pictures.add(moment, camera.rig);
     hit_count += record.hits;
     if (options.on_progress)
-      options.on_progress(
-          {std::ssize(result.frames), result.frames_expected, hit_count, seconds_since(begin)});
+      options.on_progress(std::ssize(result.frames), result.frames_expected, hit_count);
   }
   pictures.finish();
-  if (map) result.remembered_points = std::ssize(map->remembered());
-  write_results(options.output_folder, result, hits, map);
-  result.files = fmt::format("{}: points.csv, points.ply, timings.csv, {}{}", options.output_folder.string(),
-                             map ? "map.ply, " : "", options.video ? "overlay.mp4" : "overlays/");
+  const bool has_map = !options.poses.empty();
+  if (has_map) result.remembered_points = std::ssize(map.remembered);
+  const fs::path& folder = options.output_folder;
+  write_whole_file(folder / "timings.csv", timings_csv(result.frames));
+  if (has_map) write_whole_file(folder / "map.ply", points_to_ply(map.remembered));
+  write_whole_file(folder / "points.ply", hits_to_ply(hits));
+  write_whole_file(folder / "points.csv", hits_to_csv(hits));
+  result.files = fmt::format("{}: points.csv, points.ply, timings.csv, {}{}", folder.string(),
+                             has_map ? "map.ply, " : "", options.video ? "overlay.mp4" : "overlays/");
   return result;
 }
 

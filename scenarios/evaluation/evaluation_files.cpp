@@ -7,12 +7,9 @@
 #include <vector>
 
 #include "scenarios/evaluation/evaluation_pictures.hpp"
-#include "scenarios/evaluation/evaluation_plots.hpp"
 #include "scenarios/evaluation/evaluation_tables.hpp"
-#include "scenarios/evaluation/obstacle_tables.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/report/picture_folder.hpp"
-#include "scenarios/report/video_writer.hpp"
+#include "scenarios/report/pictures.hpp"
 #include "scenarios/statistics/samples.hpp"
 
 namespace understory {
@@ -26,7 +23,7 @@ std::string heading(const Evaluation& evaluation) {
   return fmt::format(
       "{} recordings, {} frames, {:.1f} s; rig {}, looking {:.2f} m ahead, one pixel is {:.2f} to {:.2f} m\n",
       evaluation.recordings.size(), evaluation.all.frames, evaluation.all.seconds, first.rig.name,
-      first.detection_depth_m, first.one_pixel.near_m, first.one_pixel.far_m);
+      first.looked_at.depth_m, first.looked_at.one_pixel.near_m, first.looked_at.one_pixel.far_m);
 }
 
 Json to_json(const Share& share) {
@@ -49,19 +46,19 @@ Json algorithm_json(const EvaluationSum& sum, std::size_t index) {
               far = found_within(sum.sightings[index], 3, &hidden);
   Json json{{"name", algorithm_names[index]}, {"hits", sum.hits[index]}};
   for (std::size_t i = 0; i < tolerance_count; ++i) {
-    json["precision"][tolerance_names[i]] = to_json(tally.precision[i]);
-    json["recall"][tolerance_names[i]] = to_json(tally.recall[i]);
+    json["precision"][tolerance_names[i]] = to_json(tally.rates[i].precision);
+    json["recall"][tolerance_names[i]] = to_json(tally.rates[i].recall);
   }
-  json["f_score"] = tally.f_score();
+  json["f_score"] = tally.at_one_pixel().f_score();
   json["false_per_second"] = tally.false_per_second();
   json["false_on"] = tally.false_on;
   json["found_within_1_m"] = to_json(near);
   json["found_within_3_m"] = to_json(far);
   json["hidden_within_3_m"] = hidden;
-  if (!sum.cost_ms[index].empty()) json["median_ms"] = quantile(sum.cost_ms[index], 0.5);
+  if (index < computed_count) json["median_ms"] = quantile(sum.cost_ms[index], 0.5);
   for (const auto& [name, bins] : tally.parts)
-    for (const auto& [bin, part] : bins)
-      json["parts"][name][bin] = {{"precision", to_json(part.precision)}, {"recall", to_json(part.recall)}};
+    for (const auto& [bin, rates] : bins)
+      json["parts"][name][bin] = {{"precision", to_json(rates.precision)}, {"recall", to_json(rates.recall)}};
   return json;
 }
 
@@ -69,8 +66,8 @@ Json sum_json(const EvaluationSum& sum) {
   Json json{
       {"name", sum.name}, {"recordings", sum.recordings}, {"frames", sum.frames}, {"seconds", sum.seconds}};
   for (std::size_t i = 0; i < algorithm_count; ++i) json["algorithms"].push_back(algorithm_json(sum, i));
-  for (std::size_t i = 0; i < paced_algorithms.size(); ++i)
-    json["computer"].push_back({{"name", algorithm_names[paced_algorithms[i]]},
+  for (std::size_t i = 0; i < computed_count; ++i)
+    json["computer"].push_back({{"name", algorithm_names[i]},
                                 {"looks", sum.paced[i].looks},
                                 {"found_within_1_m", to_json(found_within(sum.paced[i].sightings, 1))},
                                 {"found_within_3_m", to_json(found_within(sum.paced[i].sightings, 3))}});
@@ -83,17 +80,27 @@ Json sum_json(const EvaluationSum& sum) {
     json["invariance"].push_back({{"rule", row.rule},
                                   {"filter", row.filter},
                                   {"hits", row.hits},
-                                  {"precision", to_json(row.precision)},
-                                  {"recall", to_json(row.recall)}});
+                                  {"precision", to_json(row.rates.precision)},
+                                  {"recall", to_json(row.rates.recall)}});
   for (const PrecisionRecallCurve& curve : sum.curves) {
     Json points;
-    for (const CurvePoint& point : curve.points)
+    for (const PrecisionRecallCurve::Point& point : curve.points)
       points.push_back({{"threshold", point.threshold},
-                        {"precision", to_json(point.precision)},
-                        {"recall", to_json(point.recall)}});
+                        {"precision", to_json(point.rates.precision)},
+                        {"recall", to_json(point.rates.recall)}});
     json["curves"].push_back({{"name", curve.algorithm}, {"threshold", curve.threshold}, {"points", points}});
   }
   return json;
+}
+
+std::string evaluation_json(const Evaluation& evaluation) {
+  const RecordingEvaluation& first = evaluation.recordings.front();
+  Json json{{"rig", first.rig.name},
+            {"detection_depth_m", first.looked_at.depth_m},
+            {"one_pixel_m", {first.looked_at.one_pixel.near_m, first.looked_at.one_pixel.far_m}},
+            {"all", sum_json(evaluation.all)}};
+  for (const EvaluationSum& scene : evaluation.scenes) json["scenes"].push_back(sum_json(scene));
+  return json.dump(1) + "\n";
 }
 
 }  // namespace
@@ -103,16 +110,6 @@ std::string evaluation_report(const Evaluation& evaluation) {
   for (const EvaluationTable& table : evaluation_tables(evaluation))
     text += "\n" + table.title + "\n" + to_text(table.table);
   return text;
-}
-
-std::string evaluation_json(const Evaluation& evaluation) {
-  const RecordingEvaluation& first = evaluation.recordings.front();
-  Json json{{"rig", first.rig.name},
-            {"detection_depth_m", first.detection_depth_m},
-            {"one_pixel_m", {first.one_pixel.near_m, first.one_pixel.far_m}},
-            {"all", sum_json(evaluation.all)}};
-  for (const EvaluationSum& scene : evaluation.scenes) json["scenes"].push_back(sum_json(scene));
-  return json.dump(1) + "\n";
 }
 
 void write_evaluation(const Evaluation& evaluation, const fs::path& folder) {

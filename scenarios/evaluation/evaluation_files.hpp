@@ -10,12 +10,10 @@ namespace understory {
 /// What was evaluated, and every table, for a terminal.
 std::string evaluation_report(const Evaluation& evaluation);
 
-/// Every figure, for machines.
-std::string evaluation_json(const Evaluation& evaluation);
-
-/// Into `folder`: summary.md, evaluation.json, tables/*.csv, obstacles.csv, precision_recall.svg,
-/// distances.svg, response.svg, first_hits.svg, heat_map.png (ours), heat_map_paper.png, worst/; what needs a
-/// truth that no recording has is left out. Throws ScenarioError or MachineError where it cannot be written.
+/// Into `folder`: summary.md, evaluation.json (every figure), tables/*.csv, obstacles.csv,
+/// precision_recall.svg, distances.svg, response.svg, first_hits.svg, heat_map.png (ours),
+/// heat_map_paper.png, worst/; what needs a truth that no recording has is left out. Throws ScenarioError or
+/// MachineError where it cannot be written.
 void write_evaluation(const Evaluation& evaluation, const std::filesystem::path& folder);
 
 }  // namespace understory

@@ -94,6 +94,11 @@ EvaluationRecording::EvaluationRecording(const fs::path& folder, const Calibrati
   if (camera_.calibration) rectifier_.emplace(*camera_.calibration, Interpolation::nearest);
 }
 
+bool is_same_rig(const StereoRig& one, const StereoRig& other) {
+  return one.focal_px == other.focal_px && one.baseline_m == other.baseline_m &&
+         one.width_px == other.width_px && one.detection_depth_m == other.detection_depth_m;
+}
+
 double EvaluationRecording::duration_s() const {
   if (sequence_.pairs.size() < 2) return 0;
   return 1e-9 * static_cast<double>(sequence_.pairs.back().t_ns - sequence_.pairs.front().t_ns);
@@ -124,7 +129,7 @@ EvaluationFrame EvaluationRecording::frame(std::size_t index) {
     frame.speed_mps = speed_at(true_poses_, files.t_ns);
     frame.bank_rad = std::asin(std::min(1.0, std::abs(frame.T_world_camera->linear()(2, 0))));
   }
-  if (!has_estimates()) return frame;
+  if (estimates_.empty()) return frame;
   frame.T_odometry_camera.reset();
   if (const auto T_odometry_body = pose_at(estimates_, files.t_ns))
     frame.T_odometry_camera = *T_odometry_body * rig().T_body_camera;

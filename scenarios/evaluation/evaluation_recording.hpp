@@ -8,7 +8,7 @@
 #include "perception/io/image_sequence.hpp"
 #include "perception/io/pose_file.hpp"
 #include "perception/rectify.hpp"
-#include "scenarios/evaluation/evaluation_frame.hpp"
+#include "scenarios/evaluation/ground_truth.hpp"
 
 namespace understory {
 
@@ -24,7 +24,6 @@ class EvaluationRecording {
   bool has_depth() const { return has_depth_; }
   bool has_objects() const { return !objects_.empty(); }
   bool has_poses() const { return !true_poses_.empty(); }
-  bool has_estimates() const { return !estimates_.empty(); }
   const std::vector<RecordedObject>& objects() const { return objects_; }
   std::size_t frame_count() const { return sequence_.pairs.size(); }
   std::int64_t t_ns(std::size_t index) const { return sequence_.pairs[index].t_ns; }
@@ -41,6 +40,9 @@ class EvaluationRecording {
   std::vector<RecordedObject> objects_;
   bool has_depth_ = false;
 };
+
+/// Whether recordings of both can be looked at with one configuration.
+bool is_same_rig(const StereoRig& one, const StereoRig& other);
 
 /// objects.csv. `name` stands for the file in messages. Throws std::runtime_error "name:line: expected ...".
 std::vector<RecordedObject> parse_recorded_objects(const std::string& text, const std::string& name);

@@ -3,215 +3,237 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <map>
 #include <numeric>
+#include <optional>
 
-#include "scenarios/evaluation/obstacle_tables.hpp"
-#include "scenarios/evaluation/share_text.hpp"
+#include "scenarios/statistics/proportions.hpp"
 #include "scenarios/statistics/samples.hpp"
 
 namespace understory {
 namespace {
 
-std::string percent_text(double share) { return fmt::format("{:.1f}", 100 * share); }
+constexpr std::array compared{our_rule, the_papers_rule, stereo_bm, stereo_sgbm};
 
-/// Blocks of one flight resemble each other: the interval comes from drawing recordings anew.
-std::string resampled_text(const Evaluation& evaluation, Share (*of)(const RecordingEvaluation&)) {
+std::string number(double value, int decimals) { return fmt::format("{:.{}f}", value, decimals); }
+std::string count(std::int64_t value) { return fmt::format("{}", value); }
+std::string percent(double share) { return number(100 * share, 1); }
+std::string per_frame(std::int64_t value, const EvaluationSum& sum, int decimals) {
+  return number(static_cast<double>(value) / static_cast<double>(std::max<std::int64_t>(1, sum.frames)),
+                decimals);
+}
+
+/// "-" where nothing was counted.
+std::string share_text(const Share& share) { return share.of > 0 ? number(share.value(), 3) : "-"; }
+std::string with_interval(double value, const Interval& interval) {
+  return fmt::format("{:.3f} ({:.3f} to {:.3f})", value, interval.minimum, interval.maximum);
+}
+std::string wilson_text(const Share& share) {
+  if (share.of == 0) return "-";
+  return with_interval(share.value(),
+                       wilson_interval(static_cast<int>(share.with), static_cast<int>(share.of)));
+}
+
+/// Of a rate at one pixel. Blocks of one flight resemble each other: the interval comes from drawing
+/// recordings anew.
+std::string resampled_text(const Evaluation& evaluation, std::size_t algorithm, Share Rates::*rate) {
   std::vector<double> indices(evaluation.recordings.size());
   std::iota(indices.begin(), indices.end(), 0.0);
   const auto pooled = [&](std::span<const double> drawn) {
     Share sum;
-    for (const double index : drawn) sum.add(of(evaluation.recordings[static_cast<std::size_t>(index)]));
+    for (const double index : drawn)
+      sum.add(evaluation.recordings[static_cast<std::size_t>(index)].sum.tallies[algorithm].at_one_pixel().*
+              rate);
     return sum.value();
   };
-  const double value = pooled(indices);
-  if (indices.size() < 2) return fmt::format("{:.3f}", value);
-  const BootstrapEstimate estimate = bootstrap(indices, pooled, {.resamples = 2000});
-  return fmt::format("{:.3f} ({:.3f} to {:.3f})", value, estimate.interval.minimum,
-                     estimate.interval.maximum);
+  if (indices.size() < 2) return number(pooled(indices), 3);
+  return with_interval(pooled(indices), bootstrap(indices, pooled, {.resamples = 2000}).interval);
 }
 
-/// The paper's figures of one sum, the scene's name in front.
-void add_published(const EvaluationSum& sum, bool has_poses, Table& table) {
-  const PublishedFigures paper;
-  const auto& [ours, papers_rule, random] = sum.published;
-  const auto row = [&](const char* what, double published, auto figure, std::string published_random) {
-    table.rows.push_back({sum.name, what, percent_text(published), percent_text(figure(ours)),
-                          percent_text(figure(papers_rule)), percent_text(figure(random)),
-                          std::move(published_random)});
-  };
-  using Scores = PublishedScores;
-  row(
-      "1 single frame: within 0.5 m", paper.single_within_half_m,
-      [](const Scores& s) { return s.single_frame.share_within(0.5); }, "-");
-  row(
-      "1 single frame: within 1.0 m", paper.single_within_1_m,
-      [](const Scores& s) { return s.single_frame.share_within(1); }, "-");
-  row(
-      "1 single frame: no match on the frame", paper.single_no_match,
-      [](const Scores& s) { return s.single_frame.share_without_match(); }, "-");
-  if (!has_poses) return;
-  row(
-      "2 remembered: within 0.5 m", paper.remembered_within_half_m,
-      [](const Scores& s) { return s.false_positives.share_within(0.5); },
-      percent_text(paper.random_within_half_m));
-  row(
-      "2 remembered: within 1.0 m", paper.remembered_within_1_m,
-      [](const Scores& s) { return s.false_positives.share_within(1); },
-      percent_text(paper.random_within_1_m));
-  row(
-      "3 missed by 1.0 m or more", paper.missed_by_1_m,
-      [](const Scores& s) { return 1 - s.false_negatives.share_within(1); },
-      percent_text(paper.random_missed_by_1_m));
-  row(
-      "3 found within 2.0 m", paper.found_within_2_m,
-      [](const Scores& s) { return s.false_negatives.share_within(2); }, "-");
+/// Every scene, and their sum where there are several.
+template <typename Add>
+void for_each_scene(const Evaluation& evaluation, Add&& add) {
+  for (const EvaluationSum& scene : evaluation.scenes) add(scene);
+  if (evaluation.scenes.size() > 1) add(evaluation.all);
 }
+
+/// A figure of the paper's evaluations (Barry & Tedrake 2015), shares of 1.
+struct PublishedRow {
+  const char* what;
+  double paper;
+  double (*figure)(const PublishedScores&);
+  std::optional<double> papers_random = {};
+  bool needs_poses = true;
+};
+const std::vector<PublishedRow> published_rows{
+    {"1 single frame: within 0.5 m",
+     0.609,
+     [](const PublishedScores& scores) { return scores.single_frame.share_within(0.5); },
+     {},
+     false},
+    {"1 single frame: within 1.0 m",
+     0.712,
+     [](const PublishedScores& scores) { return scores.single_frame.share_within(1); },
+     {},
+     false},
+    {"1 single frame: no match on the frame",
+     0.082,
+     [](const PublishedScores& scores) { return scores.single_frame.share_without_match(); },
+     {},
+     false},
+    {"2 remembered: within 0.5 m", 0.748,
+     [](const PublishedScores& scores) { return scores.false_positives.share_within(0.5); }, 0.012},
+    {"2 remembered: within 1.0 m", 0.926,
+     [](const PublishedScores& scores) { return scores.false_positives.share_within(1); }, 0.032},
+    {"3 missed by 1.0 m or more", 0.324,
+     [](const PublishedScores& scores) { return 1 - scores.false_negatives.share_within(1); }, 0.86},
+    {"3 found within 2.0 m", 0.913,
+     [](const PublishedScores& scores) { return scores.false_negatives.share_within(2); }}};
 
 EvaluationTable published_table(const Evaluation& evaluation) {
-  EvaluationTable table{"paper",
-                        "The paper's evaluations, StereoBM as truth; percent",
-                        {{"scene", "evaluation", "the paper", "our rule", "the paper's rule", "random, here",
-                          "random, the paper"},
-                         {}}};
+  Table table{{"scene", "evaluation", "the paper", "our rule", "the paper's rule", "random, here",
+               "random, the paper"}};
+  const auto add = [&](const EvaluationSum& sum) {
+    for (const PublishedRow& row : published_rows) {
+      if (row.needs_poses && !evaluation.has_poses()) continue;
+      std::vector<std::string> cells{sum.name, row.what, percent(row.paper)};
+      for (const PublishedScores& scores : sum.published) cells.push_back(percent(row.figure(scores)));
+      cells.push_back(row.papers_random ? percent(*row.papers_random) : "-");
+      table.rows.push_back(std::move(cells));
+    }
+  };
   constexpr std::size_t few = 3;  // of more scenes only the sum, or nobody would read it
   if (evaluation.scenes.size() > 1 && evaluation.scenes.size() <= few)
-    for (const EvaluationSum& scene : evaluation.scenes)
-      add_published(scene, evaluation.has_poses(), table.table);
-  add_published(evaluation.all, evaluation.has_poses(), table.table);
-  return table;
+    for (const EvaluationSum& scene : evaluation.scenes) add(scene);
+  add(evaluation.all);
+  return {"paper", "The paper's evaluations, StereoBM as truth; percent", std::move(table)};
 }
 
 EvaluationTable algorithms_table(const Evaluation& evaluation) {
-  EvaluationTable table{
-      "algorithms",
-      "Against the truth, all looking within one pixel of the detection depth; cost on one thread",
-      {{"algorithm", "hits/frame", "precision 0.25 m", "0.50 m", "1.00 m", "one pixel", "recall 0.25 m",
-        "0.50 m", "1.00 m", "one pixel", "F", "false/s", "found 1 m", "found 3 m", "ms/frame"},
-       {}}};
+  Table table{{"algorithm", "hits/frame", "precision 0.25 m", "0.50 m", "1.00 m", "one pixel",
+               "recall 0.25 m", "0.50 m", "1.00 m", "one pixel", "F", "false/s", "found 1 m", "found 3 m",
+               "ms/frame"}};
   const EvaluationSum& all = evaluation.all;
   for (std::size_t i = 0; i < algorithm_count; ++i) {
     const VisionTally& tally = all.tallies[i];
-    std::vector<std::string> row{
-        algorithm_names[i],
-        fmt::format("{:.1f}", static_cast<double>(all.hits[i]) /
-                                  static_cast<double>(std::max<std::int64_t>(1, all.frames)))};
-    for (const Share& share : tally.precision) row.push_back(share_text(share));
-    for (const Share& share : tally.recall) row.push_back(share_text(share));
-    row.push_back(fmt::format("{:.3f}", tally.f_score()));
-    row.push_back(fmt::format("{:.0f}", tally.false_per_second()));
+    std::vector<std::string> row{algorithm_names[i], per_frame(all.hits[i], all, 1)};
+    for (const Rates& rates : tally.rates) row.push_back(share_text(rates.precision));
+    for (const Rates& rates : tally.rates) row.push_back(share_text(rates.recall));
+    row.push_back(number(tally.at_one_pixel().f_score(), 3));
+    row.push_back(number(tally.false_per_second(), 0));
     for (const double reach_m : {1.0, 3.0})
       row.push_back(share_text(found_within(all.sightings[i], reach_m)));
-    row.push_back(all.cost_ms[i].empty() ? "-" : fmt::format("{:.3f}", quantile(all.cost_ms[i], 0.5)));
-    table.table.rows.push_back(std::move(row));
+    row.push_back(i < computed_count ? number(quantile(all.cost_ms[i], 0.5), 3) : "-");
+    table.rows.push_back(std::move(row));
   }
-  return table;
+  return {"algorithms",
+          "Against the truth, all looking within one pixel of the detection depth; cost on one thread",
+          std::move(table)};
+}
+
+EvaluationTable intervals_table(const Evaluation& evaluation) {
+  Table table{{"algorithm", "precision", "recall", "found within 1 m", "found within 3 m"}};
+  for (const std::size_t i : compared)
+    table.rows.push_back({algorithm_names[i], resampled_text(evaluation, i, &Rates::precision),
+                          resampled_text(evaluation, i, &Rates::recall),
+                          wilson_text(found_within(evaluation.all.sightings[i], 1)),
+                          wilson_text(found_within(evaluation.all.sightings[i], 3))});
+  return {"intervals",
+          "With 95 % intervals: precision and recall at one pixel by drawing recordings anew, "
+          "obstacles after Wilson",
+          std::move(table)};
 }
 
 EvaluationTable scenes_table(const Evaluation& evaluation) {
-  EvaluationTable table{"scenes",
-                        "Our rule in every scene, at one pixel",
-                        {{"scene", "recordings", "s", "hits/frame", "precision", "recall", "false/s",
-                          "found 1 m", "of", "found 3 m", "of", "hidden"},
-                         {}}};
-  const auto add = [&](const EvaluationSum& sum) {
+  Table table{{"scene", "recordings", "s", "hits/frame", "precision", "recall", "false/s", "found 1 m", "of",
+               "found 3 m", "of", "hidden"}};
+  for_each_scene(evaluation, [&](const EvaluationSum& sum) {
     std::int64_t hidden = 0;
     const Share near = found_within(sum.sightings[our_rule], 1),
                 far = found_within(sum.sightings[our_rule], 3, &hidden);
     const VisionTally& tally = sum.tallies[our_rule];
-    table.table.rows.push_back(
-        {sum.name, fmt::format("{}", sum.recordings), fmt::format("{:.1f}", sum.seconds),
-         fmt::format("{:.1f}", static_cast<double>(sum.hits[our_rule]) /
-                                   static_cast<double>(std::max<std::int64_t>(1, sum.frames))),
-         share_text(tally.precision[one_pixel]), share_text(tally.recall[one_pixel]),
-         fmt::format("{:.0f}", tally.false_per_second()), share_text(near), fmt::format("{}", near.of),
-         share_text(far), fmt::format("{}", far.of), fmt::format("{}", hidden)});
-  };
-  for (const EvaluationSum& scene : evaluation.scenes) add(scene);
-  if (evaluation.scenes.size() > 1) add(evaluation.all);
-  return table;
+    table.rows.push_back({sum.name, count(sum.recordings), number(sum.seconds, 1),
+                          per_frame(sum.hits[our_rule], sum, 1), share_text(tally.at_one_pixel().precision),
+                          share_text(tally.at_one_pixel().recall), number(tally.false_per_second(), 0),
+                          share_text(near), count(near.of), share_text(far), count(far.of), count(hidden)});
+  });
+  return {"scenes", "Our rule in every scene, at one pixel", std::move(table)};
 }
 
-EvaluationTable intervals_table(const Evaluation& evaluation) {
-  EvaluationTable table{"intervals",
-                        "With 95 % intervals: precision and recall at one pixel by drawing recordings anew, "
-                        "obstacles after Wilson",
-                        {{"algorithm", "precision", "recall", "found within 1 m", "found within 3 m"}, {}}};
-  const auto add = [&](AlgorithmIndex index, auto precision, auto recall) {
-    const auto& sightings = evaluation.all.sightings[index];
-    table.table.rows.push_back({algorithm_names[index], resampled_text(evaluation, precision),
-                                resampled_text(evaluation, recall), wilson_text(found_within(sightings, 1)),
-                                wilson_text(found_within(sightings, 3))});
-  };
-  using One = RecordingEvaluation;
-  add(
-      our_rule, [](const One& r) { return r.tallies[our_rule].precision[one_pixel]; },
-      [](const One& r) { return r.tallies[our_rule].recall[one_pixel]; });
-  add(
-      the_papers_rule, [](const One& r) { return r.tallies[the_papers_rule].precision[one_pixel]; },
-      [](const One& r) { return r.tallies[the_papers_rule].recall[one_pixel]; });
-  add(
-      stereo_bm, [](const One& r) { return r.tallies[stereo_bm].precision[one_pixel]; },
-      [](const One& r) { return r.tallies[stereo_bm].recall[one_pixel]; });
-  add(
-      stereo_sgbm, [](const One& r) { return r.tallies[stereo_sgbm].precision[one_pixel]; },
-      [](const One& r) { return r.tallies[stereo_sgbm].recall[one_pixel]; });
-  return table;
+EvaluationTable computer_table(const Evaluation& evaluation) {
+  Table table{{"algorithm", "looks/s", "precision", "found within 1 m", "found within 3 m"}};
+  const EvaluationSum& all = evaluation.all;
+  for (std::size_t i = 0; i < computed_count; ++i) {
+    const PacedResult& paced = all.paced[i];
+    table.rows.push_back(
+        {algorithm_names[i], number(all.seconds > 0 ? static_cast<double>(paced.looks) / all.seconds : 0, 1),
+         share_text(all.tallies[i].at_one_pixel().precision), wilson_text(found_within(paced.sightings, 1)),
+         wilson_text(found_within(paced.sightings, 3))});
+  }
+  return {"computer",
+          "On the aircraft's computer (perception.compute), each looking as often as it can: "
+          "obstacles with 95 % intervals after Wilson",
+          std::move(table)};
+}
+
+EvaluationTable on_the_path_table(const Evaluation& evaluation) {
+  Table table{{"algorithm", "obstacles", "found", "hits each, median", "lowest tenth",
+               "first hit at, m, median", "third hit at, m, median"}};
+  for (std::size_t i = 0; i < algorithm_count; ++i) {
+    Share found;
+    std::vector<double> hits, first_m, third_m;
+    for (const ObstacleSighting& sighting : evaluation.all.sightings[i]) {
+      if (!sighting.on_the_path || sighting.hidden()) continue;
+      found.count(sighting.found());
+      hits.push_back(sighting.hits);
+      if (sighting.hits >= 1) first_m.push_back(sighting.first_hit_m);
+      if (sighting.found()) third_m.push_back(sighting.third_hit_m);
+    }
+    const auto part = [](const std::vector<double>& values, double q, int decimals) {
+      return values.empty() ? "-" : number(quantile(values, q), decimals);
+    };
+    table.rows.push_back({algorithm_names[i], count(found.of), share_text(found), part(hits, 0.5, 0),
+                          part(hits, 0.1, 0), part(first_m, 0.5, 2), part(third_m, 0.5, 2)});
+  }
+  return {"on_the_path", "Obstacles that a wing would touch, straight on from where they came into view",
+          std::move(table)};
 }
 
 EvaluationTable parts_table(const Evaluation& evaluation) {
-  EvaluationTable table{"parts",
-                        "Our rule by parts, at one pixel",
-                        {{"by", "part", "hits", "precision", "blocks", "recall"}, {}}};
+  Table table{{"by", "part", "hits", "precision", "blocks", "recall"}};
   for (const auto& [name, bins] : evaluation.all.tallies[our_rule].parts)
-    for (const auto& [bin, part] : bins) {
+    for (const auto& [bin, rates] : bins) {
       const std::size_t space = bin.find(' ');  // behind the number that sorts
       const bool numbered = name != "kind" && space != std::string::npos;
-      table.table.rows.push_back({name, numbered ? bin.substr(space + 1) : bin,
-                                  fmt::format("{}", part.precision.of), share_text(part.precision),
-                                  fmt::format("{}", part.recall.of), share_text(part.recall)});
+      table.rows.push_back({name, numbered ? bin.substr(space + 1) : bin, count(rates.precision.of),
+                            share_text(rates.precision), count(rates.recall.of), share_text(rates.recall)});
     }
-  return table;
+  return {"parts", "Our rule by parts, at one pixel", std::move(table)};
 }
 
 EvaluationTable false_hits_table(const Evaluation& evaluation) {
-  EvaluationTable table{"false_hits",
-                        "What false hits lie on, a second, at one pixel",
-                        {{"on", "our rule", "the paper's rule", "StereoBM", "StereoSGBM"}, {}}};
-  const auto& tallies = evaluation.all.tallies;
-  std::map<std::string, std::int64_t> all;
-  for (const std::size_t i : {our_rule, the_papers_rule, stereo_bm, stereo_sgbm})
-    for (const auto& [what, count] : tallies[i].false_on) all[what] += count;
-  for (const auto& [what, count] : all) {
-    std::vector<std::string> row{what};
-    for (const std::size_t i : {our_rule, the_papers_rule, stereo_bm, stereo_sgbm}) {
-      const auto found = tallies[i].false_on.find(what);
-      const double false_positives =
-          found == tallies[i].false_on.end() ? 0 : static_cast<double>(found->second);
-      row.push_back(fmt::format("{:.1f}", tallies[i].seconds > 0 ? false_positives / tallies[i].seconds : 0));
-    }
-    table.table.rows.push_back(std::move(row));
+  Table table{{"on", "our rule", "the paper's rule", "StereoBM", "StereoSGBM"}};
+  const double seconds = evaluation.all.seconds;
+  std::map<std::string, std::array<double, compared.size()>> per_second;
+  for (const std::size_t i : compared)
+    for (const auto& [what, times] : evaluation.all.tallies[i].false_on)
+      per_second[what][i] = seconds > 0 ? static_cast<double>(times) / seconds : 0;
+  for (const auto& [what, rates] : per_second) {
+    std::vector<std::string>& row = table.rows.emplace_back(1, what);
+    for (const double rate : rates) row.push_back(number(rate, 1));
   }
-  return table;
+  return {"false_hits", "What false hits lie on, a second, at one pixel", std::move(table)};
 }
 
 EvaluationTable invariance_table(const Evaluation& evaluation) {
-  EvaluationTable table{
-      "invariance",
-      "Horizontal-invariance filter off and on, at one pixel",
-      {{"scene", "rule", "filter", "hits/frame", "precision", "recall", "false/frame"}, {}}};
-  const auto add = [&](const EvaluationSum& sum) {
-    const auto frames = static_cast<double>(std::max<std::int64_t>(1, sum.frames));
+  Table table{{"scene", "rule", "filter", "hits/frame", "precision", "recall", "false/frame"}};
+  for_each_scene(evaluation, [&](const EvaluationSum& sum) {
     for (const InvarianceRow& row : sum.invariance)
-      table.table.rows.push_back(
-          {sum.name, row.rule, row.filter ? "on" : "off",
-           fmt::format("{:.2f}", static_cast<double>(row.hits) / frames), share_text(row.precision),
-           share_text(row.recall),
-           fmt::format("{:.2f}", static_cast<double>(row.precision.of - row.precision.with) / frames)});
-  };
-  for (const EvaluationSum& scene : evaluation.scenes) add(scene);
-  if (evaluation.scenes.size() > 1) add(evaluation.all);
-  return table;
+      table.rows.push_back({sum.name, row.rule, row.filter ? "on" : "off", per_frame(row.hits, sum, 2),
+                            share_text(row.rates.precision), share_text(row.rates.recall),
+                            per_frame(row.rates.precision.of - row.rates.precision.with, sum, 2)});
+  });
+  return {"invariance", "Horizontal-invariance filter off and on, at one pixel", std::move(table)};
 }
 
 }  // namespace
@@ -231,6 +253,21 @@ std::vector<EvaluationTable> evaluation_tables(const Evaluation& evaluation) {
   }
   tables.push_back(invariance_table(evaluation));
   return tables;
+}
+
+Table obstacles_table(const Evaluation& evaluation) {
+  Table table{{"recording", "object", "name", "kind", "miss_m", "on_the_path", "hidden", "blocks_in_view",
+               "hits", "first_hit_m", "third_hit_m"}};
+  for (const RecordingEvaluation& recording : evaluation.recordings)
+    for (const ObstacleSighting& sighting : recording.sum.sightings[our_rule]) {
+      const auto object = std::ranges::find(recording.objects, sighting.object, &RecordedObject::number);
+      table.rows.push_back({recording.folder.filename().string(), count(sighting.object), object->name,
+                            object->kind, number(sighting.miss_m, 3), sighting.on_the_path ? "1" : "0",
+                            sighting.hidden() ? "1" : "0", count(sighting.blocks_in_view),
+                            count(sighting.hits), number(sighting.first_hit_m, 3),
+                            number(sighting.third_hit_m, 3)});
+    }
+  return table;
 }
 
 }  // namespace understory

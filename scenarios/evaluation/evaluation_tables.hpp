@@ -19,4 +19,7 @@ struct EvaluationTable {
 /// all algorithms, scenes, obstacles passed, parts, false hits, invariance.
 std::vector<EvaluationTable> evaluation_tables(const Evaluation& evaluation);
 
+/// A line per obstacle passed: what each became under our rule.
+Table obstacles_table(const Evaluation& evaluation);
+
 }  // namespace understory

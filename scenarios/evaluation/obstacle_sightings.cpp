@@ -1,6 +1,7 @@
 #include "scenarios/evaluation/obstacle_sightings.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -14,6 +15,18 @@ constexpr double straight_on_m = 15;    // farther than any depth looked at
 constexpr double passed_by_m = 0.5;     // the path goes on at least this far beyond
 
 }  // namespace
+
+Share found_within(const std::vector<ObstacleSighting>& sightings, double reach_m, std::int64_t* hidden) {
+  Share share;
+  for (const ObstacleSighting& sighting : sightings) {
+    if (sighting.miss_m > reach_m) continue;
+    if (!sighting.hidden())
+      share.count(sighting.found());
+    else if (hidden != nullptr)
+      ++*hidden;
+  }
+  return share;
+}
 
 ObstacleSightings::ObstacleSightings(std::vector<RecordedObject> objects, double baseline_m)
     : objects_(std::move(objects)), baseline_m_(baseline_m) {}
@@ -30,7 +43,8 @@ void ObstacleSightings::add(const EvaluationFrame& frame, const DetectionGrid& g
   }
   for (const StereoHit& hit : hits) {
     const DepthInterval& interval = grid.depths[grid.depth_of(hit)].one_pixel;
-    const BlockContent content = content_between(frame.truth, hit.column_px, hit.row_px, interval, true);
+    const BlockContent content =
+        content_between(frame.truth, hit.column_px, hit.row_px, interval, Surfaces::obstacles);
     if (!content.holds()) continue;
     ObstacleSighting& sighting = gathered_[content.object].sighting;
     ++sighting.hits;
@@ -73,6 +87,16 @@ std::vector<ObstacleSighting> ObstacleSightings::passed() const {
     sightings.push_back(sighting);
   }
   return sightings;
+}
+
+PacedSightings::PacedSightings(std::vector<RecordedObject> objects, double baseline_m, double cost_s)
+    : computer_(std::llround(1e9 * cost_s)), sightings_(std::move(objects), baseline_m) {}
+
+void PacedSightings::add(const EvaluationFrame& frame, std::int64_t next_t_ns, const DetectionGrid& grid,
+                         const std::vector<ExpectedBlock>& expected, const std::vector<StereoHit>& hits) {
+  const bool looked = computer_.will_take(frame.pair.t_ns, next_t_ns);
+  if (looked) ++looks_;
+  sightings_.add(frame, grid, expected, looked ? hits : std::vector<StereoHit>());
 }
 
 }  // namespace understory

@@ -4,8 +4,9 @@
 #include <map>
 #include <vector>
 
-#include "scenarios/evaluation/detection_grid.hpp"
-#include "scenarios/evaluation/evaluation_frame.hpp"
+#include "scenarios/evaluation/ground_truth.hpp"
+#include "scenarios/flight/flight_computer.hpp"
+#include "scenarios/statistics/proportions.hpp"
 
 namespace understory {
 
@@ -13,18 +14,22 @@ namespace understory {
 struct ObstacleSighting {
   int object = 0;
   double miss_m = 0;  ///< minimum distance from the path of the rig's centre to the surface
-  bool on_the_path =
-      false;               ///< straight on, from where it came into view at the depth, a wing would touch it
-  int blocks_in_view = 0;  ///< of all frames: blocks of 5x5 px that showed it to both eyes within half a
-                           ///< pixel of a depth looked at
+  /// Straight on, from where it came into view at the depth, a wing would touch it.
+  bool on_the_path = false;
+  /// Of all frames: blocks of 5x5 px that showed it to both eyes within half a pixel of a depth looked at.
+  int blocks_in_view = 0;
   int hits = 0;            ///< true positives within one pixel, before it was passed
   double first_hit_m = 0;  ///< its depth at the first of them; 0: never
   double third_hit_m = 0;  ///< and at the third, when it counts as found (the original's avoidance: 3)
-  bool hidden() const {
-    return blocks_in_view < 3;
-  }  ///< nothing could give three hits: hidden, or not in view
+  /// Nothing could give three hits: hidden, or not in view.
+  bool hidden() const { return blocks_in_view < 3; }
   bool found() const { return hits >= 3; }
 };
+
+/// Those of `sightings` that the path came within `reach_m` of, in view at a depth looked at: how many, and
+/// how many were found. `hidden`, where asked for: the others.
+Share found_within(const std::vector<ObstacleSighting>& sightings, double reach_m,
+                   std::int64_t* hidden = nullptr);
 
 /// Gathers an algorithm's sightings along one recording, frame by frame.
 class ObstacleSightings {
@@ -49,6 +54,31 @@ class ObstacleSightings {
   double baseline_m_;
   std::vector<Eigen::Vector3d> path_world_;  ///< of the rig's centre
   std::map<int, Gathered> gathered_;
+};
+
+/// What became of the obstacles where an algorithm looks only as often as the aircraft's computer lets it.
+struct PacedResult {
+  std::int64_t looks = 0;
+  std::vector<ObstacleSighting> sightings;
+};
+
+/// One algorithm's sightings on that computer: of the frames that arrive while it is busy the newest waits,
+/// the others are lost. What was in view is counted on every frame all the same, so that an obstacle is not
+/// hidden by a slow algorithm.
+class PacedSightings {
+ public:
+  /// `cost_s`: of a look, on that computer.
+  PacedSightings(std::vector<RecordedObject> objects, double baseline_m, double cost_s);
+
+  /// `next_t_ns`: the moment of the frame after this one.
+  void add(const EvaluationFrame& frame, std::int64_t next_t_ns, const DetectionGrid& grid,
+           const std::vector<ExpectedBlock>& expected, const std::vector<StereoHit>& hits);
+  PacedResult result() const { return {looks_, sightings_.passed()}; }
+
+ private:
+  FlightComputer computer_;
+  ObstacleSightings sightings_;
+  std::int64_t looks_ = 0;
 };
 
 }  // namespace understory

@@ -7,26 +7,23 @@
 
 namespace understory {
 
-/// Every algorithm at several thresholds over the same frames: score limit and uniqueness of the pushbroom,
-/// uniqueness of StereoBM and StereoSGBM. The pushbroom takes every fourth frame, the others every 24th.
+/// Every algorithm at several thresholds over the same frames: score limit or uniqueness of the pushbroom,
+/// uniqueness of StereoBM and StereoSGBM.
 class CurveSweeps {
  public:
   CurveSweeps(const StereoRig& rig, const DetectionGrid& grid, const EvaluationSettings& settings);
   void add(const EvaluationFrame& frame, const std::vector<ExpectedBlock>& expected);
-  std::vector<PrecisionRecallCurve> curves() const;
+  const std::vector<PrecisionRecallCurve>& curves() const { return curves_; }
 
  private:
-  struct Sweep {
-    std::string algorithm, threshold;
-    std::int64_t every = 1;
-    std::vector<std::unique_ptr<ObstacleDetector>> detectors;
-    std::vector<CurvePoint> points;
-  };
   void add_rule(const StereoRig& rig, const std::string& name, const PushbroomConfig& rule);
+  template <typename Config>
+  void add_full_stereo(const StereoRig& rig, const std::string& name, Config config,
+                       const FullStereoCrop& crop, const std::vector<int>& uniqueness_percent);
 
   DetectionGrid grid_;
-  std::vector<Sweep> sweeps_;
-  std::int64_t frames_ = 0;
+  std::vector<PrecisionRecallCurve> curves_;
+  std::vector<std::vector<std::unique_ptr<ObstacleDetector>>> detectors_;  ///< a curve's, point by point
 };
 
 }  // namespace understory

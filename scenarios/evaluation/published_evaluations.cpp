@@ -1,10 +1,10 @@
 #include "scenarios/evaluation/published_evaluations.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "perception/io/rig_file.hpp"
-#include "scenarios/evaluation/nearest_distances.hpp"
+#include <nanoflann.hpp>
+#include <numeric>
 
 namespace understory {
 namespace {
@@ -13,7 +13,6 @@ constexpr double crop_m = 0.5;           // evaluation 1: StereoBM's points abou
 constexpr double minimum_range_m = 1.5;  // evaluation 2 ignores nearer points
 constexpr double near_m = 5.0;           // evaluation 3 asks for points nearer than this
 constexpr double nothing_there_m = 10;   // what counts where there is nothing to compare with
-constexpr int first_obstacle = 2;
 
 Eigen::Vector3d point_at(const StereoRig& rig, double column_px, double row_px, double depth_m) {
   return {(column_px - rig.center_left_x_px) * depth_m / rig.focal_px,
@@ -48,7 +47,63 @@ std::vector<Eigen::Vector3d> points_between(const StereoRig& rig, const cv::Mat&
 /// No StereoBM point counts as 10 m, and so does none remembered.
 double or_far(double distance_m) { return std::isfinite(distance_m) ? distance_m : nothing_there_m; }
 
+/// What nanoflann asks of a cloud of points.
+struct Cloud {
+  const std::vector<Eigen::Vector3d>& points;
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  double kdtree_get_pt(std::size_t index, std::size_t axis) const {
+    return points[index][static_cast<Eigen::Index>(axis)];
+  }
+  template <typename Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3>;
+
 }  // namespace
+
+void DistanceHistogram::add(double distance_m) {
+  if (!std::isfinite(distance_m)) {
+    ++no_match;
+    return;
+  }
+  const double bin = std::ceil(distance_m / bin_m) - 1;
+  ++bins[static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(bin_count - 1)))];
+}
+
+void DistanceHistogram::add(const DistanceHistogram& other) {
+  for (std::size_t i = 0; i < bin_count; ++i) bins[i] += other.bins[i];
+  no_match += other.no_match;
+}
+
+std::int64_t DistanceHistogram::total() const { return std::accumulate(bins.begin(), bins.end(), no_match); }
+
+double DistanceHistogram::share_within(double limit_m) const {
+  const auto within = std::min<std::ptrdiff_t>(std::lround(limit_m / bin_m), bin_count);
+  const std::int64_t count = std::accumulate(bins.begin(), bins.begin() + within, std::int64_t{0});
+  return total() > 0 ? static_cast<double>(count) / static_cast<double>(total()) : 0;
+}
+
+double DistanceHistogram::share_without_match() const {
+  return total() > 0 ? static_cast<double>(no_match) / static_cast<double>(total()) : 0;
+}
+
+std::vector<double> nearest_distances_m(const std::vector<Eigen::Vector3d>& from,
+                                        const std::vector<Eigen::Vector3d>& to) {
+  std::vector<double> distances_m(from.size(), std::numeric_limits<double>::infinity());
+  if (to.empty() || from.empty()) return distances_m;
+  const Cloud cloud{to};
+  Tree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+  tree.buildIndex();
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    unsigned int index = 0;
+    double squared_m2 = 0;
+    tree.knnSearch(from[i].data(), 1, &index, &squared_m2);
+    distances_m[i] = std::sqrt(squared_m2);
+  }
+  return distances_m;
+}
 
 void PublishedScores::add(const PublishedScores& other) {
   single_frame.add(other.single_frame);
@@ -61,15 +116,7 @@ PublishedEvaluations::PublishedEvaluations(const StereoRig& rig, const Detection
     : rig_(rig), grid_(grid), map_(map) {}
 
 void PublishedEvaluations::remember(const EvaluationFrame& frame, const std::vector<StereoHit>& hits) {
-  if (!frame.T_odometry_camera) return;
-  const Eigen::Isometry3d& T_odometry_camera = *frame.T_odometry_camera;
-  if (T_odometry_camera_)
-    distance_flown_m_ += (T_odometry_camera.translation() - T_odometry_camera_->translation()).norm();
-  T_odometry_camera_ = T_odometry_camera;
-  map_.insert(hits, T_odometry_camera, frame.pair.t_ns, distance_flown_m_);
-  // The axes of a body whose x is the camera's axis: recorded bodies' own point anywhere (EuRoC's x is up).
-  const Eigen::Isometry3d T_camera_looking = T_body_camera_of(Eigen::Vector3d::Zero(), 0).inverse();
-  map_.forget_passed(T_odometry_camera * T_camera_looking, frame.pair.t_ns);
+  if (frame.T_odometry_camera) map_.insert(hits, *frame.T_odometry_camera, frame.pair.t_ns);
 }
 
 void PublishedEvaluations::compare(const EvaluationFrame& frame, const std::vector<StereoHit>& hits,
@@ -81,7 +128,7 @@ void PublishedEvaluations::compare(const EvaluationFrame& frame, const std::vect
            hit_points, points_between(rig_, depth_m, detection_m - crop_m, detection_m + crop_m)))
     scores_.single_frame.add(distance_m);
 
-  if (!T_odometry_camera_ || !frame.T_odometry_camera) return;
+  if (!frame.T_odometry_camera) return;
   const Eigen::Isometry3d T_camera_odometry = frame.T_odometry_camera->inverse();
   std::vector<Eigen::Vector3d> remembered, remembered_in_view;
   for (const ObstaclePoint& point : map_.points()) {

@@ -1,17 +1,36 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
-#include <optional>
 #include <vector>
 
-#include "perception/map/local_map.hpp"
 #include "perception/stereo_rig.hpp"
-#include "scenarios/evaluation/detection_grid.hpp"
-#include "scenarios/evaluation/distance_histogram.hpp"
-#include "scenarios/evaluation/evaluation_frame.hpp"
+#include "scenarios/detect/posed_map.hpp"
+#include "scenarios/evaluation/ground_truth.hpp"
 
 namespace understory {
+
+/// Distances in the form of the paper's histograms (Barry & Tedrake 2015): bins of half a metre to 10 m,
+/// everything farther in a last one, and those that had nothing to be compared with.
+struct DistanceHistogram {
+  static constexpr double bin_m = 0.5;
+  static constexpr std::size_t bin_count = 21;
+  std::array<std::int64_t, bin_count> bins{};  ///< a distance on an edge belongs to the nearer bin
+  std::int64_t no_match = 0;
+
+  /// Infinity is no match.
+  void add(double distance_m);
+  void add(const DistanceHistogram& other);
+  std::int64_t total() const;  ///< no_match included
+  /// Of all, no_match included, those within `limit_m`, a whole number of bins.
+  double share_within(double limit_m) const;
+  double share_without_match() const;
+};
+
+/// From each of `from` the distance to the nearest of `to`, m; +infinity where `to` is empty.
+std::vector<double> nearest_distances_m(const std::vector<Eigen::Vector3d>& from,
+                                        const std::vector<Eigen::Vector3d>& to);
 
 /// The three evaluations of the paper (docs/sources.md [1]), which have StereoBM for truth.
 struct PublishedScores {
@@ -20,14 +39,6 @@ struct PublishedScores {
   DistanceHistogram false_negatives;  ///< 3: from each of StereoBM's near points to the remembered ones
 
   void add(const PublishedScores& other);
-};
-
-/// What the paper measured, shares of 1.
-struct PublishedFigures {
-  double single_within_half_m = 0.609, single_within_1_m = 0.712, single_no_match = 0.082;
-  double remembered_within_half_m = 0.748, remembered_within_1_m = 0.926;
-  double random_within_half_m = 0.012, random_within_1_m = 0.032;
-  double missed_by_1_m = 0.324, found_within_2_m = 0.913, random_missed_by_1_m = 0.86;
 };
 
 /// One detector's hits through the three evaluations, along one recording.
@@ -45,9 +56,7 @@ class PublishedEvaluations {
  private:
   StereoRig rig_;
   DetectionGrid grid_;
-  LocalMap map_;
-  std::optional<Eigen::Isometry3d> T_odometry_camera_;  ///< of the newest frame remembered
-  double distance_flown_m_ = 0;
+  PosedMap map_;
   PublishedScores scores_;
 };
 

@@ -46,7 +46,7 @@ struct FrameTally {
   VisionTally& to;
 
   /// The parts that a whole frame belongs to.
-  std::array<TallyPart*, 3> frame_parts() const {
+  std::array<Rates*, 3> frame_parts() const {
     static const std::vector<double> grays{48, 80, 112, 144, 176}, speeds_mps{2, 8, 9, 10, 11, 12, 13},
         banks_deg{10, 30, 50};
     return {&to.parts["lighting"][bin_name(frame.mean_gray, grays, "gray")],
@@ -59,11 +59,11 @@ struct FrameTally {
     return bin_name(std::abs(column_px - rig.center_left_x_px) * depth_m / rig.focal_px, edges_m, "m");
   }
 
-  void add_hits(const std::vector<StereoHit>& hits, const std::array<TallyPart*, 3>& parts) {
+  void add_hits(const std::vector<StereoHit>& hits, const std::array<Rates*, 3>& parts) {
     for (const StereoHit& hit : hits) {
       const auto is_true = judge(hit, frame.truth, grid);
-      for (std::size_t i = 0; i < tolerance_count; ++i) to.precision[i].count(is_true[i]);
-      for (TallyPart* part : parts) part->precision.count(is_true[one_pixel]);
+      for (std::size_t i = 0; i < tolerance_count; ++i) to.rates[i].precision.count(is_true[i]);
+      for (Rates* part : parts) part->precision.count(is_true[one_pixel]);
       const int block = grid.block_of(hit);
       if (block >= 0) {
         ++(is_true[one_pixel] ? to.true_positives_at
@@ -75,16 +75,16 @@ struct FrameTally {
     }
   }
 
-  void add_expected(const std::vector<bool>& hit_at, const std::array<TallyPart*, 3>& parts) {
+  void add_expected(const std::vector<bool>& hit_at, const std::array<Rates*, 3>& parts) {
     const auto is_hit = [&](const ExpectedBlock& block) -> bool {
       return hit_at[grid.place(block.depth, block.block)];
     };
     for (std::size_t i = 0; i < tolerances_m.size(); ++i)
-      for (const ExpectedBlock& block : due[i]) to.recall[i].count(is_hit(block));
+      for (const ExpectedBlock& block : due[i]) to.rates[i].recall.count(is_hit(block));
     for (const ExpectedBlock& block : due[one_pixel]) {
       const bool found = is_hit(block);
-      to.recall[one_pixel].count(found);
-      for (TallyPart* part : parts) part->recall.count(found);
+      to.rates[one_pixel].recall.count(found);
+      for (Rates* part : parts) part->recall.count(found);
       to.parts["kind"][kind_in(kinds, block.object)].recall.count(found);
       to.parts["distance"][distance_name(block, grid, rig)].recall.count(found);
       to.parts["lateral offset"][lateral_name(block.block, block.mean_depth_m)].recall.count(found);
@@ -96,8 +96,8 @@ struct FrameTally {
   void add_response(const std::vector<bool>& hit_at) {
     for (int row = 0; row < grid.rows; ++row)
       for (int column = grid.first_column(0); column < grid.columns; ++column) {
-        const BlockContent content =
-            content_between(frame.truth, column * truth_block_px, row * truth_block_px, any_depth, true);
+        const BlockContent content = content_between(frame.truth, column * truth_block_px,
+                                                     row * truth_block_px, any_depth, Surfaces::obstacles);
         if (content.pixels < truth_block_px * truth_block_px) continue;  // edges have two depths
         const auto bin = static_cast<std::size_t>(content.mean_depth_m / response_bin_m);
         if (bin >= to.response.size()) continue;
@@ -108,13 +108,6 @@ struct FrameTally {
       }
   }
 };
-
-void make_room(const DetectionGrid& grid, VisionTally& tally) {
-  tally.columns = grid.columns;
-  for (auto* map : {&tally.true_positives_at, &tally.false_positives_at, &tally.expected_at})
-    map->resize(static_cast<std::size_t>(grid.block_count()));
-  tally.response.resize(static_cast<std::size_t>(response_reach_m / response_bin_m));
-}
 
 }  // namespace
 
@@ -129,7 +122,7 @@ DueBlocks due_blocks(const TrueImages& truth, const DetectionGrid& grid) {
 std::array<bool, tolerance_count> judge(const StereoHit& hit, const TrueImages& truth,
                                         const DetectionGrid& grid) {
   const auto borne_out = [&](DepthInterval depths) {
-    return content_between(truth, hit.column_px, hit.row_px, depths, false).holds();
+    return content_between(truth, hit.column_px, hit.row_px, depths, Surfaces::any).holds();
   };
   const double claimed_m = hit.position_camera.z();
   std::array<bool, tolerance_count> is_true{};
@@ -139,13 +132,26 @@ std::array<bool, tolerance_count> judge(const StereoHit& hit, const TrueImages& 
   return is_true;
 }
 
+void count_one_pixel(const TrueImages& truth, const DetectionGrid& grid,
+                     const std::vector<ExpectedBlock>& expected, const std::vector<StereoHit>& hits,
+                     Rates& rates) {
+  for (const StereoHit& hit : hits)
+    rates.precision.count(content_between(truth, hit.column_px, hit.row_px,
+                                          grid.depths[grid.depth_of(hit)].one_pixel, Surfaces::any)
+                              .holds());
+  const std::vector<bool> hit_at = grid.places_hit(hits);
+  for (const ExpectedBlock& block : expected)
+    rates.recall.count(hit_at[grid.place(block.depth, block.block)]);
+}
+
 std::string lies_on(const StereoHit& hit, const TrueImages& truth, const std::map<int, std::string>& kinds) {
   constexpr double jump_m = 1.0;
-  const BlockContent all = content_between(truth, hit.column_px, hit.row_px, any_depth, false);
+  const BlockContent all = content_between(truth, hit.column_px, hit.row_px, any_depth, Surfaces::any);
   if (!all.holds()) return "sky";
-  const BlockContent obstacle = content_between(truth, hit.column_px, hit.row_px, any_depth, true);
-  const BlockContent beyond =
-      content_between(truth, hit.column_px, hit.row_px, {obstacle.mean_depth_m + jump_m, 65.5}, false);
+  const BlockContent obstacle =
+      content_between(truth, hit.column_px, hit.row_px, any_depth, Surfaces::obstacles);
+  const BlockContent beyond = content_between(truth, hit.column_px, hit.row_px,
+                                              {obstacle.mean_depth_m + jump_m, 65.5}, Surfaces::any);
   const bool sky_too = all.pixels <= truth_block_px * truth_block_px - minimum_true_pixels;
   if (obstacle.holds() && (beyond.holds() || sky_too)) return "edge of " + kind_in(kinds, obstacle.object);
   if (!obstacle.holds()) return kind_in(kinds, all.object);
@@ -154,18 +160,11 @@ std::string lies_on(const StereoHit& hit, const TrueImages& truth, const std::ma
 }
 
 void VisionTally::add(const VisionTally& other) {
-  frames += other.frames;
   seconds += other.seconds;
-  for (std::size_t i = 0; i < tolerance_count; ++i) {
-    precision[i].add(other.precision[i]);
-    recall[i].add(other.recall[i]);
-  }
+  for (std::size_t i = 0; i < tolerance_count; ++i) rates[i].add(other.rates[i]);
   for (const auto& [what, count] : other.false_on) false_on[what] += count;
   for (const auto& [name, bins] : other.parts)
-    for (const auto& [bin, part] : bins) {
-      parts[name][bin].precision.add(part.precision);
-      parts[name][bin].recall.add(part.recall);
-    }
+    for (const auto& [bin, part] : bins) parts[name][bin].add(part);
   response.resize(std::max(response.size(), other.response.size()));
   for (std::size_t i = 0; i < other.response.size(); ++i) response[i].add(other.response[i]);
   columns = std::max(columns, other.columns);
@@ -178,21 +177,23 @@ void VisionTally::add(const VisionTally& other) {
   add_map(expected_at, other.expected_at);
 }
 
-double VisionTally::f_score() const {
-  const double p = precision[one_pixel].value(), r = recall[one_pixel].value();
+double Rates::f_score() const {
+  const double p = precision.value(), r = recall.value();
   return p + r > 0 ? 2 * p * r / (p + r) : 0;
 }
 
 double VisionTally::false_per_second() const {
-  const Share& share = precision[one_pixel];
+  const Share& share = at_one_pixel().precision;
   return seconds > 0 ? static_cast<double>(share.of - share.with) / seconds : 0;
 }
 
 void tally(const EvaluationFrame& frame, const DetectionGrid& grid, const StereoRig& rig,
            const std::map<int, std::string>& kinds, const DueBlocks& due, const std::vector<StereoHit>& hits,
            VisionTally& to) {
-  make_room(grid, to);
-  ++to.frames;
+  to.columns = grid.columns;
+  for (auto* map : {&to.true_positives_at, &to.false_positives_at, &to.expected_at})
+    map->resize(static_cast<std::size_t>(grid.block_count()));
+  to.response.resize(static_cast<std::size_t>(response_reach_m / response_bin_m));
   FrameTally frame_tally{frame, grid, rig, kinds, due, to};
   const auto parts = frame_tally.frame_parts();
   const std::vector<bool> hit_at = grid.places_hit(hits);

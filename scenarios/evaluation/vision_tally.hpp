@@ -6,11 +6,21 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/evaluation/detection_grid.hpp"
-#include "scenarios/evaluation/evaluation_frame.hpp"
-#include "scenarios/evaluation/share.hpp"
+#include "scenarios/evaluation/ground_truth.hpp"
+#include "scenarios/statistics/proportions.hpp"
 
 namespace understory {
+
+/// A detector's precision (hits that are true) and recall (expected blocks that were hit).
+struct Rates {
+  Share precision, recall;
+
+  void add(const Rates& other) {
+    precision.add(other.precision);
+    recall.add(other.recall);
+  }
+  double f_score() const;  ///< harmonic mean of both
+};
 
 /// How near to the claimed depth the truth must lie: metres, or the interval that one pixel leaves open.
 inline constexpr std::array<double, 3> tolerances_m{0.25, 0.50, 1.00};
@@ -30,20 +40,19 @@ std::array<bool, tolerance_count> judge(const StereoHit& hit, const TrueImages& 
 /// and something at least a metre farther). `kinds`: by object number; "surface" where nobody says.
 std::string lies_on(const StereoHit& hit, const TrueImages& truth, const std::map<int, std::string>& kinds);
 
-/// One part of the frames or blocks: true positives among hits, hits among due blocks; at one pixel.
-struct TallyPart {
-  Share precision, recall;
-};
+/// Adds one frame's hits to the rates at one pixel. `expected`: expected_blocks of the frame.
+void count_one_pixel(const TrueImages& truth, const DetectionGrid& grid,
+                     const std::vector<ExpectedBlock>& expected, const std::vector<StereoHit>& hits,
+                     Rates& rates);
 
 /// Detections of one algorithm against the truth. Tallies of recordings add up.
 struct VisionTally {
-  std::int64_t frames = 0;
   double seconds = 0;
-  std::array<Share, tolerance_count> precision, recall;
+  std::array<Rates, tolerance_count> rates;
   std::map<std::string, std::int64_t> false_on;  ///< false positives, by what they lie on
   /// "kind", "distance" (true, of the block), "lateral offset" (of the block from the optical axis),
-  /// "lighting" (mean gray of the image), "speed", "bank"; each by its bins' names, which sort.
-  std::map<std::string, std::map<std::string, TallyPart>> parts;
+  /// "lighting" (mean gray of the image), "speed", "bank"; at one pixel, each by its bins' names, which sort.
+  std::map<std::string, std::map<std::string, Rates>> parts;
   /// Obstacle blocks of any depth, in bins of half a metre from 0, and how many have a hit.
   std::vector<Share> response;
   /// Over the image, a cell per block: true positives at one pixel, false positives, due blocks.
@@ -51,7 +60,7 @@ struct VisionTally {
   int columns = 0;
 
   void add(const VisionTally& other);
-  double f_score() const;  ///< harmonic mean of precision and recall at one pixel
+  const Rates& at_one_pixel() const { return rates[one_pixel]; }
   double false_per_second() const;
 };
 

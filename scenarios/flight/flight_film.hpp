@@ -7,7 +7,7 @@
 
 #include "perception/rectify.hpp"
 #include "scenarios/flight/flight_observer.hpp"
-#include "scenarios/report/video_writer.hpp"
+#include "scenarios/report/pictures.hpp"
 
 namespace understory {
 

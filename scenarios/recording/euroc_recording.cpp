@@ -10,7 +10,7 @@
 #include "scenarios/config/named_seed.hpp"
 #include "scenarios/flight/flight.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/report/video_writer.hpp"
+#include "scenarios/report/pictures.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {

@@ -1,18 +1,30 @@
-#include "scenarios/tuning/flight_judge.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <fstream>
 #include <iterator>
 
+#include "scenarios/campaign/campaign_folder.hpp"
+#include "scenarios/campaign/local_engine.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
+#include "scenarios/tuning/judge.hpp"
 
 namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
+
+class FlightJudge : public Judge {
+ public:
+  explicit FlightJudge(FlightJudgeConfig config);
+  Measured measure(const std::string& name, const Scenario& scenario) override;
+  Figures figures(std::span<const Counts> units) const override;
+
+ private:
+  FlightJudgeConfig config_;
+  CampaignFolder folder_;
+};
 
 Counts counts_of(const FlightRow& row) {
   return {row.reached_goal() ? 1.0 : 0.0,
@@ -30,14 +42,12 @@ void keep_condition(const CampaignFolder& folder, const Campaign& campaign) {
   write_lasting_file(folder.condition_file(condition), condition.scenario_text);
 }
 
-}  // namespace
-
 FlightJudge::FlightJudge(FlightJudgeConfig config) : config_(std::move(config)), folder_{config_.folder} {
   for (const char* part : {"conditions", "flights", "logs"}) prepare_output_folder(folder_.path / part);
 }
 
 Measured FlightJudge::measure(const std::string& name, const Scenario& scenario) {
-  Campaign campaign{
+  const Campaign campaign{
       "tuning", {{name, scenario_to_text(scenario)}}, config_.seeds, config_.renderer, config_.timeout_s};
   keep_condition(folder_, campaign);
   const std::vector<CampaignTask> tasks = tasks_of(campaign);
@@ -59,6 +69,15 @@ Figures FlightJudge::figures(std::span<const Counts> units) const {
     for (std::size_t i = 0; i < means.size(); ++i) means[i] += flight[i];
   for (double& mean : means) mean /= static_cast<double>(units.size());  // all at the goal: exactly 1
   return means;
+}
+
+}  // namespace
+
+const std::vector<std::string> flight_figure_names{"success", "progress", "mean_speed_mps",
+                                                   "position_error_m"};
+
+std::unique_ptr<Judge> flight_judge(FlightJudgeConfig config) {
+  return std::make_unique<FlightJudge>(std::move(config));
 }
 
 }  // namespace understory

@@ -10,9 +10,8 @@
 
 #include "scenarios/config/config_keys.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
-#include "scenarios/tuning/flight_judge.hpp"
+#include "scenarios/tuning/judge.hpp"
 #include "scenarios/tuning/numeric_keys.hpp"
-#include "scenarios/tuning/vision_judge.hpp"
 
 namespace understory {
 namespace {

@@ -1,7 +1,15 @@
-#include <fmt/format.h>
+#include "scenarios/tuning/tune_folder.hpp"
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/campaign/flight_row.hpp"
@@ -9,7 +17,6 @@
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/program.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
-#include "scenarios/tuning/tuning.hpp"
 
 namespace understory {
 namespace {
@@ -17,19 +24,108 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Under each name what must not change between two runs that go on with each other.
-Json manifest_of(const TuneFile& file, const std::string& renderer) {
-  Json json;
-  json["format"] = results_format;
-  json["understory"] = understory_version;
-  json["build"] = program_digest();
-  json["file"] = file.text;
-  json["scenario"] = scenario_to_text(file.scenario);
-  json["renderer"] = renderer;
+Json numbers_of(const std::vector<std::string>& names, const std::vector<double>& values) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < values.size(); ++i)
+    json[names[i]] = std::isfinite(values[i]) ? Json(values[i]) : Json(nullptr);
   return json;
 }
 
+std::string line_of(const Trial& trial, const std::vector<std::string>& parameters,
+                    const std::vector<std::string>& figures) {
+  Json json{{"trial", trial.number}, {"parameters", numbers_of(parameters, trial.point)}};
+  if (trial.refused.empty())
+    json["figures"] = numbers_of(figures, trial.figures);
+  else
+    json["refused"] = trial.refused;
+  return json.dump() + "\n";
+}
+
+/// False where `json` has other names.
+bool take_numbers(const Json& json, const std::vector<std::string>& names, std::vector<double>& values) {
+  for (const std::string& name : names)
+    values.push_back(json.at(name).is_null() ? std::numeric_limits<double>::quiet_NaN()
+                                             : json.at(name).get<double>());
+  return json.size() == names.size();
+}
+
+/// False where the line is not whole or of another tuning.
+bool take_trial(const std::string& line, const std::vector<std::string>& parameters,
+                const std::vector<std::string>& figures, Trial& trial) try {
+  const Json json = Json::parse(line);
+  if (json.contains("refused")) trial.refused = json.at("refused");
+  return json.at("trial") == trial.number && take_numbers(json.at("parameters"), parameters, trial.point) &&
+         (!trial.refused.empty() || take_numbers(json.at("figures"), figures, trial.figures));
+} catch (const Json::exception&) {
+  return false;
+}
+
+/// Under each name what must not change between two runs that go on with each other.
+Json manifest_of(const TuneFile& file, const std::string& renderer) {
+  return {{"format", results_format},
+          {"understory", understory_version},
+          {"build", program_digest()},
+          {"file", file.text},
+          {"scenario", scenario_to_text(file.scenario)},
+          {"renderer", renderer}};
+}
+
+std::string content_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 }  // namespace
+
+TrialLog::TrialLog(fs::path file, std::vector<std::string> parameters, std::vector<std::string> figures,
+                   Measure measure)
+    : file_(std::move(file)),
+      parameters_(std::move(parameters)),
+      figures_(std::move(figures)),
+      measure_(std::move(measure)) {
+  const std::string text = content_of(file_);
+  std::size_t begin = 0;
+  for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    Trial trial;
+    trial.number = static_cast<int>(held_.size());
+    if (!take_trial(text.substr(begin, end - begin), parameters_, figures_, trial))
+      throw ScenarioError(fmt::format("{}:{}: expected trial {}, whole, with this tuning's parameters",
+                                      file_.string(), held_.size() + 1, held_.size()));
+    held_.push_back(std::move(trial));
+  }
+  if (begin < text.size()) write_lasting_file(file_, text.substr(0, begin));
+}
+
+Trial TrialLog::evaluate(const Point& point) {
+  const std::size_t number = evaluated_.size();
+  const auto before = places_.find(point);
+  Trial trial;
+  if (number < held_.size()) {
+    trial = held_[number];
+    if (trial.point != point)
+      throw ScenarioError(fmt::format("{}:{}: expected the parameters that this tuning tries there",
+                                      file_.string(), number + 1));
+  } else {
+    trial = before != places_.end() ? evaluated_[before->second] : measure_(static_cast<int>(number), point);
+    trial.number = static_cast<int>(number);
+    trial.point = point;
+    append(trial);
+  }
+  places_.emplace(point, number);
+  evaluated_.push_back(trial);
+  return trial;
+}
+
+void TrialLog::append(const Trial& trial) {
+  const std::string line = line_of(trial, parameters_, figures_);
+  const int file = open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  const bool is_written =
+      file >= 0 && write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size());
+  const int reason = errno;
+  if (file >= 0) close(file);
+  if (!is_written)
+    throw MachineError(fmt::format("{}: cannot be written: {}", file_.string(), std::strerror(reason)));
+}
 
 void prepare_tune_folder(const fs::path& folder, const TuneFile& file, const std::string& renderer,
                          bool resume) {
@@ -40,8 +136,7 @@ void prepare_tune_folder(const fs::path& folder, const TuneFile& file, const std
       throw ScenarioError(
           fmt::format("{}: holds a tuning already: --resume goes on with it, --out names another folder",
                       folder.string()));
-    std::ifstream stream(manifest_file, std::ios::binary);
-    const Json held = Json::parse(std::string{std::istreambuf_iterator<char>(stream), {}}, nullptr, false);
+    const Json held = Json::parse(content_of(manifest_file), nullptr, false);
     for (const auto& [key, value] : manifest.items())
       if (!held.is_object() || held.value(key, Json()) != value)
         throw ScenarioError(

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/tuning/tune_comparison.hpp"
 #include "scenarios/tuning/tune_plots.hpp"
 
 namespace understory {
@@ -120,7 +119,8 @@ Table sensitivity_table(const TuneFile& file, const Tuned& tuned) {
 std::string flights_sentence(const TuneFile& file, const Tuned& tuned) {
   if (file.over != TuningData::flights || tuned.scenario_units.empty() || tuned.best_units.empty()) return "";
   const PairedOutcomes goals = paired_goals(tuned);
-  const Interval before = success_interval(tuned.scenario_units), after = success_interval(tuned.best_units);
+  const Interval before = wilson_interval(goals.first(), goals.pairs()),
+                 after = wilson_interval(goals.second(), goals.pairs());
   return fmt::format(
       "\nGoals on the validation seeds: {} of {} as it is (Wilson {:.1f} to {:.1f} %), {} tuned ({:.1f} to "
       "{:.1f} %); won {}, lost {}; McNemar's exact p {:.3g}.\n",
@@ -137,47 +137,66 @@ std::string limits_sentence(const TuneFile& file, const Tuned& tuned) {
 }
 
 std::string gain_sentence(const TuneFile& file, const Tuned& tuned) {
-  const auto cost = [&](const JudgedTrial& trial) { return fitness(file.objective, trial.training.figures); };
-  if (file.objective.goals.size() > 1 || cost(tuned.best) < cost(tuned.scenario)) return "";
-  return "\nNo trial is better than the scenario as it is, on training data: leave it so.\n";
+  if (gains(file, tuned)) return "";
+  return "\nNo trial is better than the scenario as it is, on training data: leave it so. There is no "
+         "best.yaml.\n";
 }
 
-std::string pareto_csv(const TuneFile& file, const Tuned& tuned) {
-  std::string csv = "trial";
-  for (const Parameter& parameter : file.space.parameters) csv += "," + parameter.key;
-  for (const char* side : {"training", "validation"})
-    for (const std::string& name : file.figures) csv += fmt::format(",{}_{}", side, name);
-  csv += "\n";
-  for (const JudgedTrial& member : tuned.front) {
-    csv += fmt::format("{},{}", member.training.number, fmt::join(member.training.point, ","));
-    for (const Trial* trial : {&member.training, &member.validation})
-      for (std::size_t i = 0; i < file.figures.size(); ++i)
-        csv += trial->figures.empty() || !std::isfinite(trial->figures[i])
-                   ? std::string(",")
-                   : fmt::format(",{:.6g}", trial->figures[i]);
-    csv += "\n";
+std::string cell(const Trial& trial, std::size_t i) {
+  const bool is_known = !trial.figures.empty() && std::isfinite(trial.figures[i]);
+  return is_known ? fmt::format("{:.6g}", trial.figures[i]) : "";
+}
+
+/// Each trial's number and parameters, then the figures of the sides that `sides_of` gives.
+template <typename Item, typename SidesOf>
+Table trials_table(const TuneFile& file, const std::vector<Item>& items,
+                   const std::vector<std::string>& prefixes, SidesOf&& sides_of) {
+  Table table{{"trial"}};
+  for (const Parameter& parameter : file.space.parameters) table.head.push_back(parameter.key);
+  for (const std::string& prefix : prefixes)
+    for (const std::string& figure : file.figures) table.head.push_back(prefix + figure);
+  for (const Item& item : items) {
+    const std::vector<const Trial*> sides = sides_of(item);
+    std::vector<std::string>& row = table.rows.emplace_back(1, fmt::format("{}", sides.front()->number));
+    for (const double value : sides.front()->point) row.push_back(fmt::format("{}", value));
+    for (const Trial* side : sides)
+      for (std::size_t i = 0; i < file.figures.size(); ++i) row.push_back(cell(*side, i));
   }
-  return csv;
+  return table;
+}
+
+/// The tuned keys as `fly --with` reads them.
+std::string tuned_config(const TuneFile& file, const JudgedTrial& trial) {
+  std::string text = fmt::format("# {}: trial {} of a search for {}; over {}.\n", file.name,
+                                 trial.training.number, objective_in_words(file), data_in_words(file));
+  for (std::size_t i = 0; i < file.figures.size(); ++i)
+    text += fmt::format("# {} {} (training {})\n", file.figures[i], figure(trial.validation, i),
+                        figure(trial.training, i));
+  return text + to_yaml(file.space, trial.training.point);
 }
 
 }  // namespace
 
-Table comparison_table(const TuneFile& file, const Tuned& tuned, const Judge& validation) {
-  const std::vector<FigureChange> changes = changes_on_validation(file, tuned, validation);
+bool gains(const TuneFile& file, const Tuned& tuned) {
+  const auto cost = [&](const JudgedTrial& trial) { return fitness(file.objective, trial.training.figures); };
+  return file.objective.goals.size() > 1 || cost(tuned.best) < cost(tuned.scenario);
+}
+
+Table comparison_table(const TuneFile& file, const Tuned& tuned) {
   Table table{
       {"figure", "as it is", "tuned", "difference", "95 %", "as it is (training)", "tuned (training)"}, {}};
   for (std::size_t i = 0; i < file.figures.size(); ++i) {
-    const bool is_known = i < changes.size() && std::isfinite(changes[i].difference);
+    const bool is_known = i < tuned.changes.size() && std::isfinite(tuned.changes[i].difference);
     table.rows.push_back({file.figures[i], figure(tuned.scenario.validation, i),
                           figure(tuned.best.validation, i),
-                          is_known ? fmt::format("{:+.3g}", changes[i].difference) : "-",
-                          is_known ? interval_text(changes[i].interval) : "-",
+                          is_known ? fmt::format("{:+.3g}", tuned.changes[i].difference) : "-",
+                          is_known ? interval_text(tuned.changes[i].interval) : "-",
                           figure(tuned.scenario.training, i), figure(tuned.best.training, i)});
   }
   return table;
 }
 
-std::string tune_summary(const TuneFile& file, const Tuned& tuned, const Judge& validation) {
+std::string tune_summary(const TuneFile& file, const Tuned& tuned) {
   std::string text = fmt::format(
       "# {}\n\n{} parameters of {}, tuned for {} over {}: {} trials, {}, seed {}. Training chose trial {}; "
       "what "
@@ -185,7 +204,7 @@ std::string tune_summary(const TuneFile& file, const Tuned& tuned, const Judge& 
       file.name, file.space.parameters.size(), file.scenario_file.stem().string(), objective_in_words(file),
       data_in_words(file), tuned.trials.size() - 1, method_name(file), file.search.seed,
       tuned.best.training.number);
-  text += to_markdown(comparison_table(file, tuned, validation));
+  text += to_markdown(comparison_table(file, tuned));
   text += flights_sentence(file, tuned) + limits_sentence(file, tuned) + gain_sentence(file, tuned);
   if (tuned.best_units.size() < 15)
     text += fmt::format("\nIntervals come from {} units: below about 15 they are too narrow.\n",
@@ -196,28 +215,27 @@ std::string tune_summary(const TuneFile& file, const Tuned& tuned, const Judge& 
       to_markdown(front_table(file, tuned));
   text += "\n## Sensitivity\nEach parameter alone varied from the tuned ones, on training data.\n\n" +
           to_markdown(sensitivity_table(file, tuned));
-  text += "\n## Tuned keys\n```yaml\n" + to_yaml(file.space, tuned.best.training.point) + "```\n";
+  if (gains(file, tuned))
+    text += "\n## Tuned keys\n```yaml\n" + to_yaml(file.space, tuned.best.training.point) + "```\n";
   return text;
 }
 
-std::string tuned_config(const TuneFile& file, const JudgedTrial& trial) {
-  std::string text = fmt::format("# {}: trial {} of a search for {}; over {}.\n", file.name,
-                                 trial.training.number, objective_in_words(file), data_in_words(file));
-  for (std::size_t i = 0; i < file.figures.size(); ++i)
-    text += fmt::format("# {} {} (training {})\n", file.figures[i], figure(trial.validation, i),
-                        figure(trial.training, i));
-  return text + to_yaml(file.space, trial.training.point);
-}
-
-void write_tune_report(const std::filesystem::path& folder, const TuneFile& file, const Tuned& tuned,
-                       const Judge& validation) {
-  std::vector<std::string> keys;
-  for (const Parameter& parameter : file.space.parameters) keys.push_back(parameter.key);
-  write_whole_file(folder / "trials.csv", to_csv(tuned.trials, keys, file.figures));
-  write_whole_file(folder / "pareto.csv", pareto_csv(file, tuned));
-  write_whole_file(folder / "summary.md", tune_summary(file, tuned, validation));
+void write_tune_report(const std::filesystem::path& folder, const TuneFile& file, const Tuned& tuned) {
+  using Sides = std::vector<const Trial*>;
+  write_whole_file(
+      folder / "trials.csv",
+      to_csv(trials_table(file, tuned.trials, {""}, [](const Trial& trial) { return Sides{&trial}; })));
+  write_whole_file(
+      folder / "pareto.csv",
+      to_csv(trials_table(file, tuned.front, {"training_", "validation_"}, [](const JudgedTrial& member) {
+        return Sides{&member.training, &member.validation};
+      })));
+  write_whole_file(folder / "summary.md", tune_summary(file, tuned));
   write_whole_file(folder / "tune.svg", tune_svg(file, tuned));
-  write_whole_file(folder / "best.yaml", tuned_config(file, tuned.best));
+  if (gains(file, tuned))
+    write_whole_file(folder / "best.yaml", tuned_config(file, tuned.best));
+  else
+    std::filesystem::remove(folder / "best.yaml");
   prepare_output_folder(folder / "front");
   for (const JudgedTrial& member : tuned.front)
     write_whole_file(folder / "front" / fmt::format("trial-{}.yaml", member.training.number),

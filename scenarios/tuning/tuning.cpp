@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <numeric>
 
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
+#include "scenarios/statistics/samples.hpp"
 
 namespace understory {
 namespace {
@@ -92,8 +93,7 @@ std::vector<Trial> run_search(const TuneFile& file, Tuning& tuning, Judge& train
   return log.evaluated();
 }
 
-/// The search's best, numbered as in `trials`; where none keeps the limits, the one that misses them by the
-/// smallest amount.
+/// The search's best, numbered as in `trials`; where none keeps the limits, the one that misses them minimum.
 std::size_t choose_best(const TuneFile& file, const std::vector<Trial>& trials, bool& keeps_limits) {
   std::vector<Figures> figures = figures_of(trials);
   figures.front().clear();  // the scenario as it is stands beside, not in the search
@@ -145,6 +145,30 @@ std::vector<Sensitivity> vary(const TuneFile& file, Tuning& tuning, Judge& train
   return all;
 }
 
+std::vector<Counts> drawn(const std::vector<Counts>& units, std::span<const double> places) {
+  std::vector<Counts> some;
+  for (const double place : places) some.push_back(units[static_cast<std::size_t>(place)]);
+  return some;
+}
+
+std::vector<FigureChange> changes_on(const TuneFile& file, const Tuned& tuned, const Judge& validation) {
+  if (tuned.scenario_units.empty() || tuned.best_units.empty()) return {};
+  std::vector<double> places(tuned.best_units.size());
+  std::iota(places.begin(), places.end(), 0);
+  std::vector<FigureChange> changes;
+  for (std::size_t i = 0; i < file.figures.size(); ++i) {
+    const auto change = [&](std::span<const double> some) {
+      return validation.figures(drawn(tuned.best_units, some))[i] -
+             validation.figures(drawn(tuned.scenario_units, some))[i];
+    };
+    const BootstrapEstimate estimate = bootstrap(places, change, {.resamples = 2000});
+    changes.push_back({estimate.value, estimate.interval});
+    if (file.over == TuningData::flights && file.figures[i] == "success")
+      changes.back().interval = paired_difference_interval(paired_goals(tuned));
+  }
+  return changes;
+}
+
 }  // namespace
 
 Tuned tune(const TuneFile& file, Judge& training, Judge& validation, const TuneOptions& options) {
@@ -166,7 +190,17 @@ Tuned tune(const TuneFile& file, Judge& training, Judge& validation, const TuneO
   tuned.sensitivity = vary(file, tuning, training, tuned.best.training.point);
   tuned.scenario_units = tuning.measure("validation", 0, tuned.scenario.training.point, validation).units;
   tuned.best_units = tuning.measure("validation", 1, tuned.best.training.point, validation).units;
+  tuned.changes = changes_on(file, tuned, validation);
   return tuned;
+}
+
+PairedOutcomes paired_goals(const Tuned& tuned) {
+  PairedOutcomes goals;
+  for (std::size_t i = 0; i < tuned.best_units.size(); ++i) {
+    const bool before = tuned.scenario_units[i].front() > 0, after = tuned.best_units[i].front() > 0;
+    (before ? (after ? goals.both : goals.only_first) : (after ? goals.only_second : goals.neither)) += 1;
+  }
+  return goals;
 }
 
 }  // namespace understory

@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/statistics/proportions.hpp"
 #include "scenarios/tuning/judge.hpp"
-#include "scenarios/tuning/trial_log.hpp"
 #include "scenarios/tuning/tune_file.hpp"
+#include "scenarios/tuning/tune_folder.hpp"
 
 namespace understory {
 
@@ -23,6 +24,14 @@ struct JudgedTrial {
   Trial validation;
 };
 
+/// One figure on validation data: the tuned configuration less the scenario as it is. Units (recordings,
+/// flights) are drawn in pairs, with replacement, and their counts put together (BCa bootstrap). Success of
+/// flights is the exception: Newcombe's interval for paired shares.
+struct FigureChange {
+  double difference = 0;
+  Interval interval;  ///< 95 %; -infinity .. infinity where the data cannot say
+};
+
 struct Tuned {
   std::vector<Trial> trials;  ///< 0: the scenario as it is; then the search's
   bool keeps_limits = true;   ///< the best, on training data; otherwise it misses them by the smallest amount
@@ -31,6 +40,7 @@ struct Tuned {
   std::vector<Sensitivity> sensitivity;  ///< of each parameter
   /// Counts on validation data, for statements about the difference; empty where one was refused.
   std::vector<Counts> scenario_units, best_units;
+  std::vector<FigureChange> changes;  ///< of the figures, in their order; empty likewise
 };
 
 inline constexpr std::size_t maximum_front = 20;
@@ -55,9 +65,7 @@ struct TuneOptions {
 /// the logs are another tuning's or every trial was refused.
 Tuned tune(const TuneFile& file, Judge& training, Judge& validation, const TuneOptions& options);
 
-/// Makes the folder, or, with `resume`, makes sure that it holds this very tuning, begun by this program.
-/// Throws ScenarioError in one line where not, as prepare_campaign_folder does.
-void prepare_tune_folder(const std::filesystem::path& folder, const TuneFile& file,
-                         const std::string& renderer, bool resume);
+/// Flights only: which seeds reached the goal; first: the scenario, second: the tuned one.
+PairedOutcomes paired_goals(const Tuned& tuned);
 
 }  // namespace understory

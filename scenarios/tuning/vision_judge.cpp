@@ -1,5 +1,3 @@
-#include "scenarios/tuning/vision_judge.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,52 +5,85 @@
 #include <thread>
 
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/evaluation/evaluation_recording.hpp"
+#include "scenarios/evaluation/obstacle_sightings.hpp"
+#include "scenarios/evaluation/vision_tally.hpp"
 #include "scenarios/scenario/detection_depths.hpp"
+#include "scenarios/scenario/scenario.hpp"
+#include "scenarios/tuning/judge.hpp"
 
 namespace understory {
 namespace {
 
-void append(const Share& share, Counts& counts) {
-  counts.push_back(static_cast<double>(share.with));
-  counts.push_back(static_cast<double>(share.of));
-}
+/// A recording and its truth, held in memory for thousands of configurations.
+struct HeldRecording {
+  std::vector<RecordedObject> objects;
+  std::vector<EvaluationFrame> frames;
+  std::vector<std::vector<ExpectedBlock>> expected;  ///< of each frame, where the usual rule looks
+};
 
-Counts counts_of(const RecordingScore& score) {
-  Counts counts{static_cast<double>(score.frames)};
-  for (const Share* share : {&score.precision, &score.recall, &score.trunks_1m, &score.trunks_3m})
-    append(*share, counts);
-  return counts;
-}
+class VisionJudge : public Judge {
+ public:
+  VisionJudge(const std::vector<std::filesystem::path>& folders, int every, int threads);
+  Measured measure(const std::string& name, const Scenario& scenario) override;
+  Figures figures(std::span<const Counts> units) const override;
 
-RecordingScore score_of(const Counts& counts) {
-  const auto count = [&](std::size_t i) { return static_cast<std::int64_t>(counts[i]); };
-  const auto share = [&](std::size_t i) { return Share{.of = count(i + 1), .with = count(i)}; };
-  return {"", count(0), share(1), share(3), share(5), share(7)};
-}
+ private:
+  Counts count(const HeldRecording& recording, const PushbroomConfig& rule) const;
 
-}  // namespace
-
-bool matters_on_recordings(std::string_view key) {
-  return key.starts_with("perception.pushbroom.") || key.starts_with("perception.depths_m[");
-}
+  StereoRig rig_;
+  PushbroomConfig usual_;  ///< for rules that look where this one does the blocks due are computed already
+  std::vector<HeldRecording> recordings_;
+  int threads_;
+};
 
 VisionJudge::VisionJudge(const std::vector<std::filesystem::path>& folders, int every, int threads)
     : threads_(threads) {
   for (const std::filesystem::path& folder : folders) {
-    recordings_.emplace_back(std::vector{folder}, every);
-    const StereoRig& rig = recordings_.back().rig();
-    const StereoRig& first = recordings_.front().rig();
-    if (rig.focal_px != first.focal_px || rig.width_px != first.width_px ||
-        rig.baseline_m != first.baseline_m)
+    EvaluationRecording recording(folder);
+    if (!recording.has_depth())
+      throw ScenarioError(fmt::format("{}: expected true depth (mav0/depth0), found none", folder.string()));
+    if (recordings_.empty()) rig_ = recording.rig();
+    if (!is_same_rig(recording.rig(), rig_))
       throw ScenarioError(fmt::format("{}: expected the rig of {}, found another (one tuning, one rig)",
                                       folder.string(), folders.front().string()));
+    const DetectionGrid grid(rig_, usual_.depths_m, usual_.last_row_px);
+    HeldRecording& held = recordings_.emplace_back();
+    held.objects = recording.objects();
+    for (std::size_t i = 0; i < recording.frame_count(); i += static_cast<std::size_t>(every)) {
+      held.frames.push_back(recording.frame(i));
+      held.expected.push_back(expected_blocks(held.frames.back().truth, grid));
+    }
   }
+}
+
+/// Frames; then, of how many it holds and of how many: hits that are true, expected blocks that were hit,
+/// obstacles within 1 m and 3 m of the path that were found.
+Counts VisionJudge::count(const HeldRecording& recording, const PushbroomConfig& rule) const {
+  PushbroomStereo detector(rig_, rule);
+  const DetectionGrid grid(rig_, rule.depths_m, rule.last_row_px);
+  ObstacleSightings sightings(recording.objects, rig_.baseline_m);
+  Rates rates;
+  const bool looks_as_usual = rule.depths_m == usual_.depths_m && rule.last_row_px == usual_.last_row_px;
+  for (std::size_t i = 0; i < recording.frames.size(); ++i) {
+    const EvaluationFrame& frame = recording.frames[i];
+    const std::vector<StereoHit>& hits = detector.detect(frame.pair);
+    const std::vector<ExpectedBlock> expected =
+        looks_as_usual ? recording.expected[i] : expected_blocks(frame.truth, grid);
+    count_one_pixel(frame.truth, grid, expected, hits, rates);
+    sightings.add(frame, grid, expected, hits);
+  }
+  const std::vector<ObstacleSighting> passed = sightings.passed();
+  Counts counts{static_cast<double>(recording.frames.size())};
+  for (const Share& share : {rates.precision, rates.recall, found_within(passed, 1), found_within(passed, 3)})
+    counts.insert(counts.end(), {static_cast<double>(share.with), static_cast<double>(share.of)});
+  return counts;
 }
 
 Measured VisionJudge::measure(const std::string&, const Scenario& scenario) {
   const PushbroomConfig& rule = scenario.perception.pushbroom;
   try {
-    check_depths(rule, recordings_.front().rig(), "perception.depths_m", "perception.pushbroom");
+    check_depths(rule, rig_, "perception.depths_m", "perception.pushbroom");
   } catch (const ScenarioError& error) {
     return {{}, error.what()};
   }
@@ -60,8 +91,7 @@ Measured VisionJudge::measure(const std::string&, const Scenario& scenario) {
   measured.units.resize(recordings_.size());
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
-    for (std::size_t i; (i = next++) < recordings_.size();)
-      measured.units[i] = counts_of(recordings_[i].score(rule).recordings.front());
+    for (std::size_t i; (i = next++) < recordings_.size();) measured.units[i] = count(recordings_[i], rule);
   };
   std::vector<std::jthread> others;
   const auto threads = std::min(static_cast<std::size_t>(threads_), recordings_.size());
@@ -72,11 +102,28 @@ Measured VisionJudge::measure(const std::string&, const Scenario& scenario) {
 }
 
 Figures VisionJudge::figures(std::span<const Counts> units) const {
-  std::vector<RecordingScore> scores;
-  for (const Counts& counts : units) scores.push_back(score_of(counts));
-  const VisionScore score = summed(std::move(scores));
-  return {score.precision, score.recall,    score.f_score,
-          score.trunks_1m, score.trunks_3m, score.hits_per_frame};
+  Counts sum(units.front().size(), 0);
+  for (const Counts& counts : units)
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += counts[i];
+  const auto share = [&](std::size_t i) { return sum[i + 1] > 0 ? sum[i] / sum[i + 1] : 0; };
+  const double precision = share(1), recall = share(3), both = precision + recall;
+  const double f_score = both > 0 ? 2 * precision * recall / both : 0;
+  const double hits_per_frame = sum[0] > 0 ? sum[2] / sum[0] : 0;
+  return {precision, recall, f_score, share(5), share(7), hits_per_frame};
+}
+
+}  // namespace
+
+const std::vector<std::string> vision_figure_names{"precision", "recall",    "f_score",
+                                                   "trunks_1m", "trunks_3m", "hits_per_frame"};
+
+bool matters_on_recordings(std::string_view key) {
+  return key.starts_with("perception.pushbroom.") || key.starts_with("perception.depths_m[");
+}
+
+std::unique_ptr<Judge> vision_judge(const std::vector<std::filesystem::path>& folders, int every,
+                                    int threads) {
+  return std::make_unique<VisionJudge>(folders, every, threads);
 }
 
 }  // namespace understory

@@ -60,11 +60,14 @@ TEST_F(Detect, FoldersGiveTheHitsThatThePairsGiveInMemory) {
   std::vector<StereoFrame> frames = support::planes(rig, 2);
   frames.push_back(support::planes(rig, 1, 1.5).front());
   support::write_pairs(folder.path(), frames, {"1", "2", "10"});
-  for (const bool is_paper : {true, false}) {
-    const auto hits = expected(frames, is_paper ? paper_rule() : robust_rule());
-    ASSERT_GT(count_of(hits), 100u);
-    const auto outcome = support::understory(std::string("detect ") + folders() + to_out() +
-                                             (is_paper ? " --rule paper" : ""));
+  // The rule, its default and its keys are those of a flight with this rig.
+  for (const auto& [arguments, rule] :
+       {std::pair("", tuned_rule("paper")), std::pair(" --rule paper", paper_rule()),
+        std::pair(" --set perception.rule=paper", paper_rule()),
+        std::pair(" --rule robust", robust_rule())}) {
+    const auto hits = expected(frames, rule);
+    ASSERT_GT(count_of(hits), 100u) << arguments;
+    const auto outcome = support::understory(std::string("detect ") + folders() + to_out() + arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.text;
     EXPECT_EQ(found("points.csv"), hits_to_csv(hits));
     EXPECT_EQ(found("points.ply"), hits_to_ply(hits));
@@ -74,19 +77,53 @@ TEST_F(Detect, FoldersGiveTheHitsThatThePairsGiveInMemory) {
   }
   const auto one = support::understory("detect " + left + "/2.png " + right + "/2.png" + to_out());
   EXPECT_EQ(one.status, 0) << one.text;
-  EXPECT_EQ(found("points.csv"), hits_to_csv(expected({frames[1]}, robust_rule())));
+  EXPECT_EQ(found("points.csv"), hits_to_csv(expected({frames[1]}, tuned_rule("paper"))));
   EXPECT_FALSE(fs::exists(fs::path(out) / "overlays/000001.png"));  // of the run before
 }
+
+TEST_F(Detect, AFileOfKeysMeansWhatItMeansToAFlight) {
+  const std::vector<StereoFrame> frames = support::planes(rig, 2);
+  support::write_pairs(folder.path(), frames, {"1", "2"});
+  const std::string keys = folder
+                               .write("keys.yaml",
+                                      "perception: {pushbroom: {minimum_edge_sum: 700}}\n"
+                                      "autopilot: {map: {voxel_m: 0}}\n")
+                               .string();
+  PushbroomConfig rule = tuned_rule("paper");
+  rule.minimum_edge_sum = 700;
+  const auto outcome = support::understory("detect " + folders() + to_out() + " --with " + keys);
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  EXPECT_EQ(found("points.csv"), hits_to_csv(expected(frames, rule)));
+}
+
+#ifdef UNDERSTORY_HAS_SIM
+TEST_F(Detect, IsTheFlightsOwnDetector) {
+  const std::string recorded = (folder.path() / "recorded").string();
+  const auto flight = support::understory(
+      "record forest --set time_limit_s=1 --set forest.clear_m=2 --set forest.square_metres_per_tree=8 "
+      "--out " +
+      recorded);
+  ASSERT_LE(flight.status, 1) << flight.text;
+  const std::string result = support::content_of(recorded + "/result.json");
+  const auto outcome = support::understory("detect " + recorded + " --out " + out);
+  ASSERT_EQ(outcome.status, 0) << outcome.text;
+  const std::string csv = found("points.csv");
+  const auto hits = std::count(csv.begin(), csv.end(), '\n') - 1;
+  EXPECT_GT(hits, 20);
+  EXPECT_NE(result.find("\"detections\": " + std::to_string(hits) + ","), std::string::npos)
+      << hits << result;
+}
+#endif
 
 TEST_F(Detect, SeveralDepthsGiveTheHitsOfEach) {
   const std::vector<StereoFrame> frames = support::planes(rig, 2);
   support::write_pairs(folder.path(), frames, {"1", "2"});
-  PushbroomConfig rule = robust_rule();
+  PushbroomConfig rule = tuned_rule("paper");
   rule.depths_m = {rig.detection_depth_m, 4.0};
   rule.depths_score_limit = {0.25, 0.2};
   const auto outcome = support::understory("detect " + folders() + to_out() +
-                                           " --set depths_m=[4.8,4.0] "
-                                           "--set pushbroom.depths_score_limit=[0.25,0.2]");
+                                           " --set perception.depths_m=[4.8,4.0] "
+                                           "--set perception.pushbroom.depths_score_limit=[0.25,0.2]");
   EXPECT_EQ(outcome.status, 0) << outcome.text;
   EXPECT_EQ(found("points.csv"), hits_to_csv(expected(frames, rule)));
   EXPECT_NE(outcome.text.find("looked at         4.8"), std::string::npos) << outcome.text;
@@ -109,7 +146,7 @@ TEST_F(Detect, AVideoGivesTheSameHitsAtItsTimes) {
   writer.release();
   const auto outcome = support::understory("detect " + video + " --video" + to_out());
   EXPECT_EQ(outcome.status, 0) << outcome.text;
-  EXPECT_EQ(found("points.csv"), hits_to_csv(expected(frames, robust_rule())));
+  EXPECT_EQ(found("points.csv"), hits_to_csv(expected(frames, tuned_rule("paper"))));
   cv::VideoCapture film((fs::path(out) / "overlay.mp4").string(), cv::CAP_FFMPEG);
   EXPECT_EQ(film.get(cv::CAP_PROP_FRAME_COUNT), 3);
   EXPECT_EQ(film.get(cv::CAP_PROP_FRAME_WIDTH), 2 * rig.width_px);
@@ -128,11 +165,11 @@ TEST_F(Detect, PosesCarryHitsIntoTheWorld) {
     poses << t_s << " " << 2 * (t_s - 100) << " 5 3 " << q.x() << " " << q.y() << " " << q.z() << " " << q.w()
           << "\n";
   const auto outcome =
-      support::understory("detect " + folders() + to_out() + " --set map.voxel_m=0 --poses " +
+      support::understory("detect " + folders() + to_out() + " --set autopilot.map.voxel_m=0 --poses " +
                           folder.write("poses.txt", poses.str()).string());
   ASSERT_EQ(outcome.status, 0) << outcome.text;
   const std::vector<Eigen::Vector3d> points = positions_in(found("map.ply"));
-  const auto hits = expected(frames, robust_rule());
+  const auto hits = expected(frames, tuned_rule("paper"));
   ASSERT_EQ(points.size(), count_of(hits));
   const double depth_m = PushbroomStereo(rig, robust_rule()).detection_depth_m();
   const Eigen::Vector3d camera = q * Eigen::Vector3d(0.10, 0.1765, 0);  // the paper rig's left camera
@@ -153,12 +190,12 @@ TEST_F(Detect, FramesOutsideThePosesAreReportedAndLeftOutOfTheMap) {
   support::write_pairs(folder.path(), frames, {"1.0", "2.0", "3.0"});
   const std::string poses =
       folder.write("poses.csv", "1500000000,0,0,0,1,0,0,0\n2500000000,0,0,0,1,0,0,0\n").string();
-  const auto outcome =
-      support::understory("detect " + folders() + to_out() + " --set map.voxel_m=0 --poses " + poses);
+  const auto outcome = support::understory("detect " + folders() + to_out() +
+                                           " --set autopilot.map.voxel_m=0 --poses " + poses);
   ASSERT_EQ(outcome.status, 0) << outcome.text;
   EXPECT_NE(outcome.text.find("frames outside the poses' time, left out: 2"), std::string::npos)
       << outcome.text;
-  EXPECT_EQ(positions_in(found("map.ply")).size(), expected(frames, robust_rule())[1].hits.size());
+  EXPECT_EQ(positions_in(found("map.ply")).size(), expected(frames, tuned_rule("paper"))[1].hits.size());
   const std::string later = folder.write("later.csv", "9500000000,0,0,0,1,0,0,0\n").string();
   support::expect_refusal("detect " + folders() + to_out() + " --poses " + later,
                           "later.csv: expected poses at the images' time, 1.000 to 3.000 s, found 9.500");
@@ -178,11 +215,11 @@ TEST_F(Detect, BadInputIsOneLineAndLeavesNoResult) {
   refuse(detect + " --rule best", "--rule");
   refuse(detect + " --rectify cubic", "--rectify");
   refuse(detect + " --unit inch", "--unit");
-  refuse(detect + " --set pushbroom.edges=3", "pushbroom.edges: expected a known key");
-  refuse(detect + " --set depths_m=[4.8,900]",
-         "depths_m: expected depths the rig paper can look at, got 900 m");
-  refuse(detect + " --set pushbroom.depths_score_limit=[0.1,0.2]",
-         "pushbroom: expected thresholds for each of 1 depths or none, got 2");
+  refuse(detect + " --set perception.pushbroom.edges=3", "perception.pushbroom.edges: expected a known key");
+  refuse(detect + " --set perception.depths_m=[4.8,900]",
+         "perception.depths_m: expected depths the rig paper can look at, got 900 m");
+  refuse(detect + " --set perception.pushbroom.depths_score_limit=[0.1,0.2]",
+         "perception.pushbroom: expected thresholds for each of 1 depths or none, got 2");
   refuse(detect + " --poses " + folder.write("p.txt", "0 0 0 0 0 0 0 1\n1 0 0\n").string(),
          "p.txt:2: expected");
   refuse(detect + " --poses " + folder.write("q.txt", "0 0 0 0 0 0 0 1\n").string(),

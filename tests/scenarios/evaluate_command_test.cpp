@@ -22,6 +22,14 @@ recordings:
   - {name: short, scenario: forest, seeds: 1007..1008, walk_mps: 5, height_m: 3, set: {world.bark_contrast: 0.5}}
 )";
 
+/// The curve's point at the algorithm's own setting, which is `threshold`.
+nlohmann::json point_at(const nlohmann::json& sum, const std::string& algorithm, double threshold) {
+  for (const nlohmann::json& curve : sum["curves"])
+    for (const nlohmann::json& point : curve["points"])
+      if (curve["name"] == algorithm && point["threshold"] == threshold) return point;
+  return {};
+}
+
 /// All figures but the costs, which no two runs share.
 nlohmann::json figures(const fs::path& folder) {
   nlohmann::json json = nlohmann::json::parse(content_of(folder / "evaluation.json"));
@@ -48,6 +56,22 @@ TEST(EvaluateCommand, RecordsASuiteAndJudgesIt) {
       EXPECT_EQ(algorithm["precision"]["one pixel"]["share"], 1);
       EXPECT_EQ(algorithm["recall"]["one pixel"]["share"], 1);
     }
+
+  // Curves are drawn over the frames of the table, however few: at each algorithm's own setting they meet it.
+  const auto sparse = understory("evaluate " + (out / "recordings/short-1007").string() +
+                                 " --every 8 --out " + (folder.path() / "sparse").string());
+  ASSERT_EQ(sparse.status, 0) << sparse.text;
+  const nlohmann::json few = figures(folder.path() / "sparse")["all"];
+  EXPECT_EQ(few["frames"], 4);
+  for (const nlohmann::json* sum : {&all, &few})
+    for (const auto& [name, threshold] : {std::pair("StereoBM", 18.0), std::pair("StereoSGBM", 10.0)})
+      for (const nlohmann::json& algorithm : (*sum)["algorithms"]) {
+        if (algorithm["name"] != name) continue;
+        const nlohmann::json point = point_at(*sum, name, threshold);
+        EXPECT_EQ(point["precision"], algorithm["precision"]["one pixel"]) << name;
+        EXPECT_EQ(point["recall"], algorithm["recall"]["one pixel"]) << name;
+      }
+  EXPECT_NE(content_of(folder.path() / "sparse/precision_recall.svg").find(", 4 frames<"), std::string::npos);
 
   // The same recordings given as folders, one after the other: the same figures.
   const std::string folders =

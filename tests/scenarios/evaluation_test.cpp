@@ -6,15 +6,9 @@
 #include <random>
 
 #include "perception/pushbroom/pushbroom_stereo.hpp"
-#include "scenarios/evaluation/distance_histogram.hpp"
-#include "scenarios/evaluation/evaluation_frame.hpp"
-#include "scenarios/evaluation/nearest_distances.hpp"
 #include "scenarios/evaluation/obstacle_sightings.hpp"
-#include "scenarios/evaluation/one_pixel_counts.hpp"
-#include "scenarios/evaluation/paced_sightings.hpp"
 #include "scenarios/evaluation/published_evaluations.hpp"
-#include "scenarios/evaluation/random_detector.hpp"
-#include "scenarios/evaluation/true_depth_hits.hpp"
+#include "scenarios/evaluation/reference_detectors.hpp"
 #include "scenarios/evaluation/vision_tally.hpp"
 #include "tests/perception/rigs.hpp"
 #include "tests/support/synthetic_stereo.hpp"
@@ -58,14 +52,14 @@ TEST(Evaluation, APlaneAtTheDetectionDepthHasPrecisionOne) {
       VisionTally result;
       tally(plane.frame, plane.grid, plane.rig, kinds, due_blocks(plane.frame.truth, plane.grid), hits,
             result);
-      for (const Share& share : result.precision) {
-        EXPECT_EQ(share.of, static_cast<std::int64_t>(hits.size()));
-        EXPECT_EQ(share.value(), 1);
+      for (const Rates& rates : result.rates) {
+        EXPECT_EQ(rates.precision.of, static_cast<std::int64_t>(hits.size()));
+        EXPECT_EQ(rates.precision.value(), 1);
       }
       EXPECT_TRUE(result.false_on.empty());
       // Every block that can match is expected; recall is the share of them that did.
-      EXPECT_EQ(result.recall[one_pixel].with, static_cast<std::int64_t>(hits.size()));
-      EXPECT_EQ(result.recall[one_pixel].of,
+      EXPECT_EQ(result.at_one_pixel().recall.with, static_cast<std::int64_t>(hits.size()));
+      EXPECT_EQ(result.at_one_pixel().recall.of,
                 (plane.grid.columns - plane.grid.first_column(0)) * plane.grid.rows);
     }
   }
@@ -76,9 +70,9 @@ TEST(Evaluation, WhatKnowsTheTruthIsRightAndMissesNothing) {
   const auto hits = true_depth_hits(plane.frame.truth, plane.grid, plane.rig);
   VisionTally result;
   tally(plane.frame, plane.grid, plane.rig, kinds, due_blocks(plane.frame.truth, plane.grid), hits, result);
-  EXPECT_EQ(result.precision[one_pixel].value(), 1);
-  EXPECT_EQ(result.recall[one_pixel].value(), 1);
-  EXPECT_EQ(result.f_score(), 1);
+  EXPECT_EQ(result.at_one_pixel().precision.value(), 1);
+  EXPECT_EQ(result.at_one_pixel().recall.value(), 1);
+  EXPECT_EQ(result.at_one_pixel().f_score(), 1);
 }
 
 TEST(Evaluation, ADetectorMovedBySevenDecimetresLandsInTheRightBin) {
@@ -86,10 +80,10 @@ TEST(Evaluation, ADetectorMovedBySevenDecimetresLandsInTheRightBin) {
   auto hits = true_depth_hits(plane_truth(plane.rig, plane.grid.depths[0].depth_m), plane.grid, plane.rig);
   VisionTally result;
   tally(plane.frame, plane.grid, plane.rig, kinds, due_blocks(plane.frame.truth, plane.grid), hits, result);
-  EXPECT_EQ(result.precision[0].value(), 0);          // 0.25 m
-  EXPECT_EQ(result.precision[1].value(), 0);          // 0.50 m
-  EXPECT_EQ(result.precision[2].value(), 1);          // 1.00 m
-  EXPECT_EQ(result.precision[one_pixel].value(), 1);  // a pixel is 0.86 m there
+  EXPECT_EQ(result.rates[0].precision.value(), 0);        // 0.25 m
+  EXPECT_EQ(result.rates[1].precision.value(), 0);        // 0.50 m
+  EXPECT_EQ(result.rates[2].precision.value(), 1);        // 1.00 m
+  EXPECT_EQ(result.at_one_pixel().precision.value(), 1);  // a pixel is 0.86 m there
 
   // The paper's second evaluation: points remembered 0.7 m in front of what StereoBM sees.
   PublishedEvaluations evaluations(plane.rig, plane.grid, LocalMapConfig());
@@ -146,20 +140,20 @@ TEST(Evaluation, ARandomDetectorScoresWhatGeometryPredicts) {
   frame.truth.depth_mm(place).setTo(std::round(1000 * grid.depths[0].depth_m));
   frame.truth.objects(place).setTo(trunk);
   frame.truth.shared_depth_mm = shared_depth(frame.truth.depth_mm, rig);
-  RandomDetector detector(rig, grid, 5);
+  std::mt19937_64 generator(5);
   constexpr int count = 40, frames = 2000;
-  detector.set_count(count);
   VisionTally result;
   const DueBlocks due = due_blocks(frame.truth, grid);
-  for (int i = 0; i < frames; ++i) tally(frame, grid, rig, kinds, due, detector.detect(frame.pair), result);
+  for (int i = 0; i < frames; ++i)
+    tally(frame, grid, rig, kinds, due, random_hits(count, grid, rig, generator), result);
 
   const int columns = grid.columns - grid.first_column(0);
   const double share = 12.0 / columns;
   const double sigma = std::sqrt(share * (1 - share) / (count * frames));
-  EXPECT_NEAR(result.precision[one_pixel].value(), share, 4 * sigma);
+  EXPECT_NEAR(result.at_one_pixel().precision.value(), share, 4 * sigma);
   const double blocks = columns * grid.rows;
   const double found = 1 - std::pow(1 - 1 / blocks, count);  // a given block, by any of the hits
-  EXPECT_NEAR(result.recall[one_pixel].value(), found, 0.02 * found);
+  EXPECT_NEAR(result.at_one_pixel().recall.value(), found, 0.02 * found);
   // What is wrong lies on the sky.
   EXPECT_EQ(result.false_on.size(), 1u);
   EXPECT_EQ(result.false_on.begin()->first, "sky");
@@ -175,13 +169,13 @@ TEST(Evaluation, AFifthOfABlockMakesItTrue) {
     }
   };
   put(4);
-  EXPECT_FALSE(content_between(truth, 200, 100, {9.5, 10.5}, true).holds());
+  EXPECT_FALSE(content_between(truth, 200, 100, {9.5, 10.5}, Surfaces::obstacles).holds());
   put(5);
-  const BlockContent content = content_between(truth, 200, 100, {9.5, 10.5}, true);
+  const BlockContent content = content_between(truth, 200, 100, {9.5, 10.5}, Surfaces::obstacles);
   EXPECT_TRUE(content.holds());
   EXPECT_EQ(content.object, trunk);
   EXPECT_NEAR(content.mean_depth_m, 10, 1e-9);
-  EXPECT_FALSE(content_between(truth, 200, 100, {10.5, 11}, true).holds());
+  EXPECT_FALSE(content_between(truth, 200, 100, {10.5, 11}, Surfaces::obstacles).holds());
   StereoHit hit;
   hit.column_px = 200;
   hit.row_px = 100;

@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "scenarios/report/video_writer.hpp"
+#include "scenarios/report/pictures.hpp"
 
 namespace understory {
 namespace {

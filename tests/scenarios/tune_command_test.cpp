@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "scenarios/evaluation/evaluation.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
-#include "scenarios/tuning/vision_judge.hpp"
+#include "scenarios/tuning/judge.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -75,18 +76,18 @@ TEST(TuneCommand, KilledAndResumedItEndsWithTheSameLogs) {
   for (const char* kill : {"timeout -s KILL 1", "timeout -s INT 2", "timeout -s KILL 3"})
     support::understory(tune + "stopped --resume", kill);
   EXPECT_EQ(support::understory(tune + "stopped --resume").status, 0);
-  for (const char* log : {"trials.jsonl", "validation.jsonl", "sensitivity.jsonl", "summary.md", "best.yaml",
-                          "tune.svg", "pareto.csv"})
+  for (const char* log :
+       {"trials.jsonl", "validation.jsonl", "sensitivity.jsonl", "summary.md", "tune.svg", "pareto.csv"})
     EXPECT_EQ(content_of(folder.path() / "stopped" / log), content_of(folder.path() / "undisturbed" / log))
         << log;
   const std::string fly = "fly " + (folder.path() / "short.yaml").string() + " --seed 1002 --quiet --with " +
-                          (folder.path() / "undisturbed" / "best.yaml").string() + " --out " +
-                          (folder.path() / "run").string();
+                          fs::directory_iterator(folder.path() / "undisturbed/front")->path().string() +
+                          " --out " + (folder.path() / "run").string();
   EXPECT_LE(support::understory(fly).status, 1);  // flown, to an end good or bad
   EXPECT_TRUE(fs::exists(folder.path() / "run" / "result.json"));
 }
 
-TEST(TuneCommand, OverRecordingsItsFiguresAreThoseOfTheirScore) {
+TEST(TuneCommand, OverRecordingsItsFiguresAreThoseOfTheirEvaluation) {
   const support::TemporaryFolder folder;
   const std::string here = folder.path().string() + "/";
   for (const std::string seed : {"1000", "1001", "1002"})
@@ -111,15 +112,20 @@ TEST(TuneCommand, OverRecordingsItsFiguresAreThoseOfTheirScore) {
 
   const Scenario scenario = load_scenario(fs::path(UNDERSTORY_SOURCE_DIR) / "scenarios/library/forest.yaml");
   const std::vector<fs::path> folders{folder.path() / "1000", folder.path() / "1001"};
-  const VisionScore score = VisionData(folders).score(scenario.perception.pushbroom);
-  VisionJudge judge(folders, 1, 2);
-  const Figures figures = judge.figures(judge.measure("all", scenario).units);
-  EXPECT_GT(score.recall, 0);
-  EXPECT_EQ(figures, (Figures{score.precision, score.recall, score.f_score, score.trunks_1m, score.trunks_3m,
-                              score.hits_per_frame}));
+  EvaluationOptions options{folders, {}, 1, [](std::int64_t, std::int64_t) {}};
+  options.settings.pushbroom = scenario.perception.pushbroom;
+  const EvaluationSum& sum = evaluate(options).all;
+  const Rates& rates = sum.tallies[our_rule].at_one_pixel();
+  const std::unique_ptr<Judge> judge = vision_judge(folders, 1, 2);
+  const Figures figures = judge->figures(judge->measure("all", scenario).units);
+  EXPECT_GT(rates.recall.value(), 0);
+  EXPECT_EQ(figures, (Figures{rates.precision.value(), rates.recall.value(), rates.f_score(),
+                              found_within(sum.sightings[our_rule], 1).value(),
+                              found_within(sum.sightings[our_rule], 3).value(),
+                              static_cast<double>(sum.hits[our_rule]) / static_cast<double>(sum.frames)}));
   Scenario blind = scenario;
   blind.perception.pushbroom.depths_m = {0.2};
-  EXPECT_FALSE(judge.measure("blind", blind).refused.empty());
+  EXPECT_FALSE(judge->measure("blind", blind).refused.empty());
 }
 
 }  // namespace

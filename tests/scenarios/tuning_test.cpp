@@ -6,7 +6,6 @@
 
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
-#include "scenarios/tuning/tune_comparison.hpp"
 #include "scenarios/tuning/tune_report.hpp"
 #include "tests/scenarios/tuning_cases.hpp"
 
@@ -60,7 +59,7 @@ TEST_F(TuningTest, TrainingChoosesAndValidationIsMeasuredApart) {
   EXPECT_NEAR(tuned.best.training.figures[2], 12 + 9.5, 0.01);
   EXPECT_NEAR(tuned.best.validation.figures[2], 11 + 9.5, 0.25);  // its own optimum is elsewhere
   // Flights differ among each other, pairs do not: the difference is exactly known.
-  const std::vector<FigureChange> changes = changes_on_validation(file, tuned, validation);
+  const std::vector<FigureChange>& changes = tuned.changes;
   const double difference = tuned.best.validation.figures[2] - tuned.scenario.validation.figures[2];
   EXPECT_NEAR(changes[2].difference, difference, 1e-9);
   EXPECT_NEAR(changes[2].interval.minimum, difference, 1e-9);
@@ -95,18 +94,22 @@ TEST_F(TuningTest, SaysSoWhereNoTrialKeepsTheLimits) {
   const Tuned tuned = tune(file, training, validation, {.folder = results("r")});
   EXPECT_FALSE(tuned.keeps_limits);
   EXPECT_EQ(tuned.best.training.figures[0], 1);  // misses it by the smallest amount
-  EXPECT_NE(tune_summary(file, tuned, validation).find("No trial keeps the limits"), std::string::npos);
+  EXPECT_NE(tune_summary(file, tuned).find("No trial keeps the limits"), std::string::npos);
 }
 
-TEST_F(TuningTest, SaysSoWhereTheScenarioIsAsGoodAsItsBestTrial) {
+TEST_F(TuningTest, RecommendsNothingWhereTheScenarioIsAsGoodAsItsBestTrial) {
   TuneFile file = load(tuning_text());
-  const auto summary = [&](const std::string& name) {
+  const auto summary = [&](const fs::path& where) {
     ClosedForm training(0.2), validation(0.2);
-    return tune_summary(file, tune(file, training, validation, {.folder = results(name)}), validation);
+    write_tune_report(where, file, tune(file, training, validation, {.folder = where}));
+    return support::content_of(where / "summary.md");
   };
-  EXPECT_EQ(summary("r").find("leave it so"), std::string::npos);
+  EXPECT_EQ(summary(results("r")).find("leave it so"), std::string::npos);
+  EXPECT_TRUE(fs::exists(folder.path() / "r/best.yaml"));
   file.scenario_point = {300, 0.2};  // the optimum
-  EXPECT_NE(summary("optimum").find("leave it so"), std::string::npos);
+  folder.write("optimum/best.yaml", "of an earlier run");
+  EXPECT_NE(summary(results("optimum")).find("leave it so"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder.path() / "optimum/best.yaml"));
 }
 
 TEST_F(TuningTest, StoppedAnywhereItEndsWithTheSameLogs) {
@@ -169,7 +172,7 @@ TEST_F(TuningTest, LeavesTablesPlotsAndAConfigThatGoesOverTheScenario) {
   ClosedForm training(0.2), validation(0.1);
   const fs::path where = results("r");
   const Tuned tuned = tune(file, training, validation, {.folder = where});
-  write_tune_report(where, file, tuned, validation);
+  write_tune_report(where, file, tuned);
   const Scenario scenario = load_scenario(in_library("forest"), {}, {where / "best.yaml"});
   EXPECT_EQ(scenario.perception.pushbroom.minimum_edge_sum, tuned.best.training.point[0]);
   EXPECT_EQ(scenario.perception.pushbroom.score_limit, tuned.best.training.point[1]);

@@ -1,10 +1,8 @@
-#include "scenarios/detect/detection_result.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 
+#include "scenarios/detect/detection_run.hpp"
 #include "scenarios/statistics/samples.hpp"
 
 namespace understory {
@@ -48,16 +46,6 @@ std::string map_text(const DetectionResult& result) {
 }
 
 }  // namespace
-
-std::string frames_to_csv(const std::vector<FrameRecord>& frames) {
-  std::string text = "frame,t_ns,hits,rectify_ms,detect_ms,in_map\n";
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const FrameRecord& frame = frames[i];
-    fmt::format_to(std::back_inserter(text), "{},{},{},{:.4f},{:.4f},{}\n", i, frame.t_ns, frame.hits,
-                   frame.rectify_ms, frame.detect_ms, frame.in_map ? 1 : 0);
-  }
-  return text;
-}
 
 std::string to_report(const DetectionResult& result) {
   const StereoRig& rig = result.rig;

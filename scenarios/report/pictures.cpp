@@ -1,12 +1,14 @@
-#include "scenarios/report/picture_folder.hpp"
+#include "scenarios/report/pictures.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <opencv2/videoio.hpp>
+#include <vector>
 
+#include "perception/io/picture_codecs.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/report/video_writer.hpp"
 
 namespace understory {
 namespace {
@@ -20,6 +22,11 @@ bool is_numbered_picture(const fs::path& file) {
 }
 
 }  // namespace
+
+void write_png(const fs::path& file, const cv::Mat& picture) {
+  const std::vector<unsigned char> bytes = picture_codecs().encode(".png", picture);
+  write_whole_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
 
 PictureFolder::PictureFolder(fs::path folder)
     : folder_(std::move(folder)), part_(folder_.string() + ".part") {
@@ -56,6 +63,42 @@ void remove_pictures(const fs::path& folder) {
   if (!error) fs::remove_all(folder, error);
   if (error)
     throw ScenarioError(fmt::format("{}: expected a writable output: {}", folder.string(), error.message()));
+}
+
+VideoFile::VideoFile(fs::path file, double frames_per_s) : file_(std::move(file)), rate_hz_(frames_per_s) {}
+
+fs::path VideoFile::part() const {
+  return file_.parent_path() / (file_.stem().string() + ".part" + file_.extension().string());
+}
+
+void VideoFile::add(const cv::Mat& picture) {
+  if (!writer_) {
+    auto writer = picture_codecs().write_film(part().string(), rate_hz_, picture.size());
+    if (!writer->isOpened())
+      throw MachineError(fmt::format("{}: OpenCV's FFmpeg offers no H.264 encoder", file_.string()));
+    writer_ = std::move(writer);
+  }
+  writer_->write(picture);
+  ++picture_count_;
+}
+
+VideoFile::~VideoFile() {
+  writer_.reset();
+  std::error_code ignored;
+  fs::remove(part(), ignored);
+}
+
+void VideoFile::finish() {
+  if (!writer_) return;
+  writer_->release();
+  // The encoder reports no failed write: see whether the disk is full and whether the file's index reads
+  // back.
+  require_free_space(file_, 1 << 16);
+  const auto reader = picture_codecs().read_film(part().string());
+  if (!reader->isOpened() || static_cast<int>(reader->get(cv::CAP_PROP_FRAME_COUNT)) != picture_count_) {
+    throw MachineError(fmt::format("{}: what was written does not read back whole", file_.string()));
+  }
+  fs::rename(part(), file_);
 }
 
 }  // namespace understory

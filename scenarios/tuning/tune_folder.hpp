@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/tuning/objective.hpp"
-#include "scenarios/tuning/space.hpp"
+#include "scenarios/tuning/search.hpp"
+#include "scenarios/tuning/tune_file.hpp"
 
 namespace understory {
 
@@ -37,7 +37,6 @@ class TrialLog {
   Trial evaluate(const Point& point);
 
   const std::vector<Trial>& evaluated() const { return evaluated_; }
-  std::size_t held() const { return held_.size(); }  ///< by the file, when it was opened
 
  private:
   void append(const Trial& trial);
@@ -45,12 +44,13 @@ class TrialLog {
   std::filesystem::path file_;
   std::vector<std::string> parameters_, figures_;
   Measure measure_;
-  std::vector<Trial> held_, evaluated_;
+  std::vector<Trial> held_, evaluated_;  ///< by the file when it was opened, and since
   std::map<Point, std::size_t> places_;  ///< in evaluated_
 };
 
-/// The trials with a header, six digits a figure.
-std::string to_csv(const std::vector<Trial>& trials, const std::vector<std::string>& parameters,
-                   const std::vector<std::string>& figures);
+/// Makes the folder, or, with `resume`, makes sure that it holds this very tuning, begun by this program.
+/// Throws ScenarioError in one line where not, as prepare_campaign_folder does.
+void prepare_tune_folder(const std::filesystem::path& folder, const TuneFile& file,
+                         const std::string& renderer, bool resume);
 
 }  // namespace understory

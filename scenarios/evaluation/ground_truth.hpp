@@ -1,0 +1,128 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "perception/stereo_frame.hpp"
+#include "perception/stereo_hit.hpp"
+#include "perception/stereo_rig.hpp"
+
+namespace understory {
+
+/// Of the numbers that objects.csv gives to what was seen: 0 is nothing, 1 the ground, all others obstacles.
+inline constexpr int first_obstacle = 2;
+
+/// What is true of a frame's rectified left image.
+struct TrueImages {
+  cv::Mat depth_mm;  ///< CV_16UC1, along the optical axis; 0 where nothing is known or all is far
+  cv::Mat objects;   ///< CV_16UC1, numbers of objects.csv; empty where nobody says whose surface it is
+  /// depth_mm where the right eye sees the same place, 0 where something nearer covers it there: no pair of
+  /// eyes can match what one of them does not see.
+  cv::Mat shared_depth_mm;
+};
+
+/// A thing of objects.csv: a bar between two points (world frame, m); the ground has no geometry.
+struct RecordedObject {
+  int number = 0;  ///< its pixels' value
+  std::string name;
+  std::string kind;  ///< ground, trunk, post, crossbar, rail, wall
+  Eigen::Vector3d from_world = Eigen::Vector3d::Zero();
+  Eigen::Vector3d to_world = Eigen::Vector3d::Zero();
+  double radius_m = 0;
+  bool is_obstacle() const { return number >= first_obstacle; }
+};
+
+/// A recorded moment and all that is known of it.
+struct EvaluationFrame {
+  StereoFrame pair;  ///< rectified
+  TrueImages truth;  ///< empty where the recording has no depth
+  /// Of the left camera, true; nothing where no pose covers the moment.
+  std::optional<Eigen::Isometry3d> T_world_camera;
+  /// Where the flight itself believed to be, in its odometry frame; the true pose where it did not say.
+  std::optional<Eigen::Isometry3d> T_odometry_camera;
+  double speed_mps = 0;  ///< true; 0 where no pose is known
+  double bank_rad = 0;   ///< the camera's rows against the horizon, 0 .. pi/2
+  double mean_gray = 0;  ///< of the left image
+};
+
+/// What shared_depth_mm is, from depth_mm alone: every pixel is put where the right image has it, and the
+/// nearest stays. What lies beyond the left image's edge and covers something is not known of.
+cv::Mat shared_depth(const cv::Mat& depth_mm, const StereoRig& rig);
+
+/// A detection says of 5x5 pixels "something stands at this depth". A fifth of them at that depth makes it
+/// true: blocks at the edge of a trunk match by the part of it that they hold. The same fifth makes a block
+/// one that should have been found.
+inline constexpr int truth_block_px = 5;
+inline constexpr int minimum_true_pixels = 5;
+
+/// What a block holds between two depths.
+struct BlockContent {
+  int pixels = 0;           ///< of 25
+  int object = 0;           ///< that most of them belong to; 0 where nobody says
+  double mean_depth_m = 0;  ///< of these pixels
+  bool holds() const { return pixels >= minimum_true_pixels; }
+};
+
+/// Which pixels of a block count.
+enum class Surfaces {
+  any,
+  obstacles,        ///< not the ground, nor what belongs to nothing (objects 1 and 0)
+  shared_obstacles  ///< of those the ones that both eyes see
+};
+
+/// Of the block whose top left pixel is (column_px, row_px), inside the image.
+BlockContent content_between(const TrueImages& truth, int column_px, int row_px, DepthInterval depths,
+                             Surfaces surfaces);
+
+/// A depth that is looked at: that of the whole disparity nearest to what was asked for.
+struct LookedAtDepth {
+  int disparity_px = 0;
+  double depth_m = 0;
+  DepthInterval one_pixel;
+  DepthInterval half_pixel;  ///< whose disparities round to this one: what a look at it can match
+};
+
+/// As PushbroomStereo looks. Depths whose disparity lies within a pixel of infinity assert there.
+LookedAtDepth looked_at_depth(const StereoRig& rig, double asked_m);
+
+/// Where something is to be found: blocks of 5x5 px side by side, down to the last row looked at, and only
+/// columns whose partner at the disparity lies in the right image. The same for every algorithm.
+struct DetectionGrid {
+  DetectionGrid(const StereoRig& rig, std::vector<double> depths_m, int last_row_px);
+
+  std::vector<LookedAtDepth> depths;
+  int columns = 0;  ///< of blocks
+  int rows = 0;
+
+  int first_column(std::size_t depth) const;
+  int block_count() const { return columns * rows; }
+  /// Of the block that the hit's centre lies in; -1 where that is none of the grid's.
+  int block_of(const StereoHit& hit) const;
+  /// The depth looked at that is nearest to the hit's.
+  std::size_t depth_of(const StereoHit& hit) const;
+  /// A block's place among the blocks of all depths.
+  std::size_t place(std::size_t depth, int block) const {
+    return depth * static_cast<std::size_t>(block_count()) + static_cast<std::size_t>(block);
+  }
+  /// Of every place, whether one of the hits lies there.
+  std::vector<bool> places_hit(const std::vector<StereoHit>& hits) const;
+};
+
+/// A block that holds an obstacle at a depth looked at, where both eyes see it.
+struct ExpectedBlock {
+  int block = 0;  ///< row * columns + column
+  std::size_t depth = 0;
+  int object = 0;
+  double mean_depth_m = 0;
+};
+
+/// All of them in one frame, about each depth looked at: within `tolerance_m` to either side of it, without
+/// one in the one-pixel interval.
+std::vector<ExpectedBlock> expected_blocks(const TrueImages& truth, const DetectionGrid& grid,
+                                           std::optional<double> tolerance_m = {});
+
+}  // namespace understory

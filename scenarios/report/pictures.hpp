@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+
+namespace cv {
+class VideoWriter;
+}
+
+namespace understory {
+
+/// A picture as PNG, whole or not at all.
+void write_png(const std::filesystem::path& file, const cv::Mat& picture);
+
+/// Pictures numbered 000000.png, 000001.png ... in a folder that bears its name only when all of them are
+/// there ("<folder>.part" until then).
+class PictureFolder {
+ public:
+  explicit PictureFolder(std::filesystem::path folder);
+  ~PictureFolder();  ///< removes what finish() has not made whole
+  PictureFolder(const PictureFolder&) = delete;
+  PictureFolder& operator=(const PictureFolder&) = delete;
+
+  /// BGR or gray, 8-bit. Throws MachineError where the disk is full.
+  void add(const cv::Mat& picture);
+  void finish();
+
+ private:
+  std::filesystem::path folder_, part_;
+  std::int64_t count_ = 0;
+};
+
+/// Removes a folder that such pictures made. Throws ScenarioError, removing nothing, where it holds anything
+/// else.
+void remove_pictures(const std::filesystem::path& folder);
+
+/// H.264 in mp4, which browsers play. Written under another name and renamed by finish(), so that a
+/// broken-off video does not look whole.
+class VideoFile {
+ public:
+  VideoFile(std::filesystem::path file, double frames_per_s);
+  ~VideoFile();  ///< removes what finish() has not made whole
+  VideoFile(const VideoFile&) = delete;
+  VideoFile& operator=(const VideoFile&) = delete;
+
+  /// BGR 8-bit, every picture of the size of the first (even width and height). Throws MachineError where no
+  /// H.264 encoder is installed, ScenarioError where the file cannot be made.
+  void add(const cv::Mat& picture);
+  /// Throws MachineError where the disk filled up or the file does not read back.
+  void finish();
+
+ private:
+  std::filesystem::path part() const;
+
+  std::filesystem::path file_;
+  double rate_hz_;
+  int picture_count_ = 0;
+  std::unique_ptr<cv::VideoWriter> writer_;  ///< from the first picture on
+};
+
+}  // namespace understory
