@@ -78,10 +78,10 @@ std::vector<ClosedLoopRow> bench_closed_loop(const ClosedLoopBenchOptions& optio
     const std::ptrdiff_t alone = add(name + ", one at a time", scenario, 1, "", -1);
     add(name + ", two side by side", scenario, 2, "", alone);
   }
-  const std::string name = options.sparse.stem().string();
+  const std::string name = options.scenarios.front().stem().string();
   const std::ptrdiff_t narrow =
-      add(name + ", trees to 20 m aside", options.sparse, 1, "forest.half_width_m=20", -1);
-  add(name + ", to 200 m: ten times the trees", options.sparse, 1, "forest.half_width_m=200", narrow);
+      add(name + ", trees to 20 m aside", options.scenarios.front(), 1, "forest.half_width_m=20", -1);
+  add(name + ", to 200 m: ten times the trees", options.scenarios.front(), 1, "forest.half_width_m=200", narrow);
   return rows;
 }
 

@@ -11,8 +11,8 @@
 namespace understory {
 
 struct ClosedLoopBenchOptions {
-  std::vector<std::filesystem::path> scenarios;  ///< each flown one at a time, then two side by side
-  std::filesystem::path sparse;                  ///< flown with ten times the trees, far and wide
+  /// Each flown one at a time, then two side by side; the first also with ten times the trees, far and wide.
+  std::vector<std::filesystem::path> scenarios;
   std::uint64_t first_seed = 1000, last_seed = 1003;
   std::vector<std::string> arguments;  ///< of every flight: --set, --renderer
   std::function<void(const std::string& what)> on_progress = [](const std::string&) {};

@@ -71,8 +71,7 @@ std::vector<Variant> overrides_of(const ConfigNode* list, const fs::path& campai
     if (entry.kind != ConfigNode::Kind::map) refuse_key(entry, "overrides", "{name: ..., set: {key: value}}");
     require_known_keys(entry, {"name", "with", "set"}, "overrides.");
     const ConfigNode* name = find_child(entry, "name");
-    if (name == nullptr || name->kind != ConfigNode::Kind::scalar || name->text.empty() ||
-        plain(name->text) != name->text)
+    if (name == nullptr || !is_plain_name(name->text))
       refuse_key(name == nullptr ? entry : *name, "overrides.name", "a name of letters, digits and . _ = -");
     Variant variant{name->text, {}};
     if (const ConfigNode* with = find_child(entry, "with"))
@@ -119,20 +118,7 @@ std::uint64_t seed_of(std::string_view word, const std::string& where, const std
   return seed;
 }
 
-}  // namespace
-
-fs::path scenario_beside(const fs::path& file, const ConfigNode& node, const std::string& word,
-                         const FindScenario& find_scenario) {
-  std::error_code ignored;
-  const fs::path beside = file.parent_path() / word;
-  if (fs::is_regular_file(beside, ignored)) return beside;
-  try {
-    return find_scenario(word);
-  } catch (const ScenarioError& error) {
-    throw ScenarioError(fmt::format("{}: {}: {}", node.origin, node.key, error.what()));
-  }
-}
-
+/// "1..200", "7" or a list of such things, as seeds. Throws ScenarioError, beginning with `where`.
 std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, const std::string& where) {
   std::vector<std::uint64_t> seeds;
   std::set<std::uint64_t> seen;
@@ -153,33 +139,50 @@ std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, cons
   return seeds;
 }
 
+}  // namespace
+
+bool is_plain_name(const std::string& name) { return !name.empty() && plain(name) == name; }
+
+std::string name_in(const ConfigNode& top, const fs::path& file) {
+  const ConfigNode* name = find_child(top, "name");
+  if (name == nullptr) return plain(file.stem().string());
+  if (!is_plain_name(name->text)) refuse_key(*name, "name", "letters, digits and . _ = -");
+  return name->text;
+}
+
+std::vector<std::uint64_t> seeds_in(const ConfigNode& map, const std::string& key, const std::string& within) {
+  const std::string expected = "the seeds to fly, for instance 1..200";
+  const ConfigNode* node = find_child(map, key);
+  if (node == nullptr) refuse_key(map, within + key, expected);
+  return seeds_of(words_of(*node, within + key, expected), node->origin + ": " + within + key);
+}
+
+fs::path scenario_beside(const fs::path& file, const ConfigNode& node, const std::string& word,
+                         const FindScenario& find_scenario) {
+  std::error_code ignored;
+  const fs::path beside = file.parent_path() / word;
+  if (fs::is_regular_file(beside, ignored)) return beside;
+  try {
+    return find_scenario(word);
+  } catch (const ScenarioError& error) {
+    throw ScenarioError(fmt::format("{}: {}: {}", node.origin, node.key, error.what()));
+  }
+}
+
 Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario) {
   const ConfigNode top = parse_config_file(file);
   require_known_keys(top, {"name", "scenario", "scenarios", "seeds", "overrides", "grid", "timeout_s"}, "");
   Campaign campaign;
-  campaign.name = plain(file.stem().string());
-  if (const ConfigNode* name = find_child(top, "name")) {
-    if (name->text.empty() || plain(name->text) != name->text)
-      refuse_key(*name, "name", "letters, digits and . _ = -");
-    campaign.name = name->text;
-  }
-  if (const ConfigNode* timeout = find_child(top, "timeout_s")) {
-    const char* const end = timeout->text.data() + timeout->text.size();
-    const auto parsed = std::from_chars(timeout->text.data(), end, campaign.timeout_s);
-    if (parsed.ec != std::errc() || parsed.ptr != end ||
-        !(campaign.timeout_s >= 1 && campaign.timeout_s <= 86400))
-      refuse_key(*timeout, "timeout_s", "seconds, 1 .. 86400");
-  }
+  campaign.name = name_in(top, file);
+  if (const ConfigNode* timeout = find_child(top, "timeout_s"))
+    campaign.timeout_s = number_of(*timeout, "timeout_s", 1, 86400);
 
   const ConfigNode* one = find_child(top, "scenario");
   const ConfigNode* scenarios = one != nullptr ? one : find_child(top, "scenarios");
   if (scenarios == nullptr || (one != nullptr && find_child(top, "scenarios") != nullptr))
     refuse_key(scenarios == nullptr ? top : *scenarios, "scenarios",
                "the scenarios to fly, once: [forest, dense]");
-  const ConfigNode* seeds = find_child(top, "seeds");
-  if (seeds == nullptr) refuse_key(top, "seeds", "the seeds to fly, for instance 1..200");
-  campaign.seeds =
-      seeds_of(words_of(*seeds, "seeds", "the seeds to fly, for instance 1..200"), seeds->origin + ": seeds");
+  campaign.seeds = seeds_in(top, "seeds");
 
   const std::vector<Variant> variants =
       with_grid(overrides_of(find_child(top, "overrides"), file), find_child(top, "grid"));
@@ -195,7 +198,8 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario) 
     }
   }
   if (campaign.conditions.size() * campaign.seeds.size() > maximum_flights)
-    refuse_key(*seeds, "seeds", fmt::format("at most {} flights in all", maximum_flights));
+    refuse_key(*find_child(top, "seeds"), "seeds",
+               fmt::format("at most {} flights in all", maximum_flights));
   return campaign;
 }
 

@@ -35,7 +35,15 @@ Campaign load_campaign(const std::filesystem::path& file, const FindScenario& fi
 std::filesystem::path scenario_beside(const std::filesystem::path& file, const ConfigNode& node,
                                       const std::string& word, const FindScenario& find_scenario);
 
-/// "1..200", "7" or a list of such things, as seeds. Throws ScenarioError, beginning with `where`.
-std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, const std::string& where);
+/// Letters, digits and . _ = -: a name for files.
+bool is_plain_name(const std::string& name);
+
+/// What the file calls itself: its name, else its file's. Throws ScenarioError where that is no plain word.
+std::string name_in(const ConfigNode& top, const std::filesystem::path& file);
+
+/// The seeds under a key of `map`: "1..200", "7", or a list of such things. Throws ScenarioError where there
+/// are none or one is given twice; `within` stands before the key in the message.
+std::vector<std::uint64_t> seeds_in(const ConfigNode& map, const std::string& key,
+                                    const std::string& within = "");
 
 }  // namespace understory

@@ -4,10 +4,11 @@
 
 #include "perception/io/stereo_recording.hpp"
 #include "scenarios/bench/bench.hpp"
+#include "scenarios/bench/closed_loop_bench.hpp"
 #include "scenarios/bench/stereo_scenes.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/config/config_tree.hpp"
+#include "scenarios/config/bad_input.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/progress_line.hpp"
 
@@ -21,8 +22,32 @@ struct BenchArguments : CalibrationArguments {
   int pairs = 64;
   int rounds = 20;
   bool closed_loop = false;
-  ClosedLoopBenchArguments flights;
+  int flights = 4;                    // of each kind: seeds 1000 and on
+  std::vector<std::string> settings;  // of every flight
+  RendererKind renderer = RendererKind::osmesa;
 };
+
+template <typename Row>
+void report(const std::vector<Row>& rows, const std::string& json) {
+  fmt::print("{}", to_table(rows));
+  if (!json.empty()) write_whole_file(json, to_json(rows));
+}
+
+int run_closed_loop_bench(const BenchArguments& arguments) {
+  ClosedLoopBenchOptions options;
+  for (const char* name : {"forest", "dense", "paper"}) options.scenarios.push_back(scenario_file(name));
+  options.last_seed = options.first_seed + static_cast<std::uint64_t>(arguments.flights) - 1;
+  for (const std::string& setting : arguments.settings)
+    options.arguments.insert(options.arguments.end(), {"--set", setting});
+  options.arguments.insert(options.arguments.end(),
+                           {"--renderer", std::string(word_for(arguments.renderer))});
+  ProgressLine line;
+  options.on_progress = [&](const std::string& what) { line.show(what); };
+  const std::vector<ClosedLoopRow> rows = bench_closed_loop(options);
+  line.clear();
+  report(rows, arguments.json);
+  return exit_goal;
+}
 
 std::vector<StereoFrame> recorded(const BenchArguments& arguments) {
   StereoRecording recording({arguments.inputs.begin(), arguments.inputs.end()});
@@ -33,24 +58,15 @@ std::vector<StereoFrame> recorded(const BenchArguments& arguments) {
   return frames;
 }
 
-int run_bench(BenchArguments arguments) {
-  if (arguments.closed_loop) {
-    arguments.flights.json = arguments.json;
-    return run_closed_loop_bench(arguments.flights);
-  }
-  std::filesystem::path rig_file = arguments.rig;
-  if (rig_file.empty())
-    rig_file = arguments.inputs.empty() ? data_root() / "models" / "rigs" / "raw" / "long.xml"
-                                        : std::filesystem::path(arguments.inputs.front());
-  CalibratedRig rig;
+int run_bench(const BenchArguments& arguments) {
+  if (arguments.closed_loop) return run_closed_loop_bench(arguments);
+  const std::filesystem::path rig_file = !arguments.rig.empty()    ? rig_path(arguments.rig)
+                                         : arguments.inputs.empty() ? data_root() / "models/rigs/raw/long.xml"
+                                                                    : std::filesystem::path(arguments.inputs.front());
+  const CalibrationOptions options = calibration_options(arguments);
+  const CalibratedRig rig = bad_input_if_refused([&] { return read_calibrated_rig(rig_file, options); });
   std::vector<StereoFrame> frames;
-  try {
-    rig = read_calibrated_rig(arguments.rig.empty() ? rig_file : rig_path(arguments.rig),
-                              calibration_options(arguments));
-    if (!arguments.inputs.empty()) frames = recorded(arguments);
-  } catch (const std::runtime_error& error) {
-    throw ScenarioError(error.what());
-  }
+  if (!arguments.inputs.empty()) frames = bad_input_if_refused([&] { return recorded(arguments); });
   if (frames.empty()) frames = stereo_scenes(rig, arguments.pairs, 1);
   if (frames.front().left.cols != rig.rig.width_px || frames.front().left.rows != rig.rig.height_px)
     throw ScenarioError(fmt::format("{}: expected images of {}x{}, as the rig has them",
@@ -61,11 +77,11 @@ int run_bench(BenchArguments arguments) {
     line.show(fmt::format("round {} of {}", round + 1, all), done, all - done);
   });
   line.clear();
-  fmt::print("{} {} pairs, {}x{}, rig {}, looking {:.2f} m ahead\n{}", frames.size(),
+  fmt::print("{} {} pairs, {}x{}, rig {}, looking {:.2f} m ahead\n", frames.size(),
              arguments.inputs.empty() ? "rendered" : "recorded", rig.rig.width_px, rig.rig.height_px,
-             rig.rig.name, rig.rig.detection_depth_m, to_table(rows));
-  if (!arguments.json.empty()) write_whole_file(arguments.json, to_json(rows));
-  return 0;
+             rig.rig.name, rig.rig.detection_depth_m);
+  report(rows, arguments.json);
+  return exit_goal;
 }
 
 }  // namespace
@@ -87,9 +103,9 @@ void add_bench_command(CommandLine& line) {
       .flag("--closed-loop", arguments->closed_loop,
             "time whole flights through the library's forests instead, alone and two side by side")
       .excludes(inputs);
-  command.whole("--flights", arguments->flights.flights, 1, 1000, "with --closed-loop: of each kind");
-  add_settings_option(command, arguments->flights.settings);
-  add_renderer_option(command, arguments->flights.renderer);
+  command.whole("--flights", arguments->flights, 1, 1000, "with --closed-loop: of each kind");
+  add_settings_option(command, arguments->settings);
+  add_renderer_option(command, arguments->renderer);
   command.runs([arguments] { return run_bench(*arguments); });
 }
 

@@ -6,6 +6,7 @@
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/evaluation/evaluation.hpp"
 #include "scenarios/evaluation/evaluation_files.hpp"
+#include "scenarios/evaluation/evaluation_suite.hpp"
 #include "scenarios/output/progress_line.hpp"
 
 namespace understory {
@@ -31,7 +32,8 @@ int run_evaluate(const EvaluateArguments& arguments) {
   const bool is_suite = arguments.inputs.size() == 1 && fs::is_regular_file(arguments.inputs[0], ignored);
   if (out.empty()) out = fs::path("evaluations") / fs::path(arguments.inputs[0]).stem();
   if (is_suite)
-    options.folders = record_suite(arguments.inputs[0], out / "recordings", options.jobs);
+    options.folders = record_suite(arguments.inputs[0], out / "recordings", options.jobs, scenario_file,
+                                   data_root() / "models");
   else
     options.folders.assign(arguments.inputs.begin(), arguments.inputs.end());
   options.settings = {read_vision_config(arguments.vision, rig_named_in(options.folders.front())),

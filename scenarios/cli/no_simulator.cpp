@@ -1,5 +1,6 @@
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/evaluation/evaluation_suite.hpp"
 
 /// The commands of a build without the simulator (UNDERSTORY_SIM=OFF).
 namespace understory {
@@ -16,13 +17,9 @@ void add_refusal(CommandLine& line, const std::string& name) {
 
 }  // namespace
 
-int run_closed_loop_bench(const ClosedLoopBenchArguments&) {
-  throw ScenarioError(
-      "bench --closed-loop: expected a build with the simulator, this one has none (UNDERSTORY_SIM=OFF)");
-}
-
 std::vector<std::filesystem::path> record_suite(const std::filesystem::path& file,
-                                                const std::filesystem::path&, int) {
+                                                const std::filesystem::path&, int, const FindScenario&,
+                                                const std::filesystem::path&) {
   throw ScenarioError(file.string() +
                       ": expected a folder: this build has no simulator to record with (UNDERSTORY_SIM=OFF)");
 }

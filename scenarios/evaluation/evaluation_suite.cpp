@@ -3,14 +3,26 @@
 #include <fmt/format.h>
 
 #include <set>
-#include <string_view>
 
 #include "scenarios/config/config_keys.hpp"
+#include "scenarios/output/file_output.hpp"
+#include "scenarios/output/program_processes.hpp"
+#include "scenarios/output/progress_line.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
 
 namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// A recording asked for, in the words of `understory record`.
+struct SuiteRecording {
+  std::string name;  ///< of its folder: the entry's name and the seed, "level-7"
+  fs::path scenario;
+  std::vector<std::string> settings;   ///< of --set, the seed among them
+  std::vector<std::string> arguments;  ///< further ones: --path, --walk, --height
+};
 
 /// YAML in one line again, as --set takes it.
 std::string value_text(const ConfigNode& value) {
@@ -33,13 +45,6 @@ std::string word(const ConfigNode& entry, const char* key, const char* expected)
   return node->text;
 }
 
-std::vector<std::uint64_t> seeds_in(const ConfigNode& entry) {
-  constexpr const char* expected = "first..last, or a list of seeds";
-  const ConfigNode* node = find_child(entry, "seeds");
-  if (node == nullptr) refuse_key(entry, "recordings.seeds", expected);
-  return seeds_of(words_of(*node, "recordings.seeds", expected), node->origin + ": recordings.seeds");
-}
-
 /// The entry's recordings: one for each seed.
 std::vector<SuiteRecording> recordings_of(const ConfigNode& entry, const ConfigNode* set_of_all,
                                           const fs::path& folder, const FindScenario& find_scenario) {
@@ -47,10 +52,8 @@ std::vector<SuiteRecording> recordings_of(const ConfigNode& entry, const ConfigN
     refuse_key(entry, "recordings", "{name: ..., scenario: ..., seeds: ...}");
   require_known_keys(entry, {"name", "scenario", "seeds", "path", "walk_mps", "height_m", "set"},
                      "recordings.");
-  const std::string name = word(entry, "name", "a name of letters, digits and . _ -");
-  if (name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-") !=
-      std::string::npos)
-    refuse_key(entry, "recordings.name", "a name of letters, digits and . _ -");
+  const std::string name = word(entry, "name", "a name of letters, digits and . _ = -");
+  if (!is_plain_name(name)) refuse_key(entry, "recordings.name", "a name of letters, digits and . _ = -");
   const std::string scenario = word(entry, "scenario", "a scenario");
   const fs::path beside = folder / scenario;
   SuiteRecording recording;
@@ -69,7 +72,7 @@ std::vector<SuiteRecording> recordings_of(const ConfigNode& entry, const ConfigN
   add_settings(set_of_all, recording.settings);
   add_settings(find_child(entry, "set"), recording.settings);
   std::vector<SuiteRecording> recordings;
-  for (const std::uint64_t seed : seeds_in(entry)) {
+  for (const std::uint64_t seed : seeds_in(entry, "seeds", "recordings.")) {
     recordings.push_back(recording);
     recordings.back().name = fmt::format("{}-{}", name, seed);
     recordings.back().settings.push_back(fmt::format("seed={}", seed));
@@ -77,17 +80,14 @@ std::vector<SuiteRecording> recordings_of(const ConfigNode& entry, const ConfigN
   return recordings;
 }
 
-}  // namespace
-
-EvaluationSuite load_evaluation_suite(const fs::path& file, const FindScenario& find_scenario) {
+std::vector<SuiteRecording> load_suite(const fs::path& file, const FindScenario& find_scenario) {
   const ConfigNode top = parse_config_file(file);
   require_known_keys(top, {"recordings", "set"}, "");
   const ConfigNode* list = find_child(top, "recordings");
   if (list == nullptr || list->kind != ConfigNode::Kind::list || list->children.empty())
     refuse_key(list == nullptr ? top : *list, "recordings",
                "a list [{name: ..., scenario: ..., seeds: ...}, ...]");
-  EvaluationSuite suite;
-  suite.name = file.stem().string();
+  std::vector<SuiteRecording> suite;
   std::set<std::string> names;
   for (const ConfigNode& entry : list->children)
     for (SuiteRecording& recording :
@@ -95,9 +95,52 @@ EvaluationSuite load_evaluation_suite(const fs::path& file, const FindScenario& 
       if (!names.insert(recording.name).second)
         refuse_key(entry, "recordings",
                    fmt::format("each recording once, {} is given twice", recording.name));
-      suite.recordings.push_back(std::move(recording));
+      suite.push_back(std::move(recording));
     }
   return suite;
+}
+
+std::vector<std::string> arguments_of(const SuiteRecording& recording, const fs::path& folder) {
+  std::vector<std::string> arguments{"record", recording.scenario.string(), "--quiet", "--out",
+                                     folder.string()};
+  arguments.insert(arguments.end(), recording.arguments.begin(), recording.arguments.end());
+  for (const std::string& setting : recording.settings) arguments.insert(arguments.end(), {"--set", setting});
+  return arguments;
+}
+
+}  // namespace
+
+std::vector<fs::path> record_suite(const fs::path& file, const fs::path& folder, int jobs,
+                                   const FindScenario& find_scenario, const fs::path& models) {
+  const std::vector<SuiteRecording> suite = load_suite(file, find_scenario);
+  for (const SuiteRecording& recording : suite) try {  // what a child process would refuse
+      rig_of(load_scenario(recording.scenario, recording.settings), models);
+    } catch (const ScenarioError& error) {
+      throw ScenarioError(fmt::format("{}: {}: {}", file.string(), recording.name, error.what()));
+    }
+  prepare_output_folder(folder);
+  const std::size_t all = suite.size();
+  std::size_t failed = all, done = 0, here = 0;
+  ProgressLine line;
+  ProgramProcesses processes(jobs, [&](std::uint64_t tag, int status, const EndedProcess&) {
+    if (status != 0 && failed == all) failed = static_cast<std::size_t>(tag);
+    ++done;
+    line.show(fmt::format("{} of {} recorded", done, all), ++here, all - done);
+  });
+  std::vector<fs::path> folders;
+  for (const SuiteRecording& recording : suite) {
+    folders.push_back(folder / recording.name);
+    if (fs::exists(folders.back() / "mav0")) {  // it bears that name only when it is whole
+      ++done;
+      continue;
+    }
+    processes.start(folders.size() - 1, arguments_of(recording, folders.back()));
+  }
+  processes.wait_for_all();
+  if (failed < all)
+    throw ScenarioError(
+        fmt::format("{}: expected to record {}, which failed", file.string(), suite[failed].name));
+  return folders;
 }
 
 }  // namespace understory

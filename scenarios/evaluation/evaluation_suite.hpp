@@ -1,29 +1,14 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <string>
 #include <vector>
 
 #include "scenarios/campaign/campaign_file.hpp"
 
 namespace understory {
 
-/// A recording that a suite asks for, in the words of `understory record`.
-struct SuiteRecording {
-  std::string name;  ///< of its folder: the entry's name and the seed, "level-7"
-  std::filesystem::path scenario;
-  std::vector<std::string> settings;   ///< of --set, the seed among them
-  std::vector<std::string> arguments;  ///< further ones: --path, --walk, --height
-};
-
-/// What `understory evaluate FILE` records before it evaluates.
-struct EvaluationSuite {
-  std::string name;
-  std::vector<SuiteRecording> recordings;
-};
-
-/// Reads a suite:
+/// Records what a suite's file asks for, `jobs` at once, each with `understory record` into FOLDER/NAME-SEED;
+/// what is there already stays. Returns the recordings' folders, in the file's order. The file:
 ///
 ///     recordings:
 ///       - {name: level, scenario: forest, seeds: 1..5, path: ../paths/level.tum, set: {world.bark_contrast:
@@ -32,8 +17,12 @@ struct EvaluationSuite {
 ///       - {name: flight, scenario: forest, seeds: 1..3}
 ///     set: {cameras.light: 0.5}     # optional: of all
 ///
-/// Scenarios and paths are files beside the suite's, or, for scenarios, names of the library. Throws
-/// ScenarioError "file:line: key: expected ...".
-EvaluationSuite load_evaluation_suite(const std::filesystem::path& file, const FindScenario& find_scenario);
+/// Scenarios and paths are files beside the suite's, or, for scenarios, what `find_scenario` finds. Throws
+/// ScenarioError "file:line: key: expected ..." where the file or one of its scenarios is wrong, before
+/// anything is recorded, and where one could not be recorded. `models`: the folder of that name.
+std::vector<std::filesystem::path> record_suite(const std::filesystem::path& file,
+                                                const std::filesystem::path& folder, int jobs,
+                                                const FindScenario& find_scenario,
+                                                const std::filesystem::path& models);
 
 }  // namespace understory

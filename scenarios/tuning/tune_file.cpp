@@ -195,19 +195,17 @@ bool holds(const fs::path& folder, const fs::path& other) {
 }
 
 void read_data(const ConfigNode& top, const fs::path& file, TuneFile& tune) {
-  const bool flies = tune.over == TuningData::flights;
-  const std::string expected = flies ? "seeds, for instance 1000..1019" : "folders of recordings";
-  const ConfigNode& training = required(top, "training", expected);
-  const ConfigNode& validation = required(top, "validation", expected);
-  if (flies) {
-    tune.training_seeds = seeds_of(words_of(training, "training", expected), training.origin + ": training");
-    tune.validation_seeds =
-        seeds_of(words_of(validation, "validation", expected), validation.origin + ": validation");
+  if (tune.over == TuningData::flights) {
+    tune.training_seeds = seeds_in(top, "training");
+    tune.validation_seeds = seeds_in(top, "validation");
     for (const std::uint64_t seed : tune.validation_seeds)
       if (std::ranges::find(tune.training_seeds, seed) != tune.training_seeds.end())
-        refuse_key(validation, "validation", fmt::format("no seed of training, {} is one", seed));
+        refuse_key(*find_child(top, "validation"), "validation",
+                   fmt::format("no seed of training, {} is one", seed));
     return;
   }
+  const ConfigNode& training = required(top, "training", "folders of recordings");
+  const ConfigNode& validation = required(top, "validation", "folders of recordings");
   tune.training_folders = folders_of(training, file);
   tune.validation_folders = folders_of(validation, file);
   std::set<fs::path> seen;
@@ -223,18 +221,6 @@ void read_data(const ConfigNode& top, const fs::path& file, TuneFile& tune) {
                    fmt::format("each recording once, {} is given twice", folder.string()));
 }
 
-std::string name_of(const ConfigNode* node, const fs::path& file) {
-  const auto is_plain = [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
-  };
-  std::string name = node == nullptr ? file.stem().string() : node->text;
-  if (node != nullptr && (name.empty() || !std::ranges::all_of(name, is_plain)))
-    refuse_key(*node, "name", "letters, digits and . _ -");
-  for (char& c : name)
-    if (!is_plain(static_cast<unsigned char>(c))) c = '_';
-  return name;
-}
-
 }  // namespace
 
 TuneFile load_tune_file(const fs::path& file, const FindScenario& find_scenario) {
@@ -246,7 +232,7 @@ TuneFile load_tune_file(const fs::path& file, const FindScenario& find_scenario)
   TuneFile tune;
   std::ifstream stream(file, std::ios::binary);
   tune.text.assign(std::istreambuf_iterator<char>(stream), {});
-  tune.name = name_of(find_child(top, "name"), file);
+  tune.name = name_in(top, file);
   const ConfigNode& scenario = required(top, "scenario", "the scenario whose keys are tuned");
   tune.scenario_file = scenario_beside(file, scenario, scenario.text, find_scenario);
   tune.scenario = load_scenario(tune.scenario_file);

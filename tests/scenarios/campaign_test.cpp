@@ -126,7 +126,7 @@ TEST(Campaign, RefusesBadFilesInOneLineWithFileLineAndKey) {
       {"scenario: forest\nseeds: 1\ngrid:\n  forest.lenght_m: [30]\n",
        "speed.yaml:4: forest.lenght_m: expected a known key (did you mean length_m?)"},
       {"scenario: forest\nseeds: 1\ngrid:\n  forest.length_m: [30, -1]\n", "speed.yaml:4: forest.length_m"},
-      {"scenario: forest\nseeds: 1\ntimeout_s: soon\n", "speed.yaml:3: timeout_s: expected seconds"},
+      {"scenario: forest\nseeds: 1\ntimeout_s: soon\n", "speed.yaml:3: timeout_s: expected a number from 1"},
       {"scenario: forest\nseeds: 1\nseeds: 2\n", "speed.yaml:3: seeds: expected each key once"},
   };
   for (const auto& one : cases) {

@@ -99,7 +99,7 @@ TEST(EvaluateCommand, WrongInputIsRefusedInOneLine) {
   };
   refuses("recordings: []\n", "recordings: expected a list");
   refuses("recording: 1\n", "recording: expected a known key (did you mean recordings?)");
-  refuses("recordings:\n  - {name: a, scenario: forest}\n", "recordings.seeds: expected first..last");
+  refuses("recordings:\n  - {name: a, scenario: forest}\n", "recordings.seeds: expected the seeds to fly");
   refuses("recordings:\n  - {name: a, scenario: forest, seeds: 3..1}\n", "expected first <= last");
   refuses("recordings:\n  - {name: a/b, scenario: forest, seeds: 1}\n", "recordings.name: expected a name");
   refuses("recordings:\n  - {name: a, scenario: nowhere, seeds: 1}\n", "nowhere");

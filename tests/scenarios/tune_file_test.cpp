@@ -91,7 +91,7 @@ TEST_F(TuningTest, RefusesBadFilesInOneLineWithFileLineAndKey) {
       {with(success, "{method: grid}", over_flights),
        "parameters.perception.pushbroom.minimum_edge_sum: expected values, or a range with steps"},
       {with(success, random, "over: walks\n"), "t.yaml:7: over: expected recordings | flights"},
-      {with(success, random, "over: flights\ntraining: 1..5\n"), "validation: expected seeds"},
+      {with(success, random, "over: flights\ntraining: 1..5\n"), "validation: expected the seeds"},
       {with(success, random, "over: flights\ntraining: 1..5\nvalidation: 5..9\n"),
        "t.yaml:9: validation: expected no seed of training, 5 is one"},
       {with(success, random, "over: flights\ntraining: 5..1\nvalidation: 6\n"),
