@@ -10,6 +10,7 @@
 #include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/program_processes.hpp"
+#include "scenarios/output/signals.hpp"
 
 namespace understory {
 namespace {
@@ -25,9 +26,9 @@ struct Batch {
 /// Every seed of the scenario, `processes` at a time.
 Batch fly_batch(const ClosedLoopBenchOptions& options, const fs::path& scenario, int processes,
                 const std::string& setting) {
-  const fs::path runs = fs::temp_directory_path() / fmt::format("understory-bench-{}", getpid());
-  prepare_output_folder(runs);
-  const auto run_folder = [&](std::uint64_t seed) { return runs / fmt::format("{}", seed); };
+  const Unfinished runs(fs::temp_directory_path() / fmt::format("understory-bench-{}", getpid()));
+  prepare_output_folder(runs.path());
+  const auto run_folder = [&](std::uint64_t seed) { return runs.path() / fmt::format("{}", seed); };
   std::map<std::uint64_t, Clock::time_point> started;
   Batch batch;
   int failed_status = 0;
@@ -54,7 +55,6 @@ Batch fly_batch(const ClosedLoopBenchOptions& options, const fs::path& scenario,
   }
   flights.wait_for_all();
   batch.elapsed_s = seconds_since(begin);
-  fs::remove_all(runs);
   if (failed_status == 2) throw ScenarioError("bench: a flight refused its input (see above)");
   if (failed_status != 0)
     throw MachineError(fmt::format("bench: a flight ended with status {}", failed_status));

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -21,7 +20,7 @@
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/program.hpp"
 #include "scenarios/output/program_processes.hpp"
-#include "scenarios/output/stop_signals.hpp"
+#include "scenarios/output/signals.hpp"
 
 namespace understory {
 namespace {
@@ -171,37 +170,19 @@ class Flights {
   std::map<pid_t, InTheAir> air_;
 };
 
-/// Of writers that were killed in the middle.
-void remove_parts(const fs::path& folder) {
+}  // namespace
+
+void remove_parts(const CampaignFolder& folder) {
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored))
+  for (const auto& entry : fs::directory_iterator(folder.path / "flights", ignored))
     if (entry.path().extension() == ".part") fs::remove(entry.path(), ignored);
 }
-
-}  // namespace
 
 void count(const FlightRow& row, CampaignProgress& progress) {
   progress.over += 1;
   progress.goals += row.reached_goal() ? 1 : 0;
   progress.not_flown += row.flown() ? 0 : 1;
 }
-
-FolderLock::FolderLock(const CampaignFolder& folder) {
-  const fs::path file = folder.path / "lock";
-  file_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (file_ < 0)
-    throw ScenarioError(
-        fmt::format("{}: expected a writable folder: {}", folder.path.string(), std::strerror(errno)));
-  if (flock(file_, LOCK_EX | LOCK_NB) == 0) {
-    remove_parts(folder.path / "flights");
-    return;
-  }
-  close(file_);
-  throw ScenarioError(
-      fmt::format("{}: another understory flies this campaign at this moment", folder.path.string()));
-}
-
-FolderLock::~FolderLock() { close(file_); }
 
 std::vector<std::string> flight_arguments(const CampaignFolder& folder, const Campaign& campaign,
                                           const CampaignTask& task, bool keeps_run) {

@@ -23,18 +23,8 @@ struct CampaignProgress {
 void count(const FlightRow& row, CampaignProgress& progress);
 using OnCampaignProgress = std::function<void(const CampaignProgress&)>;
 
-/// Keeps a second program from flying the same folder on this machine; dropped however this one ends. Clears
-/// away what killed writers left. Throws ScenarioError where the folder is taken.
-class FolderLock {
- public:
-  explicit FolderLock(const CampaignFolder& folder);
-  ~FolderLock();
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  int file_ = -1;
-};
+/// Clears away what flights left that were killed while they wrote. The folder must be locked.
+void remove_parts(const CampaignFolder& folder);
 
 /// Arguments of this program that fly one task and leave its file, from any folder, on any machine that sees
 /// this one's files.

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/output/stop_signals.hpp"
+#include "scenarios/output/signals.hpp"
 
 namespace understory {
 namespace {

@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <thread>
 
-#include "scenarios/config/config_tree.hpp"
-#include "scenarios/output/file_output.hpp"
+#include "perception/io/calibration_file.hpp"
+#include "scenarios/output/errors.hpp"
 #include "scenarios/scenario/vision_config.hpp"
 
 namespace understory {

@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "perception/io/calibration_file.hpp"
 #include "scenarios/cli/command_line.hpp"
 #include "sim/render/renderer_kind.hpp"
 
 /// Arguments that several commands take, and what their words mean.
 namespace understory {
 
+struct CalibrationOptions;
 struct VisionConfigSources;
 
 /// The scenario's name, --with and --set, as every command that flies has them.

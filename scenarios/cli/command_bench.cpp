@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "perception/io/calibration_file.hpp"
 #include "perception/io/stereo_recording.hpp"
 #include "scenarios/bench/bench.hpp"
 #include "scenarios/bench/closed_loop_bench.hpp"
@@ -59,6 +60,7 @@ std::vector<StereoFrame> recorded(const BenchArguments& arguments) {
 }
 
 int run_bench(const BenchArguments& arguments) {
+  require_writable(arguments.json);
   if (arguments.closed_loop) return run_closed_loop_bench(arguments);
   const std::filesystem::path rig_file = !arguments.rig.empty()    ? rig_path(arguments.rig)
                                          : arguments.inputs.empty() ? data_root() / "models/rigs/raw/long.xml"

@@ -12,6 +12,7 @@
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/output/output_folder.hpp"
 #include "scenarios/output/progress_line.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
@@ -80,7 +81,6 @@ Finish fly_here(const CampaignFolder& folder, const Campaign& campaign, const Ca
   ProgressLine line;
   const bool finished = fly_locally(folder, campaign, in_flying_order(campaign), config,
                                     [&](const CampaignProgress& progress) { show(line, progress); });
-  line.clear();
   return finished ? Finish::all_over : Finish::stopped;
 }
 
@@ -93,7 +93,6 @@ Finish fly_on_slurm(const CampaignFolder& folder, const Campaign& campaign,
   ProgressLine line;
   const bool finished =
       wait_for_slurm(folder, campaign, job, [&](const CampaignProgress& progress) { show(line, progress); });
-  line.clear();
   return finished ? Finish::all_over : Finish::stopped;
 }
 
@@ -101,24 +100,30 @@ int run_campaign(const CampaignArguments& arguments) {
   Campaign campaign = load_campaign(arguments.file, scenario_file);
   campaign.renderer = word_for(arguments.renderer);
   require_rigs(campaign, arguments.file);
+  require_writable(arguments.junit);
   const CampaignFolder folder{arguments.out.empty() ? fs::path("results") / campaign.name
                                                     : fs::path(arguments.out)};
+  const FolderLock lock(folder.path, folder.path);
+  remove_parts(folder);
   prepare_campaign_folder(folder, campaign, arguments.resume);
   if (arguments.print_tasks) return print_tasks(folder, campaign);
 
-  const FolderLock lock(folder);
+  const StopSignals stop_signals;
   const bool on_slurm = arguments.engine == Engine::slurm;
   const Finish finish =
       on_slurm ? fly_on_slurm(folder, campaign, arguments) : fly_here(folder, campaign, arguments);
   const Collected collected = collect(folder, campaign);
   if (finish == Finish::all_over) return report(folder, collected, arguments.junit);
   if (on_slurm) {
-    fmt::print("the job goes on; understory collect {} gathers what it leaves\n", folder.path.string());
+    const std::string what =
+        fmt::format("the job goes on; understory collect {} gathers what it leaves", folder.path.string());
+    if (stop_signals.asked()) throw Stopped(stop_signals.number(), what);
+    fmt::print("{}\n", what);
     return exit_goal;
   }
-  throw MachineError(fmt::format("{}: stopped with {} of {} flights over; --resume goes on",
-                                 folder.path.string(), collected.rows.size(),
-                                 collected.rows.size() + collected.missing));
+  throw Stopped(stop_signals.number(),
+                fmt::format("{}: stopped with {} of {} flights over; --resume goes on", folder.path.string(),
+                            collected.rows.size(), collected.rows.size() + collected.missing));
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <memory>
+#include <optional>
 
 #include "scenarios/campaign/flight_row.hpp"
 #include "scenarios/campaign/junit.hpp"
@@ -10,11 +10,15 @@
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/cli/flight_terminal.hpp"
 #include "scenarios/flight/fly.hpp"
+#include "scenarios/flight/run_record.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/output/output_folder.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct FlyArguments : ScenarioArguments {
   std::string out;  // empty: runs/<name>-<seed>, or with a row no run folder at all
@@ -23,6 +27,7 @@ struct FlyArguments : ScenarioArguments {
   RendererKind renderer = RendererKind::osmesa;
   bool video = false;
   bool quiet = false;
+  bool force = false;
 };
 
 /// As a campaign reads it. The row file's name is the flight's id, the scenario's file that of its condition.
@@ -31,9 +36,9 @@ FlightRow row_of(const FlyArguments& arguments, const Scenario& scenario, const 
   row.cruise_speed_mps = scenario.autopilot.autopilot.flight_model.cruise_speed_mps;
   row.square_metres_per_tree = scenario.forest.square_metres_per_tree;
   row.goal_m = scenario.goal_x_m();
-  row.condition = std::filesystem::path(arguments.scenario).stem().string();
+  row.condition = fs::path(arguments.scenario).stem().string();
   row.id = arguments.row.empty() ? fmt::format("{}-{}", row.condition, row.seed)
-                                 : std::filesystem::path(arguments.row).stem().string();
+                                 : fs::path(arguments.row).stem().string();
   return row;
 }
 
@@ -41,6 +46,31 @@ FlightCost cost_of(const FlightResult& result) {
   struct rusage usage {};
   getrusage(RUSAGE_SELF, &usage);
   return {result.wall_s, static_cast<double>(usage.ru_maxrss) * 1.024e-3};
+}
+
+fs::path folder_of(const FlyArguments& arguments, const Scenario& scenario) {
+  if (!arguments.out.empty()) return arguments.out;
+  if (!arguments.row.empty()) return {};
+  return fmt::format("runs/{}-{}", scenario.name, scenario.seed);
+}
+
+/// What is to be written beside the run folder; within it, it can be once that is there.
+void require_writable_beside(const fs::path& folder, const std::string& file) {
+  if (file.empty()) return;
+  std::error_code ignored;
+  const fs::path above = fs::weakly_canonical(fs::absolute(file), ignored).parent_path();
+  if (folder.empty() || above != fs::weakly_canonical(fs::absolute(folder), ignored)) require_writable(file);
+}
+
+FlightResult flown(const Scenario& scenario, const FlyOptions& options, std::optional<OutputFolder>& output) {
+  try {
+    FlightResult result = fly(scenario, options);
+    if (output) output->finish();
+    return result;
+  } catch (const LostFilm&) {
+    output->finish();
+    throw;
+  }
 }
 
 int run_fly(const FlyArguments& arguments) {
@@ -51,22 +81,25 @@ int run_fly(const FlyArguments& arguments) {
   require_rig(scenario, arguments, options.models_folder / "rigs");
   options.video = arguments.video;
   options.renderer = arguments.renderer;
-  options.output_folder = arguments.out;
-  if (arguments.out.empty() && arguments.row.empty())
-    options.output_folder = fmt::format("runs/{}-{}", scenario.name, scenario.seed);
-  if (options.video && options.output_folder.empty())
-    throw ScenarioError("--video: expected --out beside --row");
-  const bool shows_progress = !arguments.quiet && isatty(STDOUT_FILENO) == 1;
-  if (shows_progress) options.on_progress = print_flight_progress;
-  const FlightResult result = fly(scenario, options);
-  if (shows_progress) fmt::print("\r\033[K");
+  const fs::path folder = folder_of(arguments, scenario);
+  if (options.video && folder.empty()) throw ScenarioError("--video: expected --out beside --row");
+  for (const std::string& file : {arguments.row, arguments.junit}) require_writable_beside(folder, file);
+  std::optional<OutputFolder> output;
+  if (!folder.empty()) {
+    output.emplace(folder, run_contents(scenario), arguments.force ? Replace::anything : Replace::same);
+    options.output_folder = output->path();
+  }
+  ProgressLine line(!arguments.quiet);
+  options.on_progress = [&](const FlightProgress& progress) { show(line, progress); };
+  const FlightResult result = flown(scenario, options, output);
+  line.clear();
   const FlightRow row = row_of(arguments, scenario, result);
   if (!arguments.row.empty()) write_lasting_file(arguments.row, to_json(FlightFile{row, cost_of(result)}));
   if (!arguments.junit.empty()) write_whole_file(arguments.junit, campaign_junit({row}));
   if (!arguments.quiet) {
     fmt::print("{}", to_report(result));
-    if (!options.output_folder.empty()) fmt::print("  {:<18}{}\n", "files", options.output_folder.string());
-    if (options.video) fmt::print("  {:<18}{}\n", "video", (options.output_folder / "flight.mp4").string());
+    if (output) fmt::print("  {:<18}{}\n", "files", folder.string());
+    if (options.video) fmt::print("  {:<18}{}\n", "video", (folder / "flight.mp4").string());
   }
   return result.ending == Ending::goal ? exit_goal : exit_not_goal;
 }
@@ -84,6 +117,7 @@ void add_fly_command(CommandLine& line) {
                "write the flight's row there, as campaign and collect read it; no run folder");
   command.text("--junit", "FILE", arguments->junit, "write the flight as a JUnit test case");
   command.flag("--video", arguments->video, "also make flight.mp4 and still.png");
+  command.flag("--force", arguments->force, "replace a run of another configuration in the run folder");
   command.flag("--quiet", arguments->quiet, "print nothing");
   command.runs([arguments] { return run_fly(*arguments); });
 }

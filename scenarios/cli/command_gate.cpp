@@ -20,6 +20,7 @@ struct GateArguments {
 };
 
 int run_gate(const GateArguments& arguments) {
+  require_writable(arguments.junit);
   const Comparison comparison =
       compare_campaigns(read_campaign_rows(arguments.baseline), read_campaign_rows(arguments.candidate));
   const GateVerdict verdict = judge(comparison, arguments.rule);

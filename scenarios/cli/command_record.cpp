@@ -1,12 +1,13 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <memory>
 
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/cli/flight_terminal.hpp"
+#include "scenarios/output/output_folder.hpp"
 #include "scenarios/recording/carried_path.hpp"
+#include "scenarios/recording/euroc_recording.hpp"
 #include "scenarios/recording/record.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
@@ -20,14 +21,7 @@ struct RecordArguments : ScenarioArguments {
   std::string path;                // empty: none to follow
   std::optional<double> height_m;
   bool quiet = false;
-};
-
-/// A progress line where there is a terminal, gone before the report or a complaint.
-struct ProgressOnTerminal {
-  bool shown = isatty(STDOUT_FILENO) == 1;
-  ~ProgressOnTerminal() {
-    if (shown) fmt::print("\r\033[K");
-  }
+  bool force = false;
 };
 
 std::string report_of(const FlownRecording& flight) {
@@ -58,8 +52,8 @@ std::filesystem::path path_file(const std::filesystem::path& given) {
 std::string record(const RecordArguments& arguments, const Scenario& scenario, FlyOptions options) {
   const std::vector<TimedPose> path =
       arguments.path.empty() ? std::vector<TimedPose>{} : read_path(path_file(arguments.path));
-  const ProgressOnTerminal progress;
-  if (progress.shown && !arguments.quiet) options.on_progress = print_flight_progress;
+  ProgressLine line(!arguments.quiet);
+  options.on_progress = [&](const FlightProgress& progress) { show(line, progress); };
   if (!path.empty()) return report_of(follow_recorded(scenario, path, options));
   if (!arguments.walk_mps) return report_of(fly_recorded(scenario, options));
   return report_of(walk_recorded(
@@ -75,8 +69,11 @@ int run_record(const RecordArguments& arguments) {
   options.models_folder = data_root() / "models";
   require_rig(scenario, arguments, options.models_folder / "rigs");
   options.renderer = arguments.renderer;
-  options.output_folder = arguments.out;
+  OutputFolder output(arguments.out, recording_contents(scenario),
+                      arguments.force ? Replace::anything : Replace::nothing);
+  options.output_folder = output.path();
   const std::string report = record(arguments, scenario, options);
+  output.finish();
   if (!arguments.quiet) fmt::print("{}  {:<18}{}\n", report, "files", arguments.out);
   return exit_goal;
 }
@@ -92,6 +89,7 @@ void add_record_command(CommandLine& line) {
   add_scenario_options(command, *arguments);
   command.text("--out", "FOLDER", arguments->out, "for the recording; gets mav0").required();
   add_renderer_option(command, arguments->renderer);
+  command.flag("--force", arguments->force, "replace a recording that is in the folder already");
   command.flag("--quiet", arguments->quiet, "print nothing");
   command.flag_or_number("--walk", 1.4, arguments->walk_mps, 0.1, 5.0,
                          "--walk or --walk=SPEED: carry the cameras through at a walk (1.4 m/s)");

@@ -32,13 +32,15 @@ CalibratedRig read(const RigArguments& arguments) {
 }
 
 void write_picture(const fs::path& file, const cv::Mat& picture) {
-  if (file.extension() != ".png" && file.extension() != ".jpg")
-    throw ScenarioError(fmt::format("--out {}: expected a .png or .jpg", file.string()));
   const std::vector<unsigned char> bytes = picture_codecs().encode(file.extension().string(), picture);
   write_whole_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 int run_rig(const RigArguments& arguments) {
+  const fs::path out = arguments.out;
+  if (!out.empty() && out.extension() != ".png" && out.extension() != ".jpg")
+    throw ScenarioError(fmt::format("--out {}: expected a .png or .jpg", arguments.out));
+  require_writable(out);
   const CalibratedRig calibrated = read(arguments);
   const RigFigures figures = rig_figures(calibrated.rig, PushbroomConfig());
   if (!arguments.out.empty()) write_picture(arguments.out, draw_rig(calibrated.rig, figures));

@@ -6,7 +6,7 @@
 #include "scenarios/campaign/slurm_engine.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
-#include "scenarios/output/file_output.hpp"
+#include "scenarios/output/signals.hpp"
 
 namespace understory {
 namespace {
@@ -24,11 +24,12 @@ int run_shard(const ShardArguments& arguments) {
   if (arguments.number >= arguments.of)
     throw ScenarioError(
         fmt::format("--number {}: expected less than --of {}", arguments.number, arguments.of));
+  const StopSignals stop_signals;
   LocalEngineConfig config;
   config.jobs = arguments.jobs;
   const bool finished =
       fly_locally(folder, campaign, tasks_of_shard(campaign, arguments.number, arguments.of), config, {});
-  if (!finished) throw MachineError("stopped; the same command goes on");
+  if (!finished) throw Stopped(stop_signals.number(), "stopped; the same command goes on");
   return exit_goal;
 }
 

@@ -7,8 +7,8 @@
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/output/output_folder.hpp"
 #include "scenarios/output/progress_line.hpp"
-#include "scenarios/output/stop_signals.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
 #include "scenarios/tuning/judge.hpp"
 #include "scenarios/tuning/tune_report.hpp"
@@ -53,8 +53,8 @@ int run_tune(const TuneArguments& arguments) {
   const TuneFile file = load_tune_file(arguments.file, scenario_file);
   const fs::path folder =
       arguments.out.empty() ? fs::path("results") / ("tune-" + file.name) : fs::path(arguments.out);
+  const FolderLock lock(folder, folder);
   prepare_tune_folder(folder, file, std::string(word_for(arguments.renderer)), arguments.resume);
-  const FolderLock lock(CampaignFolder{folder});
   const Judges judges = judges_of(file, arguments, folder);
   const StopSignals stop_signals;
   ProgressLine line;
@@ -74,8 +74,7 @@ int run_tune(const TuneArguments& arguments) {
       fmt::print("no trial is better than the scenario as it is: no best.yaml\ntables and plots: {}\n",
                  folder.string());
   } catch (const Stopped&) {
-    line.clear();
-    throw MachineError(fmt::format("{}: stopped; --resume goes on", folder.string()));
+    throw Stopped(stop_signals.number(), fmt::format("{}: stopped; --resume goes on", folder.string()));
   }
   return exit_goal;
 }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
 
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
@@ -11,13 +10,13 @@
 
 namespace understory {
 
-void print_flight_progress(const FlightProgress& progress) {
+void show(ProgressLine& line, const FlightProgress& progress) {
   const std::string clearance =
       std::isfinite(progress.min_clearance_m) ? fmt::format("{:.2f} m", progress.min_clearance_m) : "-";
-  fmt::print("\r\033[K{:5.2f} s  {:5.1f} of {:.0f} m  {:4.1f} m/s  minimum clearance {}  {:.2f} x real time",
-             progress.simulated_s, progress.progress_m, progress.goal_m, progress.speed_mps, clearance,
-             progress.wall_s > 0 ? progress.simulated_s / progress.wall_s : 0.0);
-  std::fflush(stdout);
+  line.show(
+      fmt::format("{:5.2f} s  {:5.1f} of {:.0f} m  {:4.1f} m/s  minimum clearance {}  {:.2f} x real time",
+                  progress.simulated_s, progress.progress_m, progress.goal_m, progress.speed_mps, clearance,
+                  progress.wall_s > 0 ? progress.simulated_s / progress.wall_s : 0.0));
 }
 
 std::string renderer_of_this_machine() {

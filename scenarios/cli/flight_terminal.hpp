@@ -4,11 +4,11 @@
 
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/flight/fly.hpp"
+#include "scenarios/output/progress_line.hpp"
 
 namespace understory {
 
-/// One line of a terminal, written over at every call.
-void print_flight_progress(const FlightProgress& progress);
+void show(ProgressLine& line, const FlightProgress& progress);
 
 /// Throws ScenarioError where the scenario's rig is neither a name in `rigs` nor a file: here, where it is
 /// still known which line named it.

@@ -9,9 +9,9 @@
 
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/config/config_tree.hpp"
-#include "scenarios/output/file_output.hpp"
+#include "scenarios/output/errors.hpp"
 #include "scenarios/output/program.hpp"
+#include "scenarios/output/signals.hpp"
 
 namespace {
 
@@ -21,6 +21,7 @@ using namespace understory;
 void complain(std::string message) {
   std::replace(message.begin(), message.end(), '\n', ' ');
   while (!message.empty() && message.back() == ' ') message.pop_back();
+  const auto lock = hold_outputs();
   fmt::print(stderr, "understory: {}\n", message);
 }
 
@@ -76,6 +77,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   std::signal(SIGABRT, [](int) { std::_Exit(exit_machine_failed); });  // an assertion has already said why
   try {
+    end_on_signals();
     const int status = run(argc, argv);
     if (std::fflush(stdout) != 0) throw MachineError("standard output: No space left, or its reader is gone");
     return status;
@@ -85,6 +87,9 @@ int main(int argc, char** argv) {
   } catch (const MachineError& error) {
     complain(error.what());
     return exit_machine_failed;
+  } catch (const Stopped& error) {
+    complain(error.what());
+    return 128 + error.signal;
   } catch (const std::exception& error) {
     complain(std::string("internal fault: ") + error.what());
     return exit_machine_failed;

@@ -2,9 +2,8 @@
 
 #include <stdexcept>
 
-#include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/quiet_standard_error.hpp"
-#include "scenarios/output/file_output.hpp"
+#include "scenarios/output/errors.hpp"
 
 namespace understory {
 

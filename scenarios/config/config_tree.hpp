@@ -1,17 +1,13 @@
 #pragma once
 
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace understory {
+#include "scenarios/output/errors.hpp"
 
-/// Bad input from a person: one line naming where (file:line, or --set), the key, and what was expected.
-struct ScenarioError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+namespace understory {
 
 /// A configuration as written, before anybody knows what its keys mean. It stands between YAML and the
 /// visitors, so that yaml-cpp stays in one source file and a --set argument passes the same checks as a line

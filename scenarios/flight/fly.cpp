@@ -41,12 +41,18 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   observers.insert(observers.end(), options.observers.begin(), options.observers.end());
 
   Flight flight(scenario, {options.models_folder, options.renderer}, std::move(observers));
-  if (!options.output_folder.empty()) prepare_run_folder(scenario, options.output_folder);
   while (!flight.ending()) flight.step();
 
   const FlightResult result = record.finish(flight);
-  if (film) film->finish();
+  std::string lost;
+  try {
+    if (film) film->finish();
+  } catch (const MachineError& error) {  // a film fills a disk: without it there is room for the rest
+    lost = error.what();
+    film.reset();
+  }
   if (!options.output_folder.empty()) record.write(options.output_folder);
+  if (!lost.empty()) throw LostFilm(lost);
   return result;
 }
 

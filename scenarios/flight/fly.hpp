@@ -6,6 +6,7 @@
 
 #include "scenarios/flight/flight_observer.hpp"
 #include "scenarios/flight/flight_result.hpp"
+#include "scenarios/output/errors.hpp"
 #include "scenarios/scenario/scenario.hpp"
 #include "sim/render/renderer_kind.hpp"
 
@@ -23,15 +24,21 @@ struct FlightProgress {
 
 struct FlyOptions {
   std::filesystem::path models_folder;
-  std::filesystem::path output_folder;  ///< gets the run's files, created where missing; empty: no files
-  bool video = false;                   ///< also flight.mp4 and still.png
-  RendererKind renderer = RendererKind::osmesa;            ///< the machine's: not part of the scenario
-  std::vector<FlightObserver*> observers;                  ///< beside the run's own record
+  std::filesystem::path output_folder;           ///< gets the run's files (OutputFolder); empty: no files
+  bool video = false;                            ///< also flight.mp4 and still.png
+  RendererKind renderer = RendererKind::osmesa;  ///< the machine's: not part of the scenario
+  std::vector<FlightObserver*> observers;        ///< beside the run's own record
   std::function<void(const FlightProgress&)> on_progress;  ///< ten times per simulated second; may be empty
 };
 
-/// Flies a scenario once and leaves its run folder: scenario.yaml first, result.json last. Throws
-/// ScenarioError at bad input (rig, folder), MachineError where the machine fails (GL library, disk).
+/// A film could not be finished; the run's other files are whole.
+struct LostFilm : MachineError {
+  using MachineError::MachineError;
+};
+
+/// Flies a scenario once and leaves its files: trajectory.csv, map.ply, result.json. Throws
+/// ScenarioError at bad input (rig, folder), MachineError where the machine fails (GL library, disk),
+/// LostFilm where only the film does.
 FlightResult fly(const Scenario& scenario, const FlyOptions& options);
 
 }  // namespace understory

@@ -43,12 +43,10 @@ std::span<const std::byte> bytes_of(const cv::Mat& image) {
 
 }  // namespace
 
-void prepare_run_folder(const Scenario& scenario, const std::filesystem::path& folder) {
-  prepare_output_folder(folder);
-  for (const char* file : {"result.json", "trajectory.csv", "map.ply", "flight.mp4", "still.png"}) {
-    std::filesystem::remove(folder / file);  // of an earlier run
-  }
-  write_whole_file(folder / "scenario.yaml", scenario_to_text(scenario));
+FolderContents run_contents(const Scenario& scenario) {
+  return {"scenario.yaml",
+          scenario_to_text(scenario),
+          {"result.json", "scenario.yaml", "trajectory.csv", "map.ply", "flight.mp4", "still.png"}};
 }
 
 void RunRecord::on_frame(const Flight& flight) {

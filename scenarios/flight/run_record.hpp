@@ -10,13 +10,13 @@
 #include "scenarios/flight/flight_observer.hpp"
 #include "scenarios/flight/flight_result.hpp"
 #include "scenarios/flight/run_digest.hpp"
+#include "scenarios/output/output_folder.hpp"
 #include "scenarios/scenario/scenario.hpp"
 
 namespace understory {
 
-/// Makes `folder`, removes the files that an earlier run left there, and writes scenario.yaml. Throws
-/// ScenarioError where it cannot be written.
-void prepare_run_folder(const Scenario& scenario, const std::filesystem::path& folder);
+/// What a flight leaves in its folder.
+FolderContents run_contents(const Scenario& scenario);
 
 /// Collects what a flight leaves behind and scores it. Works in memory; write() makes the run folder's files,
 /// each whole or not at all, result.json last.
@@ -29,7 +29,7 @@ class RunRecord : public FlightObserver {
   /// Closes the sums and the digest. Once, when the flight has ended.
   FlightResult finish(const Flight& flight);
 
-  /// trajectory.csv, map.ply and result.json into `folder` (scenario.yaml is written before take-off).
+  /// trajectory.csv, map.ply and result.json into `folder`.
   void write(const std::filesystem::path& folder) const;
 
  private:

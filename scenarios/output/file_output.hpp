@@ -1,30 +1,34 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <stdexcept>
-#include <string>
 #include <string_view>
 
+#include "scenarios/output/errors.hpp"
+
+/// The one way files are written.
 namespace understory {
 
-/// The machine failed us: a full disk, a missing GL library. One line; exit status 3.
-struct MachineError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-/// Makes `folder` and proves that files can be written into it. Throws ScenarioError where not.
-void prepare_output_folder(const std::filesystem::path& folder);
-
-/// Writes to "<file>.part" and renames it when all of it is on its way, so that no half-written file looks
-/// whole; a failed .part is removed. Throws MachineError where the disk is full, ScenarioError where it
-/// cannot be written.
+/// Writes a file: whole or not at all where it is a regular file or a new one (it bears another name that
+/// ends with ".part" until then), straight through where it is a device, a FIFO or a descriptor as
+/// /dev/stdout is. Symbolic links are followed. Throws MachineError where the disk is full or the reader is
+/// gone, ScenarioError where the file cannot be written.
 void write_whole_file(const std::filesystem::path& file, std::string_view content);
 
-/// The same, and back only when it would outlive a power cut. Two programs may write one file at a time, even
-/// from two machines: each has a .part of its own.
+/// The same, and back only when it would outlive a power cut.
 void write_lasting_file(const std::filesystem::path& file, std::string_view content);
+
+/// Throws what write_whole_file would throw, as far as that can be known beforehand; for outputs that end the
+/// work, before it starts. An empty name means no output.
+void require_writable(const std::filesystem::path& file);
+
+/// Makes `folder` and proves that files can be written into it. Throws as write_whole_file does.
+void prepare_output_folder(const std::filesystem::path& folder);
 
 /// Throws MachineError where fewer than `bytes` are free beside `file`: for writers that cannot tell (video).
 void require_free_space(const std::filesystem::path& file, std::uintmax_t bytes);
+
+/// Throws what errno says about an output.
+[[noreturn]] void refuse_output(const std::filesystem::path& file, int error);
 
 }  // namespace understory

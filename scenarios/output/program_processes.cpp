@@ -1,15 +1,18 @@
 #include "scenarios/output/program_processes.hpp"
 
 #include <fmt/format.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 
-#include "scenarios/output/file_output.hpp"
+#include "scenarios/output/errors.hpp"
 #include "scenarios/output/program.hpp"
+#include "scenarios/output/signals.hpp"
 
 namespace understory {
 
@@ -31,7 +34,12 @@ void ProgramProcesses::start(std::uint64_t tag, const std::vector<std::string>& 
   while (running_.size() >= static_cast<std::size_t>(maximum_count_)) wait_for_one();
   const pid_t child = fork();
   if (child < 0) throw MachineError(fmt::format("cannot start a flight: {}", std::strerror(errno)));
-  if (child == 0) become_this_program(arguments);
+  if (child == 0) {
+    setpgid(0, 0);  // Ctrl-C is ours to answer
+    prctl(PR_SET_PDEATHSIG, SIGHUP);
+    become_this_program(arguments);
+  }
+  ends_with_us(child);
   running_[child] = tag;
 }
 
@@ -41,6 +49,7 @@ void ProgramProcesses::wait_for_one() {
   if (ended == running_.end()) return;
   const std::uint64_t tag = ended->second;
   running_.erase(ended);
+  has_ended(process.pid);
   const int status = process.wait_status;
   on_end_(tag, WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), process);
 }

@@ -3,13 +3,15 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdio>
 
 namespace understory {
 namespace {
 
-constexpr std::chrono::milliseconds on_terminals_every{50};
-constexpr std::chrono::seconds elsewhere_every{30};
+constexpr double between_lines_s = 30;
+
+std::atomic<bool> stands = false;
 
 std::string in_words(double seconds) {
   if (seconds < 90) return fmt::format("{:.0f} s", seconds);
@@ -19,24 +21,32 @@ std::string in_words(double seconds) {
 
 }  // namespace
 
-ProgressLine::ProgressLine() : is_terminal_(isatty(STDOUT_FILENO) == 1) {}
+ProgressLine::ProgressLine(bool shown)
+    : is_shown_(shown),
+      is_terminal_(shown && isatty(STDOUT_FILENO) == 1),
+      next_line_s_(is_terminal_ ? 0 : between_lines_s) {}
+
+ProgressLine::~ProgressLine() { clear(); }
 
 void ProgressLine::show(const std::string& text, std::size_t done, std::size_t left) {
-  const Clock::time_point now = Clock::now();
-  if (is_terminal_ ? is_shown_ && now - shown_ < on_terminals_every : now - shown_ < elsewhere_every) return;
-  shown_ = now;
-  is_shown_ = true;
-  const double left_s = std::chrono::duration<double>(now - begin_).count() * static_cast<double>(left) /
-                        static_cast<double>(done > 0 ? done : 1);
+  if (!is_shown_) return;
+  const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  if (elapsed_s < next_line_s_) return;
+  next_line_s_ = elapsed_s + (is_terminal_ ? 0.1 : between_lines_s);
+  const double left_s = done == 0 ? 0 : elapsed_s / static_cast<double>(done) * static_cast<double>(left);
   fmt::print("{}{}{}{}", is_terminal_ ? "\r\033[K" : "", text,
              done == 0 ? "" : fmt::format(", {} left", in_words(left_s)), is_terminal_ ? "" : "\n");
   std::fflush(stdout);
+  stands = is_terminal_;
 }
 
 void ProgressLine::clear() {
-  if (is_terminal_ && is_shown_) fmt::print("\r\033[K");
-  is_shown_ = false;
-  std::fflush(stdout);
+  if (is_terminal_) clear_any();
+}
+
+void ProgressLine::clear_any() {
+  // Past stdout's buffer, which somebody may hold who waits for its reader.
+  if (stands.exchange(false) && write(STDOUT_FILENO, "\r\033[K", 4) < 0) return;
 }
 
 }  // namespace understory

@@ -9,6 +9,7 @@
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/named_seed.hpp"
 #include "scenarios/flight/flight.hpp"
+#include "scenarios/flight/run_record.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/report/pictures.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
@@ -56,24 +57,24 @@ cv::Mat depth_in_millimetres(const cv::Mat& depth_m) {
   return millimetres;
 }
 
+FolderContents recording_contents(const Scenario& scenario) {
+  FolderContents contents = run_contents(scenario);
+  contents.patterns.insert(contents.patterns.end(),
+                           {"mav0/*/*.csv", "mav0/*/sensor.yaml", "mav0/*/data/*.png"});
+  return contents;
+}
+
 EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario, const CalibratedRig& rig,
                                double expected_s)
     : folder_(folder / "mav0"),
-      part_(folder / "mav0.part"),
       rig_(rig.rig),
       truth_every_steps_(physics_rate_hz / scenario.sensors.sensors.imu_rate_hz) {
-  std::error_code ignored;
-  if (fs::exists(fs::symlink_status(folder_, ignored)))
-    throw ScenarioError(
-        fmt::format("{}: expected a folder without a recording, found mav0 in it", folder.string()));
   const std::vector<Obstacle> obstacles = course_obstacles(scenario);
   require_numbers_for(obstacles);
-  prepare_output_folder(folder);
-  fs::remove_all(part_, ignored);  // of an interrupted recording
-  require_free_space(part_, expected_bytes(scenario, rig.rig, expected_s));
+  require_free_space(folder_, expected_bytes(scenario, rig.rig, expected_s));
   for (const char* sensor :
        {"cam0/data", "cam1/data", "depth0/data", "objects0/data", "imu0", "state_groundtruth_estimate0"})
-    prepare_output_folder(part_ / sensor);
+    prepare_output_folder(folder_ / sensor);
 
   // The flight's own IMU draws its constants from this seed.
   const ImuConfig& config = scenario.sensors.sensors.imu;
@@ -83,19 +84,15 @@ EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario,
 
   const auto cameras = recorded_cameras(rig);
   const int camera_hz = scenario.cameras.rate_hz;
-  write_whole_file(part_ / "cam0/sensor.yaml", camera_sensor_text(cameras[0], rig_, camera_hz));
-  write_whole_file(part_ / "cam1/sensor.yaml", camera_sensor_text(cameras[1], rig_, camera_hz));
-  write_whole_file(part_ / "depth0/sensor.yaml", depth_sensor_text(rig_, camera_hz));
-  write_whole_file(part_ / "objects0/sensor.yaml", objects_sensor_text(rig_, camera_hz));
-  write_whole_file(part_ / "objects0/objects.csv", objects_text(obstacles));
-  write_whole_file(part_ / "imu0/sensor.yaml", imu_sensor_text(config, scenario.sensors.sensors.imu_rate_hz));
-  write_whole_file(part_ / "state_groundtruth_estimate0/sensor.yaml",
+  write_whole_file(folder_ / "cam0/sensor.yaml", camera_sensor_text(cameras[0], rig_, camera_hz));
+  write_whole_file(folder_ / "cam1/sensor.yaml", camera_sensor_text(cameras[1], rig_, camera_hz));
+  write_whole_file(folder_ / "depth0/sensor.yaml", depth_sensor_text(rig_, camera_hz));
+  write_whole_file(folder_ / "objects0/sensor.yaml", objects_sensor_text(rig_, camera_hz));
+  write_whole_file(folder_ / "objects0/objects.csv", objects_text(obstacles));
+  write_whole_file(folder_ / "imu0/sensor.yaml",
+                   imu_sensor_text(config, scenario.sensors.sensors.imu_rate_hz));
+  write_whole_file(folder_ / "state_groundtruth_estimate0/sensor.yaml",
                    state_sensor_text("the simulation's truth; biases are the flight's constants"));
-}
-
-EurocRecording::~EurocRecording() {
-  std::error_code ignored;
-  fs::remove_all(part_, ignored);
 }
 
 void EurocRecording::on_frame(const Flight& flight) {
@@ -160,11 +157,11 @@ void EurocRecording::add(const StereoFrame& frame, const StereoCameras& cameras)
   const Truth truth = truth_at(frame.t_ns);
   add_true_state(truth);
   const std::string name = fmt::format("{}.png", recorded_ns(frame.t_ns));
-  write_png(part_ / "cam0/data" / name, frame.left);
-  write_png(part_ / "cam1/data" / name, frame.right);
+  write_png(folder_ / "cam0/data" / name, frame.left);
+  write_png(folder_ / "cam1/data" / name, frame.right);
   const TrueView view = cameras.true_view(truth.T_world_body);
-  write_png(part_ / "depth0/data" / name, depth_in_millimetres(view.depth_m));
-  write_png(part_ / "objects0/data" / name, view.objects);
+  write_png(folder_ / "depth0/data" / name, depth_in_millimetres(view.depth_m));
+  write_png(folder_ / "objects0/data" / name, view.objects);
   image_lines_ += fmt::format("{},{}\n", recorded_ns(frame.t_ns), name);
   ++frames_;
 }
@@ -174,19 +171,15 @@ void EurocRecording::finish() {
     throw ScenarioError(fmt::format("{}: expected at least one frame, the scenario's cameras gave none",
                                     folder_.parent_path().string()));
   for (const char* camera : {"cam0", "cam1", "depth0", "objects0"})
-    write_whole_file(part_ / camera / "data.csv", image_header + image_lines_);
-  write_whole_file(part_ / "imu0/data.csv", imu_header + imu_lines_);
-  write_whole_file(part_ / "state_groundtruth_estimate0/data.csv", text_of(state_header, true_states_));
+    write_whole_file(folder_ / camera / "data.csv", image_header + image_lines_);
+  write_whole_file(folder_ / "imu0/data.csv", imu_header + imu_lines_);
+  write_whole_file(folder_ / "state_groundtruth_estimate0/data.csv", text_of(state_header, true_states_));
   if (!estimates_.empty()) {
-    prepare_output_folder(part_ / "estimate0");
-    write_whole_file(part_ / "estimate0/sensor.yaml",
+    prepare_output_folder(folder_ / "estimate0");
+    write_whole_file(folder_ / "estimate0/sensor.yaml",
                      state_sensor_text("what the flight's own estimator believed at the time"));
-    write_whole_file(part_ / "estimate0/data.csv", text_of(state_header, estimates_));
+    write_whole_file(folder_ / "estimate0/data.csv", text_of(state_header, estimates_));
   }
-  std::error_code error;
-  fs::rename(part_, folder_, error);
-  if (error)
-    throw ScenarioError(fmt::format("{}: expected a writable output: {}", folder_.string(), error.message()));
 }
 
 }  // namespace understory

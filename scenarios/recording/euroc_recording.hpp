@@ -10,6 +10,7 @@
 #include "estimation/state.hpp"
 #include "perception/stereo_frame.hpp"
 #include "scenarios/flight/flight_observer.hpp"
+#include "scenarios/output/output_folder.hpp"
 #include "scenarios/recording/euroc_texts.hpp"
 #include "scenarios/scenario/scenario.hpp"
 #include "sim/aircraft/truth.hpp"
@@ -17,17 +18,15 @@
 
 namespace understory {
 
-/// Keeps images, IMU samples and the truth in the EuRoC/ASL layout: <folder>/mav0 (docs/record.md),
-/// "mav0.part" until it is complete. Images are written as they come, the tables by finish().
+/// Keeps images, IMU samples and the truth in the EuRoC/ASL layout: <folder>/mav0 (docs/record.md). Images
+/// are written as they come, the tables by finish().
 class EurocRecording : public FlightObserver {
  public:
-  /// `expected_s`: how much of simulated time is to come; that many images must fit the disk. Throws
-  /// ScenarioError where the folder cannot be written or has a recording already or the
-  /// course more obstacles than 16 bits can number, MachineError where the disk
-  /// is too full.
+  /// `folder`: an OutputFolder's. `expected_s`: how much of simulated time is to come; that many images must
+  /// fit the disk. Throws ScenarioError where the course has more obstacles than 16 bits can number,
+  /// MachineError where the disk is too full.
   EurocRecording(const std::filesystem::path& folder, const Scenario& scenario, const CalibratedRig& rig,
                  double expected_s);
-  ~EurocRecording() override;  ///< removes an unfinished recording
   EurocRecording(const EurocRecording&) = delete;
   EurocRecording& operator=(const EurocRecording&) = delete;
 
@@ -54,7 +53,7 @@ class EurocRecording : public FlightObserver {
   void add_true_state(const Truth& truth);
   void add_estimate(const State& state);
 
-  std::filesystem::path folder_, part_;
+  std::filesystem::path folder_;
   StereoRig rig_;
   std::int64_t truth_every_steps_;
   Eigen::Vector3d gyro_bias_radps_, accelerometer_bias_mps2_;
@@ -64,6 +63,9 @@ class EurocRecording : public FlightObserver {
   std::string image_lines_, imu_lines_;
   std::map<std::int64_t, std::string> true_states_, estimates_;  ///< by time: frames come late
 };
+
+/// What a recording leaves in its folder, the run's files included.
+FolderContents recording_contents(const Scenario& scenario);
 
 /// Depth in metres (CV_32FC1) as 16-bit millimetres; 0 where there is nothing within 65.535 m.
 cv::Mat depth_in_millimetres(const cv::Mat& depth_m);

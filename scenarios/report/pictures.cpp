@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "perception/io/picture_codecs.hpp"
-#include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
 
 namespace understory {
@@ -30,25 +29,17 @@ void write_png(const fs::path& file, const cv::Mat& picture) {
 
 PictureFolder::PictureFolder(fs::path folder)
     : folder_(std::move(folder)), part_(folder_.string() + ".part") {
-  remove_pictures(part_);
-  prepare_output_folder(part_);
-}
-
-PictureFolder::~PictureFolder() {
-  std::error_code ignored;
-  fs::remove_all(part_, ignored);
+  remove_pictures(part_.path());
+  prepare_output_folder(part_.path());
 }
 
 void PictureFolder::add(const cv::Mat& picture) {
-  write_png(part_ / fmt::format("{:06}.png", count_++), picture);
+  write_png(part_.path() / fmt::format("{:06}.png", count_++), picture);
 }
 
 void PictureFolder::finish() {
   remove_pictures(folder_);
-  std::error_code error;
-  fs::rename(part_, folder_, error);
-  if (error)
-    throw ScenarioError(fmt::format("{}: expected a writable output: {}", folder_.string(), error.message()));
+  part_.become(folder_);
 }
 
 void remove_pictures(const fs::path& folder) {
@@ -61,19 +52,19 @@ void remove_pictures(const fs::path& folder) {
                                       folder.string(), entry->path().filename().string()));
   }
   if (!error) fs::remove_all(folder, error);
-  if (error)
-    throw ScenarioError(fmt::format("{}: expected a writable output: {}", folder.string(), error.message()));
+  if (error) refuse_output(folder, error.value());
 }
 
-VideoFile::VideoFile(fs::path file, double frames_per_s) : file_(std::move(file)), rate_hz_(frames_per_s) {}
+VideoFile::VideoFile(fs::path file, double frames_per_s)
+    : file_(std::move(file)),
+      part_(file_.parent_path() / (file_.stem().string() + ".part" + file_.extension().string())),
+      rate_hz_(frames_per_s) {}
 
-fs::path VideoFile::part() const {
-  return file_.parent_path() / (file_.stem().string() + ".part" + file_.extension().string());
-}
+VideoFile::~VideoFile() = default;
 
 void VideoFile::add(const cv::Mat& picture) {
   if (!writer_) {
-    auto writer = picture_codecs().write_film(part().string(), rate_hz_, picture.size());
+    auto writer = picture_codecs().write_film(part_.path().string(), rate_hz_, picture.size());
     if (!writer->isOpened())
       throw MachineError(fmt::format("{}: OpenCV's FFmpeg offers no H.264 encoder", file_.string()));
     writer_ = std::move(writer);
@@ -82,23 +73,17 @@ void VideoFile::add(const cv::Mat& picture) {
   ++picture_count_;
 }
 
-VideoFile::~VideoFile() {
-  writer_.reset();
-  std::error_code ignored;
-  fs::remove(part(), ignored);
-}
-
 void VideoFile::finish() {
   if (!writer_) return;
   writer_->release();
   // The encoder reports no failed write: see whether the disk is full and whether the file's index reads
   // back.
   require_free_space(file_, 1 << 16);
-  const auto reader = picture_codecs().read_film(part().string());
+  const auto reader = picture_codecs().read_film(part_.path().string());
   if (!reader->isOpened() || static_cast<int>(reader->get(cv::CAP_PROP_FRAME_COUNT)) != picture_count_) {
     throw MachineError(fmt::format("{}: what was written does not read back whole", file_.string()));
   }
-  fs::rename(part(), file_);
+  part_.become(file_);
 }
 
 }  // namespace understory

@@ -5,6 +5,8 @@
 #include <memory>
 #include <opencv2/core/mat.hpp>
 
+#include "scenarios/output/signals.hpp"
+
 namespace cv {
 class VideoWriter;
 }
@@ -19,16 +21,13 @@ void write_png(const std::filesystem::path& file, const cv::Mat& picture);
 class PictureFolder {
  public:
   explicit PictureFolder(std::filesystem::path folder);
-  ~PictureFolder();  ///< removes what finish() has not made whole
-  PictureFolder(const PictureFolder&) = delete;
-  PictureFolder& operator=(const PictureFolder&) = delete;
-
   /// BGR or gray, 8-bit. Throws MachineError where the disk is full.
   void add(const cv::Mat& picture);
   void finish();
 
  private:
-  std::filesystem::path folder_, part_;
+  std::filesystem::path folder_;
+  Unfinished part_;
   std::int64_t count_ = 0;
 };
 
@@ -41,10 +40,7 @@ void remove_pictures(const std::filesystem::path& folder);
 class VideoFile {
  public:
   VideoFile(std::filesystem::path file, double frames_per_s);
-  ~VideoFile();  ///< removes what finish() has not made whole
-  VideoFile(const VideoFile&) = delete;
-  VideoFile& operator=(const VideoFile&) = delete;
-
+  ~VideoFile();
   /// BGR 8-bit, every picture of the size of the first (even width and height). Throws MachineError where no
   /// H.264 encoder is installed, ScenarioError where the file cannot be made.
   void add(const cv::Mat& picture);
@@ -52,9 +48,8 @@ class VideoFile {
   void finish();
 
  private:
-  std::filesystem::path part() const;
-
   std::filesystem::path file_;
+  Unfinished part_;  ///< FFmpeg tells the format by the name's end
   double rate_hz_;
   int picture_count_ = 0;
   std::unique_ptr<cv::VideoWriter> writer_;  ///< from the first picture on

@@ -23,9 +23,6 @@ struct Measured {
   std::string refused = {};        ///< why nothing was measured, one line; empty where it was
 };
 
-/// Somebody asked the program to stop while something was being measured.
-struct Stopped {};
-
 /// Measures scenarios on some data. The same scenario comes out the same every time.
 class Judge {
  public:

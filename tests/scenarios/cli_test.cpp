@@ -204,13 +204,11 @@ TEST(Cli, BadRigsAreNamedInOneLine) {
                  "rig.xml:1: rig: expected OpenCV's XML");
 }
 
-TEST(Cli, APictureThatCannotBeWrittenIsBadInputAndAFullDiskTheMachines) {
+TEST(Cli, APictureThatCannotBeWrittenIsBadInput) {
   const Folder folder;
   expect_refusal("rig long --out " + (folder.path / "none" / "rig.png").string(),
                  "expected a writable output");
   expect_refusal("rig long --out " + (folder.path / "rig.xyz").string(), "expected a .png or .jpg");
-  fs::create_symlink("/dev/full", folder.path / "rig.png.part");
-  expect_refusal("rig long --out " + (folder.path / "rig.png").string(), "No space left on device", 3);
 }
 
 #ifdef UNDERSTORY_HAS_SIM
@@ -244,14 +242,10 @@ TEST(Cli, BadScenariosAreNamedByFileLineAndKey) {
                  "perception.depths_m: expected depths the rig long can look at, got 900 m");
 }
 
-TEST(Cli, AnUnwritableFolderIsBadInputAndAFullDiskTheMachines) {
+TEST(Cli, AnUnwritableFolderIsBadInput) {
   const Folder folder;
   const std::string in_the_way = folder.file("file", "");
   expect_refusal("fly clear --out " + in_the_way + "/run", "expected a writable output");
-  fs::create_directories(folder.path / "full");
-  fs::create_symlink("/dev/full", folder.path / "full" / "scenario.yaml.part");
-  expect_refusal("fly clear --out " + (folder.path / "full").string(), "No space left on device", 3);
-  EXPECT_FALSE(fs::exists(folder.path / "full" / "result.json"));
 }
 
 TEST(Cli, ARendererIsOneOfThree) {

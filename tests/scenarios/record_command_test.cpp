@@ -33,7 +33,7 @@ TEST(RecordCommand, RecordingChangesNoFlight) {
        {"cam0", "cam1", "imu0", "state_groundtruth_estimate0", "estimate0", "depth0", "objects0"})
     for (const char* file : {"sensor.yaml", "data.csv"})
       EXPECT_TRUE(fs::is_regular_file(fs::path(kept) / "mav0" / sensor / file)) << sensor << ", " << file;
-  expect_refusal("record" + flight + " --out " + kept, "expected a folder without a recording");
+  expect_refusal("record" + flight + " --out " + kept, "holds results already: --force");
 }
 
 TEST(RecordCommand, WrongArgumentsAreBadInput) {

@@ -1,67 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 
-#include "scenarios/config/config_tree.hpp"
 #include "scenarios/flight/flight_result.hpp"
 #include "scenarios/flight/run_digest.hpp"
-#include "scenarios/output/file_output.hpp"
 
 namespace understory {
 namespace {
-
-namespace fs = std::filesystem;
-
-struct Folder {
-  fs::path path =
-      fs::path(testing::TempDir()) /
-      ("understory_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-  Folder() {
-    fs::remove_all(path);
-    fs::create_directories(path);
-  }
-  ~Folder() { fs::remove_all(path); }
-};
-
-std::string content(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
-
-TEST(FileOutput, WritesWhole) {
-  const Folder folder;
-  write_whole_file(folder.path / "a.txt", "first");
-  write_whole_file(folder.path / "a.txt", "second");
-  EXPECT_EQ(content(folder.path / "a.txt"), "second");
-  EXPECT_FALSE(fs::exists(folder.path / "a.txt.part"));
-}
-
-TEST(FileOutput, AFullDiskIsTheMachinesFaultAndLeavesNothing) {
-  const Folder folder;
-  fs::create_symlink("/dev/full", folder.path / "result.json.part");  // writes there fail as on a full disk
-  EXPECT_THROW(write_whole_file(folder.path / "result.json", std::string(100'000, 'x')), MachineError);
-  EXPECT_FALSE(fs::exists(folder.path / "result.json"));
-  EXPECT_FALSE(fs::exists(fs::symlink_status(folder.path / "result.json.part")));
-  fs::create_symlink("/dev/full", folder.path / "small.json.part");  // small enough to fail only when flushed
-  EXPECT_THROW(write_whole_file(folder.path / "small.json", "x"), MachineError);
-}
-
-TEST(FileOutput, AnUnwritableFolderIsBadInput) {
-  const Folder folder;
-  write_whole_file(folder.path / "file", "in the way");
-  EXPECT_THROW(prepare_output_folder(folder.path / "file" / "runs"), ScenarioError);
-  EXPECT_THROW(prepare_output_folder(folder.path / "file"), ScenarioError);
-  EXPECT_THROW(prepare_output_folder("/proc/runs"), ScenarioError);
-  EXPECT_THROW(write_whole_file(folder.path / "none" / "a.txt", "x"), ScenarioError);
-  EXPECT_NO_THROW(prepare_output_folder(folder.path / "new" / "runs"));
-}
 
 TEST(RunDigest, EveryBitAndTheOrderCount) {
   const auto digest = [](auto... words) {

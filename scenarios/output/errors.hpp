@@ -1,0 +1,27 @@
+#pragma once
+
+#include <csignal>
+#include <stdexcept>
+#include <string>
+
+/// How a command ends that did not get to its end. Each is one line on standard error.
+namespace understory {
+
+/// Bad input from a person: where (file:line, an option), the key, what was expected. Exit status 2.
+struct ScenarioError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The machine failed us: a full disk, a missing GL library. Exit status 3.
+struct MachineError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A signal came. Exit status 128 and its number.
+struct Stopped : std::runtime_error {
+  int signal;
+  explicit Stopped(int number = SIGINT, const std::string& what = "stopped")
+      : std::runtime_error(what), signal(number) {}
+};
+
+}  // namespace understory

@@ -1,0 +1,144 @@
+#include "scenarios/output/signals.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <set>
+#include <string_view>
+#include <thread>
+
+#include "scenarios/output/file_output.hpp"
+#include "scenarios/output/progress_line.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array signals{SIGINT, SIGTERM, SIGHUP};
+using Actions = std::array<struct sigaction, signals.size()>;
+
+volatile std::sig_atomic_t remembered = 0;
+Actions before;
+int living = 0;
+std::array<int, 2> wake_pipe;
+int last_words =
+    STDERR_FILENO;  ///< that descriptor as it was at first: readers of files may close it a while
+
+/// Never destroyed: the thread may still look at them while the program ends.
+std::recursive_mutex& door = *new std::recursive_mutex;
+std::set<fs::path>& unfinished = *new std::set<fs::path>;
+std::set<pid_t>& children = *new std::set<pid_t>;
+
+void set_actions(void (*handler)(int), Actions& former) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART;
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    sigaction(signals[i], nullptr, &former[i]);
+    const bool is_nohup = signals[i] == SIGHUP && former[i].sa_handler == SIG_IGN;
+    if (!is_nohup) sigaction(signals[i], &action, nullptr);
+  }
+}
+
+const char* name_of(int signal) {
+  if (signal == SIGINT) return "SIGINT";
+  return signal == SIGTERM ? "SIGTERM" : "SIGHUP";
+}
+
+/// At once; what cannot be said is not.
+void say(int descriptor, std::string_view text) {
+  if (write(descriptor, text.data(), text.size()) < 0) return;
+}
+
+[[noreturn]] void wait_and_end() {
+  int signal = 0;
+  while (read(wake_pipe[0], &signal, sizeof signal) != sizeof signal) {
+  }
+  door.lock();  // whoever makes or names something from here on waits for ever
+  for (const pid_t child : children) kill(child, SIGHUP);
+  for (const pid_t child : children) waitpid(child, nullptr, 0);
+  for (const fs::path& path : unfinished) {
+    std::error_code error;  // the work may be clearing away, too, where it finds its folder gone
+    for (int tries = 0; tries < 100 && fs::exists(fs::symlink_status(path, error)); ++tries)
+      fs::remove_all(path, error);
+  }
+  ProgressLine::clear_any();
+  const std::string line = fmt::format("understory: stopped by {}\n", name_of(signal));
+  if (signal != SIGHUP) say(last_words, line);
+  _exit(128 + signal);
+}
+
+}  // namespace
+
+void end_on_signals() {
+  if (pipe2(wake_pipe.data(), O_CLOEXEC) != 0)
+    throw MachineError(fmt::format("no pipe to be had: {}", std::strerror(errno)));
+  last_words = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
+  Actions former;
+  set_actions(
+      [](int signal) {
+        say(wake_pipe[1], {reinterpret_cast<char*>(&signal), sizeof signal});
+      },
+      former);
+  std::thread(wait_and_end).detach();
+}
+
+void ends_with_us(pid_t child) {
+  const auto lock = hold_outputs();
+  children.insert(child);
+}
+
+void has_ended(pid_t child) {
+  const auto lock = hold_outputs();
+  children.erase(child);
+}
+
+StopSignals::StopSignals() {
+  if (living++ > 0) return;
+  remembered = 0;
+  set_actions([](int signal) { remembered = signal; }, before);
+}
+
+StopSignals::~StopSignals() {
+  if (--living > 0) return;
+  for (std::size_t i = 0; i < signals.size(); ++i) sigaction(signals[i], &before[i], nullptr);
+}
+
+int StopSignals::number() const { return remembered; }
+
+Unfinished::Unfinished(fs::path path) : path_(std::move(path)) {
+  const auto lock = hold_outputs();
+  unfinished.insert(path_);
+}
+
+Unfinished::~Unfinished() {
+  const auto lock = hold_outputs();
+  unfinished.erase(path_);
+  std::error_code ignored;
+  if (!is_kept_) fs::remove_all(path_, ignored);
+}
+
+void Unfinished::become(const fs::path& name) {
+  const auto lock = hold_outputs();
+  if (std::rename(path_.c_str(), name.c_str()) != 0) refuse_output(name, errno);
+  unfinished.erase(path_);
+  is_kept_ = true;
+}
+
+void Unfinished::keep() {
+  const auto lock = hold_outputs();
+  unfinished.erase(path_);
+  is_kept_ = true;
+}
+
+std::unique_lock<std::recursive_mutex> hold_outputs() { return std::unique_lock(door); }
+
+}  // namespace understory

@@ -1,0 +1,196 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+/// What the program leaves behind: whole or nothing, however it ends.
+namespace {
+
+namespace fs = std::filesystem;
+using understory::support::content_of;
+using understory::support::expect_refusal;
+using understory::support::Outcome;
+using understory::support::TemporaryFolder;
+using understory::support::understory;
+
+/// Every name below a folder, sorted.
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    names.push_back(entry.path().lexically_relative(folder).string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+TEST(CliOutput, AnOutputThatCannotBeWrittenIsRefusedBeforeTheWork) {
+  const TemporaryFolder folder;
+  const std::string nowhere = (folder.path() / "none" / "file").string();
+  expect_refusal("rig long --out " + nowhere + ".png", "expected a writable output");
+  expect_refusal("bench --rounds 100000 --json " + nowhere, "expected a writable output");
+  expect_refusal("gate --baseline a --candidate b --junit " + nowhere, "expected a writable output");
+#ifdef UNDERSTORY_HAS_SIM
+  const std::string endless = "fly forest --set forest.length_m=400 --set forest.intangible=true ";
+  expect_refusal(endless + "--row " + nowhere, "expected a writable output");
+  expect_refusal(endless + "--junit " + nowhere, "expected a writable output");
+  expect_refusal(endless + "--out /dev/null/run", "expected a writable output");
+  expect_refusal(endless + "--junit /proc/none", "expected a writable output");
+#endif
+}
+
+TEST(CliOutput, APictureGoesThroughALinkToAFullDevice) {
+  const TemporaryFolder folder;
+  const fs::path link = folder.path() / "rig.png";
+  fs::create_symlink("/dev/full", link);
+  if (geteuid() == 0) {  // who could replace the machine's: one of our own
+    fs::remove(link);
+    const fs::path full = folder.path() / "full";
+    if (std::system(("mknod -m 666 " + full.string() + " c 1 7 && test -c " + full.string()).c_str()) != 0)
+      GTEST_SKIP() << "no device may be made here";
+    fs::create_symlink(full, link);
+  }
+  expect_refusal("rig long --out " + link.string(), "No space left on device", 3);
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_TRUE(fs::is_character_file(link));
+}
+
+#ifdef UNDERSTORY_HAS_SIM
+
+const std::string short_flight = "fly clear --set forest.length_m=1 --quiet ";
+/// Goes on for minutes.
+const std::string long_flight =
+    "fly forest --set forest.length_m=1000 --set forest.intangible=true --set time_limit_s=600 --quiet ";
+
+TEST(CliOutput, StandardOutputIsNoFileToBeReplaced) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "said";
+  const Outcome flown = understory(short_flight + "--row /dev/stdout --junit /dev/stdout > " + file.string());
+  EXPECT_EQ(flown.status, 0) << flown.text;
+  const std::string said = content_of(file);
+  EXPECT_LT(said.find("\"outcome\": \"goal\""), said.find("<testsuites")) << said;
+  EXPECT_EQ(names_in(folder.path()).size(), 1u);
+}
+
+TEST(CliOutput, ARunsFilesMayBeNamedWithinItsFolder) {
+  const TemporaryFolder folder;
+  const std::string run = (folder.path() / "run").string();
+  EXPECT_EQ(understory(short_flight + "--out " + run + " --junit " + run + "/junit.xml").status, 0);
+  EXPECT_TRUE(fs::exists(folder.path() / "run/junit.xml"));
+}
+
+TEST(CliOutput, ARunOfAnotherConfigurationIsKeptUnlessForced) {
+  const TemporaryFolder folder;
+  const std::string there = "cd " + folder.path().string() + " &&";
+  EXPECT_EQ(understory(short_flight, there).status, 0);
+  const fs::path run = folder.path() / "runs" / "clear-1000";
+  const std::string first = content_of(run / "result.json");
+  expect_refusal(short_flight + "--set time_limit_s=2", "another configuration (scenario.yaml): --force", 2,
+                 there);
+  expect_refusal("record clear --out runs/clear-1000", "holds results already", 2, there);
+  EXPECT_EQ(content_of(run / "result.json"), first);
+  EXPECT_EQ(understory(short_flight, there).status, 0);  // the same again
+  EXPECT_EQ(understory(short_flight + "--force --set forest.length_m=2", there).status, 0);
+  EXPECT_NE(content_of(run / "result.json"), first);
+}
+
+TEST(CliOutput, TwoFlightsDoNotMixInOneFolder) {
+  const TemporaryFolder folder;
+  const std::string out = "--out " + (folder.path() / "run").string();
+  // The second starts when the first has begun to write.
+  const std::string first = std::string(UNDERSTORY_BINARY) + " " + short_flight +
+                            "--set forest.length_m=20 " + out + " & " + "for i in $(seq 500); do test -e " +
+                            (folder.path() / "run.part/scenario.yaml").string() +
+                            " && break; sleep 0.01; done;";
+  const Outcome second = understory(short_flight + "--seed 7 " + out + " 2>&1; echo status $?; wait", first);
+  EXPECT_NE(second.text.find("another understory writes there"), std::string::npos) << second.text;
+  EXPECT_NE(second.text.find("status 2"), std::string::npos) << second.text;
+  EXPECT_NE(content_of(folder.path() / "run/scenario.yaml").find("seed: 1000"), std::string::npos);
+  EXPECT_NE(content_of(folder.path() / "run/result.json").find("\"seed\": 1000"), std::string::npos);
+}
+
+/// The program under `signal` after a second: one line, its status, nothing left but `left`.
+void expect_stopped(const std::string& arguments, const fs::path& folder,
+                    const std::vector<std::string>& left = {}) {
+  for (const auto& [signal, status] : {std::pair("INT", 130), std::pair("TERM", 143)}) {
+    const std::string under = "cd " + folder.string() + " && timeout --preserve-status -s " + signal + " 1";
+    const Outcome stopped = understory(arguments, under);
+    EXPECT_EQ(stopped.status, status) << arguments << "\n" << stopped.text;
+    EXPECT_EQ(std::count(stopped.text.begin(), stopped.text.end(), '\n'), 1) << stopped.text;
+    EXPECT_NE(stopped.text.find("stopped"), std::string::npos) << stopped.text;
+    EXPECT_EQ(names_in(folder), left) << arguments;
+  }
+}
+
+TEST(CliOutput, ASignalEndsEveryCommandInOneLineAndLeavesNothing) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "runs");
+  expect_stopped(long_flight + "--video", folder.path(), {"runs"});
+  expect_stopped(long_flight + "--video --out runs/x --row row.json", folder.path(), {"runs"});
+  fs::remove(folder.path() / "runs");
+  expect_stopped("record forest --out recording --set forest.length_m=400", folder.path());
+  expect_stopped("bench --rounds 100000 --json rows.json", folder.path());
+  expect_stopped("bench --closed-loop --flights 50 --json rows.json", folder.path());
+}
+
+TEST(CliOutput, ASignalStopsACampaignThatGoesOnLater) {
+  const TemporaryFolder folder;
+  const std::string file = folder
+                               .write("c.yaml",
+                                      "scenario: forest\nseeds: 1..3\noverrides: [{name: long, set: "
+                                      "{forest.length_m: 400, forest.intangible: true}}]\n")
+                               .string();
+  const Outcome stopped = understory("campaign " + file + " --out " + (folder.path() / "results").string(),
+                                     "timeout --preserve-status -s TERM 1");
+  EXPECT_EQ(stopped.status, 143);
+  EXPECT_NE(stopped.text.find("stopped with 0 of 3 flights over; --resume goes on\n"), std::string::npos)
+      << stopped.text;
+  for (const std::string& name : names_in(folder.path())) EXPECT_FALSE(name.ends_with(".part")) << name;
+}
+
+TEST(CliOutput, ASignalStopsTheRecordersOfAnEvaluation) {
+  const TemporaryFolder folder;
+  folder.write(
+      "suite.yaml",
+      "recordings:\n  - {name: forest, scenario: forest, seeds: 1..2, set: {forest.length_m: 400}}\n");
+  expect_stopped("evaluate suite.yaml --jobs 2 --out results", folder.path(),
+                 {"results", "results/recordings", "suite.yaml"});
+}
+
+/// Runs `arguments` with `folder` a disk of that size, in a mount namespace of its own.
+Outcome on_small_disk(const std::string& arguments, const fs::path& folder, const std::string& size,
+                      const std::string& afterwards) {
+  return understory(arguments + "; echo status $?; " + afterwards + "'",
+                    "unshare -m sh -c 'mount -t tmpfs -o size=" + size + " tmpfs " + folder.string() +
+                        " && cd " + folder.string() + " && ");
+}
+
+bool mounts_disks() {
+  return std::system("unshare -m sh -c 'mount -t tmpfs tmpfs /mnt' >/dev/null 2>&1") == 0;
+}
+
+TEST(CliOutput, AFullDiskIsOneLineAndAFilmThatDoesNotFitLosesNoResult) {
+  if (!mounts_disks()) GTEST_SKIP() << "only root may mount a small disk";
+  const TemporaryFolder folder;
+  const Outcome none = on_small_disk(short_flight + "--out run", folder.path(), "4k", "ls -A");
+  EXPECT_NE(none.text.find("No space left on device\nstatus 3\n"), std::string::npos) << none.text;
+  const Outcome film = on_small_disk("fly clear --set forest.length_m=10 --quiet --video --out run",
+                                     folder.path(), "300k", "ls -A . run");
+  EXPECT_NE(film.text.find("No space left on device\nstatus 3\n"), std::string::npos) << film.text;
+  EXPECT_NE(film.text.find("run:\nmap.ply\nresult.json\nscenario.yaml\n"), std::string::npos) << film.text;
+  EXPECT_EQ(film.text.find("run.part", film.text.find("status 3")), std::string::npos) << film.text;
+}
+
+TEST(CliOutput, AFolderThatIsADiskOfItsOwnIsWrittenWithin) {
+  if (!mounts_disks()) GTEST_SKIP() << "only root may mount a small disk";
+  const TemporaryFolder folder;
+  const Outcome flown = on_small_disk(short_flight + "--out .", folder.path(), "1m", "ls -A");
+  EXPECT_EQ(flown.text, "status 0\nmap.ply\nresult.json\nscenario.yaml\ntrajectory.csv\n");
+}
+
+#endif
+
+}  // namespace

@@ -1,0 +1,233 @@
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "scenarios/output/file_output.hpp"
+#include "scenarios/output/output_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+/// How results get their names: whole, one program at a time, nothing of anybody else's lost.
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+using support::content_of;
+using support::TemporaryFolder;
+
+TEST(Output, AFileIsReplacedWholeWithItsModeAndNothingIsLeftBeside) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("a.txt", "former");
+  chmod(file.c_str(), 0640);
+  write_whole_file(file, "new");
+  EXPECT_EQ(content_of(file), "new");
+  struct stat status {};
+  ASSERT_EQ(stat(file.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 07777, 0640u);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
+}
+
+TEST(Output, ALinkStaysOneAndWhatItLeadsToIsReplaced) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "far");
+  const fs::path target = folder.write("far/target", "former");
+  fs::create_symlink("far/target", folder.path() / "link");
+  fs::create_symlink("link", folder.path() / "link_to_link");
+  fs::create_symlink("far/none_yet", folder.path() / "dangling");
+  write_whole_file(folder.path() / "link_to_link", "new");
+  write_whole_file(folder.path() / "dangling", "made");
+  EXPECT_EQ(content_of(target), "new");
+  EXPECT_EQ(content_of(folder.path() / "far/none_yet"), "made");
+  for (const char* link : {"link", "link_to_link", "dangling"})
+    EXPECT_TRUE(fs::is_symlink(folder.path() / link)) << link;
+}
+
+TEST(Output, AFifoAndADeviceAreWrittenThrough) {
+  const TemporaryFolder folder;
+  const fs::path fifo = folder.path() / "fifo";
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  const int reader = open(fifo.c_str(), O_RDONLY | O_NONBLOCK);
+  require_writable(fifo);
+  write_whole_file(fifo, "through");
+  char text[16] = "";
+  EXPECT_EQ(read(reader, text, sizeof text), 7);
+  EXPECT_EQ(std::string(text), "through");
+  close(reader);
+  EXPECT_TRUE(fs::is_fifo(fifo));
+
+  // A /dev/full of our own, so that a fault does not harm the machine's: who may not make one may not replace
+  // that one.
+  fs::path full = folder.path() / "full";
+  if (mknod(full.c_str(), S_IFCHR | 0666, makedev(1, 7)) != 0 || access(full.c_str(), W_OK) != 0)
+    full = "/dev/full";
+  EXPECT_THROW(write_whole_file(full, "lost"), MachineError);
+  EXPECT_TRUE(fs::is_character_file(full));
+}
+
+TEST(Output, WhatCannotBeWrittenIsKnownBefore) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("file", "");
+  require_writable("");  // no output at all
+  require_writable(folder.path() / "new");
+  EXPECT_FALSE(fs::exists(folder.path() / "new"));
+  require_writable("/dev/null");
+  require_writable("/dev/stdout");
+  EXPECT_THROW(require_writable(folder.path() / "none" / "file"), ScenarioError);
+  EXPECT_THROW(require_writable(file / "below"), ScenarioError);
+  EXPECT_THROW(require_writable(folder.path()), ScenarioError);
+  EXPECT_THROW(require_writable("/dev/fd/999"), ScenarioError);
+  fs::create_symlink("circle", folder.path() / "circle");
+  EXPECT_THROW(require_writable(folder.path() / "circle"), ScenarioError);
+  chmod(file.c_str(), 0400);
+  if (geteuid() != 0) {  // root may write everywhere
+    EXPECT_THROW(require_writable(file), ScenarioError);
+  }
+}
+
+TEST(Output, AnUnwritableFolderIsBadInput) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("file", "in the way");
+  EXPECT_THROW(prepare_output_folder(file / "runs"), ScenarioError);
+  EXPECT_THROW(prepare_output_folder(file), ScenarioError);
+  EXPECT_THROW(prepare_output_folder("/proc/runs"), ScenarioError);
+  EXPECT_THROW(write_whole_file(folder.path() / "none" / "a.txt", "x"), ScenarioError);
+  prepare_output_folder(folder.path() / "new" / "runs");
+  EXPECT_TRUE(fs::is_empty(folder.path() / "new" / "runs"));
+}
+
+FolderContents contents(const std::string& configuration) {
+  return {"scenario.yaml", configuration, {"result.json", "scenario.yaml", "film.mp4", "pictures/*.png"}};
+}
+
+/// A run of that configuration, as a command leaves it.
+void run_into(const fs::path& folder, const std::string& configuration, Replace replace = Replace::same,
+              bool films = false) {
+  OutputFolder output(folder, contents(configuration), replace);
+  write_whole_file(output.path() / "result.json", configuration + "'s result");
+  if (films) write_whole_file(output.path() / "film.mp4", "moving");
+  fs::create_directories(output.path() / "pictures");
+  write_whole_file(output.path() / "pictures" / "0.png", "still");
+  output.finish();
+}
+
+/// What the error says; empty where there is none.
+template <typename Work>
+std::string refusal_of(Work&& work) {
+  try {
+    work();
+  } catch (const ScenarioError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(OutputFolder, BearsItsNameOnlyWhenItIsWhole) {
+  const TemporaryFolder folder;
+  const fs::path run = folder.path() / "runs" / "a-1";
+  {
+    OutputFolder broken_off(run, contents("a"), Replace::same);
+    write_whole_file(broken_off.path() / "result.json", "half");
+    EXPECT_FALSE(fs::exists(run));
+  }
+  EXPECT_TRUE(fs::is_empty(folder.path() / "runs"));
+  run_into(run, "a", Replace::same, true);
+  EXPECT_EQ(content_of(run / "scenario.yaml"), "a");
+  EXPECT_EQ(std::distance(fs::directory_iterator(run), {}), 4);  // no lock either
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path() / "runs"), {}), 1);
+}
+
+TEST(OutputFolder, TheSameAgainReplacesAllThatWasThereAndNothingElse) {
+  const TemporaryFolder folder;
+  const fs::path run = folder.path() / "a-1";
+  run_into(run, "a", Replace::same, true);
+  folder.write("a-1/notes.txt", "mine");
+  folder.write("a-1/pictures/holiday.jpg", "mine");
+  {
+    OutputFolder again(run, contents("a"), Replace::same);
+    EXPECT_TRUE(fs::exists(run / "film.mp4")) << "the former run must stand until the new one is whole";
+  }
+  EXPECT_TRUE(fs::exists(run / "film.mp4"));
+  run_into(run, "a");
+  EXPECT_FALSE(fs::exists(run / "film.mp4")) << "must not pass for the new run's";
+  EXPECT_EQ(content_of(run / "notes.txt"), "mine");
+  EXPECT_EQ(content_of(run / "pictures/holiday.jpg"), "mine");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
+}
+
+TEST(OutputFolder, AnotherConfigurationIsKeptUnlessForced) {
+  const TemporaryFolder folder;
+  const fs::path run = folder.path() / "a-1";
+  run_into(run, "a");
+  EXPECT_NE(refusal_of([&] { run_into(run, "b"); }).find("another configuration (scenario.yaml): --force"),
+            std::string::npos);
+  EXPECT_NE(refusal_of([&] { run_into(run, "a", Replace::nothing); }).find("holds results already"),
+            std::string::npos);
+  EXPECT_EQ(content_of(run / "result.json"), "a's result");
+  run_into(run, "b", Replace::anything);
+  EXPECT_EQ(content_of(run / "result.json"), "b's result");
+  EXPECT_EQ(content_of(run / "scenario.yaml"), "b");
+}
+
+TEST(OutputFolder, WhatNobodySaysIsOursIsNeverReplaced) {
+  const TemporaryFolder folder;
+  folder.write("mine/result.json", "precious");
+  EXPECT_NE(
+      refusal_of([&] { run_into(folder.path() / "mine", "a", Replace::anything); }).find("no scenario.yaml"),
+      std::string::npos);
+  EXPECT_EQ(content_of(folder.path() / "mine/result.json"), "precious");
+  folder.write("new.part/thesis.tex", "precious");
+  EXPECT_NE(refusal_of([&] { run_into(folder.path() / "new", "a"); }).find("new.part"), std::string::npos);
+  EXPECT_EQ(content_of(folder.path() / "new.part/thesis.tex"), "precious");
+  folder.write("notes/notes.txt", "mine");
+  run_into(folder.path() / "notes", "a");
+  EXPECT_EQ(content_of(folder.path() / "notes/notes.txt"), "mine");
+  EXPECT_NE(refusal_of([&] { run_into(folder.write("file", ""), "a"); }), "");
+}
+
+TEST(OutputFolder, OneProgramAtATimeWritesIntoAFolder) {
+  const TemporaryFolder folder;
+  for (const bool exists : {false, true}) {
+    const fs::path run = folder.path() / "a-1";
+    OutputFolder first(run, contents("a"), Replace::same);
+    EXPECT_NE(refusal_of([&] { run_into(run, "a"); }).find("another understory writes there"),
+              std::string::npos)
+        << exists;
+    EXPECT_TRUE(fs::exists(first.path() / "scenario.yaml"));
+    first.finish();
+  }
+}
+
+TEST(OutputFolder, WhatAKilledProgramLeftIsClearedAway) {
+  const TemporaryFolder folder;
+  const fs::path run = folder.path() / "a-1";
+  if (const pid_t child = fork(); child == 0) {
+    const OutputFolder broken_off(run, contents("b"), Replace::same);
+    write_whole_file(broken_off.path() / "film.mp4", "half");
+    _exit(0);  // as a kill would: nothing is cleared away
+  } else {
+    waitpid(child, nullptr, 0);
+  }
+  EXPECT_FALSE(fs::is_empty(folder.path()));
+  run_into(run, "a");
+  EXPECT_FALSE(fs::exists(run / "film.mp4"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
+}
+
+TEST(OutputFolder, FollowsALinkAndKeepsIt) {
+  const TemporaryFolder folder;
+  fs::create_directory_symlink("far", folder.path() / "link");
+  run_into(folder.path() / "link", "a");
+  EXPECT_TRUE(fs::is_symlink(folder.path() / "link"));
+  EXPECT_EQ(content_of(folder.path() / "far/result.json"), "a's result");
+  run_into(folder.path() / "link/", "a");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);
+}
+
+}  // namespace
+}  // namespace understory
