@@ -10,7 +10,7 @@
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "perception/rectify.hpp"
 #include "scenarios/flight/stopwatch.hpp"
-#include "scenarios/statistics/samples.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 namespace understory {
 namespace {

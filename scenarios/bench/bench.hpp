@@ -1,14 +1,66 @@
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "perception/io/calibration_file.hpp"
 #include "perception/stereo_frame.hpp"
-#include "scenarios/bench/bench_rows.hpp"
 
 namespace understory {
+
+/// What one thing costs for one pair, over all pairs and rounds.
+struct BenchRow {
+  std::string name;
+  int threads = 1;
+  double median_ms = 0;
+  double p90_ms = 0;
+  double p99_ms = 0;
+  std::string yardstick;  ///< name of the row it is measured against; empty for a yardstick itself
+  double ratio = 0;       ///< median over the yardstick's; 0 for a yardstick
+};
+
+/// One flight of the program, from its process's start to its end.
+struct TimedFlight {
+  double simulated_s = 0;
+  double wall_s = 0;                           ///< the process's own, loading of libraries included
+  double frames = 0;                           ///< stereo pairs
+  std::map<std::string, double> stage_s = {};  ///< wall time per stage of the loop (FlightResult's timings)
+  double peak_memory_mb = 0;                   ///< maximum resident set
+  double cpu_s = 0;                            ///< the process's own
+};
+
+/// What flights of one kind cost.
+struct ClosedLoopRow {
+  std::string name;
+  int processes = 1;  ///< side by side
+  int flights = 0;
+  double pairs_per_s = 0;          ///< stereo pairs, of all processes together, per second
+  double cpu_per_simulated_s = 0;  ///< seconds of a core per simulated second: hardly minds other load
+  double simulated_per_s = 0;  ///< simulated seconds, of all processes together, per second: real time is 1
+  /// Of the flights' own wall time, by stage and "other"; they add up to 1.
+  std::vector<std::pair<std::string, double>> shares;
+  double peak_memory_mb = 0;  ///< of the greediest flight
+  std::string yardstick;      ///< name of the row it is measured against; empty for a yardstick itself
+  double ratio = 0;           ///< elapsed time per simulated second over the yardstick's; 0 for a yardstick
+};
+
+/// `elapsed_s`: from the first flight's start to the last one's end. `yardstick`: nullptr, or the row to
+/// measure against.
+ClosedLoopRow closed_loop_row(const std::string& name, int processes, const std::vector<TimedFlight>& flights,
+                              double elapsed_s, const ClosedLoopRow* yardstick);
+
+/// What a flight's result.json tells. Throws MachineError where it cannot be read.
+TimedFlight timed_flight(const std::filesystem::path& result_file);
+
+/// A table for a person, and the same as a JSON list of rows.
+std::string to_table(const std::vector<BenchRow>& rows);
+std::string to_json(const std::vector<BenchRow>& rows);
+std::string to_table(const std::vector<ClosedLoopRow>& rows);
+std::string to_json(const std::vector<ClosedLoopRow>& rows);
 
 /// Something to time on the pair of this number.
 struct BenchCase {
@@ -37,5 +89,25 @@ std::vector<BenchCase> bench_cases(const CalibratedRig& rig, const BenchPairs& p
 /// OpenCV runs on one thread.
 std::vector<BenchRow> bench_detectors(const CalibratedRig& rig, const std::vector<StereoFrame>& frames,
                                       int rounds, const std::function<void(int round)>& on_round);
+
+struct ClosedLoopBenchOptions {
+  /// Each flown one at a time, then two side by side; the first also with ten times the trees, far and wide.
+  std::vector<std::filesystem::path> scenarios;
+  std::uint64_t first_seed = 1000, last_seed = 1003;
+  std::vector<std::string> arguments;  ///< of every flight: --set, --renderer
+  std::function<void(const std::string& what)> on_progress = [](const std::string&) {};
+};
+
+/// Times whole flights, a process each, in the machine's own time: only rows of one run on an idle machine
+/// mean anything together. A flight with ten times the trees is as long and as dense as its yardstick: the
+/// forest reaches 200 m to either side instead of 20. Throws ScenarioError where a flight refuses its input,
+/// MachineError where one breaks.
+std::vector<ClosedLoopRow> bench_closed_loop(const ClosedLoopBenchOptions& options);
+
+/// Pairs as a flight through a forest gives them, rendered by ray casting without any simulator: trunks from
+/// 2 to 40 m, ground, sky, bark and soil textured at every scale that a pixel can show, the camera rolled as
+/// in a dodge, sensor noise of two gray levels. No two are alike. With raw cameras in `rig` the pairs come
+/// raw, else rectified.
+std::vector<StereoFrame> stereo_scenes(const CalibratedRig& rig, int count, std::uint64_t seed);
 
 }  // namespace understory

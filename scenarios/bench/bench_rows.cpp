@@ -1,4 +1,4 @@
-#include "scenarios/bench/bench_rows.hpp"
+#include "scenarios/bench/bench.hpp"
 
 #include <fmt/format.h>
 

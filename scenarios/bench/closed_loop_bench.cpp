@@ -1,4 +1,4 @@
-#include "scenarios/bench/closed_loop_bench.hpp"
+#include "scenarios/bench/bench.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -81,7 +81,8 @@ std::vector<ClosedLoopRow> bench_closed_loop(const ClosedLoopBenchOptions& optio
   const std::string name = options.scenarios.front().stem().string();
   const std::ptrdiff_t narrow =
       add(name + ", trees to 20 m aside", options.scenarios.front(), 1, "forest.half_width_m=20", -1);
-  add(name + ", to 200 m: ten times the trees", options.scenarios.front(), 1, "forest.half_width_m=200", narrow);
+  add(name + ", to 200 m: ten times the trees", options.scenarios.front(), 1, "forest.half_width_m=200",
+      narrow);
   return rows;
 }
 

@@ -1,4 +1,4 @@
-#include "scenarios/bench/stereo_scenes.hpp"
+#include "scenarios/bench/bench.hpp"
 
 #include <algorithm>
 #include <array>

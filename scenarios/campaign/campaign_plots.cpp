@@ -1,4 +1,3 @@
-#include "scenarios/campaign/campaign_plots.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +6,7 @@
 #include <set>
 
 #include "scenarios/campaign/campaign_summary.hpp"
-#include "scenarios/statistics/proportions.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 namespace understory {
 namespace {

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenarios/statistics/proportions.hpp"
-#include "scenarios/statistics/samples.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 namespace understory {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "scenarios/report/table.hpp"
-#include "scenarios/statistics/proportions.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 namespace understory {
 namespace {

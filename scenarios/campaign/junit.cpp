@@ -1,4 +1,4 @@
-#include "scenarios/campaign/junit.hpp"
+#include "scenarios/campaign/gate.hpp"
 
 #include <fmt/format.h>
 

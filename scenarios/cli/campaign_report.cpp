@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "scenarios/campaign/campaign_plots.hpp"
 #include "scenarios/campaign/campaign_summary.hpp"
-#include "scenarios/campaign/junit.hpp"
+#include "scenarios/campaign/gate.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/output/file_output.hpp"
 

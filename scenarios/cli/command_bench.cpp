@@ -5,8 +5,6 @@
 #include "perception/io/calibration_file.hpp"
 #include "perception/io/stereo_recording.hpp"
 #include "scenarios/bench/bench.hpp"
-#include "scenarios/bench/closed_loop_bench.hpp"
-#include "scenarios/bench/stereo_scenes.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/bad_input.hpp"
@@ -62,9 +60,10 @@ std::vector<StereoFrame> recorded(const BenchArguments& arguments) {
 int run_bench(const BenchArguments& arguments) {
   require_writable(arguments.json);
   if (arguments.closed_loop) return run_closed_loop_bench(arguments);
-  const std::filesystem::path rig_file = !arguments.rig.empty()    ? rig_path(arguments.rig)
-                                         : arguments.inputs.empty() ? data_root() / "models/rigs/raw/long.xml"
-                                                                    : std::filesystem::path(arguments.inputs.front());
+  const std::filesystem::path rig_file = !arguments.rig.empty() ? rig_path(arguments.rig)
+                                         : arguments.inputs.empty()
+                                             ? data_root() / "models/rigs/raw/long.xml"
+                                             : std::filesystem::path(arguments.inputs.front());
   const CalibrationOptions options = calibration_options(arguments);
   const CalibratedRig rig = bad_input_if_refused([&] { return read_calibrated_rig(rig_file, options); });
   std::vector<StereoFrame> frames;

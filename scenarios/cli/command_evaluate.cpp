@@ -5,7 +5,7 @@
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/evaluation/evaluation.hpp"
-#include "scenarios/evaluation/evaluation_files.hpp"
+#include "scenarios/evaluation/evaluation_report.hpp"
 #include "scenarios/evaluation/evaluation_suite.hpp"
 #include "scenarios/output/progress_line.hpp"
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "scenarios/campaign/flight_row.hpp"
-#include "scenarios/campaign/junit.hpp"
+#include "scenarios/campaign/gate.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/cli/flight_terminal.hpp"

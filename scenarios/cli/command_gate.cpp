@@ -4,7 +4,6 @@
 
 #include "scenarios/campaign/campaign_folder.hpp"
 #include "scenarios/campaign/gate.hpp"
-#include "scenarios/campaign/junit.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"

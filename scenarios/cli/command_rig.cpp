@@ -8,7 +8,6 @@
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/detect/rig_figures.hpp"
-#include "scenarios/detect/rig_picture.hpp"
 #include "scenarios/output/file_output.hpp"
 
 namespace understory {

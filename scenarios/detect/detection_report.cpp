@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "scenarios/detect/detection_run.hpp"
-#include "scenarios/statistics/samples.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 namespace understory {
 namespace {

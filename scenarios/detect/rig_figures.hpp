@@ -1,5 +1,6 @@
 #pragma once
 
+#include <opencv2/core/mat.hpp>
 #include <string>
 
 #include "perception/io/calibration_file.hpp"
@@ -32,5 +33,9 @@ std::string column_text(int disparity_px);
 
 /// The figures as lines of text, for one screen.
 std::string to_report(const CalibratedRig& calibrated, const RigFigures& figures);
+
+/// The rig from above, in metres: both cameras, what they see, the surface the detector looks at and its
+/// one-pixel band; beside it what is compared in the two images. CV_8UC3, 1280 x 860.
+cv::Mat draw_rig(const StereoRig& rig, const RigFigures& figures);
 
 }  // namespace understory

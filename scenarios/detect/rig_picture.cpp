@@ -1,4 +1,4 @@
-#include "scenarios/detect/rig_picture.hpp"
+#include "scenarios/detect/rig_figures.hpp"
 
 #include <fmt/format.h>
 

@@ -33,7 +33,38 @@ std::int64_t check(const EvaluationOptions& options) {
   return frames;
 }
 
+template <typename T>
+void append(std::vector<T>& to, const std::vector<T>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
 }  // namespace
+
+void EvaluationSum::add(const EvaluationSum& other) {
+  frames += other.frames;
+  recordings += other.recordings;
+  seconds += other.seconds;
+  for (std::size_t i = 0; i < algorithm_count; ++i) {
+    tallies[i].add(other.tallies[i]);
+    append(sightings[i], other.sightings[i]);
+    hits[i] += other.hits[i];
+  }
+  for (std::size_t i = 0; i < computed_count; ++i) {
+    append(cost_ms[i], other.cost_ms[i]);
+    paced[i].looks += other.paced[i].looks;
+    append(paced[i].sightings, other.paced[i].sightings);
+  }
+  for (std::size_t i = 0; i < published.size(); ++i) published[i].add(other.published[i]);
+  for (std::size_t i = 0; i < invariance.size(); ++i) {
+    invariance[i].hits += other.invariance[i].hits;
+    invariance[i].rates.add(other.invariance[i].rates);
+  }
+  if (invariance.empty()) invariance = other.invariance;
+  for (std::size_t i = 0; i < curves.size() && i < other.curves.size(); ++i)
+    for (std::size_t j = 0; j < curves[i].points.size(); ++j)
+      curves[i].points[j].rates.add(other.curves[i].points[j].rates);
+  if (curves.empty()) curves = other.curves;
+}
 
 bool Evaluation::has_depth() const {
   return std::ranges::any_of(recordings, &RecordingEvaluation::has_depth);

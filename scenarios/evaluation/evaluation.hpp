@@ -1,12 +1,92 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <vector>
 
-#include "scenarios/evaluation/recording_evaluation.hpp"
+#include "scenarios/evaluation/obstacle_sightings.hpp"
+#include "scenarios/evaluation/published_evaluations.hpp"
+#include "scenarios/evaluation/vision_tally.hpp"
+#include "scenarios/scenario/vision_config.hpp"
 
 namespace understory {
+
+/// What is evaluated, and against what: `pushbroom` is our rule, `map` that of the evaluations with memory,
+/// `compute` the aircraft's computer, for what it finds at its own pace, `enabled` or not.
+struct EvaluationSettings : VisionConfig {
+  int every = 1;  ///< every n-th frame only
+};
+
+/// The algorithms of one table, in its order: first those that a computer has to compute. All look at the
+/// same depths.
+enum AlgorithmIndex { our_rule, the_papers_rule, stereo_bm, stereo_sgbm, true_depth, at_random };
+inline constexpr std::size_t algorithm_count = 6, computed_count = 4;
+inline constexpr std::array<const char*, algorithm_count> algorithm_names{
+    "pushbroom, our rule", "pushbroom, the paper's rule", "StereoBM", "StereoSGBM", "true depth", "random"};
+/// Those that go through the paper's own evaluations.
+inline constexpr std::array<AlgorithmIndex, 3> published_algorithms{our_rule, the_papers_rule, at_random};
+
+/// Settings of one algorithm's threshold from lax to strict, at one pixel, over all frames.
+struct PrecisionRecallCurve {
+  struct Point {
+    double threshold = 0;
+    Rates rates = {};
+  };
+  std::string algorithm;
+  std::string threshold;  ///< what is varied
+  std::vector<Point> points = {};
+};
+
+/// A rule with its invariance filter off and on (the paper's figure), at one pixel.
+struct InvarianceRow {
+  std::string rule;
+  bool filter = false;
+  std::int64_t hits = 0;
+  Rates rates = {};  ///< of nothing where there is no true depth
+};
+
+/// What one recording says, or some of them together.
+struct EvaluationSum {
+  std::string name;  ///< of the scene; "all"
+  std::int64_t frames = 0, recordings = 0;
+  double seconds = 0;
+  std::array<VisionTally, algorithm_count> tallies;
+  std::array<std::vector<ObstacleSighting>, algorithm_count> sightings;
+  std::array<std::int64_t, algorithm_count> hits{};
+  std::array<PacedResult, computed_count> paced;
+  std::array<std::vector<double>, computed_count> cost_ms;  ///< per frame, on one thread of this machine
+  std::array<PublishedScores, published_algorithms.size()> published;
+  std::vector<InvarianceRow> invariance;
+  std::vector<PrecisionRecallCurve> curves;
+
+  void add(const EvaluationSum& other);
+};
+
+/// A frame with many false positives, to be shown.
+struct WorstFrame {
+  std::size_t index = 0;  ///< of the recording
+  int false_hits = 0;
+};
+
+/// All that one recording says.
+struct RecordingEvaluation {
+  std::filesystem::path folder;
+  StereoRig rig;
+  LookedAtDepth looked_at;  ///< the first depth
+  bool has_depth = false, has_objects = false, has_poses = false;
+  std::vector<RecordedObject> objects;
+  EvaluationSum sum;              ///< named as the folder without its seed: recordings of one scene add up
+  std::vector<WorstFrame> worst;  ///< the first is the worst
+};
+
+/// Throws ScenarioError as EvaluationRecording does, or where the rule does not fit the rig. `on_frame` is
+/// called after each.
+RecordingEvaluation evaluate_recording(const std::filesystem::path& folder,
+                                       const EvaluationSettings& settings,
+                                       const std::function<void()>& on_frame);
 
 struct EvaluationOptions {
   std::vector<std::filesystem::path> folders;  ///< recordings of one rig

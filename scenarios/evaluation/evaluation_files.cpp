@@ -1,4 +1,4 @@
-#include "scenarios/evaluation/evaluation_files.hpp"
+#include "scenarios/evaluation/evaluation_report.hpp"
 
 #include <fmt/format.h>
 
@@ -6,11 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "scenarios/evaluation/evaluation_pictures.hpp"
-#include "scenarios/evaluation/evaluation_tables.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/report/pictures.hpp"
-#include "scenarios/statistics/samples.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 namespace understory {
 namespace {

@@ -1,4 +1,4 @@
-#include "scenarios/evaluation/evaluation_pictures.hpp"
+#include "scenarios/evaluation/evaluation_report.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "scenarios/evaluation/evaluation_tables.hpp"
+#include "scenarios/evaluation/evaluation_report.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,7 @@
 #include <numeric>
 #include <optional>
 
-#include "scenarios/statistics/proportions.hpp"
-#include "scenarios/statistics/samples.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 namespace understory {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "scenarios/evaluation/ground_truth.hpp"
 #include "scenarios/flight/flight_computer.hpp"
-#include "scenarios/statistics/proportions.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 namespace understory {
 

@@ -1,4 +1,4 @@
-#include "scenarios/evaluation/recording_evaluation.hpp"
+#include "scenarios/evaluation/evaluation.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -9,8 +9,7 @@
 #include <utility>
 
 #include "scenarios/evaluation/evaluation_recording.hpp"
-#include "scenarios/evaluation/precision_recall_curves.hpp"
-#include "scenarios/evaluation/reference_detectors.hpp"
+#include "scenarios/evaluation/ground_truth.hpp"
 #include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/scenario/detection_depths.hpp"
 
@@ -37,6 +36,81 @@ double cost_s(std::size_t algorithm, const ComputeConfig& compute) {
   if (algorithm == stereo_bm) return compute.factor * compute.stereo_bm_s;
   if (algorithm == stereo_sgbm) return compute.factor * compute.stereo_sgbm_s;
   return compute.factor * compute.pushbroom_s;
+}
+
+/// The paper's rule, and full stereo's crop, looking where `rule` does.
+PushbroomConfig papers_rule_beside(const PushbroomConfig& rule) {
+  PushbroomConfig paper = paper_rule();
+  paper.depths_m = rule.depths_m;
+  paper.last_row_px = rule.last_row_px;
+  return paper;
+}
+
+FullStereoCrop crop_beside(const PushbroomConfig& rule, const StereoRig& rig) {
+  FullStereoCrop crop = one_pixel_crop(rig);
+  crop.last_row_px = rule.last_row_px;
+  return crop;
+}
+
+/// Every algorithm at several thresholds over the same frames: score limit or uniqueness of the pushbroom,
+/// uniqueness of StereoBM and StereoSGBM.
+class CurveSweeps {
+ public:
+  CurveSweeps(const StereoRig& rig, const DetectionGrid& grid, const EvaluationSettings& settings);
+  void add(const EvaluationFrame& frame, const std::vector<ExpectedBlock>& expected);
+  const std::vector<PrecisionRecallCurve>& curves() const { return curves_; }
+
+ private:
+  void add_rule(const StereoRig& rig, const std::string& name, const PushbroomConfig& rule);
+  template <typename Config>
+  void add_full_stereo(const StereoRig& rig, const std::string& name, Config config,
+                       const FullStereoCrop& crop, const std::vector<int>& uniqueness_percent);
+
+  DetectionGrid grid_;
+  std::vector<PrecisionRecallCurve> curves_;
+  std::vector<std::vector<std::unique_ptr<ObstacleDetector>>> detectors_;  ///< a curve's, point by point
+};
+
+CurveSweeps::CurveSweeps(const StereoRig& rig, const DetectionGrid& grid, const EvaluationSettings& settings)
+    : grid_(grid) {
+  const FullStereoCrop crop = crop_beside(settings.pushbroom, rig);
+  add_rule(rig, algorithm_names[our_rule], settings.pushbroom);
+  add_rule(rig, algorithm_names[the_papers_rule], papers_rule_beside(settings.pushbroom));
+  add_full_stereo(rig, algorithm_names[stereo_bm], settings.stereo_bm, crop, {0, 5, 10, 18, 30, 50});
+  add_full_stereo(rig, algorithm_names[stereo_sgbm], settings.stereo_sgbm, crop, {0, 10, 30, 60});
+}
+
+/// By what the rule rejects with: uniqueness where it has it, else the score.
+void CurveSweeps::add_rule(const StereoRig& rig, const std::string& name, const PushbroomConfig& rule) {
+  curves_.push_back({name, rule.uniqueness ? "uniqueness_ratio" : "score_limit"});
+  detectors_.emplace_back();
+  for (const double threshold :
+       rule.uniqueness ? std::vector<double>{1.05, 1.2, 1.4, 1.6, 2.0, 2.5, 3.2, 4.0}
+                       : std::vector<double>{0.4, 0.3, 0.22, 54.0 / 333.0, 0.12, 0.09, 0.06, 0.04}) {
+    PushbroomConfig config = rule;
+    (rule.uniqueness ? config.uniqueness_ratio : config.score_limit) = threshold;
+    curves_.back().points.push_back({threshold});
+    detectors_.back().push_back(std::make_unique<PushbroomStereo>(rig, config));
+  }
+}
+
+template <typename Config>
+void CurveSweeps::add_full_stereo(const StereoRig& rig, const std::string& name, Config config,
+                                  const FullStereoCrop& crop, const std::vector<int>& uniqueness_percent) {
+  curves_.push_back({name, "uniqueness_percent"});
+  detectors_.emplace_back();
+  for (const int percent : uniqueness_percent) {
+    config.uniqueness_percent = percent;
+    curves_.back().points.push_back({static_cast<double>(percent)});
+    detectors_.back().push_back(std::make_unique<FullStereoDetector>(rig, config, crop));
+  }
+}
+
+void CurveSweeps::add(const EvaluationFrame& frame, const std::vector<ExpectedBlock>& expected) {
+  for (std::size_t curve = 0; curve < curves_.size(); ++curve)
+    for (std::size_t point = 0; point < curves_[curve].points.size(); ++point)
+      count_one_pixel(frame.truth, grid_, expected, detectors_[curve][point]->detect(frame.pair),
+                      curves_[curve].points[point].rates);
 }
 
 class Evaluator {
@@ -195,51 +269,7 @@ RecordingEvaluation Evaluator::evaluate(const std::function<void()>& on_frame) {
   return std::move(result_);
 }
 
-template <typename T>
-void append(std::vector<T>& to, const std::vector<T>& from) {
-  to.insert(to.end(), from.begin(), from.end());
-}
-
 }  // namespace
-
-void EvaluationSum::add(const EvaluationSum& other) {
-  frames += other.frames;
-  recordings += other.recordings;
-  seconds += other.seconds;
-  for (std::size_t i = 0; i < algorithm_count; ++i) {
-    tallies[i].add(other.tallies[i]);
-    append(sightings[i], other.sightings[i]);
-    hits[i] += other.hits[i];
-  }
-  for (std::size_t i = 0; i < computed_count; ++i) {
-    append(cost_ms[i], other.cost_ms[i]);
-    paced[i].looks += other.paced[i].looks;
-    append(paced[i].sightings, other.paced[i].sightings);
-  }
-  for (std::size_t i = 0; i < published.size(); ++i) published[i].add(other.published[i]);
-  for (std::size_t i = 0; i < invariance.size(); ++i) {
-    invariance[i].hits += other.invariance[i].hits;
-    invariance[i].rates.add(other.invariance[i].rates);
-  }
-  if (invariance.empty()) invariance = other.invariance;
-  for (std::size_t i = 0; i < curves.size() && i < other.curves.size(); ++i)
-    for (std::size_t j = 0; j < curves[i].points.size(); ++j)
-      curves[i].points[j].rates.add(other.curves[i].points[j].rates);
-  if (curves.empty()) curves = other.curves;
-}
-
-PushbroomConfig papers_rule_beside(const PushbroomConfig& rule) {
-  PushbroomConfig paper = paper_rule();
-  paper.depths_m = rule.depths_m;
-  paper.last_row_px = rule.last_row_px;
-  return paper;
-}
-
-FullStereoCrop crop_beside(const PushbroomConfig& rule, const StereoRig& rig) {
-  FullStereoCrop crop = one_pixel_crop(rig);
-  crop.last_row_px = rule.last_row_px;
-  return crop;
-}
 
 RecordingEvaluation evaluate_recording(const fs::path& folder, const EvaluationSettings& settings,
                                        const std::function<void()>& on_frame) {

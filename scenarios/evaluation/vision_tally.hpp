@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scenarios/evaluation/ground_truth.hpp"
-#include "scenarios/statistics/proportions.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 namespace understory {
 

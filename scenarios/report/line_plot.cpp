@@ -1,7 +1,6 @@
 #include "scenarios/report/line_plot.hpp"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +16,8 @@ constexpr std::array<const char*, 8> palette{"#0072b2", "#d55e00", "#009e73", "#
                                              "#56b4e9", "#e69f00", "#b8a800", "#000000"};
 
 constexpr double panel_width = 460, plot_height = 250;
-constexpr double left = 62, right = 14, top = 30, below_axis = 46, legend_line = 17;
+constexpr double left = 62, right = 14, top = 30, bottom = top + plot_height, below_axis = 46,
+                 legend_line = 17;
 constexpr double character_width = 6.3;  // of the 11 px sans-serif face, on the wide side
 
 std::string escaped(const std::string& text) {
@@ -41,6 +41,32 @@ double text_width(const std::string& text) {
   return character_width * static_cast<double>(letters);
 }
 
+/// Widens `range` to hold `value`, if that is a number.
+void include(AxisRange& range, double value) {
+  if (!std::isfinite(value)) return;
+  range.minimum = std::min(range.minimum, value);
+  range.maximum = std::max(range.maximum, value);
+}
+
+/// A little more than `range`, so that nothing lies on the frame; something to show where it is empty.
+AxisRange padded(AxisRange range) {
+  if (range.minimum > range.maximum) return {0, 1};  // nothing to show
+  const double room = range.maximum > range.minimum ? 0.05 * (range.maximum - range.minimum)
+                                                    : std::max(0.5 * std::abs(range.minimum), 0.5);
+  return {range.minimum - room, range.maximum + room};
+}
+
+/// Between ticks.
+double tick_step(AxisRange range, int wanted) {
+  const double rough = (range.maximum - range.minimum) / std::max(1, wanted);
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  const double share = rough / power;
+  return power * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
+}
+
+/// Digits behind the point that a tick's label needs.
+int decimals(double step) { return std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9))); }
+
 AxisRange covering(const LinePlot& plot, bool vertical_axis) {
   AxisRange range{HUGE_VAL, -HUGE_VAL};
   for (const Series& series : plot.series) {
@@ -54,6 +80,29 @@ AxisRange covering(const LinePlot& plot, bool vertical_axis) {
   return padded(range);
 }
 
+/// `more`: further attributes.
+std::string label(double x, double y, const std::string& text, const char* more) {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", x, y, more, escaped(text));
+}
+
+std::string straight(double x, double y, const char* direction, double to, const char* kind) {
+  return fmt::format("<path d=\"M{:.1f} {:.1f}{}{:.1f}\" class=\"{}\"/>", x, y, direction, to, kind);
+}
+
+std::string dot(double x, double y, const char* colour) {
+  return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.2\" fill=\"{}\"/>\n", x, y, colour);
+}
+
+std::string line(const std::string& corners, const Series& series, const char* colour) {
+  return fmt::format("<path d=\"{}\" stroke=\"{}\" class=\"line\"{}/>\n", corners, colour,
+                     series.mark == Mark::dashes ? " stroke-dasharray=\"6 4\"" : "");
+}
+
+bool has_line(const Series& series) { return series.mark != Mark::dots; }
+bool has_dots(const Series& series) {
+  return series.mark == Mark::dots || series.mark == Mark::line_and_dots;
+}
+
 /// One panel: where numbers lie on the paper.
 class Panel {
  public:
@@ -63,7 +112,7 @@ class Panel {
     if (plot.equal_scale) make_scales_equal();
   }
 
-  double height() const { return top + plot_height + below_axis + legend_line * legend_rows() + 6; }
+  double height() const { return bottom + below_axis + legend_line * legend_rows() + 6; }
 
   std::string svg() const {
     std::string text;
@@ -83,9 +132,7 @@ class Panel {
  private:
   static double width() { return panel_width - left - right; }
   double at_x(double x) const { return left + (x - x_.minimum) / (x_.maximum - x_.minimum) * width(); }
-  double at_y(double y) const {
-    return top + plot_height - (y - y_.minimum) / (y_.maximum - y_.minimum) * plot_height;
-  }
+  double at_y(double y) const { return bottom - (y - y_.minimum) / (y_.maximum - y_.minimum) * plot_height; }
 
   void make_scales_equal() {
     const double per_px =
@@ -106,44 +153,35 @@ class Panel {
   void draw_axes(std::string& text) const {
     constexpr int wanted_x = 7, wanted_y = 6;
     const int x_decimals = decimals(tick_step(x_, wanted_x)), y_decimals = decimals(tick_step(y_, wanted_y));
-    text +=
-        fmt::format("<text x=\"{:.1f}\" y=\"18\" class=\"title\">{}</text>\n", left, escaped(plot_.title));
+    constexpr const char *middle = "text-anchor=\"middle\"", *end = "text-anchor=\"end\"";
+    text += label(left, 18, plot_.title, "class=\"title\"");
     for (const double tick : tick_positions(x_, wanted_x)) {
-      const double x = at_x(tick);
-      text += fmt::format("<path d=\"M{0:.1f} {1}V{2}\" class=\"grid\"/>", x, top, top + plot_height);
-      text += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:.{}f}</text>\n", x,
-                          top + plot_height + 15, tick, x_decimals);
+      text += straight(at_x(tick), top, "V", bottom, "grid");
+      text += label(at_x(tick), bottom + 15, fmt::format("{:.{}f}", tick, x_decimals), middle);
     }
     for (const double tick : tick_positions(y_, wanted_y)) {
-      const double y = at_y(tick);
-      text += fmt::format("<path d=\"M{0} {1:.1f}H{2}\" class=\"grid\"/>", left, y, left + width());
-      text += fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{:.{}f}</text>\n", left - 6, y + 4,
-                          tick, y_decimals);
+      text += straight(left, at_y(tick), "H", left + width(), "grid");
+      text += label(left - 6, at_y(tick) + 4, fmt::format("{:.{}f}", tick, y_decimals), end);
     }
     text += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" class=\"frame\"/>\n", left, top,
                         width(), plot_height);
-    text += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
-                        left + 0.5 * width(), top + plot_height + 34, escaped(plot_.x_label));
+    text += label(left + 0.5 * width(), bottom + 34, plot_.x_label, middle);
     text +=
         fmt::format("<text transform=\"translate(14 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
                     top + 0.5 * plot_height, escaped(plot_.y_label));
   }
 
-  void draw_reference(std::string& text, const ReferenceLine& line) const {
-    const double at = line.vertical ? at_x(line.at) : at_y(line.at);
-    if (line.vertical) {
-      text += fmt::format("<path d=\"M{:.1f} {}V{}\" class=\"reference\"/>", at, top, top + plot_height);
-      text += fmt::format("<text x=\"{:.1f}\" y=\"{}\" class=\"note\">{}</text>\n", at + 4, top + 13,
-                          escaped(line.label));
+  void draw_reference(std::string& text, const ReferenceLine& reference) const {
+    if (reference.vertical) {
+      const double x = at_x(reference.at);
+      text += straight(x, top, "V", bottom, "reference");
+      text += label(x + 4, top + 13, reference.label, "class=\"note\"");
     } else {
-      text += fmt::format("<path d=\"M{} {:.1f}H{}\" class=\"reference\"/>", left, at, left + width());
-      text += fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\" class=\"note\">{}</text>\n",
-                          left + width() - 4, at < top + 16 ? at + 12 : at - 4, escaped(line.label));
+      const double y = at_y(reference.at);
+      text += straight(left, y, "H", left + width(), "reference");
+      text += label(left + width() - 4, y < top + 16 ? y + 12 : y - 4, reference.label,
+                    "text-anchor=\"end\" class=\"note\"");
     }
-  }
-
-  bool shown(const Series& series, std::size_t i) const {
-    return std::isfinite(series.x[i]) && std::isfinite(series.y[i]);
   }
 
   void draw_spread(std::string& text, const Series& series, const char* colour) const {
@@ -167,23 +205,19 @@ class Panel {
   }
 
   void draw_series(std::string& text, const Series& series, const char* colour) const {
-    if (series.mark != Mark::dots) {
-      std::string path;
-      bool pen_down = false;
-      for (std::size_t i = 0; i < series.x.size(); ++i) {
-        const bool visible = shown(series, i);
-        if (visible)
-          path += fmt::format("{}{:.1f} {:.1f}", pen_down ? "L" : "M", at_x(series.x[i]), at_y(series.y[i]));
-        pen_down = visible;
+    std::string corners, dots;
+    bool pen_down = false;
+    for (std::size_t i = 0; i < series.x.size(); ++i) {
+      const bool visible = std::isfinite(series.x[i]) && std::isfinite(series.y[i]);
+      if (visible) {
+        const double x = at_x(series.x[i]), y = at_y(series.y[i]);
+        corners += fmt::format("{}{:.1f} {:.1f}", pen_down ? "L" : "M", x, y);
+        dots += dot(x, y, colour);
       }
-      text += fmt::format("<path d=\"{}\" stroke=\"{}\" class=\"line\"{}/>\n", path, colour,
-                          series.mark == Mark::dashes ? " stroke-dasharray=\"6 4\"" : "");
+      pen_down = visible;
     }
-    if (series.mark == Mark::line || series.mark == Mark::dashes) return;
-    for (std::size_t i = 0; i < series.x.size(); ++i)
-      if (shown(series, i))
-        text += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.2\" fill=\"{}\"/>\n",
-                            at_x(series.x[i]), at_y(series.y[i]), colour);
+    if (has_line(series)) text += line(corners, series, colour);
+    if (has_dots(series)) text += dots;
   }
 
   /// Calls place(series number, x, row) for every legend entry; returns the rows taken.
@@ -213,14 +247,10 @@ class Panel {
   void draw_legend(std::string& text) const {
     lay_out_legend([&](std::size_t i, double x, int row) {
       const Series& series = plot_.series[i];
-      const double y = top + plot_height + below_axis + legend_line * row + 6;
-      if (series.mark != Mark::dots)
-        text += fmt::format("<path d=\"M{:.1f} {:.1f}h20\" stroke=\"{}\" class=\"line\"{}/>", x, y, colour(i),
-                            series.mark == Mark::dashes ? " stroke-dasharray=\"6 4\"" : "");
-      if (series.mark == Mark::dots || series.mark == Mark::line_and_dots)
-        text +=
-            fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.2\" fill=\"{}\"/>", x + 10, y, colour(i));
-      text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + 25, y + 4, escaped(series.name));
+      const double y = bottom + below_axis + legend_line * row + 6;
+      if (has_line(series)) text += line(fmt::format("M{:.1f} {:.1f}h20", x, y), series, colour(i));
+      if (has_dots(series)) text += dot(x + 10, y, colour(i));
+      text += label(x + 25, y + 4, series.name, "");
     });
   }
 
@@ -239,6 +269,14 @@ void require_well_formed(const LinePlot& plot) {
 }
 
 }  // namespace
+
+std::vector<double> tick_positions(AxisRange range, int wanted) {
+  const double step = tick_step(range, wanted);
+  std::vector<double> ticks;
+  for (double n = std::ceil(range.minimum / step - 1e-9); n * step <= range.maximum + 1e-9 * step; ++n)
+    ticks.push_back(n == 0 ? 0.0 : n * step);  // no "-0"
+  return ticks;
+}
 
 std::string to_svg(const std::vector<LinePlot>& panels, int columns) {
   std::string drawn;

@@ -4,9 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/report/plot_axis.hpp"
-
 namespace understory {
+
+struct AxisRange {
+  double minimum = 0;
+  double maximum = 1;
+};
+
+/// Where an axis's ticks stand: multiples of 1, 2 or 5 times a power of ten, about `wanted` in `range`.
+std::vector<double> tick_positions(AxisRange range, int wanted);
 
 enum class Mark { line, dashes, dots, line_and_dots };
 

@@ -1,4 +1,4 @@
-#include "scenarios/tuning/numeric_keys.hpp"
+#include "scenarios/tuning/tune_file.hpp"
 
 #include <fmt/format.h>
 

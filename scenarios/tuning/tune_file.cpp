@@ -11,7 +11,6 @@
 #include "scenarios/config/config_keys.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/tuning/judge.hpp"
-#include "scenarios/tuning/numeric_keys.hpp"
 
 namespace understory {
 namespace {

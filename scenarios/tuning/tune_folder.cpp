@@ -1,4 +1,4 @@
-#include "scenarios/tuning/tune_folder.hpp"
+#include "scenarios/tuning/tuning.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

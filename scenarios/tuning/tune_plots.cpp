@@ -1,4 +1,4 @@
-#include "scenarios/tuning/tune_plots.hpp"
+#include "scenarios/tuning/tune_report.hpp"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/tuning/tune_plots.hpp"
 
 namespace understory {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
-#include "scenarios/statistics/samples.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 namespace understory {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "perception/io/calibration_file.hpp"
 #include "scenarios/bench/bench.hpp"
-#include "scenarios/bench/stereo_scenes.hpp"
 
 /// The rows of `understory bench` on the long rig's raw cameras, 64 rendered pairs in turn, none twice.
 /// Ratios to the yardsticks are `understory bench`'s to print: it lets the cases take turns.

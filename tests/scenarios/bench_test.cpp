@@ -7,7 +7,6 @@
 
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "perception/rectify.hpp"
-#include "scenarios/bench/stereo_scenes.hpp"
 
 namespace understory {
 namespace {

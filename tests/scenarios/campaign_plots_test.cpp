@@ -1,4 +1,4 @@
-#include "scenarios/campaign/campaign_plots.hpp"
+#include "scenarios/campaign/campaign_summary.hpp"
 
 #include <gtest/gtest.h>
 

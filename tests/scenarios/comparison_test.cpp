@@ -1,4 +1,4 @@
-#include "scenarios/campaign/comparison.hpp"
+#include "scenarios/campaign/gate.hpp"
 
 #include <gtest/gtest.h>
 

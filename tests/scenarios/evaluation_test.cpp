@@ -6,9 +6,9 @@
 #include <random>
 
 #include "perception/pushbroom/pushbroom_stereo.hpp"
+#include "scenarios/evaluation/ground_truth.hpp"
 #include "scenarios/evaluation/obstacle_sightings.hpp"
 #include "scenarios/evaluation/published_evaluations.hpp"
-#include "scenarios/evaluation/reference_detectors.hpp"
 #include "scenarios/evaluation/vision_tally.hpp"
 #include "tests/perception/rigs.hpp"
 #include "tests/support/synthetic_stereo.hpp"

@@ -5,8 +5,6 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "scenarios/detect/rig_picture.hpp"
-
 namespace understory {
 namespace {
 

@@ -2,9 +2,7 @@
 
 #include <cmath>
 
-#include "scenarios/statistics/proportions.hpp"
-#include "scenarios/statistics/samples.hpp"
-#include "scenarios/statistics/survival.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 namespace understory {
 namespace {

@@ -4,7 +4,6 @@
 
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
-#include "scenarios/tuning/numeric_keys.hpp"
 #include "tests/scenarios/tuning_cases.hpp"
 
 namespace understory {

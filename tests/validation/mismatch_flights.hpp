@@ -6,7 +6,7 @@
 
 #include "scenarios/flight/flight_result.hpp"
 #include "scenarios/scenario/scenario.hpp"
-#include "scenarios/statistics/proportions.hpp"
+#include "scenarios/statistics/statistics.hpp"
 #include "tests/validation/drift_tally.hpp"
 
 namespace understory {

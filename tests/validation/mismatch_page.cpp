@@ -26,7 +26,8 @@ AxisRange level_speeds(const Scenario& scenario) {
   AxisRange range{HUGE_VAL, -HUGE_VAL};
   const double maximum_rad = scenario.autopilot.autopilot.flight_model.maximum_angle_of_attack_rad;
   for (double speed_mps = 5; speed_mps < 18; speed_mps += 0.05)
-    if (straight_trim(scenario.flown_airframe(), speed_mps, 0, maximum_rad)) include(range, speed_mps);
+    if (straight_trim(scenario.flown_airframe(), speed_mps, 0, maximum_rad))
+      range = {std::min(range.minimum, speed_mps), speed_mps};
   return range;
 }
 

@@ -6,8 +6,32 @@
 #include <vector>
 
 #include "scenarios/evaluation/evaluation.hpp"
+#include "scenarios/report/table.hpp"
 
 namespace understory {
+
+/// What was evaluated, and every table, for a terminal.
+std::string evaluation_report(const Evaluation& evaluation);
+
+/// Into `folder`: summary.md, evaluation.json (every figure), tables/*.csv, obstacles.csv,
+/// precision_recall.svg, distances.svg, response.svg, first_hits.svg, heat_map.png (ours),
+/// heat_map_paper.png, worst/; what needs a truth that no recording has is left out. Throws ScenarioError or
+/// MachineError where it cannot be written.
+void write_evaluation(const Evaluation& evaluation, const std::filesystem::path& folder);
+
+/// A table with its name, as a file's name and as a title.
+struct EvaluationTable {
+  std::string file;   ///< "algorithms"
+  std::string title;  ///< one line
+  Table table;        ///< cells are plain numbers or words; units stand in the head
+};
+
+/// All that the recordings allow to say, in the order in which people read it: against the paper's figures,
+/// all algorithms, scenes, obstacles passed, parts, false hits, invariance.
+std::vector<EvaluationTable> evaluation_tables(const Evaluation& evaluation);
+
+/// A line per obstacle passed: what each became under our rule.
+Table obstacles_table(const Evaluation& evaluation);
 
 /// Where in the image true positives, false positives and due blocks lie, side by side, each as bright as its
 /// own fullest block; BGR, with titles.

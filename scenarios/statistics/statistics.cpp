@@ -1,13 +1,39 @@
-#include "scenarios/statistics/samples.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <random>
 
 namespace understory {
 namespace {
+
+/// Newcombe's phi: the correlation of the pairs, where positive drawn towards 0 by n/2.
+double correlation(const PairedOutcomes& outcomes) {
+  const double n = outcomes.pairs(), first = outcomes.first(), second = outcomes.second();
+  const double margins = first * (n - first) * second * (n - second);
+  if (margins == 0) return 0;
+  double product = static_cast<double>(outcomes.both) * outcomes.neither -
+                   static_cast<double>(outcomes.only_first) * outcomes.only_second;
+  if (product > 0) product = std::max(product - 0.5 * n, 0.0);
+  return product / std::sqrt(margins);
+}
+
+/// How far a difference reaches, from how far its two shares do.
+double reach(double of_one, double of_other, double phi) {
+  return std::sqrt(of_one * of_one - 2 * phi * of_one * of_other + of_other * of_other);
+}
+
+/// That `throws` of a fair coin show at most `heads` heads.
+double at_most_heads(int heads, int throws) {
+  double probability = 0;
+  for (int k = 0; k <= heads; ++k)
+    probability += std::exp(std::lgamma(throws + 1) - std::lgamma(k + 1) - std::lgamma(throws - k + 1) -
+                            throws * std::numbers::ln2);
+  return probability;
+}
 
 double normal_cdf(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 
@@ -77,7 +103,58 @@ double bca_end(const std::vector<double>& sorted, double z, double bias, double 
   return sorted[static_cast<std::size_t>(std::clamp(rank, 1.0, static_cast<double>(sorted.size()))) - 1];
 }
 
+/// What happened at one distance.
+struct Leaving {
+  int ended = 0;
+  int censored = 0;
+};
+
+std::map<double, Leaving> by_distance(const std::vector<Lifetime>& lifetimes) {
+  std::map<double, Leaving> leaving;
+  for (const Lifetime& lifetime : lifetimes) {
+    Leaving& here = leaving[lifetime.at];
+    (lifetime.ended ? here.ended : here.censored) += 1;
+  }
+  return leaving;
+}
+
+/// `greenwood`: the sum of d / (n (n - d)), the variance of log(share).
+Interval log_log_interval(double share, double greenwood) {
+  const double error = z_95 * std::sqrt(greenwood) / std::abs(std::log(share));
+  return {std::pow(share, std::exp(error)), std::pow(share, std::exp(-error))};
+}
+
 }  // namespace
+
+Interval wilson_interval(int successes, int trials) {
+  if (trials == 0) return {0, 1};
+  constexpr double z = z_95;
+  const double n = trials;
+  const double share = successes / n;
+  const double scale = 1 / (1 + z * z / n);
+  const double centre = scale * (share + z * z / (2 * n));
+  const double half = scale * z * std::sqrt(share * (1 - share) / n + z * z / (4 * n * n));
+  return {centre - half, centre + half};
+}
+
+double mcnemar_exact_p(const PairedOutcomes& outcomes) {
+  const int changed = outcomes.only_first + outcomes.only_second;
+  if (changed == 0) return 1;
+  return std::min(1.0, 2 * at_most_heads(std::min(outcomes.only_first, outcomes.only_second), changed));
+}
+
+Interval paired_difference_interval(const PairedOutcomes& outcomes) {
+  const int n = outcomes.pairs();
+  if (n == 0) return {-1, 1};
+  const double first = static_cast<double>(outcomes.first()) / n;
+  const double second = static_cast<double>(outcomes.second()) / n;
+  const Interval of_first = wilson_interval(outcomes.first(), n);
+  const Interval of_second = wilson_interval(outcomes.second(), n);
+  const double phi = correlation(outcomes);
+  const double difference = outcomes.difference();
+  return {difference - reach(second - of_second.minimum, of_first.maximum - first, phi),
+          difference + reach(of_second.maximum - second, first - of_first.minimum, phi)};
+}
 
 double mean_of(std::span<const double> values) {
   double sum = 0;
@@ -106,6 +183,35 @@ BootstrapEstimate bootstrap(std::span<const double> sample, const Statistic& sta
   const double accelerated = acceleration(sample, statistic);
   return {value,
           {bca_end(values, -options.z, bias, accelerated), bca_end(values, options.z, bias, accelerated)}};
+}
+
+SurvivalCurve kaplan_meier(const std::vector<Lifetime>& lifetimes) {
+  int at_risk = static_cast<int>(lifetimes.size());
+  SurvivalCurve curve;
+  curve.steps.push_back({0, 1, wilson_interval(at_risk, at_risk)});
+  double greenwood = 0;
+  for (const auto& [at, leaving] : by_distance(lifetimes)) {
+    curve.last_at = at;
+    if (leaving.ended > 0) {
+      const SurvivalStep& before = curve.steps.back();
+      const double staying = at_risk - leaving.ended;
+      SurvivalStep step{at, before.share * staying / at_risk, {0, before.interval.maximum}};
+      if (staying > 0) {
+        greenwood += leaving.ended / (at_risk * staying);
+        step.interval = log_log_interval(step.share, greenwood);
+      }
+      curve.steps.push_back(step);
+    }
+    at_risk -= leaving.ended + leaving.censored;
+  }
+  return curve;
+}
+
+std::optional<double> median_survival(const SurvivalCurve& curve) {
+  // Shares are products of fractions: half may come out a few units of the last place above 0.5.
+  for (const SurvivalStep& step : curve.steps)
+    if (step.share <= 0.5 + 1e-12) return step.at;
+  return {};
 }
 
 }  // namespace understory
