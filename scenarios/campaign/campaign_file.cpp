@@ -150,7 +150,8 @@ std::string name_in(const ConfigNode& top, const fs::path& file) {
   return name->text;
 }
 
-std::vector<std::uint64_t> seeds_in(const ConfigNode& map, const std::string& key, const std::string& within) {
+std::vector<std::uint64_t> seeds_in(const ConfigNode& map, const std::string& key,
+                                    const std::string& within) {
   const std::string expected = "the seeds to fly, for instance 1..200";
   const ConfigNode* node = find_child(map, key);
   if (node == nullptr) refuse_key(map, within + key, expected);
@@ -198,8 +199,7 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario) 
     }
   }
   if (campaign.conditions.size() * campaign.seeds.size() > maximum_flights)
-    refuse_key(*find_child(top, "seeds"), "seeds",
-               fmt::format("at most {} flights in all", maximum_flights));
+    refuse_key(*find_child(top, "seeds"), "seeds", fmt::format("at most {} flights in all", maximum_flights));
   return campaign;
 }
 

@@ -1,4 +1,4 @@
-#include "scenarios/campaign/local_engine.hpp"
+#include "scenarios/campaign/engines.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "scenarios/campaign/slurm_engine.hpp"
+#include "scenarios/campaign/engines.hpp"
 
 #include <fmt/format.h>
 #include <sys/wait.h>

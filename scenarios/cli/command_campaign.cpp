@@ -5,8 +5,7 @@
 
 #include "scenarios/campaign/campaign_file.hpp"
 #include "scenarios/campaign/campaign_folder.hpp"
-#include "scenarios/campaign/local_engine.hpp"
-#include "scenarios/campaign/slurm_engine.hpp"
+#include "scenarios/campaign/engines.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/campaign_report.hpp"
 #include "scenarios/cli/commands.hpp"

@@ -2,8 +2,7 @@
 
 #include <memory>
 
-#include "scenarios/campaign/local_engine.hpp"
-#include "scenarios/campaign/slurm_engine.hpp"
+#include "scenarios/campaign/engines.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/signals.hpp"

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "scenarios/campaign/local_engine.hpp"
+#include "scenarios/campaign/engines.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"

@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "scenarios/campaign/campaign_folder.hpp"
-#include "scenarios/campaign/local_engine.hpp"
+#include "scenarios/campaign/engines.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/tuning/judge.hpp"
