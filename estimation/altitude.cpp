@@ -1,4 +1,4 @@
-#include "estimation/altitude.hpp"
+#include "estimation/measurements.hpp"
 
 namespace understory {
 

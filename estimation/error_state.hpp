@@ -3,16 +3,11 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
+#include "estimation/filter_config.hpp"
 #include "estimation/state.hpp"
 
 /// The update that every measurement uses.
 namespace understory {
-
-/// Meaning of the states of rate_block.
-enum class FilterModel {
-  gyro_bias,     ///< the gyro is an input; its bias is estimated
-  angular_rate,  ///< the paper's: angular rate is a state which the gyro measures (docs/sources.md [4])
-};
 
 /// Derivative of the angular rate by the rate block: -1 for a gyro bias, which is subtracted, +1 for an
 /// angular rate.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimation/air_velocity.hpp"
+#include "estimation/measurements.hpp"
 #include "estimation/so3.hpp"
 
 namespace understory {

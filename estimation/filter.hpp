@@ -7,6 +7,7 @@
 #include "estimation/filter_config.hpp"
 #include "estimation/gate.hpp"
 #include "estimation/history.hpp"
+#include "estimation/measurements.hpp"
 #include "estimation/propagation.hpp"
 #include "estimation/state_source.hpp"
 

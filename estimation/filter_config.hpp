@@ -5,16 +5,179 @@
 #include <string_view>
 #include <utility>
 
-#include "estimation/airspeed.hpp"
-#include "estimation/altitude.hpp"
-#include "estimation/angle_of_attack.hpp"
-#include "estimation/error_state.hpp"
-#include "estimation/ground_velocity.hpp"
-#include "estimation/heading.hpp"
-#include "estimation/rest.hpp"
-#include "estimation/sideslip.hpp"
-
 namespace understory {
+
+/// Meaning of the states of rate_block.
+enum class FilterModel {
+  gyro_bias,     ///< the gyro is an input; its bias is estimated
+  angular_rate,  ///< the paper's: angular rate is a state which the gyro measures (docs/sources.md [4])
+};
+
+/// The pitot tube measures the speed through the air along body x, plus a bias that remains after zeroing.
+struct AirspeedConfig {
+  double usable_mps = 6.0;  ///< m/s, 0..20: slower readings are ignored, being poor
+  /// m/s, 0.01..10: of one reading at 12 m/s; pressure grows with the square of the speed, so that slower
+  /// readings are worse by as much. 1.5 Pa of noise are 0.11 m/s; the bias is a state.
+  double sigma_mps = 0.15;
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, AirspeedConfig& config) {
+  visit("usable_mps", config.usable_mps, 0.0, 20.0);
+  visit("sigma_mps", config.sigma_mps, 0.01, 10.0);
+}
+
+enum class SideslipModel {
+  lateral_force,  ///< from the winglets' side force
+  zero,           ///< v_y = 0, the original's: false by up to 2.6 m/s in dodges (docs/sources.md [15])
+  off,
+};
+
+/// Sideslip from lateral specific force. Only the winglets push sideways. As flat plates with a total area S
+/// their force is normal to them: rho/2 V^2 S 2 sin(beta), with V and sin(beta) = v/V of the air in the
+/// body's x-y plane at the winglets. So a_y = -k V v with k = rho S / m (docs/sources.md [3]: identified
+/// flat-plate model).
+struct SideslipConfig {
+  SideslipModel model = SideslipModel::lateral_force;
+  double air_density_kgpm3 = 1.204;    ///< kg/m^3, 0.1..2
+  double winglets_area_m2 = 0.038882;  ///< m^2, 1e-4..2: both together (docs/sources.md [3]: 2 x 0.019441)
+  double mass_kg = 0.648412;           ///< kg, 0.05..20
+  Eigen::Vector3d winglets_body_m{-0.08, 0.0,
+                                  0.081954};  ///< m, -5..5: mean position (y cancels between the two)
+  double sigma_mps2 = 0.2;                    ///< m/s^2, 0.01..50: noise 0.05, and what the plates leave out
+  double model_error = 0.15;  ///< fraction of the force, 0..1 (docs/sources.md [15]: 15 % costs about 0.16 m)
+  double zero_sigma_mps =
+      2.236;  ///< m/s, 0.01..50: of v_y = 0, where that is the model (the original's variance 5)
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, SideslipConfig& config) {
+  visit("model", config.model,
+        std::array<std::pair<std::string_view, SideslipModel>, 3>{
+            {{"lateral_force", SideslipModel::lateral_force},
+             {"zero", SideslipModel::zero},
+             {"off", SideslipModel::off}}});
+  visit("air_density_kgpm3", config.air_density_kgpm3, 0.1, 2.0);
+  visit("winglets_area_m2", config.winglets_area_m2, 1e-4, 2.0);
+  visit("mass_kg", config.mass_kg, 0.05, 20.0);
+  visit("winglets_body_m", config.winglets_body_m, -5.0, 5.0);
+  visit("sigma_mps2", config.sigma_mps2, 0.01, 50.0);
+  visit("model_error", config.model_error, 0.0, 1.0);
+  visit("zero_sigma_mps", config.zero_sigma_mps, 0.01, 50.0);
+}
+
+/// Angle of attack from normal specific force. The wing is a flat plate of area S. Its force is normal to it:
+/// rho/2 V^2 S 2 sin(alpha), with V and sin(alpha) = -w/V of the air in the body's x-z plane. So the wing's
+/// a_z = -rho S V w / m. The wing has no moment about the centre of mass. In steady flight the elevons' force
+/// therefore balances the pitch damping: D q / (arm m) (docs/sources.md [3], identified model; trim checks
+/// within 0.1 %).
+struct AngleOfAttackConfig {
+  /// Off: with the right wing it takes 0.01 m off the drift over 10 m, with one 20 % wrong in lift or mass it
+  /// adds up to 0.2 m (docs/model_mismatch.md).
+  bool enabled = false;
+  double air_density_kgpm3 = 1.204;    ///< kg/m^3, 0.1..2
+  double wing_area_m2 = 0.1811;        ///< m^2, 0.01..5
+  double mass_kg = 0.648412;           ///< kg, 0.05..20
+  double pitch_damping_nmspr = 0.115;  ///< N m s/rad, 0..10
+  double elevon_arm_m = 0.145;         ///< m, 0.01..5: elevon force behind the centre of mass
+  /// m/s^2, 0.01..100. Weak on purpose: a wrong wing is an error that 200 samples a second do not average
+  /// out. Measured drift over 10 m in dodges (95 %): off 0.19 m, here 0.17 m, and 0.24 m with a wing 15 %
+  /// wrong; with 1 m/s^2 the latter two are 0.13 m and 0.41 m.
+  double sigma_mps2 = 6.0;
+  double model_error = 0.15;  ///< fraction of the force, 0..1
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, AngleOfAttackConfig& config) {
+  visit("enabled", config.enabled);
+  visit("air_density_kgpm3", config.air_density_kgpm3, 0.1, 2.0);
+  visit("wing_area_m2", config.wing_area_m2, 0.01, 5.0);
+  visit("mass_kg", config.mass_kg, 0.05, 20.0);
+  visit("pitch_damping_nmspr", config.pitch_damping_nmspr, 0.0, 10.0);
+  visit("elevon_arm_m", config.elevon_arm_m, 0.01, 5.0);
+  visit("sigma_mps2", config.sigma_mps2, 0.01, 100.0);
+  visit("model_error", config.model_error, 0.0, 1.0);
+}
+
+/// The barometer measures world z plus an offset. The offset is a state; it is observed on the catapult,
+/// where the altitude is known.
+struct AltitudeConfig {
+  double sigma_m = 0.4;             ///< m, 0.01..100: of one reading; a consumer barometer's noise is 0.3 m
+  double offset_sigma_m = 0.3;      ///< m, 0..10: spread of the offset before the readings at rest
+  double offset_walk_m_rts = 0.09;  ///< m/sqrt(s), 0..10: weather, heat and wash: 0.5 m in a minute
+  double noise_m = 0.3;           ///< m, 0.01..100: of one reading about its slow error (consumer barometer)
+  double drift_walk_m_rts = 0.1;  ///< m/sqrt(s), 0..10: how fast odometry and altitude may part
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, AltitudeConfig& config) {
+  visit("sigma_m", config.sigma_m, 0.01, 100.0);
+  visit("offset_sigma_m", config.offset_sigma_m, 0.0, 10.0);
+  visit("offset_walk_m_rts", config.offset_walk_m_rts, 0.0, 10.0);
+  visit("noise_m", config.noise_m, 0.01, 100.0);
+  visit("drift_walk_m_rts", config.drift_walk_m_rts, 0.0, 10.0);
+}
+
+/// The magnetometer's field, rotated into the world by the estimated attitude (which compensates the tilt),
+/// points to magnetic north, world y. Only its horizontal direction is used, not its strength or inclination.
+struct HeadingConfig {
+  bool enabled = true;
+  /// rad, 0.01..3. A hard-iron error of 0.5 uT against a horizontal field of 19 uT (48 uT, inclination 67
+  /// deg) is 0.027 rad and lasts the flight, and a tilt error enters tan(67 deg) = 2.4 fold: the magnetometer
+  /// holds the heading over minutes and leaves seconds to the gyro.
+  double sigma_rad = 0.35;
+  double minimum_horizontal_ut = 5.0;  ///< uT, 0..100: below this the direction means nothing
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, HeadingConfig& config) {
+  visit("enabled", config.enabled);
+  visit("sigma_rad", config.sigma_rad, 0.01, 3.0);
+  visit("minimum_horizontal_ut", config.minimum_horizontal_ut, 0.0, 100.0);
+}
+
+/// Velocity over ground from GPS, measured at an earlier moment. The inertial sensors alone say how the
+/// velocity has changed since, so that corrections made meanwhile are not applied twice.
+struct GroundVelocityConfig {
+  bool enabled = true;     ///< whether samples, where there are any, are used
+  double sigma_mps = 0.2;  ///< m/s, 0.01..10, per axis (docs/sources.md [15])
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, GroundVelocityConfig& config) {
+  visit("enabled", config.enabled);
+  visit("sigma_mps", config.sigma_mps, 0.01, 10.0);
+}
+
+/// On the catapult the aircraft stands still at a known place: velocity and rate are zero, the specific force
+/// is gravity.
+struct RestConfig {
+  double force_tolerance_mps2 = 0.6;  ///< m/s^2, 0.01..10: specific force this near gravity, and
+  double rate_tolerance_radps =
+      0.05;  ///< rad/s, 0.001..5: rates this near zero (bias 0.5 deg/s included) are rest
+  double velocity_sigma_mps = 0.02;       ///< m/s, 1e-4..1
+  double position_sigma_m = 0.01;         ///< m, 1e-4..1
+  double force_sigma_mps2 = 0.1;          ///< m/s^2, 0.001..10: one reading's noise as a level
+  double accelerometer_bias_mps2 = 0.05;  ///< m/s^2, 0..1: as a tilt it stays, however long the rest
+  /// m/s^2, 5..150: a_x of two samples running. The original waited for 45 (docs/sources.md [2],
+  /// accel_threshold_x); a 1.5 m rail to 12 m/s gives 48 and a share of gravity.
+  double launch_threshold_mps2 = 30.0;
+  /// m/s, 0..5: when in the sample interval the catapult fired, and when it let go, is unknown: each 48 m/s^2
+  /// over 5 ms, evenly spread.
+  double launch_speed_sigma_mps = 0.1;
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, RestConfig& config) {
+  visit("force_tolerance_mps2", config.force_tolerance_mps2, 0.01, 10.0);
+  visit("rate_tolerance_radps", config.rate_tolerance_radps, 0.001, 5.0);
+  visit("velocity_sigma_mps", config.velocity_sigma_mps, 1e-4, 1.0);
+  visit("position_sigma_m", config.position_sigma_m, 1e-4, 1.0);
+  visit("force_sigma_mps2", config.force_sigma_mps2, 0.001, 10.0);
+  visit("accelerometer_bias_mps2", config.accelerometer_bias_mps2, 0.0, 1.0);
+  visit("launch_threshold_mps2", config.launch_threshold_mps2, 5.0, 150.0);
+  visit("launch_speed_sigma_mps", config.launch_speed_sigma_mps, 0.0, 5.0);
+}
 
 /// Where the flight begins, and how well that is known. Standard deviations are one sigma.
 struct StartConfig {

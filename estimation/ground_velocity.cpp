@@ -1,4 +1,4 @@
-#include "estimation/ground_velocity.hpp"
+#include "estimation/measurements.hpp"
 
 #include "estimation/so3.hpp"
 

@@ -1,4 +1,4 @@
-#include "estimation/heading.hpp"
+#include "estimation/measurements.hpp"
 
 #include <cmath>
 

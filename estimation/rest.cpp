@@ -1,4 +1,4 @@
-#include "estimation/rest.hpp"
+#include "estimation/measurements.hpp"
 
 #include <cmath>
 

@@ -1,8 +1,6 @@
-#include "estimation/sideslip.hpp"
+#include "estimation/measurements.hpp"
 
 #include <cmath>
-
-#include "estimation/air_velocity.hpp"
 
 namespace understory {
 namespace {

@@ -9,41 +9,12 @@
 #include "perception/map/resightings.hpp"
 #include "perception/obstacle_detector.hpp"
 #include "perception/stereo_rig.hpp"
+#include "planning/airframe.hpp"
+#include "planning/autopilot_config.hpp"
 #include "planning/avoidance_planner.hpp"
-#include "planning/controls.hpp"
 #include "planning/path_follower.hpp"
 
 namespace understory {
-
-struct AutopilotConfig {
-  double launch_acceleration_mps2 =
-      30;  ///< two IMU samples in a row above this along body x: the catapult has fired
-  double throttle_delay_s = 0.28;  ///< from then to throttle and control; the rail takes 0.25 s of it
-  double plan_latency_s = 0.006;   ///< what computing a plan costs in simulated time, before it takes effect
-  /// Longest between plans while the one in force goes straight and nothing new comes near it; what does is
-  /// planned for at once. 0: plans at every call of replan(), as far as plan_latency_s lets it.
-  double straight_period_s = 0;
-  double avoiding_period_s = 0;  ///< the same while the plan in force goes around something
-  LocalMapConfig map;
-  ResightingsConfig resightings;
-  FlightModelConfig flight_model;
-  PlannerConfig planner;
-  PathFollowerConfig follower;
-};
-
-template <typename Visitor>
-void visit_fields(Visitor& visit, AutopilotConfig& config) {
-  visit("launch_acceleration_mps2", config.launch_acceleration_mps2, 5.0, 500.0);
-  visit("throttle_delay_s", config.throttle_delay_s, 0.0, 2.0);
-  visit("plan_latency_s", config.plan_latency_s, 0.0, 0.2);
-  visit("straight_period_s", config.straight_period_s, 0.0, 1.0);
-  visit("avoiding_period_s", config.avoiding_period_s, 0.0, 1.0);
-  visit("map", config.map);
-  visit("resightings", config.resightings);
-  visit("flight_model", config.flight_model);
-  visit("planner", config.planner);
-  visit("follower", config.follower);
-}
 
 /// The flight stack composed: what would run on the aircraft. It knows the airframe, its rig and the mission.
 /// `detector` tells it what is around it, `state_source` where it is. Both must outlive it.

@@ -4,41 +4,13 @@
 #include <optional>
 #include <vector>
 
+#include "planning/autopilot_config.hpp"
 #include "planning/manoeuvre.hpp"
-#include "planning/manoeuvre_improvement.hpp"
 #include "planning/manoeuvre_search.hpp"
 #include "planning/obstacle_field.hpp"
 #include "planning/plan.hpp"
-#include "planning/planner_counts.hpp"
 
 namespace understory {
-
-struct PlannerConfig {
-  bool use_ompl = true;  ///< false: the fallback primitives alone answer when the straight way is blocked
-  /// A plan in force whose cost has not grown past this share of its cost when new is kept without a search.
-  double kept_cost_ratio = 1.3;
-  double change_cost_ratio =
-      1.5;                   ///< another way must be this much cheaper than the plan in force: no dithering
-  int refresh_replans = 12;  ///< a kept plan is searched against anew after this many replans,
-  double refresh_s = 1;      ///< or after this long
-  ObstacleFieldConfig field;
-  TrajectoryConfig trajectory;
-  ManoeuvreSearchConfig search;
-  ManoeuvreImprovementConfig improvement;
-};
-
-template <typename Visitor>
-void visit_fields(Visitor& visit, PlannerConfig& config) {
-  visit("use_ompl", config.use_ompl);
-  visit("kept_cost_ratio", config.kept_cost_ratio, 1.0, 100.0);
-  visit("change_cost_ratio", config.change_cost_ratio, 1.0, 100.0);
-  visit("refresh_replans", config.refresh_replans, 1, 1000);
-  visit("refresh_s", config.refresh_s, 0.0, 10.0);
-  visit("field", config.field);
-  visit("trajectory", config.trajectory);
-  visit("search", config.search);
-  visit("improvement", config.improvement);
-}
 
 /// Receding-horizon avoidance. The first of these that is possible is flown: straight on where that is free;
 /// the plan in force while it is free and good; what OMPL finds; the primitive with the maximum clearance.

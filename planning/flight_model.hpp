@@ -4,6 +4,7 @@
 
 #include "estimation/state.hpp"
 #include "planning/airframe.hpp"
+#include "planning/autopilot_config.hpp"
 
 namespace understory {
 
@@ -30,38 +31,6 @@ struct FlightCommand {
   double climb_mps = 0;
   bool operator==(const FlightCommand&) const = default;
 };
-
-/// How the path follower answers commands, and the envelope it keeps. The reduced model and the path follower
-/// both read these numbers, so that what is planned is what is flown.
-struct FlightModelConfig {
-  double cruise_speed_mps = 12.0;  ///< held by the throttle
-  double maximum_angle_of_attack_rad =
-      0.4363;  ///< 25 deg: flat plates never stall, real wings do (our assumption)
-  double minimum_angle_of_attack_rad = -0.05;
-  double minimum_speed_mps = 8.0;  ///< level flight ends here: below it the nose is not pulled up further
-  double bank_gain_per_s = 9.0;    ///< roll rate asked for per radian of bank error
-  double maximum_roll_rate_radps = 7.5;    ///< at the reference speed 12.27 m/s; falls with speed
-  double maximum_differential_rad = 0.50;  ///< elevon deflection to either side of the mean, for rolling
-  double roll_time_s = 0.06;               ///< lag of the roll rate behind what is asked
-  double angle_of_attack_time_s = 0.17;    ///< lag of the angle of attack
-  double climb_angle_time_s = 0.45;        ///< how fast a climb angle error is taken out
-  double speed_gain_n_per_mps = 2.0;       ///< throttle per speed error
-};
-
-template <typename Visitor>
-void visit_fields(Visitor& visit, FlightModelConfig& config) {
-  visit("cruise_speed_mps", config.cruise_speed_mps, 8.0, 16.0);
-  visit("maximum_angle_of_attack_rad", config.maximum_angle_of_attack_rad, 0.1, 0.8);
-  visit("minimum_angle_of_attack_rad", config.minimum_angle_of_attack_rad, -0.5, 0.1);
-  visit("minimum_speed_mps", config.minimum_speed_mps, 5.0, 12.0);
-  visit("bank_gain_per_s", config.bank_gain_per_s, 1.0, 30.0);
-  visit("maximum_roll_rate_radps", config.maximum_roll_rate_radps, 1.0, 20.0);
-  visit("maximum_differential_rad", config.maximum_differential_rad, 0.05, 0.9);
-  visit("roll_time_s", config.roll_time_s, 0.005, 0.5);
-  visit("angle_of_attack_time_s", config.angle_of_attack_time_s, 0.02, 1.0);
-  visit("climb_angle_time_s", config.climb_angle_time_s, 0.1, 5.0);
-  visit("speed_gain_n_per_mps", config.speed_gain_n_per_mps, 0.0, 20.0);
-}
 
 /// A point mass with roll-in, speed loss and sideslip, under the forces of the identified flat plates
 /// (docs/sources.md [3]). The inner loops of the path follower appear as lags, so steps of 20 ms are

@@ -1,10 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <vector>
 
+#include "planning/autopilot_config.hpp"
 #include "planning/flight_model.hpp"
-#include "planning/mission.hpp"
 #include "planning/obstacle_field.hpp"
 #include "planning/plan.hpp"
 
@@ -17,50 +18,6 @@ struct ManoeuvrePart {
   double duration_s = 0;
 };
 using Manoeuvre = std::vector<ManoeuvrePart>;
-
-/// How trajectories are judged. Costs are dimensionless, per second of flight. A clearance of zero costs
-/// `clearance_weight`.
-struct TrajectoryConfig {
-  double step_s = 0.02;
-  double horizon_m = 14.0;             ///< distance ahead that plans cover: detection depth and some
-  double minimum_clearance_m = -0.05;  ///< hard, for plans to be found
-  double minimum_kept_clearance_m =
-      -0.08;  ///< hard, for the plan in force: smaller, so that noise does not upset it
-  double comfortable_clearance_m = 0.7;
-  double clearance_weight = 15.0;
-  double bank_weight = 1.0;           ///< per rad^2
-  double heading_weight = 6.0;        ///< per rad^2 off the course: what lies to the side was not looked at
-  double altitude_weight = 1.0;       ///< per m^2 off the cruise altitude
-  double band_weight = 40.0;          ///< per m^2 beyond the band's margin
-  double band_margin_m = 0.8;         ///< kept from the band's limits
-  double slow_weight = 2.0;           ///< per (m/s)^2 below 1 m/s less than cruise
-  double final_heading_weight = 4.0;  ///< per rad^2 at the horizon
-  double heading_gain = 1.6;          ///< bank per heading error, course guidance
-  double maximum_course_bank_rad = 0.6;
-  double altitude_gain_per_s = 1.2;  ///< climb per altitude error
-  double maximum_climb_mps = 2.0;
-};
-
-template <typename Visitor>
-void visit_fields(Visitor& visit, TrajectoryConfig& config) {
-  visit("step_s", config.step_s, 0.005, 0.03);
-  visit("horizon_m", config.horizon_m, 2.0, 60.0);
-  visit("minimum_clearance_m", config.minimum_clearance_m, -1.0, 2.0);
-  visit("minimum_kept_clearance_m", config.minimum_kept_clearance_m, -1.0, 2.0);
-  visit("comfortable_clearance_m", config.comfortable_clearance_m, 0.0, 3.0);
-  visit("clearance_weight", config.clearance_weight, 0.0, 1e4);
-  visit("bank_weight", config.bank_weight, 0.0, 1e4);
-  visit("heading_weight", config.heading_weight, 0.0, 1e4);
-  visit("altitude_weight", config.altitude_weight, 0.0, 1e4);
-  visit("band_weight", config.band_weight, 0.0, 1e4);
-  visit("band_margin_m", config.band_margin_m, 0.0, 3.0);
-  visit("slow_weight", config.slow_weight, 0.0, 1e4);
-  visit("final_heading_weight", config.final_heading_weight, 0.0, 1e4);
-  visit("heading_gain", config.heading_gain, 0.0, 10.0);
-  visit("maximum_course_bank_rad", config.maximum_course_bank_rad, 0.05, 1.5);
-  visit("altitude_gain_per_s", config.altitude_gain_per_s, 0.0, 10.0);
-  visit("maximum_climb_mps", config.maximum_climb_mps, 0.0, 6.0);
-}
 
 /// Everything by which trajectories are judged during one replan.
 struct FlightTask {
@@ -102,5 +59,16 @@ struct Rollout {
 Rollout fly_out(const FlightTask& task, const FlightState& start, const Manoeuvre& manoeuvre,
                 double minimum_clearance_m, bool keep_points, bool stop_when_too_near = true,
                 double maximum_cost = std::numeric_limits<double>::infinity());
+
+struct ImprovedManoeuvre {
+  Manoeuvre manoeuvre;
+  double cost = 0;  ///< of its rollout; infinite where that does not reach the horizon
+};
+
+/// The cheapest variant found that reaches the horizon with `minimum_clearance_m`; `manoeuvre` itself where
+/// no variant is cheaper or reaches the horizon. Repeats exactly for equal arguments.
+ImprovedManoeuvre improve_manoeuvre(const FlightTask& task, const FlightState& start,
+                                    const Manoeuvre& manoeuvre, double minimum_clearance_m,
+                                    const ManoeuvreImprovementConfig& config, std::uint64_t seed);
 
 }  // namespace understory

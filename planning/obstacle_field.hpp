@@ -5,39 +5,10 @@
 #include <vector>
 
 #include "perception/obstacle_point.hpp"
+#include "planning/autopilot_config.hpp"
 #include "planning/flight_model.hpp"
 
 namespace understory {
-
-struct ObstacleFieldConfig {
-  double cell_m = 0.15;       ///< points that share a horizontal cell of this size become one upright column
-  double column_gap_m = 1.2;  ///< points of a cell farther apart in height than this start a new column
-  double vertical_reach_m =
-      0.4;  ///< a column stands out this far above and below its outermost points: trees go on
-  /// What is seen in the air stands on the ground, as trees and posts do: columns reach down to height 0, and
-  /// the aircraft does not pass under the part of a trunk that it saw with its nose up. What is wrongly seen
-  /// in the air then stands in the way at every height: it pays in wind (docs/decisions/017).
-  bool stands_on_ground = false;
-  double sigma_zero_m = 0.05;  ///< uncertainty of a point when seen, added to its size
-  double sigma_per_m =
-      0.010;  ///< growth with the distance flown since: drift of the estimate (docs/sources.md [15])
-  double sigma_maximum_m = 0.3;  ///< growth ends here
-  double half_span_m = 0.4318;   ///< of the wing that must pass
-  double wing_radius_m = 0.09;   ///< half the thickness of wing and winglets, as a capsule about the span
-};
-
-template <typename Visitor>
-void visit_fields(Visitor& visit, ObstacleFieldConfig& config) {
-  visit("cell_m", config.cell_m, 0.02, 1.0);
-  visit("column_gap_m", config.column_gap_m, 0.1, 20.0);
-  visit("vertical_reach_m", config.vertical_reach_m, 0.0, 10.0);
-  visit("stands_on_ground", config.stands_on_ground);
-  visit("sigma_zero_m", config.sigma_zero_m, 0.0, 2.0);
-  visit("sigma_per_m", config.sigma_per_m, 0.0, 0.5);
-  visit("sigma_maximum_m", config.sigma_maximum_m, 0.0, 2.0);
-  visit("half_span_m", config.half_span_m, 0.0, 3.0);
-  visit("wing_radius_m", config.wing_radius_m, 0.0, 1.0);
-}
 
 /// The remembered points for the planner: upright columns in a horizontal grid, which answer the free
 /// distance to a wing in a given attitude. It is rebuilt for each replan. A search asks about ten thousand

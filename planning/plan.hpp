@@ -1,10 +1,24 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <concepts>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 namespace understory {
+
+/// What the mission asks for: fly along `heading_rad` until past the goal plane, inside the band and the
+/// sides. Known before the flight, so it may be told to the stack. World frame of the estimator, origin at
+/// the launch.
+struct Mission {
+  double heading_rad = 0;           ///< from world x towards world y
+  double goal_distance_m = 75;      ///< of the goal plane, along the heading
+  double half_width_m = 25;         ///< to each side
+  double minimum_altitude_m = 1.0;  ///< in force once climbed
+  double maximum_altitude_m = 6.0;
+  double cruise_altitude_m = 4.5;
+};
 
 /// One moment of a plan, as the reduced flight model predicts it.
 struct PlanPoint {
@@ -33,5 +47,36 @@ struct Plan {
   PlanOrigin origin = PlanOrigin::straight;
   std::vector<PlanPoint> points;  ///< evenly spaced in time; empty before the first replan
 };
+
+/// How the replans of a flight were answered. straight + solved + kept + fallback is their number.
+struct PlannerCounts {
+  std::int64_t replans = 0;
+  std::int64_t straight = 0;        ///< nothing within comfortable clearance of the straight way
+  std::int64_t solved = 0;          ///< OMPL's answer of this replan taken
+  std::int64_t kept = 0;            ///< the plan in force still good
+  std::int64_t kept_ompl = 0;       ///< of `kept`: the rest of an OMPL answer; the others go straight
+  std::int64_t fallback = 0;        ///< no free manoeuvre found: the primitive with the maximum clearance
+  std::int64_t obstacle_ahead = 0;  ///< straight on would come nearer than the minimum clearance
+  std::int64_t obstacle_ahead_ompl = 0;  ///< of those: flown on an OMPL answer, of this replan or kept
+  std::int64_t searches =
+      0;                   ///< how often OMPL was asked (a kept plan is searched against anew now and then)
+  std::int64_t found = 0;  ///< how often it answered with a free manoeuvre
+};
+
+/// Every count by name, for results, rows and sums: visit(name, count).
+template <typename Visitor, typename Counts>
+requires std::same_as<std::remove_const_t<Counts>, PlannerCounts>
+void visit_fields(Visitor& visit, Counts& counts) {
+  visit("replans", counts.replans);
+  visit("straight", counts.straight);
+  visit("solved", counts.solved);
+  visit("kept", counts.kept);
+  visit("kept_ompl", counts.kept_ompl);
+  visit("fallback", counts.fallback);
+  visit("obstacle_ahead", counts.obstacle_ahead);
+  visit("obstacle_ahead_ompl", counts.obstacle_ahead_ompl);
+  visit("searches", counts.searches);
+  visit("found", counts.found);
+}
 
 }  // namespace understory

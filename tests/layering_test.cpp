@@ -107,11 +107,19 @@ void expect_only_known(const std::string& rule, const Names& found) {
 }
 
 /// Headers of plain types and interfaces: the _types targets.
-const Names type_headers{
-    "perception/stereo_frame.hpp", "perception/stereo_rig.hpp",     "perception/stereo_calibration.hpp",
-    "perception/stereo_hit.hpp",   "perception/obstacle_point.hpp", "perception/obstacle_detector.hpp",
-    "estimation/samples.hpp",      "estimation/state.hpp",          "estimation/state_source.hpp",
-    "planning/airframe.hpp",       "planning/controls.hpp",         "planning/plan.hpp"};
+const Names type_headers{"perception/stereo_frame.hpp",
+                         "perception/stereo_rig.hpp",
+                         "perception/stereo_calibration.hpp",
+                         "perception/stereo_hit.hpp",
+                         "perception/obstacle_point.hpp",
+                         "perception/obstacle_detector.hpp",
+                         "perception/perception_config.hpp",
+                         "estimation/samples.hpp",
+                         "estimation/state.hpp",
+                         "estimation/state_source.hpp",
+                         "estimation/filter_config.hpp",
+                         "planning/airframe.hpp",
+                         "planning/plan.hpp"};
 
 bool may_reach(const std::string& file, const std::string& header) {
   const std::string from = top(file), to = top(header);

@@ -6,35 +6,10 @@
 
 #include "perception/map/point_grid.hpp"
 #include "perception/obstacle_point.hpp"
+#include "perception/perception_config.hpp"
 #include "perception/stereo_hit.hpp"
 
 namespace understory {
-
-/// How long, how many and whom the map remembers.
-struct LocalMapConfig {
-  double max_age_s = 4.0;  ///< points older than this go (the original remembered 2 to 4 s)
-  /// A point goes once it lies this far behind the aircraft along its heading. Larger than the half span
-  /// (0.43 m) and what a turn swings the wing tips by, so that nothing still beside a wing is lost.
-  double passed_m = 2.0;
-  int max_points = 5000;   ///< beyond this the oldest go first
-  double voxel_m = 0.10;   ///< a hit in the voxel of a remembered point refreshes it; 0 keeps every hit
-  int min_neighbours = 2;  ///< other points a trusted point needs (with itself 3, the original's avoidance)
-  double neighbour_radius_m = 1.0;    ///< within this distance
-  bool seen_again = false;            ///< a trusted point also needs support from a second frame
-  double seen_again_radius_m = 0.35;  ///< a point of another frame this near (or itself seen twice)
-};
-
-template <typename Visitor>
-void visit_fields(Visitor& visit, LocalMapConfig& config) {
-  visit("max_age_s", config.max_age_s, 0.0, 600.0);
-  visit("passed_m", config.passed_m, 0.0, 1000.0);
-  visit("max_points", config.max_points, 1, 1000000);
-  visit("voxel_m", config.voxel_m, 0.0, 10.0);
-  visit("min_neighbours", config.min_neighbours, 0, 1000);
-  visit("neighbour_radius_m", config.neighbour_radius_m, 0.01, 100.0);
-  visit("seen_again", config.seen_again);
-  visit("seen_again_radius_m", config.seen_again_radius_m, 0.0, 100.0);
-}
 
 /// Remembers hits in the estimator's world frame (its continuous odometry frame) until the aircraft has
 /// passed them (Barry & Tedrake 2015: past detections carried by odometry). Points never move except when

@@ -4,43 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "perception/perception_config.hpp"
 #include "perception/stereo_hit.hpp"
 
 namespace understory {
-
-/// How sightings at two depths become one displacement.
-struct ResightingsConfig {
-  bool enabled = false;
-  std::vector<double> depths_m;  ///< that the detector looks at; the composition knows them, no key says them
-  /// Level distance from a cluster's centre within which hits of one depth join it. While a trunk crosses the
-  /// depth interval of a pixel (1.6 m at 10 m), its places smear over as much in the odometry frame, and by
-  /// what a wind that is not yet known carries meanwhile.
-  double cluster_m = 2.0;
-  int minimum_hits = 8;    ///< a cluster of fewer is left alone
-  double settle_s = 0.04;  ///< a nearer cluster without a hit for as long is complete
-  /// Level distance between the two places of one obstacle, at most: an unknown wind of 5 m/s over the half
-  /// second between 10 and 5 m.
-  double match_m = 2.5;
-  double rival = 1.5;     ///< any other far cluster must be this many times as distant
-  double oldest_s = 0.9;  ///< between the two sightings, at most
-  /// Of the discrepancy, along the line of sight: what remains of a pixel's depth interval once its crossing
-  /// is averaged, and of where a trunk's face lies.
-  double along_sigma_m = 0.25;
-  double across_sigma_m = 0.10;  ///< and across it: blocks of 5 pixels at 10 m are 0.13 m
-};
-
-template <typename Visitor>
-void visit_fields(Visitor& visit, ResightingsConfig& config) {
-  visit("enabled", config.enabled);
-  visit("cluster_m", config.cluster_m, 0.05, 10.0);
-  visit("minimum_hits", config.minimum_hits, 1, 10000);
-  visit("settle_s", config.settle_s, 0.0, 1.0);
-  visit("match_m", config.match_m, 0.05, 20.0);
-  visit("rival", config.rival, 1.0, 100.0);
-  visit("oldest_s", config.oldest_s, 0.05, 10.0);
-  visit("along_sigma_m", config.along_sigma_m, 0.001, 10.0);
-  visit("across_sigma_m", config.across_sigma_m, 0.001, 10.0);
-}
 
 /// One obstacle, placed twice by the same estimate.
 struct Resighting {

@@ -2,86 +2,15 @@
 
 #include <cstdint>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "perception/obstacle_detector.hpp"
+#include "perception/perception_config.hpp"
 #include "perception/pushbroom/pushbroom_kernel.hpp"
 #include "perception/rectify.hpp"
 #include "perception/stereo_rig.hpp"
 
 namespace understory {
-
-/// Every number and every rule of the detector. Defaults are the paper's rule as the original's public code
-/// had it (Barry & Tedrake 2015); each rule is a switch of its own.
-struct PushbroomConfig {
-  std::vector<double> depths_m;  ///< to look at; empty: the rig's own detection depth. 0.1 .. 1000
-  /// For each of depths_m its own threshold, in their order; empty: the ones below for all. Same ranges as
-  /// there.
-  std::vector<double> depths_minimum_edge_sum, depths_score_limit;
-  int threads = 1;           ///< 1 .. 64; hits do not depend on it
-  int stride_px = 5;         ///< from block to block, both ways; 1 .. 100; 5 sets the 5x5 blocks side by side
-  bool every_pixel = false;  ///< dense: a window at every pixel, of each 5x5 cell of windows the best counts
-  int last_row_px = 205;     ///< top edge of the lowest row of blocks; rows below see the ground
-  int minimum_edge_sum = 860;         ///< Laplacian sum asked of each image's block by itself; 0 .. 6375
-  double score_limit = 54.0 / 333.0;  ///< hit if S = SAD / (both edge sums) is below; exact to 1/333000
-
-  bool horizontal_invariance = true;  ///< reject texture that also matches near infinity
-  int invariance_columns_px = 3;      ///< searched to each side of infinity
-  int invariance_rows_px = 8;         ///< searched up and down
-  int invariance_row_step_px = 2;
-  double invariance_score_limit = 108.0 / 333.0;  ///< twice the score limit: 0.324
-
-  bool uniqueness = false;        ///< the disparity must stand out along the row
-  double uniqueness_ratio = 2.0;  ///< no other disparity within this many times its SAD
-  double uniqueness_minimum_depth_m =
-      1.5;  ///< range searched: infinity to here (the paper ignores nearer points)
-
-  /// Puts a hit at the vertex of the parabola through the SADs of its disparity and the two beside it, at
-  /// most half a pixel away, where its own is the minimum of the three.
-  bool subpixel = false;
-
-  bool isolation = false;            ///< a hit needs company in its own frame
-  int isolation_minimum_points = 3;  ///< itself included (the original's avoidance)
-  double isolation_radius_m = 1.0;
-};
-
-/// The last row of blocks, 205 of the paper's 240 rows, in an image of this height.
-int last_row_px_of(int height_px);
-
-/// The paper's rule, exactly.
-PushbroomConfig paper_rule();
-/// Uniqueness instead of the invariance filter, gentler thresholds, 3 points within 1 m: on rendered forests
-/// its precision is 0.94 where the paper's thresholds give 0.37 (computed with one prototype;
-/// docs/benchmarks.md).
-PushbroomConfig robust_rule();
-/// The robust rule with the numbers tuned for a rig of models/rigs by its name, `long` or `paper`: most
-/// recall at a precision of 0.985 (docs/tuning.md). Rigs that nobody has tuned for get robust_rule().
-PushbroomConfig tuned_rule(std::string_view rig);
-
-template <typename Visitor>
-void visit_fields(Visitor& visit, PushbroomConfig& config) {
-  visit("threads", config.threads, 1, 64);
-  visit("stride_px", config.stride_px, 1, 100);
-  visit("every_pixel", config.every_pixel);
-  visit("last_row_px", config.last_row_px, 0, 4000);
-  visit("minimum_edge_sum", config.minimum_edge_sum, 0, 6375);
-  visit("score_limit", config.score_limit, 0.0, 10.0);
-  visit("horizontal_invariance", config.horizontal_invariance);
-  visit("invariance_columns_px", config.invariance_columns_px, 0, 50);
-  visit("invariance_rows_px", config.invariance_rows_px, 0, 50);
-  visit("invariance_row_step_px", config.invariance_row_step_px, 1, 50);
-  visit("invariance_score_limit", config.invariance_score_limit, 0.0, 10.0);
-  visit("uniqueness", config.uniqueness);
-  visit("uniqueness_ratio", config.uniqueness_ratio, 1.0, 100.0);
-  visit("uniqueness_minimum_depth_m", config.uniqueness_minimum_depth_m, 0.1, 100.0);
-  visit("depths_minimum_edge_sum", config.depths_minimum_edge_sum, 0, 6375);
-  visit("depths_score_limit", config.depths_score_limit, 0.0, 10.0);
-  visit("subpixel", config.subpixel);
-  visit("isolation", config.isolation);
-  visit("isolation_minimum_points", config.isolation_minimum_points, 1, 1000);
-  visit("isolation_radius_m", config.isolation_radius_m, 0.0, 100.0);
-}
 
 /// Pushbroom stereo (Barry & Tedrake 2015): looks at one disparity only (or a few), and lets the aircraft's
 /// motion sweep that surface through the world. Exact: the same hits on every instruction set and with any

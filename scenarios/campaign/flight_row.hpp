@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "planning/planner_counts.hpp"
+#include "planning/plan.hpp"
 
 namespace understory {
 

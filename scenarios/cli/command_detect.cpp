@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "perception/perception_config.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/detect/detection_run.hpp"

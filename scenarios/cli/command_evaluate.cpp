@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "perception/perception_config.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/evaluation/evaluation.hpp"

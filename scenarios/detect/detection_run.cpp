@@ -19,7 +19,7 @@
 #include "scenarios/report/overlay.hpp"
 #include "scenarios/report/pictures.hpp"
 #include "scenarios/report/table.hpp"
-#include "scenarios/scenario/detection_depths.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
 
 namespace understory {
 namespace {

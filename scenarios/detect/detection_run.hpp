@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "perception/io/calibration_file.hpp"
+#include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "perception/rectify.hpp"
 #include "scenarios/scenario/vision_config.hpp"
 

@@ -8,10 +8,12 @@
 #include <random>
 #include <utility>
 
+#include "perception/full_stereo/full_stereo_detector.hpp"
+#include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "scenarios/evaluation/evaluation_recording.hpp"
 #include "scenarios/evaluation/ground_truth.hpp"
 #include "scenarios/flight/stopwatch.hpp"
-#include "scenarios/scenario/detection_depths.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
 
 namespace understory {
 namespace {

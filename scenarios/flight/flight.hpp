@@ -18,7 +18,6 @@
 #include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/scenario/scenario.hpp"
 #include "sim/aircraft/aircraft.hpp"
-#include "sim/cameras/frame_drops.hpp"
 #include "sim/cameras/stereo_cameras.hpp"
 #include "sim/render/renderer_kind.hpp"
 #include "sim/scene/world.hpp"

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "scenarios/scenario/scenario.hpp"
+#include "sim/scene/world_config.hpp"
 
 namespace understory {
 

@@ -13,7 +13,7 @@
 #include "scenarios/flight/oracles/true_depth.hpp"
 #include "scenarios/flight/oracles/true_state.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/scenario/detection_depths.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
 
 namespace understory {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "planning/planner_counts.hpp"
+#include "planning/plan.hpp"
 
 namespace understory {
 

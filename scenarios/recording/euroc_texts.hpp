@@ -9,7 +9,7 @@
 #include "estimation/samples.hpp"
 #include "perception/io/calibration_file.hpp"
 #include "sim/scene/obstacle.hpp"
-#include "sim/sensors/imu.hpp"
+#include "sim/sensors/sensors.hpp"
 
 namespace understory {
 

@@ -8,6 +8,7 @@
 
 #include "scenarios/config/config_reader.hpp"
 #include "scenarios/config/config_writer.hpp"
+#include "sim/scene/world_config.hpp"
 
 namespace understory {
 namespace {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "perception/io/calibration_file.hpp"
+#include "perception/perception_config.hpp"
 #include "scenarios/scenario/scenario.hpp"
 
 namespace understory {
@@ -11,5 +13,11 @@ namespace understory {
 /// file, mounted so that the rectified pair has the pose of that file; `rig` is then that pair. Throws
 /// ScenarioError in one line where there is no such rig or its files cannot be read.
 CalibratedRig rig_of(const Scenario& scenario, const std::filesystem::path& models_folder);
+
+/// Throws ScenarioError, one line, where the rig cannot look at one of the rule's depths or where thresholds
+/// are not as many as depths. The line names the keys as the user writes them: `depths_key`, and the section
+/// of the thresholds.
+void check_depths(const PushbroomConfig& rule, const StereoRig& rig, const std::string& depths_key,
+                  const std::string& section);
 
 }  // namespace understory

@@ -5,11 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "perception/full_stereo/full_stereo_detector.hpp"
-#include "perception/map/local_map.hpp"
-#include "perception/pushbroom/pushbroom_stereo.hpp"
-#include "scenarios/flight/flight_computer.hpp"
-#include "scenarios/scenario/rule_preset.hpp"
+#include "scenarios/scenario/scenario.hpp"
 
 namespace understory {
 

@@ -4,12 +4,12 @@
 #include <atomic>
 #include <thread>
 
+#include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/evaluation/evaluation_recording.hpp"
 #include "scenarios/evaluation/obstacle_sightings.hpp"
 #include "scenarios/evaluation/vision_tally.hpp"
-#include "scenarios/scenario/detection_depths.hpp"
-#include "scenarios/scenario/scenario.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
 #include "scenarios/tuning/judge.hpp"
 
 namespace understory {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim/aircraft/trim.hpp"
+#include "sim/aircraft/aerodynamics.hpp"
 
 namespace understory {
 namespace {

@@ -4,32 +4,14 @@
 #include <vector>
 
 #include "planning/airframe.hpp"
-#include "planning/controls.hpp"
 #include "sim/aircraft/actuators.hpp"
 #include "sim/aircraft/aerodynamics.hpp"
+#include "sim/aircraft/aircraft_config.hpp"
 #include "sim/aircraft/truth.hpp"
 #include "sim/aircraft/wind.hpp"
 #include "sim/scene/world.hpp"
 
 namespace understory {
-
-/// How a flight begins: held on a catapult, then released with the wings level.
-struct LaunchConfig {
-  double speed_mps = 12.0;        ///< release speed along the catapult (our assumption)
-  double altitude_m = 1.5;        ///< height of the release point
-  double climb_angle_rad = 0.20;  ///< inclination of the catapult's rail
-  double rail_length_m = 1.5;     ///< accelerated over this length from rest: a = v^2 / 2 s = 48 m/s^2
-  double rest_s = 0.25;           ///< standstill on the rail before, so that sensors see rest
-};
-
-template <typename Visitor>
-void visit_fields(Visitor& visit, LaunchConfig& config) {
-  visit("speed_mps", config.speed_mps, 5.0, 20.0);
-  visit("altitude_m", config.altitude_m, 0.3, 10.0);
-  visit("climb_angle_rad", config.climb_angle_rad, -0.2, 0.6);
-  visit("rail_length_m", config.rail_length_m, 0.2, 10.0);
-  visit("rest_s", config.rest_s, 0.0, 5.0);
-}
 
 enum class Contact { none, ground, obstacle };
 

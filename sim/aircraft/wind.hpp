@@ -2,61 +2,54 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <random>
 
-#include "sim/aircraft/dryden.hpp"
+#include "sim/aircraft/aircraft_config.hpp"
 
 namespace understory {
 
-/// One discrete gust of MIL-F-8785C: from start_s on it builds up as half a cosine over the distance flown
-/// through the air, amplitude / 2 (1 - cos(pi x / length)), and then stays.
-struct GustConfig {
-  double start_s = 2;    ///< of simulated time; the standard launch releases at 0.5 s
-  double length_m = 10;  ///< over which it builds up; MIL-F-8785C: tuned to the mode to be excited
-  Eigen::Vector3d amplitude_world_mps = Eigen::Vector3d::Zero();  ///< zero: no gust
+/// Dryden turbulence near the ground (MIL-F-8785C, low-altitude model), three components in the axes of the
+/// mean wind: x along it, y across it to the left, z up.
+struct DrydenScales {
+  Eigen::Vector3d length_m;
+  Eigen::Vector3d sigma_mps;
 };
 
-template <typename Visitor>
-void visit_fields(Visitor& visit, GustConfig& config) {
-  visit("start_s", config.start_s, 0.0, 600.0);
-  visit("length_m", config.length_m, 0.1, 1000.0);
-  visit("amplitude_world_mps", config.amplitude_world_mps, -20.0, 20.0);
-}
+/// L_w = h, L_u = L_v = h / (0.177 + 0.000823 h)^1.2, sigma_w = 0.1 W20, sigma_u = sigma_v = sigma_w / (0.177
+/// + 0.000823 h)^0.4, h in feet above ground, W20 the mean wind at 20 ft (6.1 m). The model is valid from 10
+/// to 1000 ft; heights outside use its ends. (MIL-HDBK-1797 writes 2 L for what is L here, for v and w.)
+DrydenScales low_altitude_dryden(double altitude_m, double wind20_mps);
 
-/// Wind beside the mean. Everything is off by default.
-struct WindConfig {
-  double reference_height_m = 6.096;  ///< height of the scenario's mean wind: 20 ft (MIL-F-8785C's W20)
-  /// Of the logarithmic profile, mean(h) = mean(reference) ln(h / roughness) / ln(reference / roughness)
-  /// above 3 ft. MIL-F-8785C: 0.0457 (0.15 ft) at airfields, 0.61 (2 ft) elsewhere. 0: no shear.
-  double roughness_m = 0;
-  /// Strength of Dryden turbulence: the mean wind at 20 ft that would make it (MIL-F-8785C: 15, 30, 45 knots,
-  /// 7.7, 15.4, 23.2 m/s, are light, moderate, severe). 0: none.
-  double turbulence_wind20_mps = 0;
-  GustConfig gust;
-  /// Share of the wind, its gusts included, that reaches a place inside the forest and below its crowns.
-  /// Andrews 2012 (USDA RMRS-GTR-266), wind adjustment factors from Albini & Baughman 1979: 0.1 to 0.2 under
-  /// closed crowns, 0.3 partly sheltered. 1: no shelter.
-  double shelter_factor = 1;
-  /// Distance from the forest's edge over which the shelter grows in: a canopy's height or more (Belcher,
-  /// Jerram & Hunt 2003, adjustment of wind to a canopy).
-  double shelter_edge_m = 10;
-};
+/// A frozen field through which the aircraft flies (Taylor). Its state advances with the distance flown
+/// through the air, so nothing changes for an aircraft at rest in still air. Each component is white noise
+/// through the forming filter of its spectrum, Omega in rad/m, one-sided:
+///   u:    2 L / pi / (1 + (L Omega)^2)
+///   v, w: L / pi (1 + 3 (L Omega)^2) / (1 + (L Omega)^2)^2
+/// Discretised exactly for a step of any length over which L does not change. Rotation of the air (p_g, q_g,
+/// r_g) is left out: the span is a quarter of the minimum L_w.
+class DrydenTurbulence {
+ public:
+  /// Begins in the stationary state.
+  explicit DrydenTurbulence(std::uint64_t seed);
 
-template <typename Visitor>
-void visit_fields(Visitor& visit, WindConfig& config) {
-  visit("reference_height_m", config.reference_height_m, 3.0, 100.0);
-  visit("roughness_m", config.roughness_m, 0.0, 2.0);
-  visit("turbulence_wind20_mps", config.turbulence_wind20_mps, 0.0, 50.0);
-  visit("gust", config.gust);
-  visit("shelter_factor", config.shelter_factor, 0.0, 1.0);
-  visit("shelter_edge_m", config.shelter_edge_m, 0.1, 100.0);
-}
+  void advance(double distance_m, const Eigen::Vector3d& length_m);
 
-/// Where the forest stands, and so where its shelter is. Nowhere by default.
-struct ForestStand {
-  double from_x_m = 0;
-  double to_x_m = 0;
-  double half_width_m = 0;  ///< |y|
-  double canopy_top_m = 0;
+  /// The present gust, each component with variance 1. Multiply by sigma_mps for m/s.
+  Eigen::Vector3d unit_gust() const;
+
+ private:
+  /// 1 / (1 + s) twice in a row, s counted in lengths L, driven by one white noise.
+  struct Cascade {
+    double first = 0;
+    double second = 0;
+  };
+  double draw() { return unit_(generator_); }
+  void advance(Cascade& state, double lengths);
+
+  std::mt19937_64 generator_;
+  std::normal_distribution<double> unit_;
+  double along_ = 0;
+  Cascade across_, up_;
 };
 
 /// The air along one flight: mean wind with shear, turbulence, one gust, shelter.

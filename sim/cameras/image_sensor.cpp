@@ -1,33 +1,13 @@
 #include "sim/cameras/image_sensor.hpp"
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cmath>
-#include <cstring>
-
-#include "sim/cameras/rounded_gaussians.hpp"
 
 namespace understory {
 namespace {
 
 constexpr std::size_t table_size = std::size_t{1} << 19;
-constexpr float horizon_gray = 215;  // an overcast sky, short of saturation
-constexpr float zenith_gray = 190;
-
-/// Elevation of a pixel's ray: 0 at the horizon and below, 1 from 45 degrees up, linear in the pixel
-/// coordinates.
-struct SkyRow {
-  float at_left, per_pixel;
-  float steepness(int column) const {
-    return std::min(std::max(at_left + per_pixel * static_cast<float>(column), 0.0f), 1.0f);
-  }
-};
-
-SkyRow sky_row(const Eye& eye, int row) {
-  const Eigen::Vector3d up = eye.T_world_camera.linear().row(2) / eye.focal_px;  // world z in camera axes
-  const double left = -eye.center_x_px * up.x() + (row - eye.center_y_px) * up.y() + eye.focal_px * up.z();
-  return {static_cast<float>(left), static_cast<float>(up.x())};
-}
 
 }  // namespace
 
@@ -52,40 +32,101 @@ void ImageNoise::add_to(cv::Mat& gray) {
   }
 }
 
-cv::Mat gray_with_sky(const std::uint8_t* rgba, int stride_px, const Eye& eye) {
-  static_assert(std::endian::native == std::endian::little);
-  cv::Mat gray(eye.height_px, eye.width_px, CV_8UC1);
-  const int columns = eye.width_px;
-  for (int row = 0; row < eye.height_px; ++row) {
-    const std::uint8_t* source = rgba + std::size_t{4} * stride_px * (eye.height_px - 1 - row);
-    std::uint8_t* target = gray.ptr<std::uint8_t>(row);
-    const SkyRow sky = sky_row(eye, row);
-    for (int column = 0; column < columns; ++column) {
-      const float bright = horizon_gray + (zenith_gray - horizon_gray) * sky.steepness(column);
-      std::uint32_t pixel;
-      std::memcpy(&pixel, source + 4 * column, sizeof pixel);
-      const int green = static_cast<int>(pixel >> 8 & 0xFF), sky_gray = static_cast<int>(bright);
-      target[column] = static_cast<std::uint8_t>(pixel >> 24 != 0 ? green : sky_gray);
-    }
-  }
-  return gray;
+PixelResponse::PixelResponse(const CameraConfig& config, std::array<cv::Mat, 2> falloff, std::uint64_t seed)
+    : neutral_(config.light == 1 && config.gain == 1 && config.full_well_e <= 0 && falloff[0].empty()),
+      light_(static_cast<float>(config.light)),
+      gain_(static_cast<float>(config.gain)),
+      variance_per_gray_(config.full_well_e > 0 ? static_cast<float>(255 / config.full_well_e) : 0),
+      falloff_(std::move(falloff)),
+      generator_(seed) {
+  if (config.full_well_e <= 0) return;
+  std::normal_distribution<float> standard;
+  normal_.resize(table_size);
+  for (float& value : normal_) value = standard(generator_);
 }
 
-cv::Mat colour_with_sky(const std::uint8_t* rgba, const Eye& eye) {
-  cv::Mat colour(eye.height_px, eye.width_px, CV_8UC3);
-  for (int row = 0; row < eye.height_px; ++row) {
-    const std::uint8_t* source = rgba + std::size_t{4} * eye.width_px * (eye.height_px - 1 - row);
-    auto* target = colour.ptr<cv::Vec3b>(row);
-    const SkyRow sky = sky_row(eye, row);
-    for (int column = 0; column < eye.width_px; ++column, source += 4) {
-      const float blue = sky.steepness(column);
-      const cv::Vec3b air(cv::saturate_cast<std::uint8_t>(235 - 10 * blue),
-                          cv::saturate_cast<std::uint8_t>(218 - 30 * blue),
-                          cv::saturate_cast<std::uint8_t>(205 - 60 * blue));
-      target[column] = source[3] != 0 ? cv::Vec3b(source[2], source[1], source[0]) : air;
+void PixelResponse::apply(int eye, cv::Mat& gray) {
+  if (neutral_) return;
+  const cv::Mat& falloff = falloff_[static_cast<std::size_t>(eye)];
+  const int columns = gray.cols;
+  std::vector<float> seen(static_cast<std::size_t>(columns));
+  for (int row = 0; row < gray.rows; ++row) {
+    std::uint8_t* pixel = gray.ptr<std::uint8_t>(row);
+    const float* lens = falloff.empty() ? nullptr : falloff.ptr<float>(row);
+    for (int i = 0; i < columns; ++i)
+      seen[static_cast<std::size_t>(i)] =
+          std::min(light_ * (lens != nullptr ? lens[i] : 1.0f) * static_cast<float>(pixel[i]), 255.0f);
+    if (!normal_.empty()) {
+      const float* draw = normal_.data() + generator_() % (table_size - static_cast<std::size_t>(columns));
+      for (float& value : seen) value += std::sqrt(variance_per_gray_ * value) * *draw++;
+    }
+    for (int i = 0; i < columns; ++i) {
+      const float read = gain_ * seen[static_cast<std::size_t>(i)] + 0.5f;
+      pixel[i] = static_cast<std::uint8_t>(std::min(std::max(read, 0.0f), 255.0f));
     }
   }
-  return colour;
+}
+namespace {
+
+/// std::generate_canonical<double, 53> to the bit: the compiler's conversion of 64 bits without sign branches
+/// on the highest, which is a coin.
+double drawn(std::mt19937_64& generator) {
+  const std::uint64_t bits = generator();
+  const auto high = static_cast<double>(static_cast<std::int64_t>(bits >> 32));
+  const auto low = static_cast<double>(static_cast<std::int64_t>(bits & 0xffffffffu));
+  const double value = (high * 0x1p32 + low) * 0x1p-64;
+  return value < 1.0 ? value : std::nextafter(1.0, 0.0);
+}
+
+/// The factor of Marsaglia's polar method for a point of the unit disc, from its squared distance.
+double stretch(double square) { return std::sqrt(-2 * std::log(square) / square); }
+
+/// Bounds of stretch() between two steps of the squared distance, a little wide for its rounding.
+struct StretchBounds {
+  double minimum, maximum;
+};
+constexpr int bound_count = 1024;
+
+std::array<StretchBounds, bound_count> stretch_bounds() {
+  std::array<StretchBounds, bound_count> bounds;
+  const auto at = [](int step) { return stretch(static_cast<double>(step) / bound_count); };  // it falls
+  for (int i = 0; i < bound_count; ++i)
+    bounds[static_cast<std::size_t>(i)] = {at(i + 1) * (1 - 1e-12), at(std::max(i, 1)) * (1 + 1e-12)};
+  bounds[0].maximum = 1e100;  // without bound, but times zero still zero
+  return bounds;
+}
+
+}  // namespace
+
+std::vector<std::int8_t> rounded_gaussians(std::size_t count, double deviation, std::mt19937_64& generator) {
+  const auto bounds = stretch_bounds();
+  const auto exact = [deviation](double value) {
+    return static_cast<std::int8_t>(std::clamp(std::lround(value * deviation), -127L, 127L));
+  };
+  const auto size_at = [deviation](double coordinate, double stretched) {
+    return static_cast<int>(std::min(std::abs(coordinate) * stretched * deviation, 127.0) + 0.5);
+  };
+  std::vector<std::int8_t> values(count);
+  for (std::size_t i = 0; i + 1 < count; i += 2) {
+    double x, y, square;
+    do {
+      x = 2.0 * drawn(generator) - 1.0;
+      y = 2.0 * drawn(generator) - 1.0;
+      square = x * x + y * y;
+    } while (square > 1.0 || square == 0.0);
+    // Where both bounds round to the same value, so does everything between them. Most logarithms are then
+    // unnecessary.
+    const auto step = static_cast<std::size_t>(std::min(square * bound_count, bound_count - 1.0));
+    const int size_x = size_at(x, bounds[step].minimum), size_y = size_at(y, bounds[step].minimum);
+    if (size_x == size_at(x, bounds[step].maximum) && size_y == size_at(y, bounds[step].maximum)) {
+      values[i] = static_cast<std::int8_t>(y < 0 ? -size_y : size_y);
+      values[i + 1] = static_cast<std::int8_t>(x < 0 ? -size_x : size_x);
+    } else {
+      values[i] = exact(y * stretch(square));
+      values[i + 1] = exact(x * stretch(square));
+    }
+  }
+  return values;
 }
 
 }  // namespace understory

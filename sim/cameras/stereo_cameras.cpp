@@ -2,20 +2,65 @@
 
 #include <mujoco/mujoco.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <deque>
 #include <opencv2/core.hpp>
 #include <stdexcept>
 
-#include "sim/cameras/camera_frustum.hpp"
 #include "sim/cameras/image_sensor.hpp"
-#include "sim/cameras/pixel_response.hpp"
-#include "sim/cameras/pose_history.hpp"
 #include "sim/cameras/stereo_optics.hpp"
+#include "sim/render/eye.hpp"
 #include "sim/render/scene_renderer.hpp"
 #include "sim/scene/scenery.hpp"
 
 namespace understory {
 namespace {
+
+/// The body's recent poses, for images with an exposure time.
+class PoseHistory {
+ public:
+  explicit PoseHistory(std::int64_t kept_ns) : kept_ns_(kept_ns) {}
+  /// Times strictly increasing; a moment already known is left alone.
+  void observe(const Eigen::Isometry3d& T_world_body, std::int64_t t_ns);
+  /// Between two observed moments the position linearly, the attitude along the shorter arc; exactly the
+  /// observed pose at an observed moment; the oldest pose before all, the newest after all. Asks for one.
+  Eigen::Isometry3d at(std::int64_t t_ns) const;
+
+ private:
+  struct Moment {
+    std::int64_t t_ns;
+    Eigen::Isometry3d T_world_body;
+  };
+  std::int64_t kept_ns_;
+  std::deque<Moment> moments_;
+};
+
+void PoseHistory::observe(const Eigen::Isometry3d& T_world_body, std::int64_t t_ns) {
+  if (!moments_.empty() && t_ns <= moments_.back().t_ns) return;
+  moments_.push_back({t_ns, T_world_body});
+  while (moments_.size() > 1 && moments_[1].t_ns <= t_ns - kept_ns_) moments_.pop_front();
+}
+
+Eigen::Isometry3d PoseHistory::at(std::int64_t t_ns) const {
+  if (moments_.empty()) throw std::logic_error("no pose was observed before it is asked for");
+  const auto later = std::lower_bound(moments_.begin(), moments_.end(), t_ns,
+                                      [](const Moment& moment, std::int64_t t) { return moment.t_ns < t; });
+  if (later == moments_.end()) return moments_.back().T_world_body;
+  if (later == moments_.begin() || later->t_ns == t_ns) return later->T_world_body;
+  const Moment& earlier = *std::prev(later);
+  const double part =
+      static_cast<double>(t_ns - earlier.t_ns) / static_cast<double>(later->t_ns - earlier.t_ns);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() =
+      (1 - part) * earlier.T_world_body.translation() + part * later->T_world_body.translation();
+  pose.linear() = Eigen::Quaterniond(earlier.T_world_body.linear())
+                      .slerp(part, Eigen::Quaterniond(later->T_world_body.linear()))
+                      .toRotationMatrix();
+  return pose;
+}
 
 Eigen::Isometry3d aircraft_pose(const mjModel& model, const mjData& data) {
   const int joint = mj_name2id(&model, mjOBJ_JOINT, "aircraft_free");

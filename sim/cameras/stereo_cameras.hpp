@@ -10,7 +10,7 @@
 #include "perception/stereo_frame.hpp"
 #include "perception/stereo_rig.hpp"
 #include "sim/cameras/camera_config.hpp"
-#include "sim/cameras/true_view.hpp"
+#include "sim/render/eye.hpp"
 #include "sim/render/renderer_kind.hpp"
 #include "sim/scene/world.hpp"
 

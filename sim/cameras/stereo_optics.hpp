@@ -6,7 +6,7 @@
 
 #include "perception/stereo_calibration.hpp"
 #include "sim/cameras/camera_config.hpp"
-#include "sim/cameras/camera_frustum.hpp"
+#include "sim/render/eye.hpp"
 
 namespace understory {
 

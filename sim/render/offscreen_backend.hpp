@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "sim/render/renderer_kind.hpp"
 
@@ -30,5 +31,27 @@ template <typename Function>
 Function as_function(void* address) {
   return reinterpret_cast<Function>(address);
 }
+
+// From the OpenGL specification: the headers are not needed for so few.
+constexpr unsigned gl_rgba = 0x1908;
+constexpr unsigned gl_unsigned_byte = 0x1401;
+
+/// A context of OSMesa: software that draws into memory of ours. Opens the library with dlopen; the
+/// environment's UNDERSTORY_OSMESA names another file. Throws std::runtime_error in one line where library or
+/// context cannot be had.
+std::unique_ptr<OffscreenBackend> osmesa_backend();
+
+enum class EglDevice {
+  gpu,     ///< hardware or nothing
+  any_one  ///< hardware where there is some, otherwise Mesa's software
+};
+
+/// A context of EGL, drawing into pbuffers. Throws std::runtime_error in one line, naming the Debian
+/// packages, where library, device or context cannot be had. The process keeps to its first device.
+std::unique_ptr<OffscreenBackend> egl_backend(EglDevice device);
+
+/// False where no EGL could find a GPU that this user may open: asked of the kernel's device files, so that
+/// libEGL need not be opened to know.
+bool has_gpu_device_file();
 
 }  // namespace understory

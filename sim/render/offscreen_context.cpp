@@ -3,8 +3,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "sim/render/egl_backend.hpp"
-#include "sim/render/osmesa_backend.hpp"
+#include "sim/render/offscreen_backend.hpp"
 
 namespace understory {
 namespace {
@@ -14,7 +13,6 @@ constexpr unsigned gl_texture_2d = 0x0DE1;
 constexpr unsigned gl_texture_min_filter = 0x2801;
 constexpr int gl_linear_mipmap_nearest = 0x2701;
 constexpr unsigned gl_rgb = 0x1907;
-constexpr unsigned gl_unsigned_byte = 0x1401;
 constexpr unsigned gl_unpack_alignment = 0x0CF5;
 constexpr unsigned gl_renderer = 0x1F01;
 constexpr unsigned gl_version = 0x1F02;

@@ -1,5 +1,3 @@
-#include "sim/render/osmesa_backend.hpp"
-
 #include <dlfcn.h>
 
 #include <cstdlib>
@@ -7,12 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "sim/render/offscreen_backend.hpp"
+
 namespace understory {
 namespace {
 
-// From the OpenGL and OSMesa specifications; the headers are not needed for so few.
-constexpr unsigned gl_rgba = 0x1908;
-constexpr unsigned gl_unsigned_byte = 0x1401;
 constexpr int depth_bits = 24;
 
 using CreateContext = void* (*)(unsigned format, int depth, int stencil, int accumulation, void* shared);

@@ -9,8 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/cameras/image_sensor.hpp"
-#include "sim/scene/texture_levels.hpp"
+#include "sim/scene/textures.hpp"
 
 namespace understory {
 namespace {

@@ -5,8 +5,7 @@
 #include <opencv2/core/mat.hpp>
 #include <string>
 
-#include "sim/cameras/camera_frustum.hpp"
-#include "sim/cameras/true_view.hpp"
+#include "sim/render/eye.hpp"
 #include "sim/render/offscreen_context.hpp"
 #include "sim/scene/world.hpp"
 

@@ -7,9 +7,8 @@
 #include <algorithm>
 #include <iterator>
 
-#include "sim/scene/facade.hpp"
+#include "sim/scene/meshes.hpp"
 #include "sim/scene/textures.hpp"
-#include "sim/scene/trunk_mesh.hpp"
 
 namespace understory {
 namespace {

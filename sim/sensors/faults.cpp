@@ -25,25 +25,6 @@ void set(Eigen::Vector3d& reading, double value) { reading.setConstant(value); }
 
 }  // namespace
 
-std::string_view fault_kinds_of(FaultySensor sensor) {
-  switch (sensor) {
-    case FaultySensor::imu:
-    case FaultySensor::camera:
-      return "freeze | dropout";
-    case FaultySensor::gps:
-      return "freeze | dropout | bias";
-    case FaultySensor::pitot:
-      return "freeze | dropout | bias | saturate | block";
-    default:
-      return "freeze | dropout | bias | saturate";
-  }
-}
-
-bool can_have(FaultySensor sensor, FaultKind kind) {
-  const std::string_view word = fault_kind_names[static_cast<std::size_t>(kind)].first;
-  return fault_kinds_of(sensor).find(word) != std::string_view::npos;
-}
-
 bool Faults::has(FaultySensor sensor, FaultKind kind, std::int64_t t_ns) const {
   return std::any_of(schedule_.begin(), schedule_.end(), [&](const FaultConfig& fault) {
     return fault.sensor == sensor && fault.kind == kind && in_force(fault, t_ns);

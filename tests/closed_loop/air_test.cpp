@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "planning/flight_model.hpp"
-#include "sim/aircraft/trim.hpp"
+#include "sim/aircraft/aerodynamics.hpp"
 #include "tests/closed_loop/flown.hpp"
 
 namespace understory {

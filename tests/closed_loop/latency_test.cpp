@@ -10,6 +10,7 @@
 #include "scenarios/flight/oracles/true_depth.hpp"
 #include "scenarios/flight/oracles/true_state.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
+#include "sim/aircraft/aircraft.hpp"
 #include "sim/sensors/sensors.hpp"
 
 /// From an image that shows something new to elevons that move: at most 50 ms.

@@ -1,7 +1,7 @@
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
-#include "sim/render/egl_library.hpp"
+#include "sim/render/offscreen_backend.hpp"
 #include "tests/closed_loop/flown.hpp"
 
 namespace understory {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "perception/io/rig_file.hpp"
+#include "planning/autopilot.hpp"
 #include "scenarios/flight/onboard_sensors.hpp"
 #include "scenarios/flight/oracles/no_detector.hpp"
 #include "scenarios/scenario/scenario_io.hpp"

@@ -3,14 +3,8 @@
 #include <cmath>
 #include <functional>
 
-#include "estimation/airspeed.hpp"
-#include "estimation/altitude.hpp"
-#include "estimation/angle_of_attack.hpp"
-#include "estimation/ground_velocity.hpp"
-#include "estimation/heading.hpp"
+#include "estimation/measurements.hpp"
 #include "estimation/propagation.hpp"
-#include "estimation/rest.hpp"
-#include "estimation/sideslip.hpp"
 
 namespace understory {
 namespace {

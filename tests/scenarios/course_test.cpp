@@ -5,10 +5,7 @@
 #include <cmath>
 
 #include "scenarios/config/named_seed.hpp"
-#include "scenarios/scenario/fence.hpp"
-#include "scenarios/scenario/forest.hpp"
-#include "scenarios/scenario/goalposts.hpp"
-#include "scenarios/scenario/windows.hpp"
+#include "scenarios/scenario/courses.hpp"
 
 namespace understory {
 namespace {

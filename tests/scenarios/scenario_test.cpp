@@ -61,7 +61,13 @@ TEST(Scenario, SettingsComeAfterTheFile) {
 TEST(Scenario, RefusesContradictions) {
   EXPECT_THROW(scenario_from_text("forest: {radius_min_m: 0.3}\n", "a.yaml"), ScenarioError);
   EXPECT_THROW(scenario_from_text("actuators: {pitch_speed_mps: 10}\n", "a.yaml"), ScenarioError);
-  EXPECT_THROW(scenario_from_text("cameras: {rate_hz: 110}\n", "a.yaml"), ScenarioError);
+  for (const int good : {1, 40, 120, 200, 1200})  // rates fall on physics steps
+    EXPECT_EQ(scenario_from_text("seed: 1\n", "a.yaml", {"cameras.rate_hz=" + std::to_string(good)})
+                  .cameras.rate_hz,
+              good);
+  for (const int bad : {-200, 0, 7, 110, 2400})
+    EXPECT_THROW(scenario_from_text("seed: 1\n", "a.yaml", {"cameras.rate_hz=" + std::to_string(bad)}),
+                 ScenarioError);
   EXPECT_THROW(scenario_from_text("world: {obstacles_visible: false}\n", "a.yaml"), ScenarioError);
 }
 

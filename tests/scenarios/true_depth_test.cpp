@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scenarios/scenario/forest.hpp"
+#include "scenarios/scenario/courses.hpp"
 
 namespace understory {
 namespace {

@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "sim/aircraft/trim.hpp"
+#include "sim/aircraft/aerodynamics.hpp"
 
 namespace understory {
 namespace {

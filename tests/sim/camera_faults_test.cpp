@@ -3,8 +3,8 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
-#include "sim/cameras/frame_drops.hpp"
-#include "sim/cameras/pixel_response.hpp"
+#include "scenarios/flight/flight_computer.hpp"
+#include "sim/cameras/image_sensor.hpp"
 #include "tests/sim/camera_scenes.hpp"
 
 /// Every fault of the cameras, measured in the images against its closed form.

@@ -1,4 +1,4 @@
-#include "sim/aircraft/dryden.hpp"
+#include "sim/aircraft/wind.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/sensors/gps.hpp"
+#include "sim/sensors/sensors.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-#include "sim/sensors/sensor_grades.hpp"
+#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/sensors_config.hpp"
 #include "tests/sim/allan_deviation.hpp"
 
 /// The consumer grade's Allan deviation against docs/sensors.md.

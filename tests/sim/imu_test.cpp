@@ -1,11 +1,11 @@
-#include "sim/sensors/imu.hpp"
+#include "sim/sensors/sensors.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "sim/sensors/sensor_grades.hpp"
+#include "sim/sensors/sensors_config.hpp"
 #include "tests/sim/sensor_statistics.hpp"
 
 namespace understory {

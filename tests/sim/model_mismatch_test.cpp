@@ -1,9 +1,9 @@
-#include "sim/aircraft/model_mismatch.hpp"
+#include "sim/aircraft/aircraft_config.hpp"
 
 #include <gtest/gtest.h>
 
+#include "sim/aircraft/aerodynamics.hpp"
 #include "sim/aircraft/aircraft.hpp"
-#include "sim/aircraft/trim.hpp"
 
 namespace understory {
 namespace {

@@ -8,7 +8,7 @@
 #include <map>
 #include <string>
 
-#include "sim/render/egl_library.hpp"
+#include "sim/render/offscreen_backend.hpp"
 #include "tests/sim/camera_scenes.hpp"
 #include "tests/support/temporary_folder.hpp"
 

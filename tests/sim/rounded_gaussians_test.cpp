@@ -1,4 +1,4 @@
-#include "sim/cameras/rounded_gaussians.hpp"
+#include "sim/cameras/image_sensor.hpp"
 
 #include <gtest/gtest.h>
 

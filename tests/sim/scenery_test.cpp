@@ -9,8 +9,7 @@
 #include <numbers>
 #include <string>
 
-#include "sim/scene/facade.hpp"
-#include "sim/scene/trunk_mesh.hpp"
+#include "sim/scene/meshes.hpp"
 
 namespace understory {
 namespace {

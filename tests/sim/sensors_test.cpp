@@ -6,18 +6,13 @@
 #include <cmath>
 #include <vector>
 
-#include "sim/sensors/sensor_grades.hpp"
+#include "sim/sensors/sensors_config.hpp"
 #include "tests/sim/sensor_statistics.hpp"
 
 namespace understory {
 namespace {
 
 using Eigen::Vector3d;
-
-TEST(Sensors, RatesMustFallOnPhysicsSteps) {
-  for (const int good : {1, 40, 50, 120, 200, 1200}) EXPECT_TRUE(divides_physics_rate(good)) << good;
-  for (const int bad : {-200, 0, 7, 140, 2400}) EXPECT_FALSE(divides_physics_rate(bad)) << bad;
-}
 
 TEST(Sensors, SameSeedSameSamplesOtherSeedOthers) {
   const auto samples = [](std::uint64_t seed) {

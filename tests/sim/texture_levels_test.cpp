@@ -1,4 +1,4 @@
-#include "sim/scene/texture_levels.hpp"
+#include "sim/scene/textures.hpp"
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "sim/aircraft/trim.hpp"
+#include "sim/aircraft/aerodynamics.hpp"
 
 #include <gtest/gtest.h>
 

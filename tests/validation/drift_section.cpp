@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "scenarios/report/line_plot.hpp"
-#include "sim/sensors/sensor_grades.hpp"
+#include "sim/sensors/sensors_config.hpp"
 #include "tests/validation/drift_tally.hpp"
 #include "tests/validation/estimator_trial.hpp"
 #include "tests/validation/flight_series.hpp"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sim/sensors/sensor_grades.hpp"
+#include "sim/sensors/sensors_config.hpp"
 #include "tests/validation/consistency.hpp"
 #include "tests/validation/consistency_section.hpp"
 #include "tests/validation/estimator_trial.hpp"

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "sim/aircraft/trim.hpp"
+#include "sim/aircraft/aerodynamics.hpp"
 #include "tests/validation/damped_least_squares.hpp"
 #include "tests/validation/free_flight.hpp"
 #include "tests/validation/modes.hpp"

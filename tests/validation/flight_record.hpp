@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "planning/controls.hpp"
+#include "planning/airframe.hpp"
 #include "tests/validation/free_flight.hpp"
 
 namespace understory {

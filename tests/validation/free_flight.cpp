@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "sim/aircraft/trim.hpp"
+#include "sim/aircraft/aerodynamics.hpp"
 
 namespace understory {
 AirborneStart trimmed_start(const Airframe& airframe, double airspeed_mps) {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/aircraft/model_mismatch.hpp"
+#include "sim/aircraft/aircraft_config.hpp"
 
 namespace understory {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "scenarios/scenario/scenario_io.hpp"
-#include "sim/aircraft/trim.hpp"
+#include "sim/aircraft/aerodynamics.hpp"
 #include "tests/validation/mismatch_sections.hpp"
 
 namespace understory {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "scenarios/scenario/scenario_io.hpp"
-#include "sim/aircraft/trim.hpp"
+#include "sim/aircraft/aerodynamics.hpp"
 #include "tests/closed_loop/flown.hpp"
 #include "tests/validation/mismatch_conditions.hpp"
 #include "tests/validation/mismatch_flights.hpp"

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "scenarios/report/line_plot.hpp"
-#include "sim/aircraft/trim.hpp"
+#include "sim/aircraft/aerodynamics.hpp"
 #include "tests/validation/page.hpp"
 
 namespace understory {

@@ -1,4 +1,4 @@
-#include "sim/sensors/sensor_grades.hpp"
+#include "sim/sensors/sensors_config.hpp"
 
 #include <cmath>
 
@@ -105,6 +105,25 @@ SensorsConfig sensors_of_grade(SensorGrade grade) {
       return worse(consumer(), 3);
   }
   return {};
+}
+
+std::string_view fault_kinds_of(FaultySensor sensor) {
+  switch (sensor) {
+    case FaultySensor::imu:
+    case FaultySensor::camera:
+      return "freeze | dropout";
+    case FaultySensor::gps:
+      return "freeze | dropout | bias";
+    case FaultySensor::pitot:
+      return "freeze | dropout | bias | saturate | block";
+    default:
+      return "freeze | dropout | bias | saturate";
+  }
+}
+
+bool can_have(FaultySensor sensor, FaultKind kind) {
+  const std::string_view word = fault_kind_names[static_cast<std::size_t>(kind)].first;
+  return fault_kinds_of(sensor).find(word) != std::string_view::npos;
 }
 
 }  // namespace understory

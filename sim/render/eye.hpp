@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
 
 #include "perception/stereo_rig.hpp"
 
@@ -37,5 +39,18 @@ double distance_m(const Eigen::Vector3d& point_world, const GeomBox& box);
 
 /// Metres along the optical axis from OpenGL's depth value in 0 .. 1.
 inline double depth_of_gl(double value) { return near_m * far_m / (far_m - value * (far_m - near_m)); }
+
+/// Depth and object at every pixel of a camera's view.
+struct TrueView {
+  cv::Mat depth_m;  ///< CV_32FC1: along the optical axis; the far plane's where there is nothing
+  cv::Mat objects;  ///< CV_16UC1: the numbers of sim/scene/obstacle.hpp; nothing, too, where a far obstacle
+                    ///< was culled
+};
+
+/// Gray image of one eye from rendered RGBA (rows bottom up, `stride_px` pixels each): green where something
+/// was drawn, and elsewhere (alpha 0) the sky, bright at the horizon and a little darker overhead.
+cv::Mat gray_with_sky(const std::uint8_t* rgba, int stride_px, const Eye& eye);
+/// The same for people: BGR with a blue sky.
+cv::Mat colour_with_sky(const std::uint8_t* rgba, const Eye& eye);
 
 }  // namespace understory

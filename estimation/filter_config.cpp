@@ -1,6 +1,6 @@
-#include <cmath>
-
 #include "estimation/filter_config.hpp"
+
+#include <cmath>
 
 namespace understory {
 

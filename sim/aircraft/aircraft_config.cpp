@@ -1,4 +1,4 @@
-#include "sim/aircraft/model_mismatch.hpp"
+#include "sim/aircraft/aircraft_config.hpp"
 
 namespace understory {
 

@@ -1,0 +1,107 @@
+#include "scenarios/scenario/courses.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+
+#include "scenarios/config/named_seed.hpp"
+
+namespace understory {
+
+std::vector<Obstacle> poisson_forest(const ForestConfig& config, std::uint64_t seed) {
+  std::mt19937_64 generator(seed_for(seed, "forest"));
+  const double area_m2 = config.length_m * 2 * config.half_width_m;
+  std::poisson_distribution<int> count(area_m2 / config.square_metres_per_tree);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<Obstacle> trees(static_cast<std::size_t>(count(generator)));
+  for (Obstacle& tree : trees) {
+    const double x = config.clear_m + unit(generator) * config.length_m;
+    const double y = (2 * unit(generator) - 1) * config.half_width_m;
+    tree.from_world = {x, y, 0};
+    tree.to_world = {x, y, config.trunk_height_m};
+    tree.radius_m = config.radius_min_m + unit(generator) * (config.radius_max_m - config.radius_min_m);
+    tree.texture_turn_rad = 2 * std::numbers::pi * unit(generator);
+    tree.texture_shift = unit(generator);
+  }
+  std::sort(trees.begin(), trees.end(),
+            [](const Obstacle& a, const Obstacle& b) { return a.from_world.x() < b.from_world.x(); });
+  for (std::size_t i = 0; i < trees.size(); ++i) trees[i].name = fmt::format("tree_{:04}", i);
+  return trees;
+}
+
+std::vector<Obstacle> goalposts(const GoalpostsConfig& config, std::uint64_t seed) {
+  std::mt19937_64 generator(seed_for(seed, "goalposts"));
+  std::uniform_real_distribution<double> unit(0, 1);
+  const double side = unit(generator) < 0.5 ? -1 : 1;
+  const double pass_m =
+      config.pass_minimum_m + unit(generator) * (config.pass_maximum_m - config.pass_minimum_m);
+  const double near_y = side * (pass_m + config.radius_m);
+  const double between_axes_m = config.width_m + 2 * config.radius_m;
+  const double far_y = near_y - side * between_axes_m * std::cos(config.turn_rad);
+  const double near_x = config.ahead_m;
+  const double far_x = near_x + between_axes_m * std::sin(config.turn_rad);
+  const double bar_z = config.crossbar_top_m - config.radius_m;
+  std::vector<Obstacle> bars{
+      {"near_upright", {near_x, near_y, 0}, {near_x, near_y, config.height_m}, config.radius_m, 0.7, 0.1},
+      {"far_upright", {far_x, far_y, 0}, {far_x, far_y, config.height_m}, config.radius_m, 2.9, 0.6},
+      {"crossbar", {near_x, near_y, bar_z}, {far_x, far_y, bar_z}, config.radius_m, 4.3, 0.4},
+  };
+  bars[0].kind = bars[1].kind = ObstacleKind::post;
+  bars[2].kind = ObstacleKind::crossbar;
+  return bars;
+}
+
+std::vector<Obstacle> windows(const WindowsConfig& config, double goal_x_m) {
+  Obstacle wall;
+  wall.name = "facade";
+  wall.kind = ObstacleKind::wall;
+  wall.radius_m = 0.2;
+  const double x = goal_x_m + config.behind_goal_m + wall.radius_m;
+  wall.from_world = {x, -0.5 * config.width_m, 0};
+  wall.to_world = {x, 0.5 * config.width_m, config.height_m};
+  return {wall};
+}
+namespace {
+
+/// A straight piece on the ground from `from` to `to`.
+void add_piece(const FenceConfig& config, const std::string& name, const Eigen::Vector3d& from,
+               const Eigen::Vector3d& to, std::vector<Obstacle>& bars) {
+  const double length_m = (to - from).norm();
+  const Eigen::Vector3d along = (to - from) / length_m;
+  const int palings = static_cast<int>(std::floor(length_m / config.spacing_m)) + 1;
+  for (int i = 0; i < palings; ++i) {
+    const Eigen::Vector3d foot = from + i * config.spacing_m * along;
+    Obstacle paling{fmt::format("{}_paling_{:03}", name, i), foot, foot, config.paling_radius_m};
+    paling.to_world.z() = config.height_m;
+    paling.kind = ObstacleKind::post;
+    bars.push_back(paling);
+  }
+  for (const double share : {0.2, 0.8}) {
+    const Eigen::Vector3d up(0, 0, share * config.height_m);
+    Obstacle rail{fmt::format("{}_{}_rail", name, share < 0.5 ? "lower" : "upper"), from + up, to + up,
+                  config.rail_radius_m};
+    rail.kind = ObstacleKind::rail;
+    bars.push_back(rail);
+  }
+}
+
+}  // namespace
+
+std::vector<Obstacle> fence(const FenceConfig& config, double goal_x_m) {
+  std::vector<Obstacle> bars;
+  int number = 1;
+  for (double x = config.first_across_m; x < goal_x_m; x += config.across_apart_m, ++number)
+    for (const double side : {1.0, -1.0})
+      add_piece(config, fmt::format("across_{}_{}", number, side > 0 ? "left" : "right"),
+                {x, side * 0.5 * config.gate_m, 0}, {x, side * config.reach_m, 0}, bars);
+  const double from_x = config.first_across_m + config.spacing_m;  // two palings must not stand in one place
+  if (from_x < goal_x_m)
+    add_piece(config, "beside", {from_x, config.beside_m, 0}, {goal_x_m, config.beside_m, 0}, bars);
+  return bars;
+}
+
+}  // namespace understory

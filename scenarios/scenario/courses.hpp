@@ -1,0 +1,125 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/scene/obstacle.hpp"
+
+namespace understory {
+
+/// A forest in the launch frame: x ahead, y to the left. Its length also sets the goal plane of every other
+/// course.
+struct ForestConfig {
+  double square_metres_per_tree = 49;  ///< mean ground area a tree has: 49 is 7 m spacing, 25 is dense
+  double radius_min_m = 0.10;          ///< trunk radii are uniform between these two
+  double radius_max_m = 0.25;
+  double clear_m = 15;        ///< no tree before this x: room for launch and climb
+  double length_m = 60;       ///< of the forest behind it; the goal plane stands at clear_m + length_m
+  double half_width_m = 25;   ///< trees stand, and flight is allowed, to this |y|
+  double trunk_height_m = 9;  ///< reaches above the altitude band: there is no way over
+  bool invisible = false;     ///< trees collide and are not drawn
+  bool intangible = false;    ///< trees are drawn and harmless
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, ForestConfig& config) {
+  visit("square_metres_per_tree", config.square_metres_per_tree, 4.0, 100000.0);
+  visit("radius_min_m", config.radius_min_m, 0.01, 2.0);
+  visit("radius_max_m", config.radius_max_m, 0.01, 2.0);
+  visit("clear_m", config.clear_m, 0.0, 1000.0);
+  visit("length_m", config.length_m, 1.0, 1000.0);
+  visit("half_width_m", config.half_width_m, 1.0, 200.0);
+  visit("trunk_height_m", config.trunk_height_m, 1.0, 60.0);
+  visit("invisible", config.invisible);
+  visit("intangible", config.intangible);
+}
+
+/// A Poisson forest: the number of trees is Poisson with mean area / square_metres_per_tree, each tree
+/// uniform over the forest's rectangle, independent of the others; trunks may therefore overlap, as in the
+/// theory of flight through Poisson forests (Karaman & Frazzoli 2012). Sorted by x. The generator is the
+/// forest's own, from `seed`.
+std::vector<Obstacle> poisson_forest(const ForestConfig& config, std::uint64_t seed);
+
+/// The paper's field goal (Barry & Tedrake 2015 flew past one). Dimensions: NCAA Football Rule 1-2-5:
+/// uprights 18 ft 6 in apart inside, at least 30 ft above the ground; top of the crossbar 10 ft above the
+/// ground.
+struct GoalpostsConfig {
+  double ahead_m = 35;     ///< x of the near upright
+  double width_m = 5.639;  ///< between the insides of the uprights
+  /// Angle of the goal's plane; 0 is straight across the course. The far upright stands farther ahead. At 0
+  /// it would pass outside the cameras' view at the detection depth (our choice; the paper gives no angle).
+  double turn_rad = 0.7;
+  double height_m = 9.144;  ///< top of the uprights
+  double crossbar_top_m = 3.048;
+  double radius_m = 0.084;  ///< of every bar; a crossbar is 6 5/8 in wide
+  double pass_minimum_m =
+      0.5;  ///< the seed draws how far beside the course the near upright's surface stands
+  double pass_maximum_m = 2.0;
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, GoalpostsConfig& config) {
+  visit("ahead_m", config.ahead_m, 5.0, 500.0);
+  visit("width_m", config.width_m, 1.0, 50.0);
+  visit("turn_rad", config.turn_rad, 0.0, 1.5);
+  visit("height_m", config.height_m, 1.0, 50.0);
+  visit("crossbar_top_m", config.crossbar_top_m, 0.2, 20.0);
+  visit("radius_m", config.radius_m, 0.01, 1.0);
+  visit("pass_minimum_m", config.pass_minimum_m, 0.0, 20.0);
+  visit("pass_maximum_m", config.pass_maximum_m, 0.0, 20.0);
+}
+
+/// Two uprights from the ground and a crossbar between them. The course (y = 0) runs between the uprights;
+/// the near one, left or right by the seed, is pass_minimum_m .. pass_maximum_m from it.
+std::vector<Obstacle> goalposts(const GoalpostsConfig& config, std::uint64_t seed);
+
+/// A facade of equal windows across the way behind the goal (sim/scene/facade.hpp): repeated texture, which
+/// misled the paper's detector without its invariance filter (docs/sources.md [1]).
+struct WindowsConfig {
+  double behind_goal_m = 12;  ///< from the goal plane to its face; flights end before it
+  double width_m = 60;
+  double height_m = 20;
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, WindowsConfig& config) {
+  visit("behind_goal_m", config.behind_goal_m, 1.0, 300.0);
+  visit("width_m", config.width_m, 1.2, 400.0);
+  visit("height_m", config.height_m, 1.0, 100.0);
+}
+
+/// The one wall, its middle on y = 0.
+std::vector<Obstacle> windows(const WindowsConfig& config, double goal_x_m);
+
+/// Fences of equal round palings on two rails, lower than the flight. One runs beside the course, others
+/// stand across it with a gate at y = 0. At a certain distance the neighbour of a paling lies at the
+/// disparity that the detector searches: with the long rig and 0.4 m between palings at 22 m instead of 10.
+struct FenceConfig {
+  double height_m = 2;     ///< of the palings
+  double spacing_m = 0.4;  ///< from one paling's axis to the next
+  double paling_radius_m = 0.05;
+  double rail_radius_m = 0.04;
+  double beside_m = 3.5;       ///< y of the one along the course, from the first across to the goal
+  double first_across_m = 30;  ///< x of the first across
+  double across_apart_m = 25;  ///< and from it to the next, up to the goal
+  double reach_m = 15;         ///< those across end at this |y|
+  double gate_m = 3;           ///< the gap in them
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, FenceConfig& config) {
+  visit("height_m", config.height_m, 0.5, 20.0);
+  visit("spacing_m", config.spacing_m, 0.1, 10.0);
+  visit("paling_radius_m", config.paling_radius_m, 0.01, 0.5);
+  visit("rail_radius_m", config.rail_radius_m, 0.01, 0.5);
+  visit("beside_m", config.beside_m, -100.0, 100.0);
+  visit("first_across_m", config.first_across_m, 1.0, 1000.0);
+  visit("across_apart_m", config.across_apart_m, 5.0, 1000.0);
+  visit("reach_m", config.reach_m, 2.0, 100.0);
+  visit("gate_m", config.gate_m, 0.5, 4.0);
+}
+
+/// All palings (kind post) and rails, fence by fence.
+std::vector<Obstacle> fence(const FenceConfig& config, double goal_x_m);
+
+}  // namespace understory

@@ -1,0 +1,137 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "planning/airframe.hpp"
+
+namespace understory {
+
+/// How a flight begins: held on a catapult, then released with the wings level.
+struct LaunchConfig {
+  double speed_mps = 12.0;        ///< release speed along the catapult (our assumption)
+  double altitude_m = 1.5;        ///< height of the release point
+  double climb_angle_rad = 0.20;  ///< inclination of the catapult's rail
+  double rail_length_m = 1.5;     ///< accelerated over this length from rest: a = v^2 / 2 s = 48 m/s^2
+  double rest_s = 0.25;           ///< standstill on the rail before, so that sensors see rest
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, LaunchConfig& config) {
+  visit("speed_mps", config.speed_mps, 5.0, 20.0);
+  visit("altitude_m", config.altitude_m, 0.3, 10.0);
+  visit("climb_angle_rad", config.climb_angle_rad, -0.2, 0.6);
+  visit("rail_length_m", config.rail_length_m, 0.2, 10.0);
+  visit("rest_s", config.rest_s, 0.0, 5.0);
+}
+
+/// Dynamics between a command and its effect on the air. The identified model has none (its airframe answers
+/// one input delay later, at once and in full), so every part is off by default, at 0. The flight record
+/// cannot separate delay from lag (docs/flight_model.md), so the values in the comments are typical and none
+/// is fitted.
+struct ActuatorsConfig {
+  double elevon_time_s = 0;      ///< first-order lag of the servos; 0.030 in docs/sources.md [14]
+  double elevon_rate_radps = 0;  ///< maximum; 8.7 is 0.12 s per 60 deg, from data sheets of 9 g servos
+  double motor_time_s = 0;       ///< first-order lag of the thrust; about 0.05 with a 7 in propeller
+  /// Airspeed at which the propeller's thrust is zero: pitch times revolutions, 5 in at 10,000 rpm is 21 m/s.
+  /// Thrust falls linearly up to it (nearly true of measured propellers: Brandt & Selig 2011, "Propeller
+  /// Performance Data at Low Reynolds Numbers").
+  double pitch_speed_mps = 0;
+  /// Airspeed at which the thrust equals the command: the identified model's trim. Below it the thrust is
+  /// larger.
+  double thrust_speed_mps = 12.27;
+  /// Share of the slipstream's speed at the elevons; 1 if they are in it. The disc (radius 0.09 m) is behind
+  /// and inboard of the elevons (from 0.13 m out), so 0.1 is a guess.
+  double propwash_share = 0;
+  double propeller_diameter_m = 0.18;  ///< 7 in, as drawn in models/airframe
+  /// Motor torque per thrust, D C_P / (2 pi C_T): 0.014 m with C_P / C_T = 0.5 (Brandt & Selig 2011).
+  /// Positive: the propeller turns clockwise seen from behind and rolls the aircraft to the left.
+  double torque_per_thrust_m = 0;
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, ActuatorsConfig& config) {
+  visit("elevon_time_s", config.elevon_time_s, 0.0, 1.0);
+  visit("elevon_rate_radps", config.elevon_rate_radps, 0.0, 100.0);
+  visit("motor_time_s", config.motor_time_s, 0.0, 2.0);
+  visit("pitch_speed_mps", config.pitch_speed_mps, 0.0, 100.0);
+  visit("thrust_speed_mps", config.thrust_speed_mps, 0.0, 50.0);
+  visit("propwash_share", config.propwash_share, 0.0, 1.0);
+  visit("propeller_diameter_m", config.propeller_diameter_m, 0.02, 1.0);
+  visit("torque_per_thrust_m", config.torque_per_thrust_m, -0.1, 0.1);
+}
+
+/// Difference between the aircraft that flies and the airframe that the stack believes in, in percent of the
+/// stack's value: 10 is a tenth more, 0 the same.
+struct MismatchConfig {
+  double mass_percent = 0;     ///< mass_kg, and inertia_kgm2 with it: the same aircraft, denser
+  double lift_percent = 0;     ///< wing_lift_factor and elevon_lift_factor
+  double drag_percent = 0;     ///< wing_drag_factor, elevon_drag_factor and body_drag_area_m2
+  double damping_percent = 0;  ///< rate_damping_nmspr
+  double delay_percent = 0;    ///< input_delay_s (taken to whole physics steps, 0.83 ms)
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, MismatchConfig& config) {
+  visit("mass_percent", config.mass_percent, -50.0, 100.0);
+  visit("lift_percent", config.lift_percent, -50.0, 100.0);
+  visit("drag_percent", config.drag_percent, -90.0, 400.0);
+  visit("damping_percent", config.damping_percent, -90.0, 400.0);
+  visit("delay_percent", config.delay_percent, -100.0, 400.0);
+}
+
+/// The airframe that flies.
+Airframe mismatched(Airframe airframe, const MismatchConfig& mismatch);
+
+/// One discrete gust of MIL-F-8785C: from start_s on it builds up as half a cosine over the distance flown
+/// through the air, amplitude / 2 (1 - cos(pi x / length)), and then stays.
+struct GustConfig {
+  double start_s = 2;    ///< of simulated time; the standard launch releases at 0.5 s
+  double length_m = 10;  ///< over which it builds up; MIL-F-8785C: tuned to the mode to be excited
+  Eigen::Vector3d amplitude_world_mps = Eigen::Vector3d::Zero();  ///< zero: no gust
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, GustConfig& config) {
+  visit("start_s", config.start_s, 0.0, 600.0);
+  visit("length_m", config.length_m, 0.1, 1000.0);
+  visit("amplitude_world_mps", config.amplitude_world_mps, -20.0, 20.0);
+}
+
+/// Wind beside the mean. Everything is off by default.
+struct WindConfig {
+  double reference_height_m = 6.096;  ///< height of the scenario's mean wind: 20 ft (MIL-F-8785C's W20)
+  /// Of the logarithmic profile, mean(h) = mean(reference) ln(h / roughness) / ln(reference / roughness)
+  /// above 3 ft. MIL-F-8785C: 0.0457 (0.15 ft) at airfields, 0.61 (2 ft) elsewhere. 0: no shear.
+  double roughness_m = 0;
+  /// Strength of Dryden turbulence: the mean wind at 20 ft that would make it (MIL-F-8785C: 15, 30, 45 knots,
+  /// 7.7, 15.4, 23.2 m/s, are light, moderate, severe). 0: none.
+  double turbulence_wind20_mps = 0;
+  GustConfig gust;
+  /// Share of the wind, its gusts included, that reaches a place inside the forest and below its crowns.
+  /// Andrews 2012 (USDA RMRS-GTR-266), wind adjustment factors from Albini & Baughman 1979: 0.1 to 0.2 under
+  /// closed crowns, 0.3 partly sheltered. 1: no shelter.
+  double shelter_factor = 1;
+  /// Distance from the forest's edge over which the shelter grows in: a canopy's height or more (Belcher,
+  /// Jerram & Hunt 2003, adjustment of wind to a canopy).
+  double shelter_edge_m = 10;
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, WindConfig& config) {
+  visit("reference_height_m", config.reference_height_m, 3.0, 100.0);
+  visit("roughness_m", config.roughness_m, 0.0, 2.0);
+  visit("turbulence_wind20_mps", config.turbulence_wind20_mps, 0.0, 50.0);
+  visit("gust", config.gust);
+  visit("shelter_factor", config.shelter_factor, 0.0, 1.0);
+  visit("shelter_edge_m", config.shelter_edge_m, 0.1, 100.0);
+}
+
+/// Where the forest stands, and so where its shelter is. Nowhere by default.
+struct ForestStand {
+  double from_x_m = 0;
+  double to_x_m = 0;
+  double half_width_m = 0;  ///< |y|
+  double canopy_top_m = 0;
+};
+
+}  // namespace understory

@@ -1,0 +1,254 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+namespace understory {
+
+/// Six-axis IMU of the consumer class (InvenSense MPU-6000 product specification 3.4, ICM-20602 1.0). A
+/// sample is the truth of its physics step plus errors. No internal filter is modelled, so the noise per
+/// sample is that after the sensor's low-pass. Readings saturate at the range and are rounded to the
+/// resolution. Effects at zero are off; the grade `consumer` sets those of a real part
+/// (sim/sensors/sensor_grades.hpp, docs/sensors.md).
+struct ImuConfig {
+  double gyro_noise_radps = 0.0024;  ///< rms per sample, 0.14 deg/s: 0.01 deg/s/sqrt(Hz) over 200 Hz
+  double gyro_bias_radps = 0.0087;   ///< sigma of the constant bias, 0.5 deg/s: remains after a start at rest
+  double gyro_bias_instability_radps = 0;  ///< floor of the Allan deviation: sim/sensors/bias_wander.hpp
+  double gyro_walk_radpsps_rthz = 0;       ///< rate random walk, rad/s per root second (IEEE 952's K)
+  double gyro_scale = 0;                   ///< sigma of the constant scale error per axis, 0.01: one per cent
+  double gyro_misalignment =
+      0;  ///< sigma per pair of axes: share of one axis that appears on the other (rad)
+  double gyro_vibration_radpspn = 0;               ///< amplitude per newton of thrust
+  double gyro_range_radps = 17.4533;               ///< 1000 deg/s
+  double gyro_step_radps = 0.000532;               ///< 16 bits over the range: 32.8 counts per deg/s
+  double accelerometer_noise_mps2 = 0.05;          ///< rms per sample: 400 ug/sqrt(Hz) over 200 Hz is 0.055
+  double accelerometer_bias_mps2 = 0.05;           ///< sigma of the constant bias after calibration (5 mg)
+  double accelerometer_bias_instability_mps2 = 0;  ///< floor of the Allan deviation
+  double accelerometer_walk_mps2ps_rthz = 0;       ///< acceleration random walk, m/s^2 per root second
+  double accelerometer_scale = 0;                  ///< as the gyro's
+  double accelerometer_misalignment = 0;           ///< as the gyro's
+  double accelerometer_vibration_mps2pn = 0;       ///< amplitude per newton of thrust
+  double accelerometer_range_mps2 = 156.9;         ///< 16 g: the catapult's 5 g stays inside
+  double accelerometer_step_mps2 = 0.00479;        ///< 2048 counts per g
+  /// Turns a second at 1 N of thrust; a propeller's thrust grows with their square. 1 / (D^2 sqrt(C_T rho))
+  /// with an 8 inch propeller (0.203 m) and a thrust coefficient of 0.1 (typical).
+  double propeller_hz_at_1n = 70;
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, ImuConfig& config) {
+  visit("gyro_noise_radps", config.gyro_noise_radps, 0.0, 1.0);
+  visit("gyro_bias_radps", config.gyro_bias_radps, 0.0, 1.0);
+  visit("gyro_bias_instability_radps", config.gyro_bias_instability_radps, 0.0, 0.1);
+  visit("gyro_walk_radpsps_rthz", config.gyro_walk_radpsps_rthz, 0.0, 0.1);
+  visit("gyro_scale", config.gyro_scale, 0.0, 0.3);
+  visit("gyro_misalignment", config.gyro_misalignment, 0.0, 0.3);
+  visit("gyro_vibration_radpspn", config.gyro_vibration_radpspn, 0.0, 10.0);
+  visit("gyro_range_radps", config.gyro_range_radps, 0.1, 100.0);
+  visit("gyro_step_radps", config.gyro_step_radps, 0.0, 0.1);
+  visit("accelerometer_noise_mps2", config.accelerometer_noise_mps2, 0.0, 10.0);
+  visit("accelerometer_bias_mps2", config.accelerometer_bias_mps2, 0.0, 10.0);
+  visit("accelerometer_bias_instability_mps2", config.accelerometer_bias_instability_mps2, 0.0, 1.0);
+  visit("accelerometer_walk_mps2ps_rthz", config.accelerometer_walk_mps2ps_rthz, 0.0, 1.0);
+  visit("accelerometer_scale", config.accelerometer_scale, 0.0, 0.3);
+  visit("accelerometer_misalignment", config.accelerometer_misalignment, 0.0, 0.3);
+  visit("accelerometer_vibration_mps2pn", config.accelerometer_vibration_mps2pn, 0.0, 100.0);
+  visit("accelerometer_range_mps2", config.accelerometer_range_mps2, 10.0, 1000.0);
+  visit("accelerometer_step_mps2", config.accelerometer_step_mps2, 0.0, 1.0);
+  visit("propeller_hz_at_1n", config.propeller_hz_at_1n, 1.0, 1000.0);
+}
+
+/// Pitot tube on a differential pressure sensor of 1 psi (TE/MEAS MS4525DO, total error band 1 % of span
+/// before zeroing; 14 bits over +-1 psi). The tube points along body x and measures the dynamic pressure of
+/// the air's speed along it. Airspeed is the root of the pressure, so below about 4 to 5 m/s (10 to 15 Pa)
+/// noise and bias dominate.
+struct PitotConfig {
+  double pressure_noise_pa = 1.5;   ///< rms per sample
+  double pressure_bias_pa = 1.0;    ///< sigma of the bias that remains after zeroing on the ground
+  double pressure_range_pa = 6894;  ///< 1 psi
+  double pressure_step_pa = 1.05;   ///< 13107 counts (80 % of 14 bits) over the two-sided range
+  double bias_mps = 0.0;            ///< an extra constant error of the airspeed, for experiments
+  double dead_zone_pa = 0;          ///< smaller pressures read zero, as drivers do against false wind
+  /// Angle between air and tube up to which the reading is correct. Total-pressure tubes keep within 1 % up
+  /// to about 10 to 25 deg, by the shape of the nose (Gracey, Letko & Russell 1951, NACA TN 2331).
+  double recovery_angle_rad = 0.26;
+  /// Share of the pressure lost per square radian beyond that angle; 2: a quarter is gone 20 deg on
+  /// (typical). Zero: no loss.
+  double recovery_loss = 0;
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, PitotConfig& config) {
+  visit("pressure_noise_pa", config.pressure_noise_pa, 0.0, 1000.0);
+  visit("pressure_bias_pa", config.pressure_bias_pa, 0.0, 1000.0);
+  visit("pressure_range_pa", config.pressure_range_pa, 10.0, 100000.0);
+  visit("pressure_step_pa", config.pressure_step_pa, 0.0, 100.0);
+  visit("bias_mps", config.bias_mps, -20.0, 20.0);
+  visit("dead_zone_pa", config.dead_zone_pa, 0.0, 1000.0);
+  visit("recovery_angle_rad", config.recovery_angle_rad, 0.0, 1.58);
+  visit("recovery_loss", config.recovery_loss, 0.0, 100.0);
+}
+
+/// Barometer (MEAS MS5611-01BA03: 0.012 to 0.065 mbar rms, a count is about 10 cm) read in the slipstream:
+/// 0.3 m of noise, and an offset that wanders as a first-order Gauss-Markov process, zero at the first
+/// sample.
+struct BarometerConfig {
+  double noise_m = 0.3;        ///< rms per sample
+  double step_m = 0.1;         ///< resolution
+  double drift_m = 0.5;        ///< stationary sigma of the wandering offset
+  double drift_time_s = 60.0;  ///< its time constant: weather, heat, airframe pressure
+  /// Altitude error from the propeller's wash, per newton of thrust. An 8 inch propeller's disc (0.032 m^2)
+  /// raises the dynamic pressure by 31 Pa per newton, 2.6 m of altitude (momentum theory); a port inside the
+  /// fuselage feels a part of it, here a tenth (typical), and reads too high.
+  double wash_m_per_n = 0;
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, BarometerConfig& config) {
+  visit("noise_m", config.noise_m, 0.0, 20.0);
+  visit("step_m", config.step_m, 0.0, 10.0);
+  visit("drift_m", config.drift_m, 0.0, 50.0);
+  visit("drift_time_s", config.drift_time_s, 0.1, 10000.0);
+  visit("wash_m_per_n", config.wash_m_per_n, -10.0, 10.0);
+}
+
+/// Magnetometer (Honeywell HMC5883L: 0.2 uT rms at best, 0.073 uT a count at its standard gain, +-130 uT)
+/// near a motor: 0.5 uT of noise and of hard iron left after calibration. The field is that of northern
+/// mid-latitudes, towards world +y and down.
+struct MagnetometerConfig {
+  double field_ut = 48.0;            ///< strength
+  double inclination_rad = 1.16937;  ///< 67 deg below the horizon
+  double noise_ut = 0.5;             ///< rms per axis and sample
+  double hard_iron_ut = 0.5;         ///< sigma of the constant error, per axis
+  /// Sigma of the six numbers of the symmetric matrix by which iron on board distorts the field: soft iron
+  /// and scale, as shares of the field.
+  double soft_iron = 0;
+  double range_ut = 130.0;
+  double step_ut = 0.073;
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, MagnetometerConfig& config) {
+  visit("field_ut", config.field_ut, 10.0, 100.0);
+  visit("inclination_rad", config.inclination_rad, -1.58, 1.58);
+  visit("noise_ut", config.noise_ut, 0.0, 100.0);
+  visit("hard_iron_ut", config.hard_iron_ut, 0.0, 100.0);
+  visit("soft_iron", config.soft_iron, 0.0, 0.5);
+  visit("range_ut", config.range_ut, 10.0, 10000.0);
+  visit("step_ut", config.step_ut, 0.0, 10.0);
+}
+
+/// Satellite receiver of the consumer class (u-blox M8: 2.5 m circular error of position, 0.05 m/s of
+/// velocity at best; 5 Hz, 0.2 s late and 0.2 m/s among trees on an aircraft that turns). Most of the
+/// position's error wanders with satellites and reflections: a first-order Gauss-Markov process that starts
+/// in its stationary distribution. Across a forest it is nearly constant.
+struct GpsConfig {
+  bool enabled = false;               ///< off: the original's avoidance used no GPS
+  double delay_s = 0.2;               ///< from the moment of measurement to the arrival
+  double velocity_noise_mps = 0.2;    ///< rms per axis and fix
+  double position_noise_m = 0.3;      ///< rms per axis and fix, the part that is new with every fix (typical)
+  double position_drift_m = 2.1;      ///< sigma per horizontal axis of the wandering part: 2.5 m / 1.18
+  double position_drift_time_s = 60;  ///< its time constant (typical)
+  double vertical_factor = 1.5;  ///< height errors are larger by this factor: no satellites below (typical)
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, GpsConfig& config) {
+  visit("enabled", config.enabled);
+  visit("delay_s", config.delay_s, 0.0, 2.0);
+  visit("velocity_noise_mps", config.velocity_noise_mps, 0.0, 20.0);
+  visit("position_noise_m", config.position_noise_m, 0.0, 100.0);
+  visit("position_drift_m", config.position_drift_m, 0.0, 100.0);
+  visit("position_drift_time_s", config.position_drift_time_s, 0.1, 10000.0);
+  visit("vertical_factor", config.vertical_factor, 1.0, 10.0);
+}
+
+/// Rates must divide 1200 Hz (divides_physics_rate; whoever loads a scenario checks).
+struct SensorsConfig {
+  int imu_rate_hz = 200;
+  int pitot_rate_hz = 50;
+  int barometer_rate_hz = 50;
+  int magnetometer_rate_hz = 50;
+  int gps_rate_hz = 5;  ///< fixes, where sensors.gps.enabled
+  ImuConfig imu;
+  PitotConfig pitot;
+  BarometerConfig barometer;
+  MagnetometerConfig magnetometer;
+  GpsConfig gps;
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, SensorsConfig& config) {
+  visit("imu_rate_hz", config.imu_rate_hz, 1, 1200);
+  visit("pitot_rate_hz", config.pitot_rate_hz, 1, 1200);
+  visit("barometer_rate_hz", config.barometer_rate_hz, 1, 1200);
+  visit("magnetometer_rate_hz", config.magnetometer_rate_hz, 1, 1200);
+  visit("gps_rate_hz", config.gps_rate_hz, 1, 1200);
+  visit("imu", config.imu);
+  visit("pitot", config.pitot);
+  visit("barometer", config.barometer);
+  visit("magnetometer", config.magnetometer);
+  visit("gps", config.gps);
+}
+
+/// Quality of a scenario's sensors (`sensors.grade`); keys given beside it win. docs/sensors.md gives each
+/// number and its source. GPS is off in every grade.
+enum class SensorGrade {
+  ideal,     ///< no errors at all; ranges, rates and delays stay
+  plain,     ///< white noise and constants only: the defaults of the structs
+  consumer,  ///< every error of a part of this class, from data sheets and published measurements
+  rough,     ///< every error three times the consumer grade's
+};
+
+SensorsConfig sensors_of_grade(SensorGrade grade);
+
+enum class FaultySensor { imu, gyro, accelerometer, pitot, barometer, magnetometer, gps, camera };
+
+enum class FaultKind {
+  freeze,    ///< repeats its last reading (the camera its last pair) under new times
+  dropout,   ///< nothing arrives; gyro and accelerometer share a sample, so without one neither arrives
+  bias,      ///< adds `value`, to every axis; on a satellite fix to its position
+  saturate,  ///< limits readings to +- `value` on every axis
+  block,     ///< of the pitot: ice or an insect in the mouth, the drain open; reads `value`
+};
+
+inline constexpr std::array<std::pair<std::string_view, FaultySensor>, 8> faulty_sensor_names{
+    {{"imu", FaultySensor::imu},
+     {"gyro", FaultySensor::gyro},
+     {"accelerometer", FaultySensor::accelerometer},
+     {"pitot", FaultySensor::pitot},
+     {"barometer", FaultySensor::barometer},
+     {"magnetometer", FaultySensor::magnetometer},
+     {"gps", FaultySensor::gps},
+     {"camera", FaultySensor::camera}}};
+inline constexpr std::array<std::pair<std::string_view, FaultKind>, 5> fault_kind_names{
+    {{"freeze", FaultKind::freeze},
+     {"dropout", FaultKind::dropout},
+     {"bias", FaultKind::bias},
+     {"saturate", FaultKind::saturate},
+     {"block", FaultKind::block}}};
+
+/// One entry of a scenario's `faults`: at_s <= t < at_s + duration_s, by the moment of measurement.
+struct FaultConfig {
+  FaultySensor sensor = FaultySensor::pitot;
+  FaultKind kind = FaultKind::dropout;
+  double at_s = 0;           ///< of simulated time, which begins 0.25 s of rest before the catapult fires
+  double duration_s = 1000;  ///< beyond any flight by default
+  double value = 0;          ///< in the sensor's unit (rad/s, m/s^2, m/s, m, uT); see FaultKind
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, FaultConfig& fault) {
+  visit("sensor", fault.sensor, faulty_sensor_names);
+  visit("kind", fault.kind, fault_kind_names);
+  visit("at_s", fault.at_s, 0.0, 1000.0);
+  visit("duration_s", fault.duration_s, 0.0, 1000.0);
+  visit("value", fault.value, -10000.0, 10000.0);
+}
+
+/// The kinds of fault that a sensor can have, as "freeze | dropout".
+std::string_view fault_kinds_of(FaultySensor sensor);
+bool can_have(FaultySensor sensor, FaultKind kind);
+
+}  // namespace understory
