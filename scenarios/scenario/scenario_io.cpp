@@ -83,6 +83,19 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
   }
 }
 
+/// The stack believes in one airframe: what the filter and the planner need of it they take from there.
+void take_airframe(const Airframe& airframe, Scenario& scenario) {
+  FilterConfig& filter = scenario.estimation.filter;
+  filter.gravity_mps2 = airframe.gravity_mps2;
+  filter.angle_of_attack.mass_kg = filter.sideslip.mass_kg = airframe.mass_kg;
+  filter.angle_of_attack.air_density_kgpm3 = filter.sideslip.air_density_kgpm3 = airframe.air_density_kgpm3;
+  filter.angle_of_attack.wing_area_m2 = airframe.wing_area_m2;
+  filter.angle_of_attack.pitch_damping_nmspr = airframe.rate_damping_nmspr.y();
+  filter.sideslip.winglets_area_m2 = 2 * airframe.winglet_area_m2;
+  filter.sideslip.winglets_body_m = {airframe.winglet_x_m, 0, airframe.winglet_z_m};
+  scenario.autopilot.autopilot.planner.field.half_span_m = 0.5 * airframe.span_m;
+}
+
 /// The aircraft's place on the catapult. It is known before the flight, so the filter may start from it.
 Eigen::Vector3d rail_start_world(const LaunchConfig& launch) {
   return {-launch.rail_length_m * std::cos(launch.climb_angle_rad), 0,
@@ -127,6 +140,7 @@ Scenario compose(const Sources& sources, const std::string& name) {
   scenario.estimation.filter.distrust.imu_gap_s = 1.5 / first.sensors.sensors.imu_rate_hz;
   scenario.estimation.filter.start.position_world_m = rail_start_world(first.launch);
   scenario.estimation.filter.start.pitch_rad = first.launch.climb_angle_rad;
+  take_airframe(first.airframe, scenario);
   read_all(sources, scenario);
   check(scenario, sources, name);
   return scenario;

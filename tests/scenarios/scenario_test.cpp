@@ -49,6 +49,32 @@ TEST(Scenario, EveryDefaultIsWritten) {
   EXPECT_EQ(text.find("obstacles_visible"), std::string::npos);  // forest.invisible stands for it
 }
 
+TEST(Scenario, FilterAndPlannerTakeTheWingFromTheAirframe) {
+  const Scenario heavy =
+      scenario_from_text("airframe: {mass_kg: 0.8, wing_area_m2: 0.2, winglet_area_m2: 0.03, span_m: 1.0}\n",
+                         "a.yaml", {"airframe.air_density_kgpm3=1.1", "airframe.gravity_mps2=9.7"});
+  const FilterConfig& filter = heavy.estimation.filter;
+  EXPECT_EQ(filter.gravity_mps2, 9.7);
+  EXPECT_EQ(filter.sideslip.mass_kg, 0.8);
+  EXPECT_EQ(filter.sideslip.air_density_kgpm3, 1.1);
+  EXPECT_EQ(filter.sideslip.winglets_area_m2, 0.06);  // of both
+  EXPECT_EQ(filter.angle_of_attack.mass_kg, 0.8);
+  EXPECT_EQ(filter.angle_of_attack.air_density_kgpm3, 1.1);
+  EXPECT_EQ(filter.angle_of_attack.wing_area_m2, 0.2);
+  EXPECT_EQ(heavy.autopilot.autopilot.planner.field.half_span_m, 0.5);
+
+  const Scenario doubting =
+      scenario_from_text("airframe: {mass_kg: 0.8}\n", "a.yaml", {"estimation.filter.sideslip.mass_kg=0.5"});
+  EXPECT_EQ(doubting.estimation.filter.sideslip.mass_kg, 0.5);  // written, so it wins
+  EXPECT_EQ(doubting.estimation.filter.angle_of_attack.mass_kg, 0.8);
+
+  // By default nothing is derived that the structs do not say themselves.
+  const FilterConfig plain = scenario_from_text("name: a\n", "a.yaml").estimation.filter;
+  EXPECT_EQ(plain.sideslip.winglets_area_m2, SideslipConfig{}.winglets_area_m2);
+  EXPECT_EQ(plain.sideslip.winglets_body_m, SideslipConfig{}.winglets_body_m);
+  EXPECT_EQ(plain.angle_of_attack.pitch_damping_nmspr, AngleOfAttackConfig{}.pitch_damping_nmspr);
+}
+
 TEST(Scenario, SettingsComeAfterTheFile) {
   const Scenario scenario = scenario_from_text("seed: 5\nforest: {length_m: 30}\n", "a.yaml",
                                                {"forest.length_m=40", "sensors.seed=9"});
