@@ -176,7 +176,7 @@ struct AutopilotSection {
 struct Scenario {
   std::string name = "unnamed";
   std::uint64_t seed = 1000;  ///< of the course, and of everything else unless said otherwise
-  std::string rig = "long";   ///< a name in models/rigs, or a path to a rig file
+  std::string rig = "long";   ///< a name in models/rigs, or a rig file, looked for beside the scenario first
   Course course = Course::forest;
   double time_limit_s = 30;                                  ///< of simulated time
   Eigen::Vector3d wind_world_mps = Eigen::Vector3d::Zero();  ///< mean, at wind.reference_height_m

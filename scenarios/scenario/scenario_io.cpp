@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 
 #include "scenarios/config/config_reader.hpp"
 #include "scenarios/config/config_writer.hpp"
@@ -96,6 +97,19 @@ void take_airframe(const Airframe& airframe, Scenario& scenario) {
   scenario.autopilot.autopilot.planner.field.half_span_m = 0.5 * airframe.span_m;
 }
 
+/// A plain word is a name in models/rigs. A path is looked for beside the file that gives it, then from the
+/// working directory; what is found is absolute, so that a run's scenario flies again from anywhere.
+std::string rig_file(const std::string& rig, const std::string& origin) {
+  const std::filesystem::path path(rig);
+  if (path.is_absolute() || !(path.has_extension() || path.has_parent_path())) return rig;
+  const std::filesystem::path giver = origin.starts_with("--") ? "" : origin.substr(0, origin.rfind(':'));
+  std::error_code ignored;
+  for (const std::filesystem::path& candidate : {giver.parent_path() / path, path})
+    if (std::filesystem::exists(candidate, ignored))
+      return std::filesystem::absolute(candidate).lexically_normal().string();
+  return rig;
+}
+
 /// The aircraft's place on the catapult. It is known before the flight, so the filter may start from it.
 Eigen::Vector3d rail_start_world(const LaunchConfig& launch) {
   return {-launch.rail_length_m * std::cos(launch.climb_angle_rad), 0,
@@ -142,6 +156,7 @@ Scenario compose(const Sources& sources, const std::string& name) {
   scenario.estimation.filter.start.pitch_rad = first.launch.climb_angle_rad;
   take_airframe(first.airframe, scenario);
   read_all(sources, scenario);
+  scenario.rig = rig_file(scenario.rig, origin_of(sources, "rig"));
   check(scenario, sources, name);
   return scenario;
 }

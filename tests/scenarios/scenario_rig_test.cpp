@@ -50,6 +50,37 @@ TEST(ScenarioRig, RawCamerasStandWhereTheRigsFileMountsTheRectifiedPair) {
   }
 }
 
+TEST(ScenarioRig, APathIsLookedForBesideTheFileThatGivesIt) {
+  const support::TemporaryFolder folder;
+  const auto own = [&](const char* name, double detection_depth_m) {
+    std::string text = support::content_of(models / "rigs/long.yaml");
+    const std::size_t value = text.find("detection_depth_m: ") + 19;
+    text.replace(value, text.find_first_of(" \n", value) - value, std::to_string(detection_depth_m));
+    folder.write(name, text);
+  };
+  own("forest/own.yaml", 7), own("changes/own.yaml", 8), own("own.yaml", 9);
+  const auto forest = folder.write("forest/forest.yaml", "rig: own.yaml\n");
+  const auto changes = folder.write("changes/changes.yaml", "rig: ./own.yaml\n");
+  const auto depth_m = [](const Scenario& scenario) {
+    return rig_of(scenario, models).rig.detection_depth_m;
+  };
+  EXPECT_EQ(depth_m(load_scenario(forest)), 7);
+  EXPECT_EQ(depth_m(load_scenario(forest, {}, {changes})), 8);
+  // On the command line a path is the working directory's.
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  EXPECT_EQ(depth_m(load_scenario(forest, {"rig=own.yaml"})), 9);
+  std::filesystem::current_path(before);
+
+  // A run folder's scenario flies again from anywhere.
+  const auto again = folder.write("runs/1/scenario.yaml", scenario_to_text(load_scenario(forest)));
+  EXPECT_EQ(depth_m(load_scenario(again)), 7);
+
+  // A plain word is a name, whatever lies beside: here a scenario.
+  folder.write("forest/paper.yaml", "rig: long\n");
+  EXPECT_EQ(load_scenario(folder.write("forest/named.yaml", "rig: paper\n")).rig, "paper");
+}
+
 TEST(ScenarioRig, SaysInOneLineWhatIsWrongWithARawRig) {
   EXPECT_NE(refusal_for({"rig=paper", "cameras.raw=true"}).find("cameras.raw_unit_m"), std::string::npos);
   EXPECT_NE(refusal_for({"rig=nowhere", "cameras.raw=true"}).find("rig: expected"), std::string::npos);
