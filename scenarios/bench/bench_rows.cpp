@@ -77,9 +77,8 @@ TimedFlight timed_flight(const std::filesystem::path& result_file) {
 std::string to_table(const std::vector<BenchRow>& rows) {
   Table table{{"", "threads", "median ms", "p90", "p99", "against"}};
   for (const BenchRow& row : rows)
-    table.rows.push_back({row.name, fmt::format("{}", row.threads), fmt::format("{:.4f}", row.median_ms),
-                          fmt::format("{:.4f}", row.p90_ms), fmt::format("{:.4f}", row.p99_ms),
-                          ratio_text(row.ratio, row.yardstick)});
+    table.add(row.name, row.threads, number_text(row.median_ms, 4), number_text(row.p90_ms, 4),
+              number_text(row.p99_ms, 4), ratio_text(row.ratio, row.yardstick));
   return to_text(table);
 }
 
@@ -101,11 +100,11 @@ std::string to_table(const std::vector<ClosedLoopRow>& rows) {
   table.head.insert(table.head.end(), told_stages.begin(), told_stages.end());
   table.head.insert(table.head.end(), {"other", "MB", "time against"});
   for (const ClosedLoopRow& row : rows) {
-    std::vector<std::string>& cells = table.rows.emplace_back();
-    cells = {row.name, fmt::format("{}", row.flights), fmt::format("{:.1f}", row.pairs_per_s),
-             fmt::format("{:.3f}", row.cpu_per_simulated_s), fmt::format("{:.2f}", row.simulated_per_s)};
+    table.add(row.name, row.flights, number_text(row.pairs_per_s, 1), number_text(row.cpu_per_simulated_s, 3),
+              number_text(row.simulated_per_s, 2));
+    std::vector<std::string>& cells = table.rows.back();
     for (const auto& [stage, share] : row.shares) cells.push_back(fmt::format("{:.1f} %", 100 * share));
-    cells.push_back(fmt::format("{:.0f}", row.peak_memory_mb));
+    cells.push_back(number_text(row.peak_memory_mb, 0));
     cells.push_back(ratio_text(row.ratio, row.yardstick));
   }
   return to_text(table);

@@ -19,13 +19,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* manifest_name = "campaign.json";
 
-/// Nothing where it cannot be read.
-std::optional<std::string> text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return {};
-  return std::string(std::istreambuf_iterator<char>(stream), {});
-}
-
 std::string manifest_of(const Campaign& campaign) {
   std::vector<std::string> conditions;
   for (const Condition& condition : campaign.conditions) conditions.push_back(condition.name);
@@ -41,7 +34,7 @@ std::string manifest_of(const Campaign& campaign) {
 
 Json manifest_in(const CampaignFolder& folder) {
   const fs::path file = folder.path / manifest_name;
-  const auto text = text_of(file);
+  const auto text = text_if_there(file);
   if (!text)
     throw ScenarioError(
         fmt::format("{}: expected a campaign's results, with {}", folder.path.string(), manifest_name));
@@ -77,6 +70,12 @@ void require_same(const CampaignFolder& folder, const Campaign& campaign) {
 }
 
 }  // namespace
+
+std::optional<std::string> text_if_there(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return {};
+  return std::string(std::istreambuf_iterator<char>(stream), {});
+}
 
 std::vector<CampaignTask> tasks_of(const Campaign& campaign) {
   std::vector<CampaignTask> tasks;
@@ -124,7 +123,7 @@ Campaign read_campaign(const CampaignFolder& folder) {
         fmt::format("{}: expected a campaign's description, whole", (folder.path / manifest_name).string()));
   }
   for (Condition& condition : campaign.conditions) {
-    const auto text = text_of(folder.condition_file(condition));
+    const auto text = text_if_there(folder.condition_file(condition));
     if (!text)
       throw ScenarioError(
           fmt::format("{}: expected the condition's scenario", folder.condition_file(condition).string()));
@@ -134,7 +133,7 @@ Campaign read_campaign(const CampaignFolder& folder) {
 }
 
 std::optional<FlightFile> read_flight(const CampaignFolder& folder, const CampaignTask& task) {
-  const auto text = text_of(folder.flight_file(task));
+  const auto text = text_if_there(folder.flight_file(task));
   auto file = text ? flight_file_from_json(*text) : std::nullopt;
   if (file && (file->row.id != task.id || file->row.seed != task.seed)) return {};
   return file;
@@ -159,8 +158,7 @@ Collected collect(const CampaignFolder& folder, const Campaign& campaign) {
       continue;
     }
     lines += to_json_line(file->row) + "\n";
-    costs.rows.push_back({task.id, fmt::format("{:.3f}", file->cost.wall_s),
-                          fmt::format("{:.1f}", file->cost.peak_memory_mb)});
+    costs.add(task.id, number_text(file->cost.wall_s, 3), number_text(file->cost.peak_memory_mb, 1));
     collected.rows.push_back(file->row);
   }
   write_whole_file(folder.path / "flights.csv", to_csv(collected.rows));
@@ -171,7 +169,7 @@ Collected collect(const CampaignFolder& folder, const Campaign& campaign) {
 
 std::vector<FlightRow> read_campaign_rows(const fs::path& folder) {
   const fs::path file = folder / "flights.csv";
-  const auto text = text_of(file);
+  const auto text = text_if_there(file);
   if (!text)
     throw ScenarioError(fmt::format("{}: expected a campaign's results (flights.csv)", folder.string()));
   return rows_from_csv(*text, file.string());

@@ -69,6 +69,9 @@ void prepare_campaign_folder(const CampaignFolder& folder, const Campaign& campa
 /// The campaign that a folder holds. Throws ScenarioError where it holds none or one of another format.
 Campaign read_campaign(const CampaignFolder& folder);
 
+/// A file's text; nothing where it cannot be read.
+std::optional<std::string> text_if_there(const std::filesystem::path& file);
+
 /// One flight's file; nothing where it is missing or not whole.
 std::optional<FlightFile> read_flight(const CampaignFolder& folder, const CampaignTask& task);
 /// Writes it so that it outlives a power cut. Sets the row's id and condition.

@@ -25,15 +25,15 @@ struct CountedSeries {
 /// What conditions may differ in: the field, and the key that a campaign's grid puts into their names.
 struct PlotAxis {
   double (*value)(const FlightRow&);
-  const char* key;
+  const char *key, *name, *label;
 };
 
 double speed_of(const FlightRow& row) { return row.cruise_speed_mps; }
 double density_of(const FlightRow& row) {
   return row.square_metres_per_tree > 0 ? 100 / row.square_metres_per_tree : 0;
 }
-constexpr PlotAxis speed_axis{speed_of, "cruise_speed_mps="};
-constexpr PlotAxis density_axis{density_of, "square_metres_per_tree="};
+constexpr PlotAxis speed_axis{speed_of, "cruise_speed_mps=", "speed", "cruise speed asked (m/s)"};
+constexpr PlotAxis density_axis{density_of, "square_metres_per_tree=", "density", "trees per 100 m²"};
 
 constexpr AxisRange percent_range{-2, 102};  // dots at 0 and at 100 are whole
 
@@ -94,7 +94,8 @@ bool is_scanned(const std::vector<FlightRow>& rows, const PlotAxis& axis) {
   return std::ranges::any_of(counted(rows, axis), [](const CountedSeries& one) { return one.at.size() > 1; });
 }
 
-LinePlot success_over(const std::vector<FlightRow>& all_rows, const PlotAxis& axis, LinePlot plot) {
+LinePlot success_over(const std::vector<FlightRow>& all_rows, const PlotAxis& axis) {
+  LinePlot plot = success_plot(axis.name, axis.label);
   const std::vector<FlightRow> rows = flown_ones(all_rows);
   const std::vector<CountedSeries> all = counted(rows, axis);
   const double apart = 0.008 * span_of(rows, axis);
@@ -133,13 +134,9 @@ Series steps_of(const ConditionSummary& summary) {
 
 }  // namespace
 
-LinePlot success_over_speed(const std::vector<FlightRow>& rows) {
-  return success_over(rows, speed_axis, success_plot("speed", "cruise speed asked (m/s)"));
-}
+LinePlot success_over_speed(const std::vector<FlightRow>& rows) { return success_over(rows, speed_axis); }
 
-LinePlot success_over_density(const std::vector<FlightRow>& rows) {
-  return success_over(rows, density_axis, success_plot("density", "trees per 100 m²"));
-}
+LinePlot success_over_density(const std::vector<FlightRow>& rows) { return success_over(rows, density_axis); }
 
 LinePlot success_by_condition(const std::vector<FlightRow>& rows) {
   LinePlot plot = success_plot("conditions", "condition, by its number below");

@@ -41,10 +41,6 @@ ConditionSummary summary_of(const std::vector<FlightRow>& rows) {
   return summary;
 }
 
-std::string number(double value, int decimals) {
-  return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
-}
-
 std::string success_text(const ConditionSummary& summary) {
   if (summary.flown == 0) return "-";
   return fmt::format("{:.1f} ({:.1f} to {:.1f})", 100.0 * summary.goals / summary.flown,
@@ -54,7 +50,7 @@ std::string success_text(const ConditionSummary& summary) {
 std::string median_text(const ConditionSummary& summary) {
   if (summary.flown == 0) return "-";
   const std::optional<double> median = median_survival(summary.survival);
-  return median ? fmt::format("{:.1f}", *median) : fmt::format("> {:.0f}", summary.survival.last_at);
+  return median ? number_text(*median, 1) : fmt::format("> {:.0f}", summary.survival.last_at);
 }
 
 std::string ompl_text(const ConditionSummary& summary) {
@@ -94,13 +90,11 @@ Table summary_table(const std::vector<ConditionSummary>& summaries) {
   Table table{{"condition", "flown", "goal", "success % (95 %)", "collision", "ground", "bounds", "time",
                "m/s", "median m", "error m", "OMPL %", "not flown"},
               {}};
-  const auto text = [](int count) { return fmt::format("{}", count); };
   for (const ConditionSummary& summary : summaries)
-    table.rows.push_back({summary.condition, text(summary.flown), text(summary.goals), success_text(summary),
-                          text(summary.collision), text(summary.ground), text(summary.out_of_bounds),
-                          text(summary.time), number(summary.mean_speed_mps, 2), median_text(summary),
-                          number(summary.position_error_mean_m, 2), ompl_text(summary),
-                          text(summary.failed_to_run)});
+    table.add(summary.condition, summary.flown, summary.goals, success_text(summary), summary.collision,
+              summary.ground, summary.out_of_bounds, summary.time, number_text(summary.mean_speed_mps, 2),
+              median_text(summary), number_text(summary.position_error_mean_m, 2), ompl_text(summary),
+              summary.failed_to_run);
   return table;
 }
 

@@ -61,15 +61,8 @@ bool asked_alike(const FlightPair& pair) {
 
 PairedOutcomes count_goals(const std::vector<FlightPair>& pairs) {
   PairedOutcomes goals;
-  for (const FlightPair& pair : pairs) {
-    if (!pair.flown()) continue;
-    if (pair.got_worse())
-      goals.only_first += 1;
-    else if (pair.got_better())
-      goals.only_second += 1;
-    else
-      (pair.baseline.reached_goal() ? goals.both : goals.neither) += 1;
-  }
+  for (const FlightPair& pair : pairs)
+    if (pair.flown()) goals.count(pair.baseline.reached_goal(), pair.candidate.reached_goal());
   return goals;
 }
 

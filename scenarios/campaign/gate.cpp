@@ -31,28 +31,21 @@ std::string success_text(int goals, int flights) {
   return fmt::format("{} ({} to {})", goals, percent(interval.minimum), percent(interval.maximum));
 }
 
-std::vector<std::string> success_row(const ConditionComparison& condition) {
+void add_success(const ConditionComparison& condition, Table& table) {
   const PairedOutcomes& goals = condition.goals;
-  return {
-      condition.condition,
-      fmt::format("{}", goals.pairs()),
-      success_text(goals.first(), goals.pairs()),
+  table.add(
+      condition.condition, goals.pairs(), success_text(goals.first(), goals.pairs()),
       success_text(goals.second(), goals.pairs()),
       fmt::format("{} ({} to {})", signed_percent(goals.difference()),
                   signed_percent(condition.difference.minimum), signed_percent(condition.difference.maximum)),
-      fmt::format("{}", goals.only_first),
-      fmt::format("{}", goals.only_second),
-      fmt::format("{:.3g}", condition.p),
-      fmt::format("{}", condition.bit_for_bit)};
+      goals.only_first, goals.only_second, fmt::format("{:.3g}", condition.p), condition.bit_for_bit);
 }
 
 Table success_table(const Comparison& comparison) {
   Table table{{"success, %", "pairs", "baseline goals", "candidate goals", "difference", "worse", "better",
-               "p", "bit for bit"},
-              {}};
-  for (const ConditionComparison& condition : comparison.conditions)
-    table.rows.push_back(success_row(condition));
-  if (comparison.conditions.size() > 1) table.rows.push_back(success_row(comparison.all));
+               "p", "bit for bit"}};
+  for (const ConditionComparison& condition : comparison.conditions) add_success(condition, table);
+  if (comparison.conditions.size() > 1) add_success(comparison.all, table);
   return table;
 }
 
@@ -67,9 +60,8 @@ Table metric_table(const Comparison& comparison) {
       if (std::isfinite(difference.interval.minimum))
         change +=
             fmt::format(" ({:+.4f} to {:+.4f})", difference.interval.minimum, difference.interval.maximum);
-      table.rows.push_back({condition.condition, metric.name, fmt::format("{}", metric.pairs),
-                            fmt::format("{:.4f}", metric.baseline_mean),
-                            fmt::format("{:.4f}", metric.candidate_mean), change});
+      table.add(condition.condition, metric.name, metric.pairs, number_text(metric.baseline_mean, 4),
+                number_text(metric.candidate_mean, 4), change);
     }
   }
   return table;

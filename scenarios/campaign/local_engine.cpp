@@ -1,13 +1,9 @@
 #include "scenarios/campaign/engines.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
@@ -18,7 +14,6 @@
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/output/program.hpp"
 #include "scenarios/output/program_processes.hpp"
 #include "scenarios/output/signals.hpp"
 
@@ -44,29 +39,6 @@ std::string last_line_of(const fs::path& file) {
   for (std::string line; std::getline(stream, line);)
     if (!line.empty()) last = line;
   return last;
-}
-
-[[noreturn]] void become_flight(const std::vector<std::string>& arguments, const fs::path& log,
-                                pid_t parent) {
-  // A group of its own: Ctrl-C is the campaign's to answer. And no flight outlives it.
-  setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(127);
-  const int nothing = open("/dev/null", O_RDWR);
-  const int log_file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  if (nothing < 0 || log_file < 0) _exit(127);
-  dup2(nothing, STDIN_FILENO);
-  dup2(nothing, STDOUT_FILENO);
-  dup2(log_file, STDERR_FILENO);
-  become_this_program(arguments);
-}
-
-pid_t start(const std::vector<std::string>& arguments, const fs::path& log) {
-  const pid_t parent = getpid();
-  const pid_t child = fork();
-  if (child < 0) throw MachineError(fmt::format("cannot start a flight: {}", std::strerror(errno)));
-  if (child == 0) become_flight(arguments, log, parent);
-  return child;
 }
 
 /// What a flight without a file of its own is written down as.
@@ -108,8 +80,8 @@ class Flights {
 
   void launch(const CampaignTask& task) {
     fs::remove(folder_.flight_file(task));  // how it failed the last time is no answer any more
-    const pid_t child =
-        start(flight_arguments(folder_, campaign_, task, config_.keeps_runs), folder_.log_file(task));
+    const pid_t child = start_this_program(flight_arguments(folder_, campaign_, task, config_.keeps_runs),
+                                           SIGKILL, folder_.log_file(task));
     air_[child] = {&task, Clock::now()};
   }
 

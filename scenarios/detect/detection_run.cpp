@@ -168,9 +168,8 @@ class DetectionPictures {
 std::string timings_csv(const std::vector<FrameRecord>& frames) {
   Table table{{"frame", "t_ns", "hits", "rectify_ms", "detect_ms", "in_map"}};
   for (const FrameRecord& frame : frames)
-    table.rows.push_back({fmt::format("{}", table.rows.size()), fmt::format("{}", frame.t_ns),
-                          fmt::format("{}", frame.hits), fmt::format("{:.4f}", frame.rectify_ms),
-                          fmt::format("{:.4f}", frame.detect_ms), frame.in_map ? "1" : "0"});
+    table.add(table.rows.size(), frame.t_ns, frame.hits, number_text(frame.rectify_ms, 4),
+              number_text(frame.detect_ms, 4), frame.in_map ? 1 : 0);
   return to_csv(table);
 }
 

@@ -28,6 +28,10 @@ Json to_json(const Share& share) {
   return {{"of", share.of}, {"with", share.with}, {"share", share.value()}};
 }
 
+Json to_json(const Rates& rates) {
+  return {{"precision", to_json(rates.precision)}, {"recall", to_json(rates.recall)}};
+}
+
 Json to_json(const DistanceHistogram& histogram) {
   return {{"bin_m", DistanceHistogram::bin_m},
           {"bins", histogram.bins},
@@ -55,8 +59,7 @@ Json algorithm_json(const EvaluationSum& sum, std::size_t index) {
   json["hidden_within_3_m"] = hidden;
   if (index < computed_count) json["median_ms"] = quantile(sum.cost_ms[index], 0.5);
   for (const auto& [name, bins] : tally.parts)
-    for (const auto& [bin, rates] : bins)
-      json["parts"][name][bin] = {{"precision", to_json(rates.precision)}, {"recall", to_json(rates.recall)}};
+    for (const auto& [bin, rates] : bins) json["parts"][name][bin] = to_json(rates);
   return json;
 }
 
@@ -74,18 +77,16 @@ Json sum_json(const EvaluationSum& sum) {
                              {"single_frame", to_json(sum.published[i].single_frame)},
                              {"false_positives", to_json(sum.published[i].false_positives)},
                              {"false_negatives", to_json(sum.published[i].false_negatives)}});
-  for (const InvarianceRow& row : sum.invariance)
-    json["invariance"].push_back({{"rule", row.rule},
-                                  {"filter", row.filter},
-                                  {"hits", row.hits},
-                                  {"precision", to_json(row.rates.precision)},
-                                  {"recall", to_json(row.rates.recall)}});
+  for (const InvarianceRow& row : sum.invariance) {
+    json["invariance"].push_back({{"rule", row.rule}, {"filter", row.filter}, {"hits", row.hits}});
+    json["invariance"].back().update(to_json(row.rates));
+  }
   for (const PrecisionRecallCurve& curve : sum.curves) {
     Json points;
-    for (const PrecisionRecallCurve::Point& point : curve.points)
-      points.push_back({{"threshold", point.threshold},
-                        {"precision", to_json(point.rates.precision)},
-                        {"recall", to_json(point.rates.recall)}});
+    for (const PrecisionRecallCurve::Point& point : curve.points) {
+      points.push_back({{"threshold", point.threshold}});
+      points.back().update(to_json(point.rates));
+    }
     json["curves"].push_back({{"name", curve.algorithm}, {"threshold", curve.threshold}, {"points", points}});
   }
   return json;

@@ -14,16 +14,14 @@ namespace {
 
 constexpr std::array compared{our_rule, the_papers_rule, stereo_bm, stereo_sgbm};
 
-std::string number(double value, int decimals) { return fmt::format("{:.{}f}", value, decimals); }
-std::string count(std::int64_t value) { return fmt::format("{}", value); }
-std::string percent(double share) { return number(100 * share, 1); }
+std::string percent(double share) { return number_text(100 * share, 1); }
 std::string per_frame(std::int64_t value, const EvaluationSum& sum, int decimals) {
-  return number(static_cast<double>(value) / static_cast<double>(std::max<std::int64_t>(1, sum.frames)),
-                decimals);
+  return number_text(static_cast<double>(value) / static_cast<double>(std::max<std::int64_t>(1, sum.frames)),
+                     decimals);
 }
 
 /// "-" where nothing was counted.
-std::string share_text(const Share& share) { return share.of > 0 ? number(share.value(), 3) : "-"; }
+std::string share_text(const Share& share) { return share.of > 0 ? number_text(share.value(), 3) : "-"; }
 std::string with_interval(double value, const Interval& interval) {
   return fmt::format("{:.3f} ({:.3f} to {:.3f})", value, interval.minimum, interval.maximum);
 }
@@ -45,7 +43,7 @@ std::string resampled_text(const Evaluation& evaluation, std::size_t algorithm, 
               rate);
     return sum.value();
   };
-  if (indices.size() < 2) return number(pooled(indices), 3);
+  if (indices.size() < 2) return number_text(pooled(indices), 3);
   return with_interval(pooled(indices), bootstrap(indices, pooled, {.resamples = 2000}).interval);
 }
 
@@ -59,44 +57,38 @@ void for_each_scene(const Evaluation& evaluation, Add&& add) {
 /// A figure of the paper's evaluations (Barry & Tedrake 2015), shares of 1.
 struct PublishedRow {
   const char* what;
+  DistanceHistogram PublishedScores::*histogram;
+  double (*figure)(const DistanceHistogram&);
   double paper;
-  double (*figure)(const PublishedScores&);
   std::optional<double> papers_random = {};
-  bool needs_poses = true;
+  bool needs_poses() const { return histogram != &PublishedScores::single_frame; }
 };
+
+template <int half_metres>
+double within(const DistanceHistogram& histogram) {
+  return histogram.share_within(0.5 * half_metres);
+}
+double without_match(const DistanceHistogram& histogram) { return histogram.share_without_match(); }
+double beyond_a_metre(const DistanceHistogram& histogram) { return 1 - histogram.share_within(1); }
+
 const std::vector<PublishedRow> published_rows{
-    {"1 single frame: within 0.5 m",
-     0.609,
-     [](const PublishedScores& scores) { return scores.single_frame.share_within(0.5); },
-     {},
-     false},
-    {"1 single frame: within 1.0 m",
-     0.712,
-     [](const PublishedScores& scores) { return scores.single_frame.share_within(1); },
-     {},
-     false},
-    {"1 single frame: no match on the frame",
-     0.082,
-     [](const PublishedScores& scores) { return scores.single_frame.share_without_match(); },
-     {},
-     false},
-    {"2 remembered: within 0.5 m", 0.748,
-     [](const PublishedScores& scores) { return scores.false_positives.share_within(0.5); }, 0.012},
-    {"2 remembered: within 1.0 m", 0.926,
-     [](const PublishedScores& scores) { return scores.false_positives.share_within(1); }, 0.032},
-    {"3 missed by 1.0 m or more", 0.324,
-     [](const PublishedScores& scores) { return 1 - scores.false_negatives.share_within(1); }, 0.86},
-    {"3 found within 2.0 m", 0.913,
-     [](const PublishedScores& scores) { return scores.false_negatives.share_within(2); }}};
+    {"1 single frame: within 0.5 m", &PublishedScores::single_frame, within<1>, 0.609},
+    {"1 single frame: within 1.0 m", &PublishedScores::single_frame, within<2>, 0.712},
+    {"1 single frame: no match on the frame", &PublishedScores::single_frame, without_match, 0.082},
+    {"2 remembered: within 0.5 m", &PublishedScores::false_positives, within<1>, 0.748, 0.012},
+    {"2 remembered: within 1.0 m", &PublishedScores::false_positives, within<2>, 0.926, 0.032},
+    {"3 missed by 1.0 m or more", &PublishedScores::false_negatives, beyond_a_metre, 0.324, 0.86},
+    {"3 found within 2.0 m", &PublishedScores::false_negatives, within<4>, 0.913}};
 
 EvaluationTable published_table(const Evaluation& evaluation) {
   Table table{{"scene", "evaluation", "the paper", "our rule", "the paper's rule", "random, here",
                "random, the paper"}};
   const auto add = [&](const EvaluationSum& sum) {
     for (const PublishedRow& row : published_rows) {
-      if (row.needs_poses && !evaluation.has_poses()) continue;
+      if (row.needs_poses() && !evaluation.has_poses()) continue;
       std::vector<std::string> cells{sum.name, row.what, percent(row.paper)};
-      for (const PublishedScores& scores : sum.published) cells.push_back(percent(row.figure(scores)));
+      for (const PublishedScores& scores : sum.published)
+        cells.push_back(percent(row.figure(scores.*row.histogram)));
       cells.push_back(row.papers_random ? percent(*row.papers_random) : "-");
       table.rows.push_back(std::move(cells));
     }
@@ -118,11 +110,11 @@ EvaluationTable algorithms_table(const Evaluation& evaluation) {
     std::vector<std::string> row{algorithm_names[i], per_frame(all.hits[i], all, 1)};
     for (const Rates& rates : tally.rates) row.push_back(share_text(rates.precision));
     for (const Rates& rates : tally.rates) row.push_back(share_text(rates.recall));
-    row.push_back(number(tally.at_one_pixel().f_score(), 3));
-    row.push_back(number(tally.false_per_second(), 0));
+    row.push_back(number_text(tally.at_one_pixel().f_score(), 3));
+    row.push_back(number_text(tally.false_per_second(), 0));
     for (const double reach_m : {1.0, 3.0})
       row.push_back(share_text(found_within(all.sightings[i], reach_m)));
-    row.push_back(i < computed_count ? number(quantile(all.cost_ms[i], 0.5), 3) : "-");
+    row.push_back(i < computed_count ? number_text(quantile(all.cost_ms[i], 0.5), 3) : "-");
     table.rows.push_back(std::move(row));
   }
   return {"algorithms",
@@ -133,10 +125,10 @@ EvaluationTable algorithms_table(const Evaluation& evaluation) {
 EvaluationTable intervals_table(const Evaluation& evaluation) {
   Table table{{"algorithm", "precision", "recall", "found within 1 m", "found within 3 m"}};
   for (const std::size_t i : compared)
-    table.rows.push_back({algorithm_names[i], resampled_text(evaluation, i, &Rates::precision),
-                          resampled_text(evaluation, i, &Rates::recall),
-                          wilson_text(found_within(evaluation.all.sightings[i], 1)),
-                          wilson_text(found_within(evaluation.all.sightings[i], 3))});
+    table.add(algorithm_names[i], resampled_text(evaluation, i, &Rates::precision),
+              resampled_text(evaluation, i, &Rates::recall),
+              wilson_text(found_within(evaluation.all.sightings[i], 1)),
+              wilson_text(found_within(evaluation.all.sightings[i], 3)));
   return {"intervals",
           "With 95 % intervals: precision and recall at one pixel by drawing recordings anew, "
           "obstacles after Wilson",
@@ -151,10 +143,10 @@ EvaluationTable scenes_table(const Evaluation& evaluation) {
     const Share near = found_within(sum.sightings[our_rule], 1),
                 far = found_within(sum.sightings[our_rule], 3, &hidden);
     const VisionTally& tally = sum.tallies[our_rule];
-    table.rows.push_back({sum.name, count(sum.recordings), number(sum.seconds, 1),
-                          per_frame(sum.hits[our_rule], sum, 1), share_text(tally.at_one_pixel().precision),
-                          share_text(tally.at_one_pixel().recall), number(tally.false_per_second(), 0),
-                          share_text(near), count(near.of), share_text(far), count(far.of), count(hidden)});
+    table.add(sum.name, sum.recordings, number_text(sum.seconds, 1), per_frame(sum.hits[our_rule], sum, 1),
+              share_text(tally.at_one_pixel().precision), share_text(tally.at_one_pixel().recall),
+              number_text(tally.false_per_second(), 0), share_text(near), near.of, share_text(far), far.of,
+              hidden);
   });
   return {"scenes", "Our rule in every scene, at one pixel", std::move(table)};
 }
@@ -165,7 +157,8 @@ EvaluationTable computer_table(const Evaluation& evaluation) {
   for (std::size_t i = 0; i < computed_count; ++i) {
     const PacedResult& paced = all.paced[i];
     table.rows.push_back(
-        {algorithm_names[i], number(all.seconds > 0 ? static_cast<double>(paced.looks) / all.seconds : 0, 1),
+        {algorithm_names[i],
+         number_text(all.seconds > 0 ? static_cast<double>(paced.looks) / all.seconds : 0, 1),
          share_text(all.tallies[i].at_one_pixel().precision), wilson_text(found_within(paced.sightings, 1)),
          wilson_text(found_within(paced.sightings, 3))});
   }
@@ -189,10 +182,10 @@ EvaluationTable on_the_path_table(const Evaluation& evaluation) {
       if (sighting.found()) third_m.push_back(sighting.third_hit_m);
     }
     const auto part = [](const std::vector<double>& values, double q, int decimals) {
-      return values.empty() ? "-" : number(quantile(values, q), decimals);
+      return values.empty() ? "-" : number_text(quantile(values, q), decimals);
     };
-    table.rows.push_back({algorithm_names[i], count(found.of), share_text(found), part(hits, 0.5, 0),
-                          part(hits, 0.1, 0), part(first_m, 0.5, 2), part(third_m, 0.5, 2)});
+    table.add(algorithm_names[i], found.of, share_text(found), part(hits, 0.5, 0), part(hits, 0.1, 0),
+              part(first_m, 0.5, 2), part(third_m, 0.5, 2));
   }
   return {"on_the_path", "Obstacles that a wing would touch, straight on from where they came into view",
           std::move(table)};
@@ -204,8 +197,8 @@ EvaluationTable parts_table(const Evaluation& evaluation) {
     for (const auto& [bin, rates] : bins) {
       const std::size_t space = bin.find(' ');  // behind the number that sorts
       const bool numbered = name != "kind" && space != std::string::npos;
-      table.rows.push_back({name, numbered ? bin.substr(space + 1) : bin, count(rates.precision.of),
-                            share_text(rates.precision), count(rates.recall.of), share_text(rates.recall)});
+      table.add(name, numbered ? bin.substr(space + 1) : bin, rates.precision.of, share_text(rates.precision),
+                rates.recall.of, share_text(rates.recall));
     }
   return {"parts", "Our rule by parts, at one pixel", std::move(table)};
 }
@@ -219,7 +212,7 @@ EvaluationTable false_hits_table(const Evaluation& evaluation) {
       per_second[what][i] = seconds > 0 ? static_cast<double>(times) / seconds : 0;
   for (const auto& [what, rates] : per_second) {
     std::vector<std::string>& row = table.rows.emplace_back(1, what);
-    for (const double rate : rates) row.push_back(number(rate, 1));
+    for (const double rate : rates) row.push_back(number_text(rate, 1));
   }
   return {"false_hits", "What false hits lie on, a second, at one pixel", std::move(table)};
 }
@@ -228,9 +221,9 @@ EvaluationTable invariance_table(const Evaluation& evaluation) {
   Table table{{"scene", "rule", "filter", "hits/frame", "precision", "recall", "false/frame"}};
   for_each_scene(evaluation, [&](const EvaluationSum& sum) {
     for (const InvarianceRow& row : sum.invariance)
-      table.rows.push_back({sum.name, row.rule, row.filter ? "on" : "off", per_frame(row.hits, sum, 2),
-                            share_text(row.rates.precision), share_text(row.rates.recall),
-                            per_frame(row.rates.precision.of - row.rates.precision.with, sum, 2)});
+      table.add(sum.name, row.rule, row.filter ? "on" : "off", per_frame(row.hits, sum, 2),
+                share_text(row.rates.precision), share_text(row.rates.recall),
+                per_frame(row.rates.precision.of - row.rates.precision.with, sum, 2));
   });
   return {"invariance", "Horizontal-invariance filter off and on, at one pixel", std::move(table)};
 }
@@ -260,11 +253,10 @@ Table obstacles_table(const Evaluation& evaluation) {
   for (const RecordingEvaluation& recording : evaluation.recordings)
     for (const ObstacleSighting& sighting : recording.sum.sightings[our_rule]) {
       const auto object = std::ranges::find(recording.objects, sighting.object, &RecordedObject::number);
-      table.rows.push_back({recording.folder.filename().string(), count(sighting.object), object->name,
-                            object->kind, number(sighting.miss_m, 3), sighting.on_the_path ? "1" : "0",
-                            sighting.hidden() ? "1" : "0", count(sighting.blocks_in_view),
-                            count(sighting.hits), number(sighting.first_hit_m, 3),
-                            number(sighting.third_hit_m, 3)});
+      table.add(recording.folder.filename().string(), sighting.object, object->name, object->kind,
+                number_text(sighting.miss_m, 3), sighting.on_the_path ? "1" : "0",
+                sighting.hidden() ? "1" : "0", sighting.blocks_in_view, sighting.hits,
+                number_text(sighting.first_hit_m, 3), number_text(sighting.third_hit_m, 3));
     }
   return table;
 }

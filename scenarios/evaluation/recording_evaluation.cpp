@@ -58,75 +58,186 @@ FullStereoCrop crop_beside(const PushbroomConfig& rule, const StereoRig& rig) {
 /// uniqueness of StereoBM and StereoSGBM.
 class CurveSweeps {
  public:
-  CurveSweeps(const StereoRig& rig, const DetectionGrid& grid, const EvaluationSettings& settings);
-  void add(const EvaluationFrame& frame, const std::vector<ExpectedBlock>& expected);
+  CurveSweeps(const StereoRig& rig, const DetectionGrid& grid, const EvaluationSettings& settings)
+      : grid_(grid) {
+    const FullStereoCrop crop = crop_beside(settings.pushbroom, rig);
+    add_rule(rig, algorithm_names[our_rule], settings.pushbroom);
+    add_rule(rig, algorithm_names[the_papers_rule], papers_rule_beside(settings.pushbroom));
+    add_full_stereo(rig, algorithm_names[stereo_bm], settings.stereo_bm, crop, {0, 5, 10, 18, 30, 50});
+    add_full_stereo(rig, algorithm_names[stereo_sgbm], settings.stereo_sgbm, crop, {0, 10, 30, 60});
+  }
+
+  void add(const EvaluationFrame& frame, const std::vector<ExpectedBlock>& expected) {
+    for (std::size_t curve = 0; curve < curves_.size(); ++curve)
+      for (std::size_t point = 0; point < curves_[curve].points.size(); ++point)
+        count_one_pixel(frame.truth, grid_, expected, detectors_[curve][point]->detect(frame.pair),
+                        curves_[curve].points[point].rates);
+  }
   const std::vector<PrecisionRecallCurve>& curves() const { return curves_; }
 
  private:
-  void add_rule(const StereoRig& rig, const std::string& name, const PushbroomConfig& rule);
+  /// By what the rule rejects with: uniqueness where it has it, else the score.
+  void add_rule(const StereoRig& rig, const std::string& name, const PushbroomConfig& rule) {
+    curves_.push_back({name, rule.uniqueness ? "uniqueness_ratio" : "score_limit"});
+    detectors_.emplace_back();
+    for (const double threshold :
+         rule.uniqueness ? std::vector<double>{1.05, 1.2, 1.4, 1.6, 2.0, 2.5, 3.2, 4.0}
+                         : std::vector<double>{0.4, 0.3, 0.22, 54.0 / 333.0, 0.12, 0.09, 0.06, 0.04}) {
+      PushbroomConfig config = rule;
+      (rule.uniqueness ? config.uniqueness_ratio : config.score_limit) = threshold;
+      curves_.back().points.push_back({threshold});
+      detectors_.back().push_back(std::make_unique<PushbroomStereo>(rig, config));
+    }
+  }
+
   template <typename Config>
   void add_full_stereo(const StereoRig& rig, const std::string& name, Config config,
-                       const FullStereoCrop& crop, const std::vector<int>& uniqueness_percent);
+                       const FullStereoCrop& crop, const std::vector<int>& uniqueness_percent) {
+    curves_.push_back({name, "uniqueness_percent"});
+    detectors_.emplace_back();
+    for (const int percent : uniqueness_percent) {
+      config.uniqueness_percent = percent;
+      curves_.back().points.push_back({static_cast<double>(percent)});
+      detectors_.back().push_back(std::make_unique<FullStereoDetector>(rig, config, crop));
+    }
+  }
 
   DetectionGrid grid_;
   std::vector<PrecisionRecallCurve> curves_;
   std::vector<std::vector<std::unique_ptr<ObstacleDetector>>> detectors_;  ///< a curve's, point by point
 };
 
-CurveSweeps::CurveSweeps(const StereoRig& rig, const DetectionGrid& grid, const EvaluationSettings& settings)
-    : grid_(grid) {
-  const FullStereoCrop crop = crop_beside(settings.pushbroom, rig);
-  add_rule(rig, algorithm_names[our_rule], settings.pushbroom);
-  add_rule(rig, algorithm_names[the_papers_rule], papers_rule_beside(settings.pushbroom));
-  add_full_stereo(rig, algorithm_names[stereo_bm], settings.stereo_bm, crop, {0, 5, 10, 18, 30, 50});
-  add_full_stereo(rig, algorithm_names[stereo_sgbm], settings.stereo_sgbm, crop, {0, 10, 30, 60});
-}
-
-/// By what the rule rejects with: uniqueness where it has it, else the score.
-void CurveSweeps::add_rule(const StereoRig& rig, const std::string& name, const PushbroomConfig& rule) {
-  curves_.push_back({name, rule.uniqueness ? "uniqueness_ratio" : "score_limit"});
-  detectors_.emplace_back();
-  for (const double threshold :
-       rule.uniqueness ? std::vector<double>{1.05, 1.2, 1.4, 1.6, 2.0, 2.5, 3.2, 4.0}
-                       : std::vector<double>{0.4, 0.3, 0.22, 54.0 / 333.0, 0.12, 0.09, 0.06, 0.04}) {
-    PushbroomConfig config = rule;
-    (rule.uniqueness ? config.uniqueness_ratio : config.score_limit) = threshold;
-    curves_.back().points.push_back({threshold});
-    detectors_.back().push_back(std::make_unique<PushbroomStereo>(rig, config));
-  }
-}
-
-template <typename Config>
-void CurveSweeps::add_full_stereo(const StereoRig& rig, const std::string& name, Config config,
-                                  const FullStereoCrop& crop, const std::vector<int>& uniqueness_percent) {
-  curves_.push_back({name, "uniqueness_percent"});
-  detectors_.emplace_back();
-  for (const int percent : uniqueness_percent) {
-    config.uniqueness_percent = percent;
-    curves_.back().points.push_back({static_cast<double>(percent)});
-    detectors_.back().push_back(std::make_unique<FullStereoDetector>(rig, config, crop));
-  }
-}
-
-void CurveSweeps::add(const EvaluationFrame& frame, const std::vector<ExpectedBlock>& expected) {
-  for (std::size_t curve = 0; curve < curves_.size(); ++curve)
-    for (std::size_t point = 0; point < curves_[curve].points.size(); ++point)
-      count_one_pixel(frame.truth, grid_, expected, detectors_[curve][point]->detect(frame.pair),
-                      curves_[curve].points[point].rates);
-}
-
 class Evaluator {
  public:
-  Evaluator(const fs::path& folder, const EvaluationSettings& settings);
-  RecordingEvaluation evaluate(const std::function<void()>& on_frame);
+  Evaluator(const fs::path& folder, const EvaluationSettings& settings)
+      : settings_(settings),
+        recording_(folder),
+        grid_(recording_.rig(), settings.pushbroom.depths_m, settings.pushbroom.last_row_px) {
+    const StereoRig& rig = recording_.rig();
+    check_depths(settings.pushbroom, rig, "perception.depths_m", "perception.pushbroom");
+    for (const RecordedObject& object : recording_.objects()) kinds_[object.number] = object.kind;
+    const PushbroomConfig paper = papers_rule_beside(settings.pushbroom);
+    const FullStereoCrop crop = crop_beside(settings.pushbroom, rig);
+    auto block_matching = std::make_unique<FullStereoDetector>(rig, settings.stereo_bm, crop);
+    stereo_bm_ = block_matching.get();
+    detectors_ = {std::make_unique<PushbroomStereo>(rig, settings.pushbroom),
+                  std::make_unique<PushbroomStereo>(rig, paper), std::move(block_matching),
+                  std::make_unique<FullStereoDetector>(rig, settings.stereo_sgbm, crop)};
+    for (std::size_t i = 0; i < published_algorithms.size(); ++i)
+      published_.emplace_back(rig, grid_, settings.map);
+    for (std::size_t i = 0; i < algorithm_count; ++i)
+      sightings_.emplace_back(recording_.objects(), rig.baseline_m);
+    for (std::size_t i = 0; i < computed_count; ++i)
+      paced_.emplace_back(recording_.objects(), rig.baseline_m, cost_s(i, settings.compute));
+    for (const bool on : {false, true})
+      for (const auto& [name, rule] :
+           {std::pair("the paper's", paper), std::pair("ours", settings.pushbroom)}) {
+        PushbroomConfig filtered = rule;
+        filtered.horizontal_invariance = on;
+        invariance_.emplace_back(rig, filtered);
+        result_.sum.invariance.push_back({name, on});
+      }
+    if (recording_.has_depth()) sweeps_ = std::make_unique<CurveSweeps>(rig, grid_, settings);
+
+    result_.folder = folder;
+    result_.rig = rig;
+    result_.looked_at = grid_.depths[0];
+    result_.has_depth = recording_.has_depth();
+    result_.has_objects = recording_.has_objects();
+    result_.has_poses = recording_.has_poses();
+    result_.objects = recording_.objects();
+    result_.sum.name = scene_of(folder);
+    result_.sum.recordings = 1;
+    result_.sum.seconds = recording_.duration_s();
+  }
+
+  RecordingEvaluation evaluate(const std::function<void()>& on_frame) {
+    const auto every = static_cast<std::size_t>(settings_.every);
+    for (std::size_t i = 0; i < recording_.frame_count(); i += every) {
+      // Behind the last frame there is none.
+      const std::int64_t next_t_ns = i + every < recording_.frame_count()
+                                         ? recording_.t_ns(i + every)
+                                         : std::numeric_limits<std::int64_t>::max();
+      add(recording_.frame(i), i, next_t_ns);
+      on_frame();
+    }
+    finish();
+    return std::move(result_);
+  }
 
  private:
+  void look(const EvaluationFrame& frame) {
+    for (std::size_t i = 0; i < computed_count; ++i) {
+      const auto begin = std::chrono::steady_clock::now();
+      const std::vector<StereoHit>& seen = detectors_[i]->detect(frame.pair);
+      result_.sum.cost_ms[i].push_back(1e3 * seconds_since(begin));
+      hits_[i] = seen;
+    }
+    hits_[at_random] = random_hits(hits_[our_rule].size(), grid_, recording_.rig(), random_);
+    if (recording_.has_depth()) hits_[true_depth] = true_depth_hits(frame.truth, grid_, recording_.rig());
+    for (std::size_t i = 0; i < algorithm_count; ++i)
+      result_.sum.hits[i] += static_cast<std::int64_t>(hits_[i].size());
+  }
+
+  void add_invariance(const EvaluationFrame& frame, const std::vector<ExpectedBlock>& expected) {
+    for (std::size_t i = 0; i < invariance_.size(); ++i) {
+      const std::vector<StereoHit>& hits = invariance_[i].detect(frame.pair);
+      InvarianceRow& row = result_.sum.invariance[i];
+      row.hits += static_cast<std::int64_t>(hits.size());
+      if (recording_.has_depth()) count_one_pixel(frame.truth, grid_, expected, hits, row.rates);
+    }
+  }
+
+  /// The worst of each quarter of a second, so that they show different things.
+  void keep_if_bad(const EvaluationFrame& frame, std::size_t index) {
+    constexpr std::size_t apart = 30;
+    int false_positives = 0;
+    for (const StereoHit& hit : hits_[our_rule])
+      false_positives += !judge(hit, frame.truth, grid_)[one_pixel];
+    if (false_positives == 0) return;
+    std::vector<WorstFrame>& bad = result_.worst;
+    if (bad.empty() || index - bad.back().index >= apart)
+      bad.push_back({index, false_positives});
+    else if (false_positives > bad.back().false_hits)
+      bad.back() = {index, false_positives};
+  }
+
   /// `next_t_ns`: the moment of the frame after it.
-  void add(const EvaluationFrame& frame, std::size_t index, std::int64_t next_t_ns);
-  void look(const EvaluationFrame& frame);
-  void add_invariance(const EvaluationFrame& frame, const std::vector<ExpectedBlock>& expected);
-  void keep_if_bad(const EvaluationFrame& frame, std::size_t index);
-  void finish();
+  void add(const EvaluationFrame& frame, std::size_t index, std::int64_t next_t_ns) {
+    look(frame);
+    DueBlocks due;
+    if (recording_.has_depth()) {
+      due = due_blocks(frame.truth, grid_);
+      for (std::size_t i = 0; i < algorithm_count; ++i) {
+        tally(frame, grid_, recording_.rig(), kinds_, due, hits_[i], result_.sum.tallies[i]);
+        sightings_[i].add(frame, grid_, due[one_pixel], hits_[i]);
+      }
+      for (std::size_t i = 0; i < computed_count; ++i)
+        paced_[i].add(frame, next_t_ns, grid_, due[one_pixel], hits_[i]);
+      keep_if_bad(frame, index);
+      sweeps_->add(frame, due[one_pixel]);
+    }
+    add_invariance(frame, due[one_pixel]);
+    for (std::size_t i = 0; i < published_.size(); ++i) {
+      const std::vector<StereoHit>& hits = hits_[published_algorithms[i]];
+      published_[i].remember(frame, hits);
+      if (result_.sum.frames % compared_every == 0) published_[i].compare(frame, hits, stereo_bm_->depth_m());
+    }
+    ++result_.sum.frames;
+  }
+
+  void finish() {
+    EvaluationSum& sum = result_.sum;
+    for (std::size_t i = 0; i < algorithm_count; ++i) {
+      sum.tallies[i].seconds = sum.seconds;
+      if (result_.has_objects) sum.sightings[i] = sightings_[i].passed();
+    }
+    for (std::size_t i = 0; i < computed_count; ++i) sum.paced[i] = paced_[i].result();
+    for (std::size_t i = 0; i < published_.size(); ++i) sum.published[i] = published_[i].scores();
+    if (sweeps_) sum.curves = sweeps_->curves();
+    std::ranges::stable_sort(result_.worst, std::ranges::greater{}, &WorstFrame::false_hits);
+    result_.worst.resize(std::min(result_.worst.size(), worst_kept));
+  }
 
   EvaluationSettings settings_;
   EvaluationRecording recording_;
@@ -143,133 +254,6 @@ class Evaluator {
   std::unique_ptr<CurveSweeps> sweeps_;      ///< where the recording has true depth
   RecordingEvaluation result_;
 };
-
-Evaluator::Evaluator(const fs::path& folder, const EvaluationSettings& settings)
-    : settings_(settings),
-      recording_(folder),
-      grid_(recording_.rig(), settings.pushbroom.depths_m, settings.pushbroom.last_row_px) {
-  const StereoRig& rig = recording_.rig();
-  check_depths(settings.pushbroom, rig, "perception.depths_m", "perception.pushbroom");
-  for (const RecordedObject& object : recording_.objects()) kinds_[object.number] = object.kind;
-  const PushbroomConfig paper = papers_rule_beside(settings.pushbroom);
-  const FullStereoCrop crop = crop_beside(settings.pushbroom, rig);
-  auto block_matching = std::make_unique<FullStereoDetector>(rig, settings.stereo_bm, crop);
-  stereo_bm_ = block_matching.get();
-  detectors_ = {std::make_unique<PushbroomStereo>(rig, settings.pushbroom),
-                std::make_unique<PushbroomStereo>(rig, paper), std::move(block_matching),
-                std::make_unique<FullStereoDetector>(rig, settings.stereo_sgbm, crop)};
-  for (std::size_t i = 0; i < published_algorithms.size(); ++i)
-    published_.emplace_back(rig, grid_, settings.map);
-  for (std::size_t i = 0; i < algorithm_count; ++i)
-    sightings_.emplace_back(recording_.objects(), rig.baseline_m);
-  for (std::size_t i = 0; i < computed_count; ++i)
-    paced_.emplace_back(recording_.objects(), rig.baseline_m, cost_s(i, settings.compute));
-  for (const bool on : {false, true})
-    for (const auto& [name, rule] :
-         {std::pair("the paper's", paper), std::pair("ours", settings.pushbroom)}) {
-      PushbroomConfig filtered = rule;
-      filtered.horizontal_invariance = on;
-      invariance_.emplace_back(rig, filtered);
-      result_.sum.invariance.push_back({name, on});
-    }
-  if (recording_.has_depth()) sweeps_ = std::make_unique<CurveSweeps>(rig, grid_, settings);
-
-  result_.folder = folder;
-  result_.rig = rig;
-  result_.looked_at = grid_.depths[0];
-  result_.has_depth = recording_.has_depth();
-  result_.has_objects = recording_.has_objects();
-  result_.has_poses = recording_.has_poses();
-  result_.objects = recording_.objects();
-  result_.sum.name = scene_of(folder);
-  result_.sum.recordings = 1;
-  result_.sum.seconds = recording_.duration_s();
-}
-
-void Evaluator::look(const EvaluationFrame& frame) {
-  for (std::size_t i = 0; i < computed_count; ++i) {
-    const auto begin = std::chrono::steady_clock::now();
-    const std::vector<StereoHit>& seen = detectors_[i]->detect(frame.pair);
-    result_.sum.cost_ms[i].push_back(1e3 * seconds_since(begin));
-    hits_[i] = seen;
-  }
-  hits_[at_random] = random_hits(hits_[our_rule].size(), grid_, recording_.rig(), random_);
-  if (recording_.has_depth()) hits_[true_depth] = true_depth_hits(frame.truth, grid_, recording_.rig());
-  for (std::size_t i = 0; i < algorithm_count; ++i)
-    result_.sum.hits[i] += static_cast<std::int64_t>(hits_[i].size());
-}
-
-void Evaluator::add_invariance(const EvaluationFrame& frame, const std::vector<ExpectedBlock>& expected) {
-  for (std::size_t i = 0; i < invariance_.size(); ++i) {
-    const std::vector<StereoHit>& hits = invariance_[i].detect(frame.pair);
-    InvarianceRow& row = result_.sum.invariance[i];
-    row.hits += static_cast<std::int64_t>(hits.size());
-    if (recording_.has_depth()) count_one_pixel(frame.truth, grid_, expected, hits, row.rates);
-  }
-}
-
-/// The worst of each quarter of a second, so that they show different things.
-void Evaluator::keep_if_bad(const EvaluationFrame& frame, std::size_t index) {
-  constexpr std::size_t apart = 30;
-  int false_positives = 0;
-  for (const StereoHit& hit : hits_[our_rule]) false_positives += !judge(hit, frame.truth, grid_)[one_pixel];
-  if (false_positives == 0) return;
-  std::vector<WorstFrame>& bad = result_.worst;
-  if (bad.empty() || index - bad.back().index >= apart)
-    bad.push_back({index, false_positives});
-  else if (false_positives > bad.back().false_hits)
-    bad.back() = {index, false_positives};
-}
-
-void Evaluator::add(const EvaluationFrame& frame, std::size_t index, std::int64_t next_t_ns) {
-  look(frame);
-  DueBlocks due;
-  if (recording_.has_depth()) {
-    due = due_blocks(frame.truth, grid_);
-    for (std::size_t i = 0; i < algorithm_count; ++i) {
-      tally(frame, grid_, recording_.rig(), kinds_, due, hits_[i], result_.sum.tallies[i]);
-      sightings_[i].add(frame, grid_, due[one_pixel], hits_[i]);
-    }
-    for (std::size_t i = 0; i < computed_count; ++i)
-      paced_[i].add(frame, next_t_ns, grid_, due[one_pixel], hits_[i]);
-    keep_if_bad(frame, index);
-    sweeps_->add(frame, due[one_pixel]);
-  }
-  add_invariance(frame, due[one_pixel]);
-  for (std::size_t i = 0; i < published_.size(); ++i) {
-    const std::vector<StereoHit>& hits = hits_[published_algorithms[i]];
-    published_[i].remember(frame, hits);
-    if (result_.sum.frames % compared_every == 0) published_[i].compare(frame, hits, stereo_bm_->depth_m());
-  }
-  ++result_.sum.frames;
-}
-
-void Evaluator::finish() {
-  EvaluationSum& sum = result_.sum;
-  for (std::size_t i = 0; i < algorithm_count; ++i) {
-    sum.tallies[i].seconds = sum.seconds;
-    if (result_.has_objects) sum.sightings[i] = sightings_[i].passed();
-  }
-  for (std::size_t i = 0; i < computed_count; ++i) sum.paced[i] = paced_[i].result();
-  for (std::size_t i = 0; i < published_.size(); ++i) sum.published[i] = published_[i].scores();
-  if (sweeps_) sum.curves = sweeps_->curves();
-  std::ranges::stable_sort(result_.worst, std::ranges::greater{}, &WorstFrame::false_hits);
-  result_.worst.resize(std::min(result_.worst.size(), worst_kept));
-}
-
-RecordingEvaluation Evaluator::evaluate(const std::function<void()>& on_frame) {
-  const auto every = static_cast<std::size_t>(settings_.every);
-  for (std::size_t i = 0; i < recording_.frame_count(); i += every) {
-    // Behind the last frame there is none.
-    const std::int64_t next_t_ns = i + every < recording_.frame_count()
-                                       ? recording_.t_ns(i + every)
-                                       : std::numeric_limits<std::int64_t>::max();
-    add(recording_.frame(i), i, next_t_ns);
-    on_frame();
-  }
-  finish();
-  return std::move(result_);
-}
 
 }  // namespace
 

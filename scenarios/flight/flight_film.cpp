@@ -1,6 +1,7 @@
 #include "scenarios/flight/flight_film.hpp"
 
 #include <algorithm>
+#include <opencv2/core.hpp>
 
 #include "scenarios/flight/flight.hpp"
 #include "scenarios/report/overlay.hpp"
@@ -30,7 +31,8 @@ void FlightFilm::on_frame(const Flight& flight) {
                              ""};
   constexpr int scale = 2;
   const cv::Mat eye = draw_overlay(moment, rig.rig, scale);
-  const cv::Mat picture = beside(eye, flight.chase_view(eye.cols, eye.rows));
+  cv::Mat picture;
+  cv::hconcat(eye, flight.chase_view(eye.cols, eye.rows), picture);
   video_.add(picture);
   if (still_.empty() || moment.hits.size() > maximum_hits_) {
     still_ = picture.clone();

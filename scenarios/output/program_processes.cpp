@@ -1,5 +1,6 @@
 #include "scenarios/output/program_processes.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -15,6 +16,26 @@
 #include "scenarios/output/signals.hpp"
 
 namespace understory {
+
+pid_t start_this_program(const std::vector<std::string>& arguments, int at_our_end,
+                         const std::filesystem::path& log) {
+  const pid_t parent = getpid();
+  const pid_t child = fork();
+  if (child < 0) throw MachineError(fmt::format("cannot start a flight: {}", std::strerror(errno)));
+  if (child != 0) return child;
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, at_our_end);
+  if (getppid() != parent) _exit(127);
+  if (!log.empty()) {
+    const int nothing = open("/dev/null", O_RDWR);
+    const int log_file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    if (nothing < 0 || log_file < 0) _exit(127);
+    dup2(nothing, STDIN_FILENO);
+    dup2(nothing, STDOUT_FILENO);
+    dup2(log_file, STDERR_FILENO);
+  }
+  become_this_program(arguments);
+}
 
 EndedProcess wait_for_process(pid_t pid, int options) {
   EndedProcess ended;
@@ -32,13 +53,7 @@ EndedProcess wait_for_process(pid_t pid, int options) {
 
 void ProgramProcesses::start(std::uint64_t tag, const std::vector<std::string>& arguments) {
   while (running_.size() >= static_cast<std::size_t>(maximum_count_)) wait_for_one();
-  const pid_t child = fork();
-  if (child < 0) throw MachineError(fmt::format("cannot start a flight: {}", std::strerror(errno)));
-  if (child == 0) {
-    setpgid(0, 0);  // Ctrl-C is ours to answer
-    prctl(PR_SET_PDEATHSIG, SIGHUP);
-    become_this_program(arguments);
-  }
+  const pid_t child = start_this_program(arguments, SIGHUP);
   ends_with_us(child);
   running_[child] = tag;
 }

@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <string>
@@ -17,6 +18,12 @@ struct EndedProcess {
   double cpu_s = 0;           ///< of all its threads, in the kernel too
   double peak_memory_mb = 0;  ///< 10^6 bytes, resident
 };
+
+/// Starts this program with `arguments` (without the program's name), in a process group of its own: Ctrl-C
+/// is ours to answer. `at_our_end`: the signal that it gets then. `log`: takes its standard error, its output
+/// goes nowhere; empty: both are ours. Throws MachineError where it cannot be started.
+pid_t start_this_program(const std::vector<std::string>& arguments, int at_our_end,
+                         const std::filesystem::path& log = {});
 
 /// Waits for `pid`, or with -1 for any child; with WNOHANG in `options` only looks: pid 0 where it runs yet.
 EndedProcess wait_for_process(pid_t pid, int options = 0);

@@ -55,10 +55,4 @@ cv::Mat draw_overlay(const OverlayMoment& moment, const StereoRig& rig, int scal
   return picture;
 }
 
-cv::Mat beside(const cv::Mat& left, const cv::Mat& right) {
-  cv::Mat both;
-  cv::hconcat(left, right, both);
-  return both;
-}
-
 }  // namespace understory

@@ -29,7 +29,4 @@ struct OverlayMoment {
 /// altitude in feet at the right. BGR 8-bit.
 cv::Mat draw_overlay(const OverlayMoment& moment, const StereoRig& rig, int scale);
 
-/// Two pictures of equal height side by side.
-cv::Mat beside(const cv::Mat& left, const cv::Mat& right);
-
 }  // namespace understory

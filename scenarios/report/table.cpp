@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "scenarios/config/config_tree.hpp"
@@ -69,6 +70,10 @@ std::optional<std::string> take_cell(const std::string& text, std::size_t& at) {
 }
 
 }  // namespace
+
+std::string number_text(double value, int decimals) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
+}
 
 std::string to_text(const Table& table) {
   std::vector<std::size_t> widths;

@@ -1,15 +1,25 @@
 #pragma once
 
+#include <concepts>
 #include <string>
 #include <vector>
 
 namespace understory {
 
+inline std::string cell_text(std::string text) { return text; }
+std::string cell_text(std::integral auto count) { return std::to_string(count); }
+
 /// Cells of text, every row as long as the head.
 struct Table {
   std::vector<std::string> head;
   std::vector<std::vector<std::string>> rows = {};
+
+  /// A row of words and whole numbers.
+  void add(const auto&... cells) { rows.push_back({cell_text(cells)...}); }
 };
+
+/// "-" where the value is no number.
+std::string number_text(double value, int decimals);
 
 /// Columns two spaces apart, for a terminal: the first to the left, the others to the right. Lines end where
 /// their text does.

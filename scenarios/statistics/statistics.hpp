@@ -44,6 +44,9 @@ struct PairedOutcomes {
   int only_second = 0;
   int neither = 0;
 
+  void count(bool first_is_good, bool second_is_good) {
+    ++(first_is_good ? (second_is_good ? both : only_first) : (second_is_good ? only_second : neither));
+  }
   int pairs() const { return both + only_first + only_second + neither; }
   int first() const { return both + only_first; }
   int second() const { return both + only_second; }

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 #include "scenarios/campaign/campaign_folder.hpp"
 #include "scenarios/campaign/engines.hpp"
@@ -15,17 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class FlightJudge : public Judge {
- public:
-  explicit FlightJudge(FlightJudgeConfig config);
-  Measured measure(const std::string& name, const Scenario& scenario) override;
-  Figures figures(std::span<const Counts> units) const override;
-
- private:
-  FlightJudgeConfig config_;
-  CampaignFolder folder_;
-};
-
 Counts counts_of(const FlightRow& row) {
   return {row.reached_goal() ? 1.0 : 0.0,
           row.reached_goal() ? 1.0 : std::clamp(row.progress_m / row.goal_m, 0.0, 1.0), row.mean_speed_mps,
@@ -35,41 +22,46 @@ Counts counts_of(const FlightRow& row) {
 /// Flights of another scenario that went by this name are of no use any more.
 void keep_condition(const CampaignFolder& folder, const Campaign& campaign) {
   const Condition& condition = campaign.conditions.front();
-  std::ifstream stream(folder.condition_file(condition), std::ios::binary);
-  const std::string before{std::istreambuf_iterator<char>(stream), {}};
-  if (before == condition.scenario_text) return;
+  if (text_if_there(folder.condition_file(condition)) == condition.scenario_text) return;
   for (const CampaignTask& task : tasks_of(campaign)) fs::remove(folder.flight_file(task));
   write_lasting_file(folder.condition_file(condition), condition.scenario_text);
 }
 
-FlightJudge::FlightJudge(FlightJudgeConfig config) : config_(std::move(config)), folder_{config_.folder} {
-  for (const char* part : {"conditions", "flights", "logs"}) prepare_output_folder(folder_.path / part);
-}
-
-Measured FlightJudge::measure(const std::string& name, const Scenario& scenario) {
-  const Campaign campaign{
-      "tuning", {{name, scenario_to_text(scenario)}}, config_.seeds, config_.renderer, config_.timeout_s};
-  keep_condition(folder_, campaign);
-  const std::vector<CampaignTask> tasks = tasks_of(campaign);
-  if (!fly_locally(folder_, campaign, tasks, {config_.jobs, false}, {})) throw Stopped{};
-  Measured measured;
-  for (const CampaignTask& task : tasks) {
-    const FlightRow row = read_flight(folder_, task).value_or(FlightFile{}).row;
-    if (row.status == RunStatus::killed)  // not the scenario's fault: flown again when the tuning goes on
-      throw MachineError(fmt::format("{}-{}: {}; --resume goes on", name, task.seed, row.reason));
-    if (!row.flown()) return {{}, fmt::format("seed {}: {}", task.seed, row.reason)};
-    measured.units.push_back(counts_of(row));
+class FlightJudge : public Judge {
+ public:
+  explicit FlightJudge(FlightJudgeConfig config) : config_(std::move(config)), folder_{config_.folder} {
+    for (const char* part : {"conditions", "flights", "logs"}) prepare_output_folder(folder_.path / part);
   }
-  return measured;
-}
 
-Figures FlightJudge::figures(std::span<const Counts> units) const {
-  Figures means(flight_figure_names.size(), 0);
-  for (const Counts& flight : units)
-    for (std::size_t i = 0; i < means.size(); ++i) means[i] += flight[i];
-  for (double& mean : means) mean /= static_cast<double>(units.size());  // all at the goal: exactly 1
-  return means;
-}
+  Measured measure(const std::string& name, const Scenario& scenario) override {
+    const Campaign campaign{
+        "tuning", {{name, scenario_to_text(scenario)}}, config_.seeds, config_.renderer, config_.timeout_s};
+    keep_condition(folder_, campaign);
+    const std::vector<CampaignTask> tasks = tasks_of(campaign);
+    if (!fly_locally(folder_, campaign, tasks, {config_.jobs, false}, {})) throw Stopped{};
+    Measured measured;
+    for (const CampaignTask& task : tasks) {
+      const FlightRow row = read_flight(folder_, task).value_or(FlightFile{}).row;
+      if (row.status == RunStatus::killed)  // not the scenario's fault: flown again when the tuning goes on
+        throw MachineError(fmt::format("{}-{}: {}; --resume goes on", name, task.seed, row.reason));
+      if (!row.flown()) return {{}, fmt::format("seed {}: {}", task.seed, row.reason)};
+      measured.units.push_back(counts_of(row));
+    }
+    return measured;
+  }
+
+  Figures figures(std::span<const Counts> units) const override {
+    Figures means(flight_figure_names.size(), 0);
+    for (const Counts& flight : units)
+      for (std::size_t i = 0; i < means.size(); ++i) means[i] += flight[i];
+    for (double& mean : means) mean /= static_cast<double>(units.size());  // all at the goal: exactly 1
+    return means;
+  }
+
+ private:
+  FlightJudgeConfig config_;
+  CampaignFolder folder_;
+};
 
 }  // namespace
 

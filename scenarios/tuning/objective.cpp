@@ -65,6 +65,14 @@ std::size_t nearest_to_ideal(const std::vector<std::vector<double>>& costs,
 
 }  // namespace
 
+std::vector<std::size_t> figures_of(const Objective& objective) {
+  std::vector<std::size_t> figures;
+  for (const Goal& goal : objective.goals) figures.push_back(goal.figure);
+  for (const Limit& limit : objective.limits)
+    if (std::ranges::find(figures, limit.figure) == figures.end()) figures.push_back(limit.figure);
+  return figures;
+}
+
 double violation(const Objective& objective, const Figures& figures) {
   if (figures.empty()) return infinity;
   for (const Goal& goal : objective.goals)

@@ -31,6 +31,9 @@ struct Objective {
   std::optional<std::size_t> tie_breaker = {};
 };
 
+/// Places of the figures that it speaks of, goals first, each once.
+std::vector<std::size_t> figures_of(const Objective& objective);
+
 /// How far the limits are missed, summed; 0 where all are kept, infinite where a goal or a limit's figure is
 /// not known.
 double violation(const Objective& objective, const Figures& figures);

@@ -35,17 +35,6 @@ std::map<std::string, std::string> written_values(const Space& space, const Poin
   return written;
 }
 
-std::vector<std::string> words_between_dots(const std::string& key) {
-  std::vector<std::string> words(1);
-  for (const char c : key) {
-    if (c == '.')
-      words.emplace_back();
-    else
-      words.back() += c;
-  }
-  return words;
-}
-
 std::vector<std::vector<double>> grid_axes(const Space& space) {
   std::vector<std::vector<double>> axes;
   for (const Parameter& parameter : space.parameters)
@@ -105,16 +94,14 @@ std::vector<double> spread_values(const Parameter& parameter, int steps) {
 }
 
 std::string to_yaml(const Space& space, const Point& point) {
-  std::string yaml;
-  std::vector<std::string> open;  // groups
+  std::string yaml, open;  // the group that is open: "perception.pushbroom."
   for (const auto& [key, value] : written_values(space, point)) {
-    const std::vector<std::string> words = words_between_dots(key);
-    std::size_t shared = 0;
-    while (shared < open.size() && shared + 1 < words.size() && open[shared] == words[shared]) ++shared;
-    for (std::size_t level = shared; level + 1 < words.size(); ++level)
-      yaml += fmt::format("{:{}}{}:\n", "", 2 * level, words[level]);
-    yaml += fmt::format("{:{}}{}: {}\n", "", 2 * (words.size() - 1), words.back(), value);
-    open.assign(words.begin(), words.end() - 1);
+    std::size_t begin = 0, level = 0;
+    for (std::size_t dot; (dot = key.find('.', begin)) != std::string::npos; begin = dot + 1, ++level)
+      if (!open.starts_with(key.substr(0, dot + 1)))
+        yaml += fmt::format("{:{}}{}:\n", "", 2 * level, key.substr(begin, dot - begin));
+    yaml += fmt::format("{:{}}{}: {}\n", "", 2 * level, key.substr(begin), value);
+    open = key.substr(0, begin);
   }
   return yaml;
 }

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 #include "scenarios/config/config_keys.hpp"
@@ -229,8 +227,7 @@ TuneFile load_tune_file(const fs::path& file, const FindScenario& find_scenario)
                       "validation", "every", "timeout_s"},
                      "");
   TuneFile tune;
-  std::ifstream stream(file, std::ios::binary);
-  tune.text.assign(std::istreambuf_iterator<char>(stream), {});
+  tune.text = text_if_there(file).value_or("");
   tune.name = name_in(top, file);
   const ConfigNode& scenario = required(top, "scenario", "the scenario whose keys are tuned");
   tune.scenario_file = scenario_beside(file, scenario, scenario.text, find_scenario);

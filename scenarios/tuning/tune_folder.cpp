@@ -7,12 +7,10 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "scenarios/campaign/flight_row.hpp"
+#include "scenarios/campaign/campaign_folder.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/program.hpp"
@@ -70,11 +68,6 @@ Json manifest_of(const TuneFile& file, const std::string& renderer) {
           {"renderer", renderer}};
 }
 
-std::string content_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 }  // namespace
 
 TrialLog::TrialLog(fs::path file, std::vector<std::string> parameters, std::vector<std::string> figures,
@@ -83,7 +76,7 @@ TrialLog::TrialLog(fs::path file, std::vector<std::string> parameters, std::vect
       parameters_(std::move(parameters)),
       figures_(std::move(figures)),
       measure_(std::move(measure)) {
-  const std::string text = content_of(file_);
+  const std::string text = text_if_there(file_).value_or("");
   std::size_t begin = 0;
   for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
     Trial trial;
@@ -136,7 +129,7 @@ void prepare_tune_folder(const fs::path& folder, const TuneFile& file, const std
       throw ScenarioError(
           fmt::format("{}: holds a tuning already: --resume goes on with it, --out names another folder",
                       folder.string()));
-    const Json held = Json::parse(content_of(manifest_file), nullptr, false);
+    const Json held = Json::parse(text_if_there(manifest_file).value_or(""), nullptr, false);
     for (const auto& [key, value] : manifest.items())
       if (!held.is_object() || held.value(key, Json()) != value)
         throw ScenarioError(

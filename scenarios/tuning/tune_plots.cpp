@@ -5,21 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <set>
 
 namespace understory {
 namespace {
 
 constexpr int grayish = 4, blue = 0, orange = 1, green = 2, black = 7;  // places in the palette
-
-/// What the first goal is traded against.
-std::optional<std::size_t> other_figure(const Objective& objective) {
-  if (objective.goals.size() > 1) return objective.goals[1].figure;
-  for (const Limit& limit : objective.limits)
-    if (limit.figure != objective.goals[0].figure) return limit.figure;
-  return {};
-}
 
 double figure_or_nan(const Figures& figures, std::size_t i) {
   return figures.empty() ? std::numeric_limits<double>::quiet_NaN() : figures[i];
@@ -84,10 +75,9 @@ double on_axis(const Parameter& parameter, double value) {
 }  // namespace
 
 LinePlot pareto_plot(const TuneFile& file, const Tuned& tuned) {
-  const std::size_t y = file.objective.goals[0].figure;
-  const std::optional<std::size_t> other = other_figure(file.objective);
-  if (!other) return trials_plot(file, tuned);
-  const std::size_t x = *other;
+  const std::vector<std::size_t> aims = figures_of(file.objective);
+  if (aims.size() < 2) return trials_plot(file, tuned);
+  const std::size_t y = aims[0], x = aims[1];
   LinePlot plot{.title = "Pareto front", .x_label = file.figures[x], .y_label = file.figures[y]};
   Series training{.name = "front (training)", .mark = Mark::line_and_dots, .colour = blue};
   Series validation{.name = "the same on validation data", .mark = Mark::dots, .colour = green};
@@ -107,10 +97,7 @@ LinePlot pareto_plot(const TuneFile& file, const Tuned& tuned) {
 }
 
 std::vector<LinePlot> sensitivity_plots(const TuneFile& file, const Tuned& tuned) {
-  std::vector<std::size_t> figures;
-  for (const Goal& goal : file.objective.goals) figures.push_back(goal.figure);
-  for (const Limit& limit : file.objective.limits)
-    if (std::ranges::find(figures, limit.figure) == figures.end()) figures.push_back(limit.figure);
+  const std::vector<std::size_t> figures = figures_of(file.objective);
   std::vector<LinePlot> plots;
   for (std::size_t i = 0; i < tuned.sensitivity.size(); ++i) {
     const Parameter& parameter = file.space.parameters[i];

@@ -48,29 +48,18 @@ std::string method_name(const TuneFile& file) {
   return std::string(search_method_names[static_cast<std::size_t>(file.search.method)].first);
 }
 
-/// Figures that the objective speaks of, goals first.
-std::vector<std::size_t> aimed_at(const TuneFile& file) {
-  std::vector<std::size_t> figures;
-  const auto add = [&](std::size_t i) {
-    if (std::ranges::find(figures, i) == figures.end()) figures.push_back(i);
-  };
-  for (const Goal& goal : file.objective.goals) add(goal.figure);
-  for (const Limit& limit : file.objective.limits) add(limit.figure);
-  return figures;
-}
-
 /// Of the front: both sides' figures that the objective speaks of, then the parameters.
 Table front_table(const TuneFile& file, const Tuned& tuned) {
   Table table;
   table.head = {"trial"};
-  for (const std::size_t i : aimed_at(file)) {
+  for (const std::size_t i : figures_of(file.objective)) {
     table.head.push_back(file.figures[i]);
     table.head.push_back(file.figures[i] + " (training)");
   }
   for (const Parameter& parameter : file.space.parameters) table.head.push_back(short_key(parameter.key));
   for (const JudgedTrial& member : tuned.front) {
     table.rows.push_back({fmt::format("{}", member.training.number)});
-    for (const std::size_t i : aimed_at(file)) {
+    for (const std::size_t i : figures_of(file.objective)) {
       table.rows.back().push_back(figure(member.validation, i));
       table.rows.back().push_back(figure(member.training, i));
     }

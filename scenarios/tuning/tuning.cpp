@@ -196,10 +196,8 @@ Tuned tune(const TuneFile& file, Judge& training, Judge& validation, const TuneO
 
 PairedOutcomes paired_goals(const Tuned& tuned) {
   PairedOutcomes goals;
-  for (std::size_t i = 0; i < tuned.best_units.size(); ++i) {
-    const bool before = tuned.scenario_units[i].front() > 0, after = tuned.best_units[i].front() > 0;
-    (before ? (after ? goals.both : goals.only_first) : (after ? goals.only_second : goals.neither)) += 1;
-  }
+  for (std::size_t i = 0; i < tuned.best_units.size(); ++i)
+    goals.count(tuned.scenario_units[i].front() > 0, tuned.best_units[i].front() > 0);
   return goals;
 }
 

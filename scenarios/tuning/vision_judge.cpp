@@ -24,93 +24,88 @@ struct HeldRecording {
 
 class VisionJudge : public Judge {
  public:
-  VisionJudge(const std::vector<std::filesystem::path>& folders, int every, int threads);
-  Measured measure(const std::string& name, const Scenario& scenario) override;
-  Figures figures(std::span<const Counts> units) const override;
+  VisionJudge(const std::vector<std::filesystem::path>& folders, int every, int threads) : threads_(threads) {
+    for (const std::filesystem::path& folder : folders) {
+      EvaluationRecording recording(folder);
+      if (!recording.has_depth())
+        throw ScenarioError(
+            fmt::format("{}: expected true depth (mav0/depth0), found none", folder.string()));
+      if (recordings_.empty()) rig_ = recording.rig();
+      if (!is_same_rig(recording.rig(), rig_))
+        throw ScenarioError(fmt::format("{}: expected the rig of {}, found another (one tuning, one rig)",
+                                        folder.string(), folders.front().string()));
+      const DetectionGrid grid(rig_, usual_.depths_m, usual_.last_row_px);
+      HeldRecording& held = recordings_.emplace_back();
+      held.objects = recording.objects();
+      for (std::size_t i = 0; i < recording.frame_count(); i += static_cast<std::size_t>(every)) {
+        held.frames.push_back(recording.frame(i));
+        held.expected.push_back(expected_blocks(held.frames.back().truth, grid));
+      }
+    }
+  }
+
+  Measured measure(const std::string&, const Scenario& scenario) override {
+    const PushbroomConfig& rule = scenario.perception.pushbroom;
+    try {
+      check_depths(rule, rig_, "perception.depths_m", "perception.pushbroom");
+    } catch (const ScenarioError& error) {
+      return {{}, error.what()};
+    }
+    Measured measured;
+    measured.units.resize(recordings_.size());
+    std::atomic<std::size_t> next = 0;
+    const auto work = [&] {
+      for (std::size_t i; (i = next++) < recordings_.size();) measured.units[i] = count(recordings_[i], rule);
+    };
+    std::vector<std::jthread> others;
+    const auto threads = std::min(static_cast<std::size_t>(threads_), recordings_.size());
+    for (std::size_t i = 1; i < threads; ++i) others.emplace_back(work);
+    work();
+    others.clear();  // joins
+    return measured;
+  }
+
+  Figures figures(std::span<const Counts> units) const override {
+    Counts sum(units.front().size(), 0);
+    for (const Counts& counts : units)
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += counts[i];
+    const auto share = [&](std::size_t i) { return sum[i + 1] > 0 ? sum[i] / sum[i + 1] : 0; };
+    const double precision = share(1), recall = share(3), both = precision + recall;
+    const double f_score = both > 0 ? 2 * precision * recall / both : 0;
+    const double hits_per_frame = sum[0] > 0 ? sum[2] / sum[0] : 0;
+    return {precision, recall, f_score, share(5), share(7), hits_per_frame};
+  }
 
  private:
-  Counts count(const HeldRecording& recording, const PushbroomConfig& rule) const;
+  /// Frames; then, of how many it holds and of how many: hits that are true, expected blocks that were hit,
+  /// obstacles within 1 m and 3 m of the path that were found.
+  Counts count(const HeldRecording& recording, const PushbroomConfig& rule) const {
+    PushbroomStereo detector(rig_, rule);
+    const DetectionGrid grid(rig_, rule.depths_m, rule.last_row_px);
+    ObstacleSightings sightings(recording.objects, rig_.baseline_m);
+    Rates rates;
+    const bool looks_as_usual = rule.depths_m == usual_.depths_m && rule.last_row_px == usual_.last_row_px;
+    for (std::size_t i = 0; i < recording.frames.size(); ++i) {
+      const EvaluationFrame& frame = recording.frames[i];
+      const std::vector<StereoHit>& hits = detector.detect(frame.pair);
+      const std::vector<ExpectedBlock> expected =
+          looks_as_usual ? recording.expected[i] : expected_blocks(frame.truth, grid);
+      count_one_pixel(frame.truth, grid, expected, hits, rates);
+      sightings.add(frame, grid, expected, hits);
+    }
+    const std::vector<ObstacleSighting> passed = sightings.passed();
+    Counts counts{static_cast<double>(recording.frames.size())};
+    for (const Share& share :
+         {rates.precision, rates.recall, found_within(passed, 1), found_within(passed, 3)})
+      counts.insert(counts.end(), {static_cast<double>(share.with), static_cast<double>(share.of)});
+    return counts;
+  }
 
   StereoRig rig_;
   PushbroomConfig usual_;  ///< for rules that look where this one does the blocks due are computed already
   std::vector<HeldRecording> recordings_;
   int threads_;
 };
-
-VisionJudge::VisionJudge(const std::vector<std::filesystem::path>& folders, int every, int threads)
-    : threads_(threads) {
-  for (const std::filesystem::path& folder : folders) {
-    EvaluationRecording recording(folder);
-    if (!recording.has_depth())
-      throw ScenarioError(fmt::format("{}: expected true depth (mav0/depth0), found none", folder.string()));
-    if (recordings_.empty()) rig_ = recording.rig();
-    if (!is_same_rig(recording.rig(), rig_))
-      throw ScenarioError(fmt::format("{}: expected the rig of {}, found another (one tuning, one rig)",
-                                      folder.string(), folders.front().string()));
-    const DetectionGrid grid(rig_, usual_.depths_m, usual_.last_row_px);
-    HeldRecording& held = recordings_.emplace_back();
-    held.objects = recording.objects();
-    for (std::size_t i = 0; i < recording.frame_count(); i += static_cast<std::size_t>(every)) {
-      held.frames.push_back(recording.frame(i));
-      held.expected.push_back(expected_blocks(held.frames.back().truth, grid));
-    }
-  }
-}
-
-/// Frames; then, of how many it holds and of how many: hits that are true, expected blocks that were hit,
-/// obstacles within 1 m and 3 m of the path that were found.
-Counts VisionJudge::count(const HeldRecording& recording, const PushbroomConfig& rule) const {
-  PushbroomStereo detector(rig_, rule);
-  const DetectionGrid grid(rig_, rule.depths_m, rule.last_row_px);
-  ObstacleSightings sightings(recording.objects, rig_.baseline_m);
-  Rates rates;
-  const bool looks_as_usual = rule.depths_m == usual_.depths_m && rule.last_row_px == usual_.last_row_px;
-  for (std::size_t i = 0; i < recording.frames.size(); ++i) {
-    const EvaluationFrame& frame = recording.frames[i];
-    const std::vector<StereoHit>& hits = detector.detect(frame.pair);
-    const std::vector<ExpectedBlock> expected =
-        looks_as_usual ? recording.expected[i] : expected_blocks(frame.truth, grid);
-    count_one_pixel(frame.truth, grid, expected, hits, rates);
-    sightings.add(frame, grid, expected, hits);
-  }
-  const std::vector<ObstacleSighting> passed = sightings.passed();
-  Counts counts{static_cast<double>(recording.frames.size())};
-  for (const Share& share : {rates.precision, rates.recall, found_within(passed, 1), found_within(passed, 3)})
-    counts.insert(counts.end(), {static_cast<double>(share.with), static_cast<double>(share.of)});
-  return counts;
-}
-
-Measured VisionJudge::measure(const std::string&, const Scenario& scenario) {
-  const PushbroomConfig& rule = scenario.perception.pushbroom;
-  try {
-    check_depths(rule, rig_, "perception.depths_m", "perception.pushbroom");
-  } catch (const ScenarioError& error) {
-    return {{}, error.what()};
-  }
-  Measured measured;
-  measured.units.resize(recordings_.size());
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t i; (i = next++) < recordings_.size();) measured.units[i] = count(recordings_[i], rule);
-  };
-  std::vector<std::jthread> others;
-  const auto threads = std::min(static_cast<std::size_t>(threads_), recordings_.size());
-  for (std::size_t i = 1; i < threads; ++i) others.emplace_back(work);
-  work();
-  others.clear();  // joins
-  return measured;
-}
-
-Figures VisionJudge::figures(std::span<const Counts> units) const {
-  Counts sum(units.front().size(), 0);
-  for (const Counts& counts : units)
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += counts[i];
-  const auto share = [&](std::size_t i) { return sum[i + 1] > 0 ? sum[i] / sum[i + 1] : 0; };
-  const double precision = share(1), recall = share(3), both = precision + recall;
-  const double f_score = both > 0 ? 2 * precision * recall / both : 0;
-  const double hits_per_frame = sum[0] > 0 ? sum[2] / sum[0] : 0;
-  return {precision, recall, f_score, share(5), share(7), hits_per_frame};
-}
 
 }  // namespace
 

@@ -1,4 +1,5 @@
 #include "scenarios/bench/bench.hpp"
+#include "tests/support/text.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +11,8 @@
 
 namespace understory {
 namespace {
+
+using support::expect_part;
 
 CalibratedRig long_rig() {
   return read_calibrated_rig(UNDERSTORY_SOURCE_DIR "/models/rigs/raw/long.xml", {});
@@ -42,7 +45,7 @@ TEST(Bench, HasARowForEachClaimWithItsYardstick) {
     if (row["yardstick"].is_null()) continue;
     ++with_ratio;
     EXPECT_GT(row["ratio"].get<double>(), 0) << row["name"];
-    EXPECT_NE(to_json(rows).find("\"name\": " + row["yardstick"].dump()), std::string::npos);
+    expect_part(to_json(rows), "\"name\": " + row["yardstick"].dump());
   }
   EXPECT_EQ(with_ratio, static_cast<int>(rows.size()) - 2);  // remap and StereoBM are the yardsticks
 }
@@ -77,7 +80,7 @@ TEST(ClosedLoopBench, ARowAddsUpItsFlights) {
   EXPECT_EQ(list[1]["yardstick"], "one");
   EXPECT_EQ(list[1]["processes"], 2);
   EXPECT_DOUBLE_EQ(list[0]["shares"]["render"].get<double>(), 0.6);
-  EXPECT_NE(to_table({one, two}).find("0.62 of one"), std::string::npos);
+  expect_part(to_table({one, two}), "0.62 of one");
 }
 
 }  // namespace

@@ -19,7 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using understory::support::content_of;
+using understory::support::expect_part;
 using understory::support::expect_refusal;
+using understory::support::expect_success;
 using understory::support::Outcome;
 using understory::support::understory;
 
@@ -71,14 +73,14 @@ int wait_for(pid_t child) {
 
 TEST_F(CampaignRun, KilledAgainAndAgainItEndsWithTheRowsOfAnUndisturbedOne) {
   const std::string campaign = blind("seeds: 1..24\n");
-  ASSERT_EQ(understory("campaign " + campaign + out("undisturbed")).status, 0);
+  expect_success("campaign " + campaign + out("undisturbed"));
   for (int kills = 0; kills < 8; ++kills) {
     const pid_t child = start(campaign, "disturbed");
     std::this_thread::sleep_for(std::chrono::milliseconds(150 + 130 * (kills % 4)));
     kill(child, kills % 3 == 2 ? SIGINT : SIGKILL);
     wait_for(child);
   }
-  EXPECT_EQ(understory("campaign " + campaign + out("disturbed") + " --resume").status, 0);
+  expect_success("campaign " + campaign + out("disturbed") + " --resume");
   EXPECT_EQ(text("disturbed/flights.csv"), text("undisturbed/flights.csv"));
   EXPECT_EQ(text("disturbed/flights.jsonl"), text("undisturbed/flights.jsonl"));
   const std::string rows = text("disturbed/flights.csv");
@@ -100,27 +102,17 @@ TEST_F(CampaignRun, ACrashAHangAndAKillCostOneFlightEach) {
   strike("5", SIGSTOP);
   EXPECT_EQ(wait_for(child), 1);
   const std::string rows = text("results/flights.csv");
-  EXPECT_NE(
-      rows.find(
-          "clear-blind-length_m=250-1,clear-blind-length_m=250,1,crashed,signal 11 (Segmentation fault),"),
-      std::string::npos)
-      << rows;
-  EXPECT_NE(rows.find("clear-blind-length_m=250-3,clear-blind-length_m=250,3,killed,signal 9 (Killed),"),
-            std::string::npos)
-      << rows;
-  EXPECT_NE(
-      rows.find(
-          "clear-blind-length_m=250-5,clear-blind-length_m=250,5,hung,took longer than timeout_s = 4 s,"),
-      std::string::npos)
-      << rows;
+  expect_part(
+      rows, "clear-blind-length_m=250-1,clear-blind-length_m=250,1,crashed,signal 11 (Segmentation fault),");
+  expect_part(rows, "clear-blind-length_m=250-3,clear-blind-length_m=250,3,killed,signal 9 (Killed),");
+  expect_part(rows,
+              "clear-blind-length_m=250-5,clear-blind-length_m=250,5,hung,took longer than timeout_s = 4 s,");
   for (const char* seed : {"2", "4", "6"})
-    EXPECT_NE(rows.find(std::string("clear-blind-length_m=250-") + seed + ",clear-blind-length_m=250," +
-                        seed + ",flown,,goal,"),
-              std::string::npos)
-        << rows;
+    expect_part(rows, std::string("clear-blind-length_m=250-") + seed + ",clear-blind-length_m=250," + seed +
+                          ",flown,,goal,");
   // And flown again they are as if nothing had been.
-  EXPECT_EQ(understory("campaign " + campaign + out("results") + " --resume").status, 0);
-  EXPECT_EQ(understory("campaign " + campaign + out("undisturbed")).status, 0);
+  expect_success("campaign " + campaign + out("results") + " --resume");
+  expect_success("campaign " + campaign + out("undisturbed"));
   EXPECT_EQ(text("results/flights.csv"), text("undisturbed/flights.csv"));
 }
 
@@ -138,35 +130,31 @@ TEST_F(CampaignRun, FlightsDieWithTheirCampaign) {
 
 TEST_F(CampaignRun, PrintedTasksGiveTheSameRows) {
   const std::string campaign = blind("seeds: 1..3\n");
-  ASSERT_EQ(understory("campaign " + campaign + out("here")).status, 0);
-  const Outcome tasks = understory("campaign " + campaign + out("there") + " --print-tasks");
-  EXPECT_EQ(tasks.status, 0);
+  expect_success("campaign " + campaign + out("here"));
+  const Outcome tasks = expect_success("campaign " + campaign + out("there") + " --print-tasks");
   EXPECT_EQ(std::count(tasks.text.begin(), tasks.text.end(), '\n'), 3);
   EXPECT_EQ(understory("collect " + (path / "there").string()).status, 1);  // nothing flown yet
   // Twice, and from another folder: a task is idempotent and says all it needs.
   const std::string script = file("tasks.sh", tasks.text + tasks.text);
   ASSERT_EQ(std::system(("cd / && sh " + script).c_str()), 0);
-  EXPECT_EQ(understory("collect " + (path / "there").string()).status, 0);
+  expect_success("collect " + (path / "there").string());
   EXPECT_EQ(text("there/flights.csv"), text("here/flights.csv"));
 }
 
 TEST_F(CampaignRun, WritesJunitOfFlightsAndCampaigns) {
   const std::string of_campaign = (path / "campaign.xml").string(),
                     of_flight = (path / "flight.xml").string();
-  ASSERT_EQ(
-      understory("campaign " + blind("seeds: 1..2\n") + out("results") + " --junit " + of_campaign).status,
-      0);
-  EXPECT_NE(text("campaign.xml").find("tests=\"2\" failures=\"0\" errors=\"0\""), std::string::npos);
+  expect_success("campaign " + blind("seeds: 1..2\n") + out("results") + " --junit " + of_campaign);
+  expect_part(text("campaign.xml"), "tests=\"2\" failures=\"0\" errors=\"0\"");
   const std::string short_lived = "fly clear --seed 7 --set time_limit_s=1 --out " + (path / "run").string();
   ASSERT_EQ(understory(short_lived + " --junit " + of_flight).status, 1);
-  EXPECT_NE(text("flight.xml").find("tests=\"1\" failures=\"1\" errors=\"0\""), std::string::npos);
-  EXPECT_NE(text("flight.xml").find("classname=\"clear\" name=\"7\""), std::string::npos)
-      << text("flight.xml");
+  expect_part(text("flight.xml"), "tests=\"1\" failures=\"1\" errors=\"0\"");
+  expect_part(text("flight.xml"), "classname=\"clear\" name=\"7\"");
 }
 
 TEST_F(CampaignRun, RefusesFoldersThatAreNotItsOwn) {
   const std::string campaign = blind("seeds: 1\n");
-  ASSERT_EQ(understory("campaign " + campaign + out("results")).status, 0);
+  expect_success("campaign " + campaign + out("results"));
   expect_refusal("campaign " + campaign + out("results"),
                  "holds a campaign already: --resume goes on with it");
   expect_refusal("campaign " + blind("seeds: 1..2\n") + out("results") + " --resume", "seeds changed");

@@ -1,11 +1,14 @@
-#include "scenarios/campaign/campaign_summary.hpp"
-
 #include <gtest/gtest.h>
 
+#include "scenarios/campaign/campaign_summary.hpp"
 #include "tests/support/flight_rows.hpp"
+#include "tests/support/text.hpp"
 
 namespace understory {
 namespace {
+
+using support::expect_no_part;
+using support::expect_part;
 
 using support::failed_row;
 using support::flown_row;
@@ -45,6 +48,84 @@ TEST(CampaignSummary, PrintsARowPerCondition) {
   EXPECT_EQ(table.rows[1][9], "10.0");
   EXPECT_EQ(table.rows[2],
             (std::vector<std::string>{"paper", "0", "0", "-", "0", "0", "0", "0", "-", "-", "-", "-", "1"}));
+}
+
+/// Ten flights, `goals` of which reach the goal; the others collide at 10, 20, ... m.
+void add_ten(std::vector<FlightRow>& rows, const std::string& condition, double speed_mps, double per_tree_m2,
+             int goals) {
+  for (int seed = 0; seed < 10; ++seed) {
+    const bool good = seed < goals;
+    FlightRow row = flown_row(condition, static_cast<std::uint64_t>(seed), good ? "goal" : "collision",
+                              good ? 75 : 10 * (seed - goals + 1));
+    row.cruise_speed_mps = speed_mps;
+    row.square_metres_per_tree = per_tree_m2;
+    rows.push_back(row);
+  }
+}
+
+TEST(CampaignPlots, JoinsConditionsThatDifferInSpeedOnly) {
+  std::vector<FlightRow> rows;
+  add_ten(rows, "forest-ours-cruise_speed_mps=12", 12, 25, 8);
+  add_ten(rows, "forest-ours-cruise_speed_mps=8", 8, 25, 10);
+  add_ten(rows, "forest-blind-cruise_speed_mps=8", 8, 25, 3);
+  add_ten(rows, "forest-blind-cruise_speed_mps=12", 12, 25, 1);
+  add_ten(rows, "dense", 10, 25, 5);
+  rows.push_back(failed_row("forest-ours-cruise_speed_mps=8", 99, "hung"));
+  const LinePlot plot = success_over_speed(rows);
+  ASSERT_EQ(plot.series.size(), 3u);
+  EXPECT_EQ(plot.series[0].name, "forest-ours");
+  EXPECT_EQ(plot.series[0].y, (std::vector<double>{100, 80}));
+  EXPECT_NEAR(plot.series[0].x[0], 8, 0.1);
+  EXPECT_NEAR(plot.series[0].x[1], 12, 0.1);
+  EXPECT_NEAR(plot.series[0].low[1], 49.0, 0.05);  // Wilson, 8 of 10
+  EXPECT_NEAR(plot.series[0].high[1], 94.3, 0.05);
+  EXPECT_EQ(plot.series[2].mark, Mark::dots);
+  expect_no_part(campaign_svg(rows), "density");
+  expect_part(campaign_svg(rows), "Success over speed");
+}
+
+TEST(CampaignPlots, DensityIsTreesPerHundredSquareMetres) {
+  std::vector<FlightRow> rows;
+  add_ten(rows, "square_metres_per_tree=25", 10, 25, 5);
+  add_ten(rows, "square_metres_per_tree=50-late", 10, 50, 5);
+  const LinePlot plot = success_over_density(rows);
+  ASSERT_EQ(plot.series.size(), 2u);
+  EXPECT_EQ(plot.series[0].name, "");
+  EXPECT_NEAR(plot.series[0].x[0], 4, 0.05);
+  EXPECT_EQ(plot.series[1].name, "late");
+  EXPECT_NEAR(plot.series[1].x[0], 2, 0.05);
+}
+
+TEST(CampaignPlots, WithoutAnAxisConditionsStandSideBySide) {
+  std::vector<FlightRow> rows;
+  add_ten(rows, "ours", 10, 25, 9);
+  add_ten(rows, "blind", 10, 25, 2);
+  const LinePlot plot = success_by_condition(rows);
+  ASSERT_EQ(plot.series.size(), 2u);
+  EXPECT_EQ(plot.series[1].name, "2 blind");
+  EXPECT_EQ(plot.series[1].x, std::vector<double>{2});
+  expect_part(campaign_svg(rows), "1 ours");
+}
+
+TEST(CampaignPlots, SurvivalGoesDownInSteps) {
+  std::vector<FlightRow> rows;
+  add_ten(rows, "ours", 10, 25, 8);
+  const std::vector<LinePlot> panels = survival_curves(rows);
+  ASSERT_EQ(panels.size(), 1u);
+  const Series& series = panels[0].series[0];
+  EXPECT_EQ(series.x, (std::vector<double>{0, 10, 10, 20, 20, 75}));
+  EXPECT_EQ(series.y.size(), 6u);
+  EXPECT_NEAR(series.y[1], 100, 1e-9);
+  EXPECT_NEAR(series.y[2], 90, 1e-9);
+  EXPECT_NEAR(series.y[5], 80, 1e-9);
+  EXPECT_TRUE(series.band);
+  for (int more = 0; more < 6; ++more) add_ten(rows, fmt::format("other{}", more), 10, 25, more);
+  EXPECT_EQ(survival_curves(rows).size(), 2u);
+}
+
+TEST(CampaignPlots, NothingFlownIsNothingDrawn) {
+  EXPECT_EQ(campaign_svg({}), "");
+  EXPECT_EQ(campaign_svg({failed_row("forest", 1, "hung")}), "");
 }
 
 }  // namespace

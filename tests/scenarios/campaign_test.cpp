@@ -8,11 +8,14 @@
 #include "scenarios/campaign/campaign_folder.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
+using support::expect_part;
 
 fs::path in_library(const std::string& name) {
   const fs::path file = fs::path(UNDERSTORY_SOURCE_DIR) / "scenarios" / "library" / (name + ".yaml");
@@ -20,37 +23,18 @@ fs::path in_library(const std::string& name) {
   return file;
 }
 
-/// CTest runs the cases side by side, each in a process of its own.
-struct Folder {
-  fs::path path =
-      fs::path(testing::TempDir()) /
-      ("understory_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-  explicit Folder(const std::string& more = "") {
-    path += more;
-    fs::remove_all(path);
-    fs::create_directories(path);
+struct CampaignFile : testing::Test {
+  support::TemporaryFolder folder;
+  Campaign campaign_of(const std::string& text) const {
+    return load_campaign(folder.write("speed.yaml", text), in_library);
   }
-  ~Folder() { fs::remove_all(path); }
+  std::string refusal_of(const std::string& text) const {
+    return support::refusal_of([&] { campaign_of(text); });
+  }
 };
+using CampaignFolders = CampaignFile;
 
-Campaign campaign_of(const std::string& text) {
-  const Folder folder("_file");
-  const fs::path file = folder.path / "speed.yaml";
-  std::ofstream(file) << text;
-  return load_campaign(file, in_library);
-}
-
-/// What the one line says where the text is refused; empty where it is not.
-std::string refusal_of(const std::string& text) {
-  try {
-    campaign_of(text);
-  } catch (const ScenarioError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(Campaign, FliesEverySeedInEveryConditionOfOverridesAndGrid) {
+TEST_F(CampaignFile, FliesEverySeedInEveryConditionOfOverridesAndGrid) {
   const Campaign campaign = campaign_of(
       "scenarios: [forest, dense]\n"
       "seeds: [3, 10..12]\n"
@@ -77,10 +61,8 @@ TEST(Campaign, FliesEverySeedInEveryConditionOfOverridesAndGrid) {
   EXPECT_EQ(tasks[31].condition, 7u);
 }
 
-TEST(Campaign, PutsFilesOfKeysUnderItsOwn) {
-  const Folder folder("_with");
-  const fs::path keys = folder.path / "tuned.yaml";
-  std::ofstream(keys) << "forest: {length_m: 33, half_width_m: 12}\n";
+TEST_F(CampaignFile, PutsFilesOfKeysUnderItsOwn) {
+  const fs::path keys = folder.write("tuned.yaml", "forest: {length_m: 33, half_width_m: 12}\n");
   const auto text = [&](const std::string& file) {
     return "scenario: forest\nseeds: 1\noverrides:\n  - {name: tuned, with: " + file +
            ", set: {forest.half_width_m: 13}}\n";
@@ -89,13 +71,12 @@ TEST(Campaign, PutsFilesOfKeysUnderItsOwn) {
   const Scenario tuned = scenario_from_text(campaign.conditions.at(0).scenario_text, "tuned");
   EXPECT_EQ(tuned.forest.length_m, 33);
   EXPECT_EQ(tuned.forest.half_width_m, 13);
-  std::ofstream(keys) << "forest: {lenght_m: 33}\n";
-  EXPECT_NE(refusal_of(text(keys.string())).find("tuned.yaml:1: forest.lenght_m: expected a known key"),
-            std::string::npos);
-  EXPECT_NE(refusal_of(text("none.yaml")).find("none.yaml: expected a readable"), std::string::npos);
+  folder.write("tuned.yaml", "forest: {lenght_m: 33}\n");
+  expect_part(refusal_of(text(keys.string())), "tuned.yaml:1: forest.lenght_m: expected a known key");
+  expect_part(refusal_of(text("none.yaml")), "none.yaml: expected a readable");
 }
 
-TEST(Campaign, RefusesBadFilesInOneLineWithFileLineAndKey) {
+TEST_F(CampaignFile, RefusesBadFilesInOneLineWithFileLineAndKey) {
   const struct {
     const char* text;
     const char* part;
@@ -129,18 +110,13 @@ TEST(Campaign, RefusesBadFilesInOneLineWithFileLineAndKey) {
       {"scenario: forest\nseeds: 1\ntimeout_s: soon\n", "speed.yaml:3: timeout_s: expected a number from 1"},
       {"scenario: forest\nseeds: 1\nseeds: 2\n", "speed.yaml:3: seeds: expected each key once"},
   };
-  for (const auto& one : cases) {
-    const std::string refusal = refusal_of(one.text);
-    EXPECT_NE(refusal.find(one.part), std::string::npos) << one.text << "\n" << refusal;
-    EXPECT_EQ(refusal.find('\n'), std::string::npos) << refusal;
-  }
+  for (const auto& one : cases) expect_part(refusal_of(one.text), one.part);
 }
 
 const char* const small_campaign = "scenario: clear\nseeds: 1..2\n";
 
-TEST(CampaignFolder, HoldsOneCampaignAndGoesOnWithNoOther) {
-  const Folder folder;
-  const CampaignFolder results{folder.path / "results"};
+TEST_F(CampaignFolders, HoldsOneCampaignAndGoesOnWithNoOther) {
+  const CampaignFolder results{folder.path() / "results"};
   const Campaign campaign = campaign_of(small_campaign);
   prepare_campaign_folder(results, campaign, false);
   EXPECT_THROW(prepare_campaign_folder(results, campaign, false), ScenarioError);
@@ -157,17 +133,16 @@ TEST(CampaignFolder, HoldsOneCampaignAndGoesOnWithNoOther) {
   EXPECT_THROW(prepare_campaign_folder(results, drawn_otherwise, true), ScenarioError);
 }
 
-TEST(CampaignFolder, OfAnotherFormatIsRefused) {
-  const Folder folder;
-  const CampaignFolder results{folder.path};
-  std::ofstream(folder.path / "campaign.json") << "{\"format\": 0, \"name\": \"old\"}";
+TEST_F(CampaignFolders, OfAnotherFormatIsRefused) {
+  const CampaignFolder results{folder.path()};
+  folder.write("campaign.json", "{\"format\": 0, \"name\": \"old\"}");
   EXPECT_THROW(read_campaign(results), ScenarioError);
   EXPECT_THROW(prepare_campaign_folder(results, campaign_of(small_campaign), true), ScenarioError);
-  std::ofstream(folder.path / "campaign.json") << "{\"form";
+  folder.write("campaign.json", "{\"form");
   EXPECT_THROW(read_campaign(results), ScenarioError);
-  std::ofstream(folder.path / "flights.csv") << "seed,outcome\n1,goal\n";
-  EXPECT_THROW(read_campaign_rows(folder.path), ScenarioError);
-  EXPECT_THROW(read_campaign_rows(folder.path / "nowhere"), ScenarioError);
+  folder.write("flights.csv", "seed,outcome\n1,goal\n");
+  EXPECT_THROW(read_campaign_rows(folder.path()), ScenarioError);
+  EXPECT_THROW(read_campaign_rows(folder.path() / "nowhere"), ScenarioError);
 }
 
 FlightRow flown(double clearance_m) {
@@ -181,9 +156,8 @@ FlightRow flown(double clearance_m) {
   return row;
 }
 
-TEST(CampaignFolder, CollectsWholeFlightsInTheCampaignsOrder) {
-  const Folder folder;
-  const CampaignFolder results{folder.path / "results"};
+TEST_F(CampaignFolders, CollectsWholeFlightsInTheCampaignsOrder) {
+  const CampaignFolder results{folder.path() / "results"};
   const Campaign campaign = campaign_of("scenario: clear\nseeds: [9, 1, 5]\n");
   prepare_campaign_folder(results, campaign, false);
   const std::vector<CampaignTask> tasks = tasks_of(campaign);
@@ -216,10 +190,10 @@ TEST(FlightRow, SaysNothingOfWhatWasNotMeasured) {
   const double infinite = std::numeric_limits<double>::infinity();
   const std::string csv = to_csv({flown(infinite)});
   EXPECT_EQ(rows_from_csv(csv, "flights.csv")[0].min_clearance_m, infinite);
-  EXPECT_NE(to_json_line(flown(infinite)).find("\"min_clearance_m\":null"), std::string::npos);
+  expect_part(to_json_line(flown(infinite)), "\"min_clearance_m\":null");
   FlightRow crashed;
   crashed.status = RunStatus::crashed;
-  EXPECT_NE(to_json_line(crashed).find("\"outcome\":null"), std::string::npos);
+  expect_part(to_json_line(crashed), "\"outcome\":null");
   EXPECT_THROW(rows_from_csv(csv + "half,a,row\n", "flights.csv"), ScenarioError);
 }
 

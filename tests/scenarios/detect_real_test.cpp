@@ -18,6 +18,8 @@ namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
+using support::expect_success;
+using support::Outcome;
 
 struct DetectReal : testing::Test {
   static constexpr const char* name = "stereo/euroc-v1_01";
@@ -64,8 +66,7 @@ TEST_F(DetectReal, HitsLieWhereDenseMatchingPutsThem) {
   ASSERT_EQ(disparities.size(), 4u);
   const std::string out = (folder.path() / "out").string();
   const auto detect = [&](const std::string& more) {
-    const auto outcome = support::understory("detect " + euroc.string() + " --out " + out + more);
-    EXPECT_EQ(outcome.status, 0) << outcome.text;
+    const Outcome outcome = expect_success("detect " + euroc.string() + " --out " + out + more);
     EXPECT_NE(outcome.text.find("4 of 752x480 px, rectified here"), std::string::npos) << outcome.text;
     return agreement(support::content_of(out + "/points.csv"), disparities);
   };
@@ -88,9 +89,7 @@ TEST_F(DetectReal, AVehicleAtRestRemembersEachPointOnce) {
       folder.write("poses.csv", "1403715273262142976,1,2,3,1,0,0,0\n1403715276262142976,1,2,3,1,0,0,0\n")
           .string();
   const std::string out = (folder.path() / "out").string();
-  const auto outcome = support::understory("detect " + (euroc / "mav0").string() + " --depth 2.2 --poses " +
-                                           poses + " --out " + out);
-  ASSERT_EQ(outcome.status, 0) << outcome.text;
+  expect_success("detect " + (euroc / "mav0").string() + " --depth 2.2 --poses " + poses + " --out " + out);
   const auto lines = [&](const char* file) {
     const std::string text = support::content_of(out + "/" + file);
     return std::count(text.begin(), text.end(), '\n');

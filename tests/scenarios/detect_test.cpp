@@ -19,6 +19,9 @@ namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
+using support::expect_part;
+using support::expect_success;
+using support::Outcome;
 
 struct Detect : testing::Test {
   support::TemporaryFolder folder;
@@ -67,16 +70,14 @@ TEST_F(Detect, FoldersGiveTheHitsThatThePairsGiveInMemory) {
         std::pair(" --rule robust", robust_rule())}) {
     const auto hits = expected(frames, rule);
     ASSERT_GT(count_of(hits), 100u) << arguments;
-    const auto outcome = support::understory(std::string("detect ") + folders() + to_out() + arguments);
-    EXPECT_EQ(outcome.status, 0) << outcome.text;
+    const Outcome outcome = expect_success(std::string("detect ") + folders() + to_out() + arguments);
     EXPECT_EQ(found("points.csv"), hits_to_csv(hits));
     EXPECT_EQ(found("points.ply"), hits_to_ply(hits));
-    EXPECT_NE(outcome.text.find(std::to_string(count_of(hits)) + ", "), std::string::npos) << outcome.text;
+    expect_part(outcome.text, std::to_string(count_of(hits)) + ", ");
     EXPECT_TRUE(fs::exists(fs::path(out) / "overlays/000002.png"));
     EXPECT_FALSE(fs::exists(fs::path(out) / "map.ply"));
   }
-  const auto one = support::understory("detect " + left + "/2.png " + right + "/2.png" + to_out());
-  EXPECT_EQ(one.status, 0) << one.text;
+  expect_success("detect " + left + "/2.png " + right + "/2.png" + to_out());
   EXPECT_EQ(found("points.csv"), hits_to_csv(expected({frames[1]}, tuned_rule("paper"))));
   EXPECT_FALSE(fs::exists(fs::path(out) / "overlays/000001.png"));  // of the run before
 }
@@ -91,8 +92,7 @@ TEST_F(Detect, AFileOfKeysMeansWhatItMeansToAFlight) {
                                .string();
   PushbroomConfig rule = tuned_rule("paper");
   rule.minimum_edge_sum = 700;
-  const auto outcome = support::understory("detect " + folders() + to_out() + " --with " + keys);
-  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  expect_success("detect " + folders() + to_out() + " --with " + keys);
   EXPECT_EQ(found("points.csv"), hits_to_csv(expected(frames, rule)));
 }
 
@@ -105,13 +105,11 @@ TEST_F(Detect, IsTheFlightsOwnDetector) {
       recorded);
   ASSERT_LE(flight.status, 1) << flight.text;
   const std::string result = support::content_of(recorded + "/result.json");
-  const auto outcome = support::understory("detect " + recorded + " --out " + out);
-  ASSERT_EQ(outcome.status, 0) << outcome.text;
+  expect_success("detect " + recorded + " --out " + out);
   const std::string csv = found("points.csv");
   const auto hits = std::count(csv.begin(), csv.end(), '\n') - 1;
   EXPECT_GT(hits, 20);
-  EXPECT_NE(result.find("\"detections\": " + std::to_string(hits) + ","), std::string::npos)
-      << hits << result;
+  expect_part(result, "\"detections\": " + std::to_string(hits) + ",");
 }
 #endif
 
@@ -121,13 +119,12 @@ TEST_F(Detect, SeveralDepthsGiveTheHitsOfEach) {
   PushbroomConfig rule = tuned_rule("paper");
   rule.depths_m = {rig.detection_depth_m, 4.0};
   rule.depths_score_limit = {0.25, 0.2};
-  const auto outcome = support::understory("detect " + folders() + to_out() +
-                                           " --set perception.depths_m=[4.8,4.0] "
-                                           "--set perception.pushbroom.depths_score_limit=[0.25,0.2]");
-  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  const Outcome outcome = expect_success("detect " + folders() + to_out() +
+                                         " --set perception.depths_m=[4.8,4.0] "
+                                         "--set perception.pushbroom.depths_score_limit=[0.25,0.2]");
   EXPECT_EQ(found("points.csv"), hits_to_csv(expected(frames, rule)));
-  EXPECT_NE(outcome.text.find("looked at         4.8"), std::string::npos) << outcome.text;
-  EXPECT_NE(outcome.text.find("looked at         3.9"), std::string::npos) << outcome.text;
+  expect_part(outcome.text, "looked at         4.8");
+  expect_part(outcome.text, "looked at         3.9");
 }
 
 TEST_F(Detect, AVideoGivesTheSameHitsAtItsTimes) {
@@ -144,8 +141,7 @@ TEST_F(Detect, AVideoGivesTheSameHitsAtItsTimes) {
     frames[i].t_ns = static_cast<std::int64_t>(i) * 50'000'000;
   }
   writer.release();
-  const auto outcome = support::understory("detect " + video + " --video" + to_out());
-  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  expect_success("detect " + video + " --video" + to_out());
   EXPECT_EQ(found("points.csv"), hits_to_csv(expected(frames, tuned_rule("paper"))));
   cv::VideoCapture film((fs::path(out) / "overlay.mp4").string(), cv::CAP_FFMPEG);
   EXPECT_EQ(film.get(cv::CAP_PROP_FRAME_COUNT), 3);
@@ -164,10 +160,9 @@ TEST_F(Detect, PosesCarryHitsIntoTheWorld) {
   for (const double t_s : {100.0, 101.0})  // 2 m/s along x
     poses << t_s << " " << 2 * (t_s - 100) << " 5 3 " << q.x() << " " << q.y() << " " << q.z() << " " << q.w()
           << "\n";
-  const auto outcome =
-      support::understory("detect " + folders() + to_out() + " --set autopilot.map.voxel_m=0 --poses " +
-                          folder.write("poses.txt", poses.str()).string());
-  ASSERT_EQ(outcome.status, 0) << outcome.text;
+  const Outcome outcome =
+      expect_success("detect " + folders() + to_out() + " --set autopilot.map.voxel_m=0 --poses " +
+                     folder.write("poses.txt", poses.str()).string());
   const std::vector<Eigen::Vector3d> points = positions_in(found("map.ply"));
   const auto hits = expected(frames, tuned_rule("paper"));
   ASSERT_EQ(points.size(), count_of(hits));
@@ -190,11 +185,9 @@ TEST_F(Detect, FramesOutsideThePosesAreReportedAndLeftOutOfTheMap) {
   support::write_pairs(folder.path(), frames, {"1.0", "2.0", "3.0"});
   const std::string poses =
       folder.write("poses.csv", "1500000000,0,0,0,1,0,0,0\n2500000000,0,0,0,1,0,0,0\n").string();
-  const auto outcome = support::understory("detect " + folders() + to_out() +
-                                           " --set autopilot.map.voxel_m=0 --poses " + poses);
-  ASSERT_EQ(outcome.status, 0) << outcome.text;
-  EXPECT_NE(outcome.text.find("frames outside the poses' time, left out: 2"), std::string::npos)
-      << outcome.text;
+  const Outcome outcome =
+      expect_success("detect " + folders() + to_out() + " --set autopilot.map.voxel_m=0 --poses " + poses);
+  expect_part(outcome.text, "frames outside the poses' time, left out: 2");
   EXPECT_EQ(positions_in(found("map.ply")).size(), expected(frames, tuned_rule("paper"))[1].hits.size());
   const std::string later = folder.write("later.csv", "9500000000,0,0,0,1,0,0,0\n").string();
   support::expect_refusal("detect " + folders() + to_out() + " --poses " + later,
@@ -246,7 +239,7 @@ TEST_F(Detect, BadInputIsOneLineAndLeavesNoResult) {
 
 TEST_F(Detect, AFaultHalfWayLeavesNothingThatLooksWhole) {
   support::write_pairs(folder.path(), support::planes(rig, 3), {"a1", "a2", "a3"});
-  ASSERT_EQ(support::understory("detect " + folders() + to_out()).status, 0);
+  expect_success("detect " + folders() + to_out());
   cv::imwrite(right + "/a3.png", cv::Mat(rig.height_px, rig.width_px, CV_8UC3, cv::Scalar(5)));
   for (const char* video : {"", " --video"})
     support::expect_refusal("detect " + folders() + to_out() + video,

@@ -12,7 +12,10 @@ namespace {
 
 namespace fs = std::filesystem;
 using understory::support::content_of;
+using understory::support::expect_part;
 using understory::support::expect_refusal;
+using understory::support::expect_success;
+using understory::support::Outcome;
 using understory::support::TemporaryFolder;
 using understory::support::understory;
 
@@ -42,8 +45,7 @@ TEST(EvaluateCommand, RecordsASuiteAndJudgesIt) {
   const TemporaryFolder folder;
   const fs::path file = folder.write("short.yaml", suite);
   const fs::path out = folder.path() / "out";
-  const auto first = understory("evaluate " + file.string() + " --out " + out.string());
-  ASSERT_EQ(first.status, 0) << first.text;
+  expect_success("evaluate " + file.string() + " --out " + out.string());
   for (const char* name : {"summary.md", "evaluation.json", "distances.svg", "precision_recall.svg",
                            "response.svg", "first_hits.svg", "heat_map.png", "heat_map_paper.png",
                            "obstacles.csv", "tables/algorithms.csv", "tables/paper.csv"})
@@ -58,9 +60,8 @@ TEST(EvaluateCommand, RecordsASuiteAndJudgesIt) {
     }
 
   // Curves are drawn over the frames of the table, however few: at each algorithm's own setting they meet it.
-  const auto sparse = understory("evaluate " + (out / "recordings/short-1007").string() +
-                                 " --every 8 --out " + (folder.path() / "sparse").string());
-  ASSERT_EQ(sparse.status, 0) << sparse.text;
+  const Outcome sparse = expect_success("evaluate " + (out / "recordings/short-1007").string() +
+                                        " --every 8 --out " + (folder.path() / "sparse").string());
   const nlohmann::json few = figures(folder.path() / "sparse")["all"];
   EXPECT_EQ(few["frames"], 4);
   for (const nlohmann::json* sum : {&all, &few})
@@ -71,14 +72,13 @@ TEST(EvaluateCommand, RecordsASuiteAndJudgesIt) {
         EXPECT_EQ(point["precision"], algorithm["precision"]["one pixel"]) << name;
         EXPECT_EQ(point["recall"], algorithm["recall"]["one pixel"]) << name;
       }
-  EXPECT_NE(content_of(folder.path() / "sparse/precision_recall.svg").find(", 4 frames<"), std::string::npos);
+  expect_part(content_of(folder.path() / "sparse/precision_recall.svg"), ", 4 frames<");
 
   // The same recordings given as folders, one after the other: the same figures.
   const std::string folders =
       (out / "recordings/short-1007").string() + " " + (out / "recordings/short-1008").string();
   const fs::path again = folder.path() / "again";
-  const auto second = understory("evaluate " + folders + " --jobs 1 --out " + again.string());
-  ASSERT_EQ(second.status, 0) << second.text;
+  expect_success("evaluate " + folders + " --jobs 1 --out " + again.string());
   EXPECT_EQ(figures(out), figures(again));
 
   expect_refusal("evaluate " + folders + " --set perception.pushbroom.edge=3 --out " + again.string(),

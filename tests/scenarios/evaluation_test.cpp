@@ -1,17 +1,20 @@
 #include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <opencv2/core.hpp>
 #include <random>
+#include <stdexcept>
+#include <string>
 
 #include "perception/pushbroom/pushbroom_stereo.hpp"
+#include "scenarios/evaluation/evaluation_recording.hpp"
 #include "scenarios/evaluation/ground_truth.hpp"
 #include "scenarios/evaluation/obstacle_sightings.hpp"
 #include "scenarios/evaluation/published_evaluations.hpp"
 #include "scenarios/evaluation/vision_tally.hpp"
 #include "tests/perception/rigs.hpp"
 #include "tests/support/synthetic_stereo.hpp"
+#include "tests/support/text.hpp"
 
 namespace understory {
 namespace {
@@ -40,6 +43,11 @@ struct Plane {
     frame.truth = plane_truth(rig, plane.depth_m);
     frame.T_world_camera = frame.T_odometry_camera = Eigen::Isometry3d::Identity();
   }
+  VisionTally judged(const std::vector<StereoHit>& hits) const {
+    VisionTally result;
+    tally(frame, grid, rig, kinds, due_blocks(frame.truth, grid), hits, result);
+    return result;
+  }
 };
 
 TEST(Evaluation, APlaneAtTheDetectionDepthHasPrecisionOne) {
@@ -49,9 +57,7 @@ TEST(Evaluation, APlaneAtTheDetectionDepthHasPrecisionOne) {
       PushbroomStereo detector(plane.rig, rule);
       const auto& hits = detector.detect(plane.frame.pair);
       ASSERT_GT(hits.size(), 200u);  // the rest is saturated or plain
-      VisionTally result;
-      tally(plane.frame, plane.grid, plane.rig, kinds, due_blocks(plane.frame.truth, plane.grid), hits,
-            result);
+      const VisionTally result = plane.judged(hits);
       for (const Rates& rates : result.rates) {
         EXPECT_EQ(rates.precision.of, static_cast<std::int64_t>(hits.size()));
         EXPECT_EQ(rates.precision.value(), 1);
@@ -68,8 +74,7 @@ TEST(Evaluation, APlaneAtTheDetectionDepthHasPrecisionOne) {
 TEST(Evaluation, WhatKnowsTheTruthIsRightAndMissesNothing) {
   Plane plane("long.yaml", 0.1);
   const auto hits = true_depth_hits(plane.frame.truth, plane.grid, plane.rig);
-  VisionTally result;
-  tally(plane.frame, plane.grid, plane.rig, kinds, due_blocks(plane.frame.truth, plane.grid), hits, result);
+  const VisionTally result = plane.judged(hits);
   EXPECT_EQ(result.at_one_pixel().precision.value(), 1);
   EXPECT_EQ(result.at_one_pixel().recall.value(), 1);
   EXPECT_EQ(result.at_one_pixel().f_score(), 1);
@@ -78,8 +83,7 @@ TEST(Evaluation, WhatKnowsTheTruthIsRightAndMissesNothing) {
 TEST(Evaluation, ADetectorMovedBySevenDecimetresLandsInTheRightBin) {
   Plane plane("long.yaml", 0.7);
   auto hits = true_depth_hits(plane_truth(plane.rig, plane.grid.depths[0].depth_m), plane.grid, plane.rig);
-  VisionTally result;
-  tally(plane.frame, plane.grid, plane.rig, kinds, due_blocks(plane.frame.truth, plane.grid), hits, result);
+  const VisionTally result = plane.judged(hits);
   EXPECT_EQ(result.rates[0].precision.value(), 0);        // 0.25 m
   EXPECT_EQ(result.rates[1].precision.value(), 0);        // 0.50 m
   EXPECT_EQ(result.rates[2].precision.value(), 1);        // 1.00 m
@@ -303,6 +307,24 @@ TEST(Evaluation, LooksWhereTheDetectorLooks) {
     EXPECT_EQ(depth.depth_m, detector.detection_depth_m());
     EXPECT_EQ(depth.one_pixel.near_m, detector.one_pixel_interval().near_m);
     EXPECT_EQ(depth.one_pixel.far_m, detector.one_pixel_interval().far_m);
+  }
+}
+
+TEST(RecordedObjects, AreReadOrRefusedInOneLine) {
+  const auto objects = parse_recorded_objects(
+      "#number,name,kind,...\n1,ground,ground,0,0,0,0,0,0,0\n2,tree,trunk,1,2,0,1,2,8,0.15\n", "objects.csv");
+  ASSERT_EQ(objects.size(), 2u);
+  EXPECT_FALSE(objects[0].is_obstacle());
+  EXPECT_EQ(objects[1].kind, "trunk");
+  EXPECT_EQ(objects[1].to_world, Eigen::Vector3d(1, 2, 8));
+  for (const char* text :
+       {"2,tree,trunk,1,2,0,1,2,8\n", "0,tree,trunk,1,2,0,1,2,8,0.1\n", "x,tree,trunk,1,2,0,1,2,8,0.1\n",
+        "2,tree,trunk,1,nan,0,1,2,8,0.1\n", "2,tree,trunk,1,2,0,1,2,8,-0.1\n"}) {
+    EXPECT_EQ(support::refusal_of([&] {
+                parse_recorded_objects(text, "objects.csv");
+              }).find("objects.csv:1: expected"),
+              0u)
+        << text;
   }
 }
 

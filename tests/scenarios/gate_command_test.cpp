@@ -9,7 +9,9 @@
 namespace understory {
 namespace {
 
+using support::expect_part;
 using support::expect_refusal;
+using support::expect_success;
 using support::flown_row;
 using support::Outcome;
 
@@ -27,16 +29,14 @@ std::string campaign(const support::TemporaryFolder& folder, const std::string& 
 TEST(GateCommand, EndsWithItsVerdict) {
   const support::TemporaryFolder folder;
   const std::string gate = "gate --baseline " + campaign(folder, "before", 0);
-  EXPECT_EQ(support::understory(gate + " --candidate " + campaign(folder, "same", 0)).status, 0);
-  EXPECT_EQ(support::understory(gate + " --candidate " + campaign(folder, "one", 1)).status, 0);
+  expect_success(gate + " --candidate " + campaign(folder, "same", 0));
+  expect_success(gate + " --candidate " + campaign(folder, "one", 1));
   const std::string worse = gate + " --candidate " + campaign(folder, "two", 2);
   const Outcome failed = support::understory(worse + " --junit " + (folder.path() / "gate.xml").string());
   EXPECT_EQ(failed.status, 1);
-  EXPECT_NE(failed.text.find("worse: forest: seed 0 (collision at 30.0 m), 1 ("), std::string::npos)
-      << failed.text;
-  EXPECT_NE(support::content_of(folder.path() / "gate.xml").find("tests=\"21\" failures=\"3\" errors=\"0\""),
-            std::string::npos);
-  EXPECT_EQ(support::understory(worse + " --max-drop 0.1").status, 0);
+  expect_part(failed.text, "worse: forest: seed 0 (collision at 30.0 m), 1 (");
+  expect_part(support::content_of(folder.path() / "gate.xml"), "tests=\"21\" failures=\"3\" errors=\"0\"");
+  expect_success(worse + " --max-drop 0.1");
 }
 
 TEST(GateCommand, RefusesWhatMeansNothing) {

@@ -1,14 +1,109 @@
-#include "scenarios/campaign/gate.hpp"
-
 #include <gtest/gtest.h>
+#include <algorithm>
+#include <limits>
+#include <pugixml.hpp>
 
+#include "scenarios/campaign/gate.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/output/program.hpp"
 #include "tests/support/flight_rows.hpp"
+#include "tests/support/text.hpp"
 
 namespace understory {
 namespace {
 
+using support::expect_no_part;
+using support::expect_part;
+
 using support::failed_row;
 using support::flown_row;
+
+/// Outcomes as in a published paired table (paired_outcomes_test.cpp: 20, 12, 2, 16), shuffled over
+/// conditions.
+std::vector<FlightRow> cultures(bool second) {
+  std::vector<FlightRow> rows;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const bool good = seed < 20 || (second ? seed >= 32 && seed < 34 : seed < 32);
+    rows.push_back(
+        flown_row(seed % 3 == 0 ? "forest" : "dense", seed, good ? "goal" : "collision", good ? 75 : 40));
+  }
+  return rows;
+}
+
+TEST(Comparison, PairsOutcomesOfTheSameSeed) {
+  std::vector<FlightRow> candidate = cultures(true);
+  std::ranges::reverse(candidate);
+  const Comparison comparison = compare_campaigns(cultures(false), candidate);
+  ASSERT_EQ(comparison.conditions.size(), 2u);
+  EXPECT_EQ(comparison.conditions[0].condition, "forest");
+  EXPECT_EQ(comparison.conditions[0].goals.pairs() + comparison.conditions[1].goals.pairs(), 50);
+  const PairedOutcomes& goals = comparison.all.goals;
+  EXPECT_EQ(goals.both, 20);
+  EXPECT_EQ(goals.only_first, 12);
+  EXPECT_EQ(goals.only_second, 2);
+  EXPECT_EQ(goals.neither, 16);
+  EXPECT_NEAR(comparison.all.p, 0.0129, 5e-5);
+  EXPECT_NEAR(goals.difference(), -0.2, 1e-12);
+  EXPECT_NEAR(comparison.all.difference.minimum, -0.329207, 5e-7);
+  EXPECT_NEAR(comparison.all.difference.maximum, -0.056156, 5e-7);
+}
+
+TEST(Comparison, FlightsThatFailedToRunEnterNoFigure) {
+  const Comparison comparison = compare_campaigns(
+      {flown_row("forest", 1, "goal"), flown_row("forest", 2, "goal"), failed_row("forest", 3, "signal 11")},
+      {flown_row("forest", 1, "goal"), failed_row("forest", 2, "signal 6"), flown_row("forest", 3, "goal")});
+  EXPECT_EQ(comparison.all.pairs.size(), 3u);
+  EXPECT_EQ(comparison.all.goals.pairs(), 1);
+  EXPECT_EQ(comparison.all.metrics[0].pairs, 1);
+  ASSERT_EQ(comparison.candidate_failed.size(), 1u);
+  EXPECT_EQ(comparison.candidate_failed[0].id, "forest-2");
+  ASSERT_EQ(comparison.baseline_failed.size(), 1u);
+  EXPECT_EQ(comparison.baseline_failed[0].id, "forest-3");
+}
+
+TEST(Comparison, ListsFlightsOfOneSide) {
+  const Comparison comparison = compare_campaigns(
+      {flown_row("forest", 1, "goal"), flown_row("forest", 2, "goal"), flown_row("old", 1, "goal")},
+      {flown_row("forest", 1, "goal"), flown_row("new", 1, "goal")});
+  ASSERT_EQ(comparison.missing.size(), 2u);
+  EXPECT_EQ(comparison.missing[0].id, "forest-2");
+  EXPECT_EQ(comparison.missing[1].id, "old-1");
+  ASSERT_EQ(comparison.added.size(), 1u);
+  EXPECT_EQ(comparison.added[0].id, "new-1");
+  EXPECT_EQ(comparison.conditions.size(), 1u);
+}
+
+TEST(Comparison, MeansArePaired) {
+  std::vector<FlightRow> baseline, candidate;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    baseline.push_back(flown_row("forest", seed, "goal"));
+    baseline.back().mean_speed_mps = 10 + static_cast<double>(seed);
+    candidate.push_back(baseline.back());
+    candidate.back().mean_speed_mps += 0.5;
+  }
+  baseline[7].min_clearance_m = std::numeric_limits<double>::infinity();
+  const ConditionComparison& all = compare_campaigns(baseline, candidate).all;
+  // Speeds spread over 30 m/s, differences not at all: only a paired comparison knows half a metre a second.
+  EXPECT_EQ(all.metrics[0].name, "mean_speed_mps");
+  EXPECT_NEAR(all.metrics[0].difference.value, 0.5, 1e-12);
+  EXPECT_NEAR(all.metrics[0].difference.interval.minimum, 0.5, 1e-12);
+  EXPECT_EQ(all.metrics[1].name, "min_clearance_m");
+  EXPECT_EQ(all.metrics[1].pairs, 29);
+  EXPECT_EQ(all.bit_for_bit, 30);
+}
+
+TEST(Comparison, SaysWhereOneNameMeansTwoThings) {
+  FlightRow faster = flown_row("forest", 1, "goal");
+  faster.cruise_speed_mps = 14;
+  EXPECT_EQ(compare_campaigns({flown_row("forest", 1, "goal")}, {faster}).altered,
+            std::vector<std::string>{"forest"});
+}
+
+TEST(Comparison, RefusesAFlightTwice) {
+  const std::vector<FlightRow> twice{flown_row("forest", 1, "goal"), flown_row("forest", 1, "time")};
+  EXPECT_THROW(compare_campaigns(twice, {}), ScenarioError);
+  EXPECT_THROW(compare_campaigns({}, twice), ScenarioError);
+}
 
 /// Seeds 1 to 100 of which those from `first` to `last` collide at 33 m.
 std::vector<FlightRow> hundred(std::uint64_t first, std::uint64_t last,
@@ -31,8 +126,8 @@ TEST(Gate, TheSameFlightsPass) { EXPECT_TRUE(reasons(hundred(1, 30), hundred(1, 
 TEST(Gate, UnchangedFlightsAreSaidToBeUnchanged) {
   const Comparison same = compare_campaigns(hundred(1, 30), hundred(1, 30));
   const std::string report = to_report(same, judge(same), {});
-  EXPECT_NE(report.find("bit for bit"), std::string::npos);
-  EXPECT_EQ(report.find("mean_speed_mps"), std::string::npos) << report;
+  expect_part(report, "bit for bit");
+  expect_no_part(report, "mean_speed_mps");
 }
 
 TEST(Gate, ADropAsLargeAsAllowedPassesOneMoreDoesNot) {
@@ -87,10 +182,91 @@ TEST(Gate, TheReportNamesSeedsAndNumbers) {
         "worse: forest: seed 4 (collision at 33.0 m), 5 (",
         "better: forest: seed 1 (collision at 33.0 m), 2 (",
         "passed: 100 flights compared, no condition lost more than 5.0 percentage points\n"})
-    EXPECT_NE(report.find(part), std::string::npos) << part << "\n" << report;
+    expect_part(report, part);
   const GateVerdict strict = judge(comparison, {0.02});
-  EXPECT_NE(to_report(comparison, strict, {0.02}).find("FAILED: forest: success fell by 4.0"),
-            std::string::npos);
+  expect_part(to_report(comparison, strict, {0.02}), "FAILED: forest: success fell by 4.0");
+}
+
+pugi::xml_node parse(pugi::xml_document& document, const std::string& text) {
+  const pugi::xml_parse_result result = document.load_string(text.c_str());
+  EXPECT_TRUE(result) << result.description() << "\n" << text;
+  return document.child("testsuites");
+}
+
+std::string counts(const pugi::xml_node& node) {
+  return std::string(node.attribute("tests").value()) + " " + node.attribute("failures").value() + " " +
+         node.attribute("errors").value();
+}
+
+std::string message(const pugi::xml_node& top, const std::string& suite, const std::string& name,
+                    const char* kind) {
+  return top.find_child_by_attribute("testsuite", "name", suite.c_str())
+      .find_child_by_attribute("testcase", "name", name.c_str())
+      .child(kind)
+      .attribute("message")
+      .value();
+}
+
+TEST(CampaignJunit, IsACasePerFlight) {
+  pugi::xml_document document;
+  const pugi::xml_node top = parse(
+      document, campaign_junit({flown_row("forest", 1, "goal"), flown_row("forest", 2, "collision", 31.25),
+                                flown_row("dense", 1, "time", 12),
+                                failed_row("forest", 3, "hung after 300 s", RunStatus::hung)}));
+  EXPECT_EQ(counts(top), "4 2 1");
+  const pugi::xml_node forest = top.first_child();
+  EXPECT_STREQ(forest.attribute("name").value(), "forest");
+  EXPECT_EQ(counts(forest), "3 1 1");
+  EXPECT_STREQ(forest.attribute("time").value(), "13.800");
+  EXPECT_STREQ(forest.child("properties").child("property").attribute("value").value(), understory_version);
+  EXPECT_STREQ(forest.child("testcase").attribute("classname").value(), "forest");
+  EXPECT_STREQ(forest.child("testcase").attribute("time").value(), "6.900");
+  EXPECT_TRUE(forest.child("testcase").first_child().empty());
+  EXPECT_EQ(message(top, "forest", "2", "failure"), "collision at 31.2 m of 75.0 m");
+  EXPECT_EQ(message(top, "forest", "3", "error"), "hung after 300 s");
+  EXPECT_EQ(message(top, "dense", "1", "failure"), "time at 12.0 m of 75.0 m");
+}
+
+TEST(CampaignJunit, OddCharactersComeBackOrBecomeQuestionMarks) {
+  const std::string odd = "<a href=\"x\">&'\xc3\xa9\xe2\x82\xac</a>";
+  pugi::xml_document document;
+  const pugi::xml_node top = parse(document, campaign_junit({failed_row("forest", 1, odd)}));
+  EXPECT_EQ(message(top, "forest", "1", "error"), odd);
+
+  // A terminal's colours, a lone byte, an overlong slash, a surrogate, a letter cut off: none is XML.
+  const std::string broken = "\x1b[31mred\x01 \xff \xc0\xaf \xed\xa0\x80 \xe2\x82";
+  pugi::xml_document other;
+  const std::string text = campaign_junit({failed_row("forest", 1, broken)});
+  EXPECT_EQ(message(parse(other, text), "forest", "1", "error"), "?[31mred? ? ?? ??? ??");
+  for (const char c : text) EXPECT_TRUE(c == '\n' || (c >= 0x20 && c < 0x7f)) << static_cast<int>(c);
+}
+
+TEST(GateJunit, FailsWhatGotWorse) {
+  const std::vector<FlightRow> baseline{
+      flown_row("forest", 1, "goal"), flown_row("forest", 2, "collision", 20), flown_row("forest", 3, "goal"),
+      flown_row("forest", 4, "goal"), flown_row("forest", 5, "goal")};
+  const std::vector<FlightRow> candidate{flown_row("forest", 1, "goal"), flown_row("forest", 2, "ground", 25),
+                                         flown_row("forest", 3, "collision", 30),
+                                         failed_row("forest", 4, "signal 11"),
+                                         flown_row("forest", 6, "collision", 5)};
+  pugi::xml_document document;
+  const pugi::xml_node top = parse(document, gate_junit(compare_campaigns(baseline, candidate)));
+  EXPECT_EQ(counts(top), "7 2 2");  // six flights and the condition
+  EXPECT_EQ(message(top, "forest", "2", "failure"), "");
+  EXPECT_EQ(message(top, "forest", "3", "failure"),
+            "collision at 30.0 m of 75.0 m; reached its goal in the baseline");
+  EXPECT_EQ(message(top, "forest", "4", "error"), "signal 11");
+  EXPECT_EQ(message(top, "forest", "5", "error"), "in the baseline, missing in the candidate");
+  EXPECT_EQ(message(top, "gate", "forest", "failure"),
+            "success fell from 2 to 1 of 3, by 33.3 percentage points (5.0 allowed), p = 1");
+
+  pugi::xml_document lenient;
+  EXPECT_EQ(counts(parse(lenient, gate_junit(compare_campaigns(baseline, candidate), {0.4}))), "7 1 2");
+}
+
+TEST(GateJunit, NothingIsStillXml) {
+  pugi::xml_document document;
+  EXPECT_EQ(counts(parse(document, gate_junit(compare_campaigns({}, {})))), "0 0 0");
 }
 
 }  // namespace

@@ -1,13 +1,18 @@
 #include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <regex>
 
+#include "scenarios/config/config_tree.hpp"
 #include "scenarios/report/line_plot.hpp"
+#include "scenarios/report/table.hpp"
+#include "tests/support/text.hpp"
 
 namespace understory {
 namespace {
+
+using support::expect_no_part;
+using support::expect_part;
 
 int count(const std::string& text, const std::string& part) {
   int found = 0;
@@ -48,8 +53,8 @@ TEST(LinePlot, TicksAreRoundNumbersWithinTheAxis) {
 TEST(LinePlot, HoldsWhatItWasGiven) {
   const std::string svg = to_svg({small_plot()});
   for (const char* part : {"time (s)", "height (m)", "flown", "asked", "limit", "A &lt; B &amp; C"})
-    EXPECT_NE(svg.find(part), std::string::npos) << part;
-  EXPECT_EQ(svg.find("A < B"), std::string::npos);
+    expect_part(svg, part);
+  expect_no_part(svg, "A < B");
   EXPECT_EQ(count(svg, "<circle"), 3);  // two points and their legend entry
   EXPECT_EQ(count(svg, "<svg"), 1);
   EXPECT_EQ(count(svg, "<g"), count(svg, "</g>"));
@@ -72,7 +77,7 @@ TEST(LinePlot, WhatIsNotANumberInterruptsTheLine) {
   LinePlot plot = small_plot();
   plot.series = {{"gap", {0, 1, 2, 3, 4}, {0, 1, std::numeric_limits<double>::quiet_NaN(), 3, 4}}};
   const std::string svg = to_svg({plot});
-  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  expect_no_part(svg, "nan");
   EXPECT_TRUE(std::regex_search(svg, std::regex(R"re(d="M[0-9. ]+L[0-9. ]+M[0-9. ]+L[0-9. ]+")re")));
 }
 
@@ -88,7 +93,37 @@ TEST(LinePlot, ErrorBarsAndBandsAreDrawn) {
 TEST(LinePlot, PanelsStandInRowsAndColumns) {
   const std::string svg = to_svg({small_plot(), small_plot(), small_plot()}, 2);
   EXPECT_EQ(count(svg, "class=\"title\""), 3);
-  EXPECT_NE(svg.find("width=\"920\""), std::string::npos);
+  expect_part(svg, "width=\"920\"");
+}
+
+TEST(Table, LinesUpForPeopleAndForMarkdown) {
+  const Table table{{"a|b", "m²"}, {{"long name", "1"}, {"é", "1000"}}};
+  EXPECT_EQ(to_text(table), "a|b          m²\nlong name     1\né          1000\n");
+  EXPECT_EQ(to_markdown(table), "| a\\|b | m² |\n|---|---:|\n| long name | 1 |\n| é | 1000 |\n");
+}
+
+TEST(Table, QuotesCellsAsRfc4180Says) {
+  // The RFC's own examples, section 2, rules 5 to 7, with this writer's line ends.
+  const Table table{{"aaa", "bbb", "ccc"}, {{"a,a", "b\nb", "c\"c"}, {"zzz", "", " x "}}};
+  const std::string csv = "aaa,bbb,ccc\n\"a,a\",\"b\nb\",\"c\"\"c\"\nzzz,, x \n";
+  EXPECT_EQ(to_csv(table), csv);
+  const Table again = table_from_csv(csv, "t.csv");
+  EXPECT_EQ(again.head, table.head);
+  EXPECT_EQ(again.rows, table.rows);
+  for (const char* same : {"a,b\r\n\"1\",2\r\n", "a,b\n1,2", "\"a\",\"b\"\n1,\"2\"\n"})
+    EXPECT_EQ(to_csv(table_from_csv(same, "t.csv")), "a,b\n1,2\n") << same;
+  EXPECT_EQ(table_from_csv("a\n\"\"\"\"\n", "t.csv").rows[0][0], "\"");
+  EXPECT_TRUE(table_from_csv("", "t.csv").head.empty());
+}
+
+TEST(Table, NamesTheLineThatIsNoCsv) {
+  const auto refusal = [](const std::string& csv) {
+    return support::refusal_of([&] { table_from_csv(csv, "t.csv"); });
+  };
+  EXPECT_EQ(refusal("a,b\n1,2\n3\n"), "t.csv:3: expected a whole row of 2 values");
+  EXPECT_EQ(refusal("a\n\"1\n2\"\n3,4\n"), "t.csv:4: expected a whole row of 1 values");
+  for (const char* broken : {"a\n\"1\n", "a\n1\"\n", "a\n\"1\"2\n", "a\n1\"2\"\n"})
+    EXPECT_EQ(refusal(broken).find("t.csv:2: expected quotation marks"), 0u) << broken << refusal(broken);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -20,8 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using understory::support::content_of;
-using understory::support::Outcome;
-using understory::support::understory;
+using understory::support::expect_success;
 
 bool installed() {
   for (const char* program : {"slurmctld", "slurmd", "sbatch", "squeue", "munged"})
@@ -96,41 +96,42 @@ class Cluster {
   }
 
   std::string configuration() const {
-    const std::string folder = folder_.string();
     const int port = 20000 + getpid() % 20000;
-    const auto node = [&](int number) {
-      return "NodeName=n" + std::to_string(number) +
-             " NodeHostname=localhost NodeAddr=127.0.0.1 Port=" + std::to_string(port + number) +
-             " CPUs=1 State=UNKNOWN\n";
-    };
     const char* user = geteuid() == 0 ? "root" : std::getenv("USER");
-    return "ClusterName=understory\nSlurmctldHost=localhost\nAuthType=auth/munge\n"
-           // A requeued job waits for its old credential to expire: two minutes, were it not said.
-           "AuthInfo=socket=" +
-           folder +
-           "/munge/socket,cred_expire=5\n"
-           "SlurmUser=" +
-           user + "\nSlurmdUser=" + user +
-           "\n"
-           "StateSaveLocation=" +
-           folder + "/state\nSlurmdSpoolDir=" + folder +
-           "/spool-%n\n"
-           "SlurmctldPidFile=" +
-           folder + "/slurmctld.pid\nSlurmdPidFile=" + folder +
-           "/slurmd-%n.pid\n"
-           "SlurmctldLogFile=" +
-           folder + "/slurmctld.log\nSlurmdLogFile=" + folder +
-           "/slurmd-%n.log\n"
-           "SlurmctldPort=" +
-           std::to_string(port) +
-           "\n"
-           "ProctrackType=proctrack/linuxproc\nTaskPlugin=task/none\nSwitchType=switch/"
-           "none\nMpiDefault=none\n"
-           "SchedulerType=sched/builtin\nSelectType=select/cons_tres\nSelectTypeParameters=CR_CPU\n"
-           "SchedulerParameters=batch_sched_delay=0\nSlurmdParameters=config_overrides\n"
-           "SlurmdTimeout=5\nSlurmctldTimeout=10\nKillWait=2\nReturnToService=2\nJobRequeue=1\nMinJobAge="
-           "300\n" +
-           node(1) + node(2) + "PartitionName=main Nodes=n1,n2 Default=YES MaxTime=INFINITE State=UP\n";
+    // A requeued job waits for its old credential to expire: two minutes, were it not said.
+    return fmt::format(R"(ClusterName=understory
+SlurmctldHost=localhost
+AuthType=auth/munge
+AuthInfo=socket={0}/munge/socket,cred_expire=5
+SlurmUser={1}
+SlurmdUser={1}
+StateSaveLocation={0}/state
+SlurmdSpoolDir={0}/spool-%n
+SlurmctldPidFile={0}/slurmctld.pid
+SlurmdPidFile={0}/slurmd-%n.pid
+SlurmctldLogFile={0}/slurmctld.log
+SlurmdLogFile={0}/slurmd-%n.log
+SlurmctldPort={2}
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SwitchType=switch/none
+MpiDefault=none
+SchedulerType=sched/builtin
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
+SchedulerParameters=batch_sched_delay=0
+SlurmdParameters=config_overrides
+SlurmdTimeout=5
+SlurmctldTimeout=10
+KillWait=2
+ReturnToService=2
+JobRequeue=1
+MinJobAge=300
+NodeName=n1 NodeHostname=localhost NodeAddr=127.0.0.1 Port={3} CPUs=1 State=UNKNOWN
+NodeName=n2 NodeHostname=localhost NodeAddr=127.0.0.1 Port={4} CPUs=1 State=UNKNOWN
+PartitionName=main Nodes=n1,n2 Default=YES MaxTime=INFINITE State=UP
+)",
+                       folder_.string(), user, port, port + 1, port + 2);
   }
 
   fs::path folder_;
@@ -152,13 +153,12 @@ TEST(Slurm, ACampaignOutlivesOneOfItsNodes) {
   std::ofstream(campaign)
       << "scenario: clear\nseeds: 1..60\noverrides: [{name: blind, set: {perception.detector: none}}]\n";
   const fs::path here = folder.path() / "here", there = folder.path() / "there";
-  ASSERT_EQ(understory("campaign " + campaign + " --out " + here.string()).status, 0);
+  expect_success("campaign " + campaign + " --out " + here.string());
 
   const Cluster cluster(folder.path() / "cluster");
   ASSERT_TRUE(cluster.is_idle());
-  const Outcome submitted = understory("campaign " + campaign + " --out " + there.string() +
-                                       " --engine slurm --shards 4 --no-wait");
-  ASSERT_EQ(submitted.status, 0) << submitted.text;
+  expect_success("campaign " + campaign + " --out " + there.string() +
+                 " --engine slurm --shards 4 --no-wait");
   for (int look = 0; look < 600 && count_flights(there) < 10; ++look)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   ASSERT_GE(count_flights(there), 10);
@@ -166,8 +166,7 @@ TEST(Slurm, ACampaignOutlivesOneOfItsNodes) {
   EXPECT_LT(count_flights(there), 60) << "too late to mean anything";
   for (int look = 0; look < 900 && count_flights(there) < 60; ++look)
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  const Outcome collected = understory("collect " + there.string());
-  EXPECT_EQ(collected.status, 0) << collected.text;
+  expect_success("collect " + there.string());
   EXPECT_EQ(content_of(there / "flights.csv"), content_of(here / "flights.csv"));
 }
 

@@ -16,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using support::content_of;
 using support::expect_refusal;
+using support::expect_success;
 
 /// Half a second in the air: what takes long in a flight is left out.
 const std::string short_flight =
@@ -72,10 +73,10 @@ TEST(TuneCommand, KilledAndResumedItEndsWithTheSameLogs) {
       folder.write("tune.yaml", flights_text("{method: random, trials: 3, seed: 1, sensitivity: 2}"))
           .string();
   const std::string tune = "tune " + file + " --jobs 2 --out " + folder.path().string() + "/";
-  EXPECT_EQ(support::understory(tune + "undisturbed").status, 0);
+  expect_success(tune + "undisturbed");
   for (const char* kill : {"timeout -s KILL 1", "timeout -s INT 2", "timeout -s KILL 3"})
     support::understory(tune + "stopped --resume", kill);
-  EXPECT_EQ(support::understory(tune + "stopped --resume").status, 0);
+  expect_success(tune + "stopped --resume");
   for (const char* log :
        {"trials.jsonl", "validation.jsonl", "sensitivity.jsonl", "summary.md", "tune.svg", "pareto.csv"})
     EXPECT_EQ(content_of(folder.path() / "stopped" / log), content_of(folder.path() / "undisturbed" / log))
@@ -91,11 +92,10 @@ TEST(TuneCommand, OverRecordingsItsFiguresAreThoseOfTheirEvaluation) {
   const support::TemporaryFolder folder;
   const std::string here = folder.path().string() + "/";
   for (const std::string seed : {"1000", "1001", "1002"})
-    ASSERT_EQ(support::understory("record forest --set time_limit_s=0.6 --set forest.clear_m=2 --set "
-                                  "cameras.rate_hz=20 --seed " +
-                                  seed + " --out " + here + seed)
-                  .status,
-              0);
+    expect_success(
+        "record forest --set time_limit_s=0.6 --set forest.clear_m=2 --set "
+        "cameras.rate_hz=20 --seed " +
+        seed + " --out " + here + seed);
   const std::string file =
       folder
           .write("tune.yaml",
@@ -106,8 +106,8 @@ TEST(TuneCommand, OverRecordingsItsFiguresAreThoseOfTheirEvaluation) {
                  "search: {method: nsga2, trials: 20, seed: 1, sensitivity: 2}\nover: recordings\n"
                  "training: ['1000', '1001']\nvalidation: ['1002']\n")
           .string();
-  EXPECT_EQ(support::understory("tune " + file + " --jobs 1 --out " + here + "one").status, 0);
-  EXPECT_EQ(support::understory("tune " + file + " --jobs 2 --out " + here + "two").status, 0);
+  expect_success("tune " + file + " --jobs 1 --out " + here + "one");
+  expect_success("tune " + file + " --jobs 2 --out " + here + "two");
   EXPECT_EQ(content_of(folder.path() / "one/trials.jsonl"), content_of(folder.path() / "two/trials.jsonl"));
 
   const Scenario scenario = load_scenario(fs::path(UNDERSTORY_SOURCE_DIR) / "scenarios/library/forest.yaml");

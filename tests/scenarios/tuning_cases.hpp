@@ -7,11 +7,15 @@
 
 #include "scenarios/tuning/tune_file.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 /// Tunings of the library's forest, for the tests of tuning.
 namespace understory {
 
 namespace fs = std::filesystem;
+using support::content_of;
+using support::expect_no_part;
+using support::expect_part;
 
 inline fs::path in_library(const std::string& name) {
   const fs::path file = fs::path(UNDERSTORY_SOURCE_DIR) / "scenarios" / "library" / (name + ".yaml");
@@ -35,14 +39,8 @@ struct TuningTest : testing::Test {
   support::TemporaryFolder folder;
 
   TuneFile load(const std::string& text) { return load_tune_file(folder.write("t.yaml", text), in_library); }
-  /// What the one line says where the text is refused; empty where it is not.
   std::string refusal_of(const std::string& text) {
-    try {
-      load(text);
-    } catch (const ScenarioError& error) {
-      return error.what();
-    }
-    return "";
+    return support::refusal_of([&] { load(text); });
   }
   fs::path results(const std::string& name) const {
     fs::create_directories(folder.path() / name);

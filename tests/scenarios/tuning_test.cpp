@@ -94,7 +94,7 @@ TEST_F(TuningTest, SaysSoWhereNoTrialKeepsTheLimits) {
   const Tuned tuned = tune(file, training, validation, {.folder = results("r")});
   EXPECT_FALSE(tuned.keeps_limits);
   EXPECT_EQ(tuned.best.training.figures[0], 1);  // misses it by the smallest amount
-  EXPECT_NE(tune_summary(file, tuned).find("No trial keeps the limits"), std::string::npos);
+  expect_part(tune_summary(file, tuned), "No trial keeps the limits");
 }
 
 TEST_F(TuningTest, RecommendsNothingWhereTheScenarioIsAsGoodAsItsBestTrial) {
@@ -102,13 +102,13 @@ TEST_F(TuningTest, RecommendsNothingWhereTheScenarioIsAsGoodAsItsBestTrial) {
   const auto summary = [&](const fs::path& where) {
     ClosedForm training(0.2), validation(0.2);
     write_tune_report(where, file, tune(file, training, validation, {.folder = where}));
-    return support::content_of(where / "summary.md");
+    return content_of(where / "summary.md");
   };
-  EXPECT_EQ(summary(results("r")).find("leave it so"), std::string::npos);
+  expect_no_part(summary(results("r")), "leave it so");
   EXPECT_TRUE(fs::exists(folder.path() / "r/best.yaml"));
   file.scenario_point = {300, 0.2};  // the optimum
   folder.write("optimum/best.yaml", "of an earlier run");
-  EXPECT_NE(summary(results("optimum")).find("leave it so"), std::string::npos);
+  expect_part(summary(results("optimum")), "leave it so");
   EXPECT_FALSE(fs::exists(folder.path() / "optimum/best.yaml"));
 }
 
@@ -125,7 +125,7 @@ TEST_F(TuningTest, StoppedAnywhereItEndsWithTheSameLogs) {
     };
     const fs::path undisturbed = results("undisturbed");
     const int all = run(undisturbed);
-    const std::string trials = support::content_of(undisturbed / "trials.jsonl");
+    const std::string trials = content_of(undisturbed / "trials.jsonl");
     // Whole lines, half a line, nothing; and in the sensitivities.
     for (const std::size_t kept : {std::size_t{0}, trials.size() / 3, trials.size() / 2, trials.size() - 1}) {
       const fs::path stopped = results("stopped");
@@ -133,7 +133,7 @@ TEST_F(TuningTest, StoppedAnywhereItEndsWithTheSameLogs) {
       EXPECT_THROW(run(stopped, 2), Stopped);
       EXPECT_LE(run(stopped), all);
       for (const std::string& log : logs)
-        EXPECT_EQ(support::content_of(stopped / log), support::content_of(undisturbed / log)) << kept << log;
+        EXPECT_EQ(content_of(stopped / log), content_of(undisturbed / log)) << kept << log;
       fs::remove_all(stopped);
     }
     EXPECT_EQ(run(undisturbed), 0);  // and measures nothing again
@@ -150,7 +150,7 @@ TEST_F(TuningTest, RefusesAnotherTuningsLog) {
   const fs::path where = results("r");
   run(file, where);
   EXPECT_THROW(run(load(tuning_text("{method: cma_es, trials: 60, seed: 3}")), where), ScenarioError);
-  std::string text = support::content_of(where / "trials.jsonl");
+  std::string text = content_of(where / "trials.jsonl");
   text.replace(text.find("score_limit"), 5, "scare");
   folder.write("r/trials.jsonl", text);
   EXPECT_THROW(run(file, where), ScenarioError);
@@ -177,16 +177,16 @@ TEST_F(TuningTest, LeavesTablesPlotsAndAConfigThatGoesOverTheScenario) {
   EXPECT_EQ(scenario.perception.pushbroom.minimum_edge_sum, tuned.best.training.point[0]);
   EXPECT_EQ(scenario.perception.pushbroom.score_limit, tuned.best.training.point[1]);
   EXPECT_EQ(scenario.forest.length_m, file.scenario.forest.length_m);
-  const std::string summary = support::content_of(where / "summary.md");
+  const std::string summary = content_of(where / "summary.md");
   for (const char* part : {"| figure | as it is | tuned |", "## Pareto front", "## Sensitivity", "McNemar",
                            "perception.pushbroom.score_limit"})
-    EXPECT_NE(summary.find(part), std::string::npos) << part;
-  const std::string trials = support::content_of(where / "trials.csv");
+    expect_part(summary, part);
+  const std::string trials = content_of(where / "trials.csv");
   EXPECT_EQ(std::count(trials.begin(), trials.end(), '\n'), 62);  // header, the scenario, 60
-  EXPECT_NE(support::content_of(where / "tune.svg").find("front (training)"), std::string::npos);
+  expect_part(content_of(where / "tune.svg"), "front (training)");
   for (const JudgedTrial& member : tuned.front)
     EXPECT_TRUE(fs::exists(where / "front" / ("trial-" + std::to_string(member.training.number) + ".yaml")));
-  const std::string pareto = support::content_of(where / "pareto.csv");
+  const std::string pareto = content_of(where / "pareto.csv");
   EXPECT_EQ(static_cast<std::size_t>(std::count(pareto.begin(), pareto.end(), '\n')), tuned.front.size() + 1);
 }
 

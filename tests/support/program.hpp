@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <string>
 
+#include "tests/support/text.hpp"
+
 namespace understory::support {
 
 /// The program's output (both streams) and exit status.
@@ -28,12 +30,19 @@ inline Outcome understory(const std::string& arguments, const std::string& befor
   return outcome;
 }
 
+/// Ends with status 0.
+inline Outcome expect_success(const std::string& arguments, const std::string& before = "") {
+  const Outcome outcome = understory(arguments, before);
+  EXPECT_EQ(outcome.status, 0) << arguments << "\n" << outcome.text;
+  return outcome;
+}
+
 /// One line that holds `part`, and that exit status.
 inline void expect_refusal(const std::string& arguments, const std::string& part, int status = 2,
                            const std::string& before = "") {
   const Outcome outcome = understory(arguments, before);
   EXPECT_EQ(outcome.status, status) << arguments;
-  EXPECT_NE(outcome.text.find(part), std::string::npos) << outcome.text;
+  expect_part(outcome.text, part);
   EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1) << outcome.text;
 }
 
