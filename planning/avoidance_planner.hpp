@@ -6,7 +6,6 @@
 
 #include "planning/autopilot_config.hpp"
 #include "planning/manoeuvre.hpp"
-#include "planning/manoeuvre_search.hpp"
 #include "planning/obstacle_field.hpp"
 #include "planning/plan.hpp"
 

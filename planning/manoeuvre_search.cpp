@@ -1,5 +1,3 @@
-#include "planning/manoeuvre_search.hpp"
-
 #include <ompl/base/OptimizationObjective.h>
 #include <ompl/base/goals/GoalRegion.h>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
@@ -15,7 +13,7 @@
 #include <cmath>
 #include <limits>
 
-#include "planning/flight_places.hpp"
+#include "planning/manoeuvre.hpp"
 
 namespace understory {
 namespace {

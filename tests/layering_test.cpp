@@ -47,7 +47,7 @@ std::string top(const std::string& path) {
   return ours ? first : "";
 }
 
-/// Of a path in scenarios its folder there: `flight` of scenarios/flight/oracles/true_state.hpp.
+/// Of a path in scenarios its folder there: `flight` of scenarios/flight/oracles.hpp.
 std::string room(const std::string& path) {
   const std::string rest = path.substr(path.find('/') + 1);
   return top(path) == "scenarios" ? rest.substr(0, rest.find('/')) : "";

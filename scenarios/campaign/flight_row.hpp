@@ -46,7 +46,7 @@ struct FlightRow {
   std::int64_t minimum_points_on_a_bar = -1;  ///< -1 (empty, null): not counted on this course
   PlannerCounts planner;
   double simulated_s = 0;
-  std::string digest;  ///< of the flight, bit for bit (run_digest.hpp)
+  std::string digest;  ///< of the flight, bit for bit (RunDigest)
 
   bool flown() const { return status == RunStatus::flown; }
   bool reached_goal() const { return flown() && outcome == "goal"; }

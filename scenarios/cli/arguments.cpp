@@ -10,7 +10,7 @@
 
 #include "perception/io/calibration_file.hpp"
 #include "scenarios/output/errors.hpp"
-#include "scenarios/scenario/vision_config.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 namespace {

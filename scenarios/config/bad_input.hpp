@@ -1,11 +1,38 @@
 #pragma once
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstdio>
 #include <stdexcept>
 
-#include "scenarios/config/quiet_standard_error.hpp"
 #include "scenarios/output/errors.hpp"
 
 namespace understory {
+
+/// While it lives, nothing reaches stderr: libpng, libjpeg and FFmpeg complain there on their own, beside the
+/// one line that says what is wrong with a file. Costs four system calls.
+class QuietStandardError {
+ public:
+  QuietStandardError() : kept_(dup(STDERR_FILENO)) {
+    std::fflush(stderr);
+    const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (nowhere < 0) return;
+    if (kept_ >= 0) dup2(nowhere, STDERR_FILENO);
+    close(nowhere);
+  }
+  ~QuietStandardError() {
+    if (kept_ < 0) return;
+    std::fflush(stderr);
+    dup2(kept_, STDERR_FILENO);
+    close(kept_);
+  }
+  QuietStandardError(const QuietStandardError&) = delete;
+  QuietStandardError& operator=(const QuietStandardError&) = delete;
+
+ private:
+  int kept_;
+};
 
 /// Gives back what `read` gives. What perception's readers refuse is bad input to this program, and theirs is
 /// the one line about it: whatever the libraries beneath them print is left out.

@@ -9,8 +9,8 @@
 #include <opencv2/core/utility.hpp>
 #include <thread>
 
+#include "scenarios/config/bad_input.hpp"
 #include "scenarios/config/config_tree.hpp"
-#include "scenarios/config/quiet_standard_error.hpp"
 #include "scenarios/evaluation/evaluation_recording.hpp"
 
 namespace understory {

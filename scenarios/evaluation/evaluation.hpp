@@ -10,7 +10,7 @@
 #include "scenarios/evaluation/obstacle_sightings.hpp"
 #include "scenarios/evaluation/published_evaluations.hpp"
 #include "scenarios/evaluation/vision_tally.hpp"
-#include "scenarios/scenario/vision_config.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "scenarios/config/named_seed.hpp"
-#include "scenarios/flight/flight_parts.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
 

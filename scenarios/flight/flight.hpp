@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "estimation/state_source.hpp"
 #include "perception/io/calibration_file.hpp"
+#include "perception/obstacle_detector.hpp"
 #include "planning/autopilot.hpp"
-#include "scenarios/flight/flight_clock.hpp"
 #include "scenarios/flight/flight_computer.hpp"
-#include "scenarios/flight/flight_observer.hpp"
 #include "scenarios/flight/onboard_sensors.hpp"
-#include "scenarios/flight/oracles/truth_history.hpp"
+#include "scenarios/flight/oracles.hpp"
 #include "scenarios/flight/referee.hpp"
 #include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/scenario/scenario.hpp"
@@ -23,6 +23,25 @@
 #include "sim/scene/world.hpp"
 
 namespace understory {
+
+class Flight;
+
+/// Observes a flight: a record, a film, a data set, a page. It can ask the flight for everything at each call
+/// and cannot change it.
+class FlightObserver {
+ public:
+  virtual ~FlightObserver() = default;
+
+  /// Whether images must be rendered even where no detector looks at them. Called once, before the flight.
+  virtual bool needs_images() const { return false; }
+  /// The stage of result.json to which its wall time counts; a literal.
+  virtual const char* stage() const { return "record"; }
+
+  /// The autopilot has processed flight.frame(): hits and map are up to date.
+  virtual void on_frame(const Flight&) {}
+  /// Everything of this step is done except the physics.
+  virtual void on_step(const Flight&) {}
+};
 
 /// What a flight takes from the machine and not from the scenario.
 struct FlightMachine {
@@ -111,5 +130,30 @@ class Flight {
   Controls controls_;
   std::optional<Ending> ending_;
 };
+
+// Makes the parts of a flight from a scenario. All throw in one line.
+
+/// The compiled scene. MachineError where the project's models do not compile.
+World world_of(const Scenario& scenario, const std::filesystem::path& models_folder,
+               const std::vector<Obstacle>& obstacles);
+
+/// Its cameras, on `rig` of rig_of. MachineError where no GL library can be loaded.
+std::unique_ptr<StereoCameras> cameras_of(const Scenario& scenario, const World& world,
+                                          const CalibratedRig& rig, RendererKind renderer);
+
+/// Its aircraft on the catapult; `world` must outlive it. ScenarioError where the catapult would begin
+/// underground.
+Aircraft aircraft_of(const Scenario& scenario, const World& world);
+
+/// What turns pairs into hits. ScenarioError where the rig cannot look at the depths asked for. An oracle
+/// keeps a reference to the history.
+std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const CalibratedRig& rig,
+                                              const std::vector<Obstacle>& obstacles,
+                                              const TruthHistory& history);
+
+/// The autopilot's source of state. An oracle keeps a reference to the history.
+std::unique_ptr<StateSource> state_source_of(const Scenario& scenario, const TruthHistory& history);
+
+AutopilotConfig autopilot_config_of(const Scenario& scenario);
 
 }  // namespace understory

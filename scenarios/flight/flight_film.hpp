@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "perception/rectify.hpp"
-#include "scenarios/flight/flight_observer.hpp"
+#include "scenarios/flight/flight.hpp"
 #include "scenarios/report/pictures.hpp"
 
 namespace understory {

@@ -1,4 +1,4 @@
-#include "scenarios/flight/flight_parts.hpp"
+#include "scenarios/flight/flight.hpp"
 
 #include <stdexcept>
 #include <utility>
@@ -9,9 +9,7 @@
 #include "perception/rectifying_detector.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/named_seed.hpp"
-#include "scenarios/flight/oracles/no_detector.hpp"
-#include "scenarios/flight/oracles/true_depth.hpp"
-#include "scenarios/flight/oracles/true_state.hpp"
+#include "scenarios/flight/oracles.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
 

@@ -4,13 +4,14 @@
 #include <functional>
 #include <vector>
 
-#include "scenarios/flight/flight_observer.hpp"
 #include "scenarios/flight/flight_result.hpp"
 #include "scenarios/output/errors.hpp"
 #include "scenarios/scenario/scenario.hpp"
 #include "sim/render/renderer_kind.hpp"
 
 namespace understory {
+
+class FlightObserver;
 
 /// Where a flight is, for a progress line.
 struct FlightProgress {

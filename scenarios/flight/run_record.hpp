@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "perception/obstacle_point.hpp"
-#include "scenarios/flight/flight_observer.hpp"
+#include "scenarios/flight/flight.hpp"
 #include "scenarios/flight/flight_result.hpp"
-#include "scenarios/flight/run_digest.hpp"
 #include "scenarios/output/output_folder.hpp"
 #include "scenarios/scenario/scenario.hpp"
 

@@ -9,7 +9,7 @@
 #include "estimation/samples.hpp"
 #include "estimation/state.hpp"
 #include "perception/stereo_frame.hpp"
-#include "scenarios/flight/flight_observer.hpp"
+#include "scenarios/flight/flight.hpp"
 #include "scenarios/output/output_folder.hpp"
 #include "scenarios/recording/euroc_texts.hpp"
 #include "scenarios/scenario/scenario.hpp"

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "scenarios/config/named_seed.hpp"
-#include "scenarios/flight/flight_clock.hpp"
-#include "scenarios/flight/flight_parts.hpp"
+#include "scenarios/flight/flight.hpp"
+#include "scenarios/flight/onboard_sensors.hpp"
 #include "scenarios/flight/run_record.hpp"
 #include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/recording/carried_path.hpp"

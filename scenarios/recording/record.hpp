@@ -5,7 +5,7 @@
 
 #include "perception/io/pose_file.hpp"
 #include "scenarios/flight/fly.hpp"
-#include "scenarios/recording/walk.hpp"
+#include "scenarios/recording/carried_path.hpp"
 #include "scenarios/scenario/scenario.hpp"
 
 namespace understory {

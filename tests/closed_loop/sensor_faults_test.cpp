@@ -3,7 +3,7 @@
 #include "perception/io/rig_file.hpp"
 #include "planning/autopilot.hpp"
 #include "scenarios/flight/onboard_sensors.hpp"
-#include "scenarios/flight/oracles/no_detector.hpp"
+#include "scenarios/flight/oracles.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "tests/closed_loop/flown.hpp"
 

@@ -1,4 +1,4 @@
-#include "planning/flight_places.hpp"
+#include "planning/manoeuvre.hpp"
 
 #include <gtest/gtest.h>
 #include <ompl/datastructures/NearestNeighborsLinear.h>

@@ -1,4 +1,4 @@
-#include "planning/manoeuvre_search.hpp"
+#include "planning/manoeuvre.hpp"
 
 #include <gtest/gtest.h>
 

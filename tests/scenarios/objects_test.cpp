@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "perception/io/pose_file.hpp"
-#include "scenarios/flight/oracles/true_depth.hpp"
+#include "scenarios/flight/oracles.hpp"
 #include "scenarios/recording/carried_path.hpp"
 #include "scenarios/recording/euroc_texts.hpp"
 #include "scenarios/recording/record.hpp"

@@ -6,7 +6,6 @@
 #include <set>
 
 #include "scenarios/flight/flight_result.hpp"
-#include "scenarios/flight/run_digest.hpp"
 
 namespace understory {
 namespace {

@@ -1,4 +1,4 @@
-#include "scenarios/flight/oracles/true_depth.hpp"
+#include "scenarios/flight/oracles.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scenarios/recording/walk.hpp"
+#include "scenarios/recording/carried_path.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "planning/path_follower.hpp"
-#include "scenarios/flight/oracles/true_state.hpp"
+#include "scenarios/flight/oracles.hpp"
 #include "scenarios/report/line_plot.hpp"
 #include "tests/validation/dodge.hpp"
 #include "tests/validation/page.hpp"

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "scenarios/flight/onboard_sensors.hpp"
-#include "scenarios/flight/oracles/true_depth.hpp"
+#include "scenarios/flight/oracles.hpp"
 
 namespace understory {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenarios/flight/oracles/true_state.hpp"
+#include "scenarios/flight/oracles.hpp"
 
 namespace understory {
 namespace {

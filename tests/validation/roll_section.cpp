@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "planning/flight_model.hpp"
-#include "scenarios/flight/oracles/true_state.hpp"
+#include "scenarios/flight/oracles.hpp"
 #include "scenarios/report/line_plot.hpp"
 #include "sim/aircraft/aerodynamics.hpp"
 #include "tests/validation/page.hpp"

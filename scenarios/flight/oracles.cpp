@@ -1,8 +1,10 @@
-#include "scenarios/flight/oracles/true_depth.hpp"
+#include "scenarios/flight/oracles.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "scenarios/output/require.hpp"
 
 namespace understory {
 namespace {
@@ -19,6 +21,43 @@ struct SeenBar {
 };
 
 }  // namespace
+
+void TruthHistory::observe(const Truth& truth) {
+  moments_.push_back(truth);
+  while (moments_.front().t_ns + 600'000'000 < truth.t_ns) moments_.pop_front();
+}
+
+const Truth& TruthHistory::at(std::int64_t t_ns) const {
+  require(!moments_.empty(), "a truth was observed before it is asked for");
+  const auto later = std::upper_bound(moments_.begin(), moments_.end(), t_ns,
+                                      [](std::int64_t t, const Truth& truth) { return t < truth.t_ns; });
+  return later == moments_.begin() ? *later : *std::prev(later);
+}
+
+State state_of(const Truth& truth) {
+  State state;
+  state.t_ns = truth.t_ns;
+  state.T_world_body = truth.T_world_body;
+  state.altitude_m = truth.T_world_body.translation().z();
+  state.velocity_body_mps = truth.T_world_body.linear().transpose() * truth.velocity_world_mps;
+  state.angular_rate_body_radps = truth.angular_rate_body_radps;
+  state.specific_force_body_mps2 = truth.specific_force_body_mps2;
+  return state;
+}
+
+void TrueState::on(const ImuSample& sample) {
+  State next = state_of(history_.at(sample.t_ns));
+  const double elapsed_s = state_.t_ns == 0 ? 0 : static_cast<double>(next.t_ns - state_.t_ns) * 1e-9;
+  next.distance_flown_m = state_.distance_flown_m + elapsed_s * next.velocity_body_mps.norm();
+  state_ = next;
+}
+
+State TrueState::state_at(std::int64_t t_ns) const {
+  State then = state_of(history_.at(t_ns));
+  const double since_s = static_cast<double>(state_.t_ns - then.t_ns) * 1e-9;
+  then.distance_flown_m = state_.distance_flown_m - since_s * state_.velocity_body_mps.norm();
+  return then;
+}
 
 double ray_meets_bar(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                      const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius_m) {

@@ -1,13 +1,58 @@
 #pragma once
 
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <deque>
 #include <vector>
 
+#include "estimation/state_source.hpp"
 #include "perception/obstacle_detector.hpp"
 #include "perception/stereo_rig.hpp"
-#include "scenarios/flight/oracles/truth_history.hpp"
+#include "sim/aircraft/truth.hpp"
 #include "sim/scene/obstacle.hpp"
 
 namespace understory {
+
+/// The truth of the last 0.6 s, for the oracles. The flight adds to it at every physics step.
+class TruthHistory {
+ public:
+  void observe(const Truth& truth);
+  /// The newest truth not later than t_ns, or the oldest. Asserts that there is one.
+  const Truth& at(std::int64_t t_ns) const;
+
+ private:
+  std::deque<Truth> moments_;
+};
+
+/// The truth in place of the filter: no error, no covariance. Keeps a reference to the history.
+class TrueState : public StateSource {
+ public:
+  explicit TrueState(const TruthHistory& history) : history_(history) {}
+  void on(const ImuSample& sample) override;
+  void on(const PitotSample&) override {}
+  void on(const BarometerSample&) override {}
+  void on(const MagnetometerSample&) override {}
+  void on(const GpsSample&) override {}
+  void on(const ResightingSample&) override {}
+  const State& state() const override { return state_; }
+  State state_at(std::int64_t t_ns) const override;
+
+ private:
+  const TruthHistory& history_;
+  State state_;
+};
+
+/// A truth as a State with no error.
+State state_of(const Truth& truth);
+
+/// A detector without hits: the blind aircraft. It measures how easy a course is.
+class NoDetector : public ObstacleDetector {
+ public:
+  const std::vector<StereoHit>& detect(const StereoFrame&) override { return none_; }
+
+ private:
+  std::vector<StereoHit> none_;
+};
 
 /// Perfect detection at the pushbroom's depth: a hit for every 5x5 block of the left image (rows 0..205, as
 /// the original detector) whose centre ray first meets a bar or wall within one pixel of disparity of the
