@@ -38,10 +38,11 @@ enum class SideslipModel {
 /// body's x-y plane at the winglets. So a_y = -k V v with k = rho S / m (docs/sources.md [3]: identified
 /// flat-plate model).
 struct SideslipConfig {
+  /// What is known of sideways motion: the force on the winglets, v_y = 0, or nothing.
   SideslipModel model = SideslipModel::lateral_force;
-  double air_density_kgpm3 = 1.204;    ///< kg/m^3, 0.1..2
+  double air_density_kgpm3 = 1.204;    ///< kg/m^3, 0.1..2: believed in
   double winglets_area_m2 = 0.038882;  ///< m^2, 1e-4..2: both together (docs/sources.md [3]: 2 x 0.019441)
-  double mass_kg = 0.648412;           ///< kg, 0.05..20
+  double mass_kg = 0.648412;           ///< kg, 0.05..20: believed in
   Eigen::Vector3d winglets_body_m{-0.08, 0.0,
                                   0.081954};  ///< m, -5..5: mean position (y cancels between the two)
   double sigma_mps2 = 0.2;                    ///< m/s^2, 0.01..50: noise 0.05, and what the plates leave out
@@ -75,10 +76,10 @@ struct AngleOfAttackConfig {
   /// Off: with the right wing it takes 0.01 m off the drift over 10 m, with one 20 % wrong in lift or mass it
   /// adds up to 0.2 m (docs/model_mismatch.md).
   bool enabled = false;
-  double air_density_kgpm3 = 1.204;    ///< kg/m^3, 0.1..2
-  double wing_area_m2 = 0.1811;        ///< m^2, 0.01..5
-  double mass_kg = 0.648412;           ///< kg, 0.05..20
-  double pitch_damping_nmspr = 0.115;  ///< N m s/rad, 0..10
+  double air_density_kgpm3 = 1.204;    ///< kg/m^3, 0.1..2: believed in
+  double wing_area_m2 = 0.1811;        ///< m^2, 0.01..5: of the flat plate
+  double mass_kg = 0.648412;           ///< kg, 0.05..20: believed in
+  double pitch_damping_nmspr = 0.115;  ///< N m s/rad, 0..10: about body y
   double elevon_arm_m = 0.145;         ///< m, 0.01..5: elevon force behind the centre of mass
   /// m/s^2, 0.01..100. Weak on purpose: a wrong wing is an error that 200 samples a second do not average
   /// out. Measured drift over 10 m in dodges (95 %): off 0.19 m, here 0.17 m, and 0.24 m with a wing 15 %
@@ -121,7 +122,7 @@ void visit_fields(Visitor& visit, AltitudeConfig& config) {
 /// The magnetometer's field, rotated into the world by the estimated attitude (which compensates the tilt),
 /// points to magnetic north, world y. Only its horizontal direction is used, not its strength or inclination.
 struct HeadingConfig {
-  bool enabled = true;
+  bool enabled = true;  ///< whether the magnetometer corrects the heading
   /// rad, 0.01..3. A hard-iron error of 0.5 uT against a horizontal field of 19 uT (48 uT, inclination 67
   /// deg) is 0.027 rad and lasts the flight, and a tilt error enters tan(67 deg) = 2.4 fold: the magnetometer
   /// holds the heading over minutes and leaves seconds to the gyro.
@@ -155,8 +156,8 @@ struct RestConfig {
   double force_tolerance_mps2 = 0.6;  ///< m/s^2, 0.01..10: specific force this near gravity, and
   double rate_tolerance_radps =
       0.05;  ///< rad/s, 0.001..5: rates this near zero (bias 0.5 deg/s included) are rest
-  double velocity_sigma_mps = 0.02;       ///< m/s, 1e-4..1
-  double position_sigma_m = 0.01;         ///< m, 1e-4..1
+  double velocity_sigma_mps = 0.02;       ///< m/s, 1e-4..1: of zero velocity at rest
+  double position_sigma_m = 0.01;         ///< m, 1e-4..1: of the place at rest
   double force_sigma_mps2 = 0.1;          ///< m/s^2, 0.001..10: one reading's noise as a level
   double accelerometer_bias_mps2 = 0.05;  ///< m/s^2, 0..1: as a tilt it stays, however long the rest
   /// m/s^2, 5..150: a_x of two samples running. The original waited for 45 (docs/sources.md [2],
@@ -189,29 +190,29 @@ struct StartConfig {
       0.20;  ///< rad, -1.5..1.5: nose up; replaced by the accelerometer's where the first sample is rest
   double roll_rad = 0.0;                       ///< rad, -3.15..3.15: left wing up; replaced as the pitch is
   bool in_flight = false;                      ///< no catapult: already flying, at the velocity below
-  Eigen::Vector3d velocity_body_mps{0, 0, 0};  ///< m/s, -50..50
-  double tilt_sigma_rad = 0.02;                ///< rad, 0..1
+  Eigen::Vector3d velocity_body_mps{0, 0, 0};  ///< m/s, -50..50: where in_flight
+  double tilt_sigma_rad = 0.02;                ///< rad, 0..1: of roll and pitch
   double yaw_sigma_rad = 0.02;                 ///< rad, 0..3: the catapult is aimed within a degree
   double velocity_sigma_mps = 0.15;            ///< m/s, 0..10 (docs/sources.md [2] sigma0.vb)
   double horizontal_sigma_m = 0.01;  ///< m, 0..100: the catapult's place is the frame's origin by definition
-  double vertical_sigma_m = 0.01;    ///< m, 0..100
+  double vertical_sigma_m = 0.01;    ///< m, 0..100: likewise
   double gyro_bias_sigma_radps = 0.0087;  ///< rad/s, 0..1: consumer MEMS after factory calibration, 0.5 deg/s
 };
 
 /// The states beside the base's twelve, each a switch.
 struct ExtraStatesConfig {
-  bool accelerometer_bias = true;
+  bool accelerometer_bias = true;               ///< three states
   double accelerometer_bias_sigma_mps2 = 0.05;  ///< m/s^2, 0..5: consumer MEMS after calibration, 5 mg
-  double accelerometer_bias_walk_rthz = 1e-3;   ///< m/s^3/sqrt(Hz), 0..1
-  bool wind = false;
+  double accelerometer_bias_walk_rthz = 1e-3;   ///< m/s^3/sqrt(Hz), 0..1: how fast it may change
+  bool wind = false;                            ///< two states
   double wind_sigma_mps = 3.0;   ///< m/s, 0..30, each of world x and y: what is expected before the launch
   double wind_walk_rthz = 0.05;  ///< m/s^2/sqrt(Hz), 0..10: how fast the mean wind may change
-  bool gust = false;
-  double gust_sigma_mps = 0.6;  ///< m/s, 0..20, per axis. MIL-F-8785C near the ground: 0.2 of the wind
-  double gust_length_m = 30.0;  ///< m, 0.1..2000: MIL-F-8785C at 4 m; its time is this over the airspeed
-  bool pitot_bias = true;
+  bool gust = false;             ///< three states
+  double gust_sigma_mps = 0.6;   ///< m/s, 0..20, per axis. MIL-F-8785C near the ground: 0.2 of the wind
+  double gust_length_m = 30.0;   ///< m, 0.1..2000: MIL-F-8785C at 4 m; its time is this over the airspeed
+  bool pitot_bias = true;        ///< one state
   double pitot_bias_sigma_mps = 0.1;   ///< m/s, 0..10: 1 Pa left by zeroing, at 12 m/s
-  double pitot_bias_walk_rthz = 1e-3;  ///< m/s^2/sqrt(Hz), 0..1
+  double pitot_bias_walk_rthz = 1e-3;  ///< m/s^2/sqrt(Hz), 0..1: how fast it may change
 };
 
 /// What the filter does about sensors that fail.
@@ -230,9 +231,9 @@ struct DistrustConfig {
 /// The error-state Kalman filter. Defaults fit a consumer IMU at 200 Hz, a 1 psi pitot and a barometer, tuned
 /// for little drift of the relative position over 10 m of flight (docs/estimator.md).
 struct FilterConfig {
-  FilterModel model = FilterModel::gyro_bias;
+  FilterModel model = FilterModel::gyro_bias;  ///< angular_rate: the paper's states (docs/estimator.md)
   StartConfig start;
-  double gravity_mps2 = 9.81;  ///< m/s^2, 1..20
+  double gravity_mps2 = 9.81;  ///< m/s^2, 1..20: believed in
   /// rad/s/sqrt(Hz), 0..1. Consumer MEMS: 0.01 deg/s/sqrt(Hz) = 1.7e-4; doubled for what sampling at 200 Hz
   /// loses.
   double gyro_noise_radps_rthz = 3.5e-4;

@@ -11,20 +11,19 @@ namespace understory {
 /// had it (Barry & Tedrake 2015); each rule is a switch of its own.
 struct PushbroomConfig {
   std::vector<double> depths_m;  ///< to look at; empty: the rig's own detection depth. 0.1 .. 1000
-  /// For each of depths_m its own threshold, in their order; empty: the ones below for all. Same ranges as
-  /// there.
-  std::vector<double> depths_minimum_edge_sum, depths_score_limit;
-  int threads = 1;           ///< 1 .. 64; hits do not depend on it
+  std::vector<double> depths_minimum_edge_sum;  ///< minimum_edge_sum of each depth; empty: one for all
+  std::vector<double> depths_score_limit;       ///< score_limit of each depth; empty: one for all
+  int threads = 1;                              ///< 1 .. 64; hits do not depend on it
   int stride_px = 5;         ///< from block to block, both ways; 1 .. 100; 5 sets the 5x5 blocks side by side
   bool every_pixel = false;  ///< dense: a window at every pixel, of each 5x5 cell of windows the best counts
   int last_row_px = 205;     ///< top edge of the lowest row of blocks; rows below see the ground
   int minimum_edge_sum = 860;         ///< Laplacian sum asked of each image's block by itself; 0 .. 6375
   double score_limit = 54.0 / 333.0;  ///< hit if S = SAD / (both edge sums) is below; exact to 1/333000
 
-  bool horizontal_invariance = true;  ///< reject texture that also matches near infinity
-  int invariance_columns_px = 3;      ///< searched to each side of infinity
-  int invariance_rows_px = 8;         ///< searched up and down
-  int invariance_row_step_px = 2;
+  bool horizontal_invariance = true;              ///< reject texture that also matches near infinity
+  int invariance_columns_px = 3;                  ///< searched to each side of infinity
+  int invariance_rows_px = 8;                     ///< searched up and down
+  int invariance_row_step_px = 2;                 ///< from one row searched to the next
   double invariance_score_limit = 108.0 / 333.0;  ///< twice the score limit: 0.324
 
   bool uniqueness = false;        ///< the disparity must stand out along the row
@@ -38,7 +37,7 @@ struct PushbroomConfig {
 
   bool isolation = false;            ///< a hit needs company in its own frame
   int isolation_minimum_points = 3;  ///< itself included (the original's avoidance)
-  double isolation_radius_m = 1.0;
+  double isolation_radius_m = 1.0;   ///< within which its company lies
 };
 
 /// The last row of blocks, 205 of the paper's 240 rows, in an image of this height.
@@ -99,11 +98,11 @@ void visit_fields(Visitor& visit, PushbroomConfig& config) {
 /// OpenCV's StereoBM with the settings of the paper's evaluation (Barry & Tedrake 2015; public evaluation
 /// code). Disparities count from the rig's infinity, so 2 .. 113 px are parallax.
 struct StereoBmConfig {
-  int window_px = 5;  ///< odd, 5 .. 51
-  int min_disparity_px = 2;
-  int disparities = 112;  ///< multiple of 16
-  int texture_threshold = 427;
-  int uniqueness_percent = 18;
+  int window_px = 5;            ///< odd, 5 .. 51
+  int min_disparity_px = 2;     ///< searched from here
+  int disparities = 112;        ///< multiple of 16
+  int texture_threshold = 427;  ///< windows with less texture have no disparity
+  int uniqueness_percent = 18;  ///< by which the best match must beat the second
   int prefilter_size_px = 105;  ///< odd, 5 .. 255; without effect on OpenCV's default x-Sobel prefilter
   int prefilter_cap = 61;       ///< 1 .. 63
   int speckle_window_px = 59;   ///< smaller patches are dropped
@@ -118,8 +117,8 @@ inline constexpr std::array<std::pair<std::string_view, SgbmPaths>, 3> sgbm_path
 /// OpenCV's StereoSGBM (Hirschmueller 2008). The paper flew none: the search is StereoBM's above, the rest
 /// the values that OpenCV's documentation of cv::StereoSGBM and its sample stereo_match.cpp suggest.
 struct StereoSgbmConfig {
-  int window_px = 5;  ///< odd, 1 .. 11 (documentation: 3 .. 11)
-  int min_disparity_px = 2;
+  int window_px = 5;            ///< odd, 1 .. 11 (documentation: 3 .. 11)
+  int min_disparity_px = 2;     ///< searched from here
   int disparities = 112;        ///< multiple of 16
   int smoothness_1 = 8;         ///< P1 in windows' areas: a step of one pixel costs so much (sample)
   int smoothness_2 = 32;        ///< P2 likewise: of more pixels; more than smoothness_1
@@ -128,7 +127,7 @@ struct StereoSgbmConfig {
   int left_right_px = 1;        ///< matched back from the right, at most so far off (sample); -1: not asked
   int speckle_window_px = 100;  ///< documentation: 50 .. 200
   int speckle_range_px = 2;     ///< documentation: 1 or 2
-  SgbmPaths paths = SgbmPaths::five;
+  SgbmPaths paths = SgbmPaths::five;  ///< directions that costs are summed along
 };
 
 template <typename Visitor>
@@ -212,7 +211,7 @@ void visit_fields(Visitor& visit, LocalMapConfig& config) {
 
 /// How sightings at two depths become one displacement.
 struct ResightingsConfig {
-  bool enabled = false;
+  bool enabled = false;          ///< whether obstacles seen at two depths measure the ground velocity
   std::vector<double> depths_m;  ///< that the detector looks at; the composition knows them, no key says them
   /// Level distance from a cluster's centre within which hits of one depth join it. While a trunk crosses the
   /// depth interval of a pixel (1.6 m at 10 m), its places smear over as much in the odometry frame, and by

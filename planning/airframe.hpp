@@ -9,36 +9,36 @@ namespace understory {
 /// default: the original aircraft's identified flat-plate model (public flight records 2014 to 2017,
 /// BSD-3-Clause), inertia the mean of measured and CAD values.
 struct Airframe {
-  double mass_kg = 0.648412;
+  double mass_kg = 0.648412;                                ///< all up
   Eigen::Vector3d inertia_kgm2{0.01526, 0.00525, 0.01835};  ///< principal moments about body x, y, z
-  double gravity_mps2 = 9.81;
-  double air_density_kgpm3 = 1.204;
+  double gravity_mps2 = 9.81;                               ///< of the simulated place
+  double air_density_kgpm3 = 1.204;                         ///< sea level, 20 degrees C
 
-  double span_m = 0.8636;
-  double chord_m = 0.2097;
-  double wing_area_m2 = 0.1811;
+  double span_m = 0.8636;        ///< wing tip to wing tip
+  double chord_m = 0.2097;       ///< mean chord: area over span
+  double wing_area_m2 = 0.1811;  ///< of the flat plate that the wing is
   double wing_lift_factor =
       1.0;  ///< on the flat plate's lift and drag: the identified wing is the plate itself
-  double wing_drag_factor = 1.0;
+  double wing_drag_factor = 1.0;  ///< on the flat plate's drag
 
-  double elevon_area_m2 = 0.012508;  ///< each
-  double elevon_hinge_x_m = -0.12495;
-  double elevon_y_m = 0.276225;    ///< left +, right -
-  double elevon_chord_m = 0.0402;  ///< the force acts at the mid-chord of the deflected elevon
-  double elevon_lift_factor = 1.3;
-  double elevon_drag_factor = 0.101;
-  double elevon_min_rad = -0.90;  ///< positive trailing edge up
-  double elevon_max_rad = 0.855;
+  double elevon_area_m2 = 0.012508;    ///< each
+  double elevon_hinge_x_m = -0.12495;  ///< of the hinge
+  double elevon_y_m = 0.276225;        ///< left +, right -
+  double elevon_chord_m = 0.0402;      ///< the force acts at the mid-chord of the deflected elevon
+  double elevon_lift_factor = 1.3;     ///< on the flat plate's lift
+  double elevon_drag_factor = 0.101;   ///< on the flat plate's drag
+  double elevon_min_rad = -0.90;       ///< positive trailing edge up
+  double elevon_max_rad = 0.855;       ///< the upper stop
 
   double winglet_area_m2 = 0.019441;  ///< each
-  double winglet_x_m = -0.08;
-  double winglet_y_m = 0.4318;    ///< left +, right -
-  double winglet_z_m = 0.081954;  ///< up (the records' z is down: -0.081954)
+  double winglet_x_m = -0.08;         ///< of the area's centre
+  double winglet_y_m = 0.4318;        ///< left +, right -
+  double winglet_z_m = 0.081954;      ///< up (the records' z is down: -0.081954)
 
   double body_drag_area_m2 = 0.0443;                      ///< drag = area * rho/2 * u^2
   Eigen::Vector3d rate_damping_nmspr{0.074, 0.115, 0.0};  ///< moment = -damping * rate
-  double max_thrust_n = 5.34;
-  double input_delay_s = 0.020;  ///< command to surface
+  double max_thrust_n = 5.34;                             ///< at full throttle
+  double input_delay_s = 0.020;                           ///< command to surface
 };
 
 /// Every field by name, for loading, saving, --set and tuning: visit(name, field, minimum, maximum).

@@ -10,7 +10,7 @@ struct FlightModelConfig {
   double cruise_speed_mps = 12.0;  ///< held by the throttle
   double maximum_angle_of_attack_rad =
       0.4363;  ///< 25 deg: flat plates never stall, real wings do (our assumption)
-  double minimum_angle_of_attack_rad = -0.05;
+  double minimum_angle_of_attack_rad = -0.05;  ///< the nose is not pushed down further
   double minimum_speed_mps = 8.0;  ///< level flight ends here: below it the nose is not pulled up further
   double bank_gain_per_s = 9.0;    ///< roll rate asked for per radian of bank error
   double maximum_roll_rate_radps = 7.5;    ///< at the reference speed 12.27 m/s; falls with speed
@@ -84,14 +84,14 @@ void visit_fields(Visitor& visit, ObstacleFieldConfig& config) {
 /// How trajectories are judged. Costs are dimensionless, per second of flight. A clearance of zero costs
 /// `clearance_weight`.
 struct TrajectoryConfig {
-  double step_s = 0.02;
+  double step_s = 0.02;                ///< between the places of a rollout
   double horizon_m = 14.0;             ///< distance ahead that plans cover: detection depth and some
   double minimum_clearance_m = -0.05;  ///< hard, for plans to be found
   double minimum_kept_clearance_m =
       -0.08;  ///< hard, for the plan in force: smaller, so that noise does not upset it
-  double comfortable_clearance_m = 0.7;
-  double clearance_weight = 15.0;
-  double bank_weight = 1.0;           ///< per rad^2
+  double comfortable_clearance_m = 0.7;  ///< below it clearance costs
+  double clearance_weight = 15.0;        ///< at contact; none from the comfortable clearance on
+  double bank_weight = 1.0;              ///< per rad^2
   double heading_weight = 6.0;        ///< per rad^2 off the course: what lies to the side was not looked at
   double altitude_weight = 1.0;       ///< per m^2 off the cruise altitude
   double band_weight = 40.0;          ///< per m^2 beyond the band's margin
@@ -99,9 +99,9 @@ struct TrajectoryConfig {
   double slow_weight = 2.0;           ///< per (m/s)^2 below 1 m/s less than cruise
   double final_heading_weight = 4.0;  ///< per rad^2 at the horizon
   double heading_gain = 1.6;          ///< bank per heading error, course guidance
-  double maximum_course_bank_rad = 0.6;
-  double altitude_gain_per_s = 1.2;  ///< climb per altitude error
-  double maximum_climb_mps = 2.0;
+  double maximum_course_bank_rad = 0.6;  ///< of the course guidance
+  double altitude_gain_per_s = 1.2;      ///< climb per altitude error
+  double maximum_climb_mps = 2.0;        ///< climb or descent of the course guidance
 };
 
 template <typename Visitor>
@@ -128,17 +128,17 @@ void visit_fields(Visitor& visit, TrajectoryConfig& config) {
 /// The tree of manoeuvres that OMPL grows (SST, Li, Littlefield & Bekris 2016, in the space of bank and climb
 /// commands over time).
 struct ManoeuvreSearchConfig {
-  int iterations = 600;            ///< extensions tried; never a time, so that runs repeat
-  double maximum_bank_rad = 1.57;  ///< a wing on edge passes where a level one does not
-  double minimum_climb_mps = -1.5;
-  double maximum_climb_mps = 2.0;
-  double minimum_part_s = 0.08;
-  double maximum_part_s = 0.48;
-  int maximum_parts = 4;          ///< commands in a row before the course guidance takes over
-  double hint_share = 0.3;        ///< of the commands tried: near those of the plan in force
-  double extreme_share = 0.2;     ///< of the commands tried: with the maximum bank, to either side
-  double selection_radius = 0.6;  ///< SST's, in the search's metric (see manoeuvre_search.cpp)
-  double pruning_radius = 0.15;
+  int iterations = 600;             ///< extensions tried; never a time, so that runs repeat
+  double maximum_bank_rad = 1.57;   ///< a wing on edge passes where a level one does not
+  double minimum_climb_mps = -1.5;  ///< lower end of the climb commands tried
+  double maximum_climb_mps = 2.0;   ///< upper end
+  double minimum_part_s = 0.08;     ///< shortest duration of a command
+  double maximum_part_s = 0.48;     ///< longest
+  int maximum_parts = 4;            ///< commands in a row before the course guidance takes over
+  double hint_share = 0.3;          ///< of the commands tried: near those of the plan in force
+  double extreme_share = 0.2;       ///< of the commands tried: with the maximum bank, to either side
+  double selection_radius = 0.6;    ///< SST's, in the search's metric (see manoeuvre_search.cpp)
+  double pruning_radius = 0.15;     ///< SST's: nearer nodes of higher cost go
 };
 
 template <typename Visitor>
@@ -158,11 +158,11 @@ void visit_fields(Visitor& visit, ManoeuvreSearchConfig& config) {
 
 /// Random descent around a manoeuvre. A tree of random commands finds a way, but seldom its best version.
 struct ManoeuvreImprovementConfig {
-  int iterations = 60;           ///< rollouts tried
-  double bank_sigma_rad = 0.35;  ///< of the change to one part's bank
-  double climb_sigma_mps = 0.6;
-  double duration_sigma_s = 0.08;
-  double maximum_bank_rad = 1.57;
+  int iterations = 60;             ///< rollouts tried
+  double bank_sigma_rad = 0.35;    ///< of the change to one part's bank
+  double climb_sigma_mps = 0.6;    ///< of the change to its climb
+  double duration_sigma_s = 0.08;  ///< of the change to its duration
+  double maximum_bank_rad = 1.57;  ///< changes end there
 };
 
 template <typename Visitor>

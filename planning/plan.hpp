@@ -50,7 +50,7 @@ struct Plan {
 
 /// How the replans of a flight were answered. straight + solved + kept + fallback is their number.
 struct PlannerCounts {
-  std::int64_t replans = 0;
+  std::int64_t replans = 0;         ///< how often a plan was made
   std::int64_t straight = 0;        ///< nothing within comfortable clearance of the straight way
   std::int64_t solved = 0;          ///< OMPL's answer of this replan taken
   std::int64_t kept = 0;            ///< the plan in force still good

@@ -8,6 +8,8 @@
 #include "scenarios/evaluation/evaluation.hpp"
 #include "scenarios/evaluation/evaluation_report.hpp"
 #include "scenarios/evaluation/evaluation_suite.hpp"
+#include "scenarios/output/file_output.hpp"
+#include "scenarios/output/output_folder.hpp"
 #include "scenarios/output/progress_line.hpp"
 
 namespace understory {
@@ -32,6 +34,8 @@ int run_evaluate(const EvaluateArguments& arguments) {
   std::error_code ignored;
   const bool is_suite = arguments.inputs.size() == 1 && fs::is_regular_file(arguments.inputs[0], ignored);
   if (out.empty()) out = fs::path("evaluations") / fs::path(arguments.inputs[0]).stem();
+  const FolderLock lock(out, out);
+  prepare_output_folder(out);
   if (is_suite)
     options.folders = record_suite(arguments.inputs[0], out / "recordings", options.jobs, scenario_file,
                                    data_root() / "models");

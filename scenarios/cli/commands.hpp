@@ -21,6 +21,7 @@ void add_detect_command(CommandLine& line);
 void add_evaluate_command(CommandLine& line);
 void add_rig_command(CommandLine& line);
 void add_bench_command(CommandLine& line);
+void add_keys_command(CommandLine& line);
 
 /// OpenGL's name for what draws by default, or why nothing does.
 std::string renderer_of_this_machine();

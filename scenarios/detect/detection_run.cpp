@@ -16,6 +16,7 @@
 #include "scenarios/detect/posed_map.hpp"
 #include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/output/output_folder.hpp"
 #include "scenarios/report/overlay.hpp"
 #include "scenarios/report/pictures.hpp"
 #include "scenarios/report/table.hpp"
@@ -213,6 +214,7 @@ DetectionResult run_detection(const DetectionOptions& options) {
   std::optional<Rectifier> rectifier;
   if (camera.calibration) rectifier.emplace(*camera.calibration, options.interpolation);
   PushbroomStereo detector(camera.rig, config.pushbroom);
+  const FolderLock lock(options.output_folder, options.output_folder);
   prepare(options.output_folder);
   DetectionResult result = described(camera, detector, config, recording);
   const std::string depths = depths_text(result);

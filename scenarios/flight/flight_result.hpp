@@ -50,26 +50,26 @@ struct StageTiming {
 
 /// One flight in numbers: what result.json holds.
 struct FlightResult {
-  std::string scenario;
-  std::uint64_t seed = 0;
-  std::uint64_t sensor_seed = 0;
-  std::string detector;
-  std::string state_source;
-  Ending ending = Ending::time;
-  std::string touched;     ///< name of the nearest obstacle at a collision
-  double simulated_s = 0;  ///< since the start at rest
-  double wall_s = 0;
-  double distance_m = 0;      ///< true path length since release
-  double progress_m = 0;      ///< maximum true x reached
-  double mean_speed_mps = 0;  ///< true, over ground, since release
+  std::string scenario;           ///< its name
+  std::uint64_t seed = 0;         ///< of the course
+  std::uint64_t sensor_seed = 0;  ///< of the sensors' noise
+  std::string detector;           ///< perception.detector
+  std::string state_source;       ///< estimation.source
+  Ending ending = Ending::time;   ///< goal, collision, ground, out_of_bounds or time
+  std::string touched;            ///< name of the nearest obstacle at a collision
+  double simulated_s = 0;         ///< since the start at rest
+  double wall_s = 0;              ///< that the flight took on its machine
+  double distance_m = 0;          ///< true path length since release
+  double progress_m = 0;          ///< maximum true x reached
+  double mean_speed_mps = 0;      ///< true, over ground, since release
   /// True; +infinity without obstacles (null in JSON).
   double min_clearance_m = std::numeric_limits<double>::infinity();
-  double position_error_mean_m = 0;  ///< estimate against truth, since release
-  double position_error_max_m = 0;
-  double position_error_end_m = 0;
-  double attitude_error_max_rad = 0;
-  double velocity_error_mean_mps = 0;
-  std::int64_t frames = 0;
+  double position_error_mean_m = 0;    ///< estimate against truth, since release
+  double position_error_max_m = 0;     ///< the largest
+  double position_error_end_m = 0;     ///< at the end
+  double attitude_error_max_rad = 0;   ///< the largest, since release
+  double velocity_error_mean_mps = 0;  ///< estimate against truth, since release
+  std::int64_t frames = 0;             ///< that the stack received
   std::int64_t detections = 0;         ///< hits, all frames
   std::int64_t remembered_points = 0;  ///< points ever taken into the map
   PlannerCounts planner;
@@ -77,9 +77,12 @@ struct FlightResult {
   /// passed.
   std::vector<std::pair<std::string, std::int64_t>> points_on_obstacles;
   std::vector<StageTiming> timings;
-  std::string renderer;
-  std::string digest;
+  std::string renderer;  ///< OpenGL's name of what drew; empty without images
+  std::string digest;    ///< of the flight, bit for bit: equal flights have equal digests
 };
+
+/// The columns of trajectory.csv, a line.
+extern const char* const trajectory_columns;
 
 /// As indented JSON text, versions of program and libraries included.
 std::string to_json(const FlightResult& result);

@@ -19,12 +19,6 @@ namespace {
 /// trajectory.csv and the minimum true clearance are sampled at 200 Hz, every 6 cm of flight.
 constexpr std::int64_t row_every_steps = physics_rate_hz / 200;
 
-constexpr const char* trajectory_header =
-    "t_s,x_m,y_m,z_m,qw,qx,qy,qz,vx_world_mps,vy_world_mps,vz_world_mps,p_radps,q_radps,r_radps,"
-    "est_x_m,est_y_m,est_z_m,est_qw,est_qx,est_qy,est_qz,est_vx_world_mps,est_vy_world_mps,est_vz_world_mps,"
-    "est_p_radps,est_q_radps,est_r_radps,left_elevon_command_rad,right_elevon_command_rad,thrust_command_n,"
-    "left_elevon_rad,right_elevon_rad,thrust_n,clearance_m\n";
-
 void append(std::string& text, const Eigen::Isometry3d& pose, const Eigen::Vector3d& velocity_world_mps,
             const Eigen::Vector3d& angular_rate_body_radps) {
   const Eigen::Vector3d& p = pose.translation();
@@ -176,7 +170,7 @@ void RunRecord::count_points_on_obstacles(const std::vector<Obstacle>& obstacles
 }
 
 void RunRecord::write(const std::filesystem::path& folder) const {
-  write_whole_file(folder / "trajectory.csv", std::string(trajectory_header) + trajectory_);
+  write_whole_file(folder / "trajectory.csv", std::string(trajectory_columns) + trajectory_);
   write_whole_file(folder / "map.ply", points_to_ply(points_));
   write_whole_file(folder / "result.json", to_json(result_));
 }

@@ -96,13 +96,20 @@ void require_own(const fs::path& part) {
       fmt::format("{}: expected nothing there, or what a killed understory left", part.string()));
 }
 
+/// Whether the open file still bears that name.
+bool is_file(int descriptor, const fs::path& name) {
+  struct stat held {
+  }, there{};
+  return fstat(descriptor, &held) == 0 && stat(name.c_str(), &there) == 0 && held.st_ino == there.st_ino;
+}
+
 }  // namespace
 
-FolderLock::FolderLock(const fs::path& folder, const fs::path& name) {
+FolderLock::FolderLock(const fs::path& folder, const fs::path& name) : folder_(folder) {
   const fs::path file = folder / lock_name;
   while (true) {
     std::error_code error;
-    fs::create_directories(folder, error);
+    is_new_ = fs::create_directories(folder, error) || is_new_;
     if (error) refuse_output(name, error.value());
     file_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (file_ < 0 && errno == ENOENT) continue;  // the folder got its name meanwhile
@@ -111,14 +118,20 @@ FolderLock::FolderLock(const fs::path& folder, const fs::path& name) {
       close(file_);
       throw ScenarioError(fmt::format("{}: another understory writes there at this moment", name.string()));
     }
-    struct stat held {
-    }, there{};
-    if (fstat(file_, &held) == 0 && stat(file.c_str(), &there) == 0 && held.st_ino == there.st_ino) return;
+    if (is_file(file_, file)) return;
     close(file_);
   }
 }
 
-FolderLock::~FolderLock() { close(file_); }
+FolderLock::~FolderLock() {
+  std::error_code ignored;
+  if (is_file(file_,
+              folder_ / lock_name)) {  // and not another's, where the folder has got its name meanwhile
+    fs::remove(folder_ / lock_name, ignored);
+    if (is_new_) ::rmdir(folder_.c_str());  // where it is empty
+  }
+  close(file_);
+}
 
 OutputFolder::OutputFolder(fs::path folder, FolderContents contents, Replace replace)
     : folder_(resolved(folder)), contents_(std::move(contents)) {

@@ -9,7 +9,8 @@
 
 namespace understory {
 
-/// Keeps a second program on this machine from writing into a folder; dropped however this one ends.
+/// Keeps a second program on this machine from writing into a folder; dropped however this one ends. A folder
+/// that it made and nobody used goes with it.
 class FolderLock {
  public:
   /// Makes the folder where there is none. Throws ScenarioError, which calls it by `name`, where it is taken
@@ -20,7 +21,9 @@ class FolderLock {
   FolderLock& operator=(const FolderLock&) = delete;
 
  private:
+  std::filesystem::path folder_;
   int file_ = -1;
+  bool is_new_ = false;
 };
 
 /// What a command may leave in its folder.

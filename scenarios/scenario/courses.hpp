@@ -12,8 +12,8 @@ namespace understory {
 struct ForestConfig {
   double square_metres_per_tree = 49;  ///< mean ground area a tree has: 49 is 7 m spacing, 25 is dense
   double radius_min_m = 0.10;          ///< trunk radii are uniform between these two
-  double radius_max_m = 0.25;
-  double clear_m = 15;        ///< no tree before this x: room for launch and climb
+  double radius_max_m = 0.25;          ///< the larger of them
+  double clear_m = 15;                 ///< no tree before this x: room for launch and climb
   double length_m = 60;       ///< of the forest behind it; the goal plane stands at clear_m + length_m
   double half_width_m = 25;   ///< trees stand, and flight is allowed, to this |y|
   double trunk_height_m = 9;  ///< reaches above the altitude band: there is no way over
@@ -49,12 +49,12 @@ struct GoalpostsConfig {
   /// Angle of the goal's plane; 0 is straight across the course. The far upright stands farther ahead. At 0
   /// it would pass outside the cameras' view at the detection depth (our choice; the paper gives no angle).
   double turn_rad = 0.7;
-  double height_m = 9.144;  ///< top of the uprights
-  double crossbar_top_m = 3.048;
-  double radius_m = 0.084;  ///< of every bar; a crossbar is 6 5/8 in wide
+  double height_m = 9.144;        ///< top of the uprights
+  double crossbar_top_m = 3.048;  ///< top of the crossbar
+  double radius_m = 0.084;        ///< of every bar; a crossbar is 6 5/8 in wide
   double pass_minimum_m =
       0.5;  ///< the seed draws how far beside the course the near upright's surface stands
-  double pass_maximum_m = 2.0;
+  double pass_maximum_m = 2.0;  ///< at most so far
 };
 
 template <typename Visitor>
@@ -77,8 +77,8 @@ std::vector<Obstacle> goalposts(const GoalpostsConfig& config, std::uint64_t see
 /// misled the paper's detector without its invariance filter (docs/sources.md [1]).
 struct WindowsConfig {
   double behind_goal_m = 12;  ///< from the goal plane to its face; flights end before it
-  double width_m = 60;
-  double height_m = 20;
+  double width_m = 60;        ///< of the facade
+  double height_m = 20;       ///< of the facade
 };
 
 template <typename Visitor>
@@ -95,15 +95,15 @@ std::vector<Obstacle> windows(const WindowsConfig& config, double goal_x_m);
 /// stand across it with a gate at y = 0. At a certain distance the neighbour of a paling lies at the
 /// disparity that the detector searches: with the long rig and 0.4 m between palings at 22 m instead of 10.
 struct FenceConfig {
-  double height_m = 2;     ///< of the palings
-  double spacing_m = 0.4;  ///< from one paling's axis to the next
-  double paling_radius_m = 0.05;
-  double rail_radius_m = 0.04;
-  double beside_m = 3.5;       ///< y of the one along the course, from the first across to the goal
-  double first_across_m = 30;  ///< x of the first across
-  double across_apart_m = 25;  ///< and from it to the next, up to the goal
-  double reach_m = 15;         ///< those across end at this |y|
-  double gate_m = 3;           ///< the gap in them
+  double height_m = 2;            ///< of the palings
+  double spacing_m = 0.4;         ///< from one paling's axis to the next
+  double paling_radius_m = 0.05;  ///< of each paling
+  double rail_radius_m = 0.04;    ///< of the rails that the palings stand on
+  double beside_m = 3.5;          ///< y of the one along the course, from the first across to the goal
+  double first_across_m = 30;     ///< x of the first across
+  double across_apart_m = 25;     ///< and from it to the next, up to the goal
+  double reach_m = 15;            ///< those across end at this |y|
+  double gate_m = 3;              ///< the gap in them
 };
 
 template <typename Visitor>

@@ -82,8 +82,8 @@ struct VisitorWithout {
 /// Altitudes within which the flight must stay after it has climbed into them; leaving them ends it. A flight
 /// over the trees or along the ground would prove nothing.
 struct BandConfig {
-  double minimum_altitude_m = 1;
-  double maximum_altitude_m = 6;
+  double minimum_altitude_m = 1;   ///< lower than this, once above it, ends the flight
+  double maximum_altitude_m = 6;   ///< higher than this ends the flight
   double cruise_altitude_m = 4.5;  ///< what the stack is told to hold
 };
 
@@ -115,13 +115,13 @@ struct SensorSection {
 /// What a pair costs the aircraft's computer, in simulated time, never measured during a flight. Off: every
 /// frame is looked at without delay. docs/thesis.md has the source of the numbers.
 struct ComputeConfig {
-  bool enabled = false;
+  bool enabled = false;  ///< whether looking at a pair takes simulated time; off: none
   /// Time on the aircraft's computer for one thread's time on the machine the costs below were measured on,
   /// 0.001 .. 1000. 8.3: the original detector, 1.0 ms there, filled the 8.3 ms of a frame at 120 Hz on all
   /// cores of a 1.7 GHz quad ARM Cortex-A9 (Barry & Tedrake 2015). A larger factor is a slower computer.
   double factor = 8.3;
   double pushbroom_s = 0.0010;    ///< 0 .. 1; the original, rectification included (docs/sources.md [17])
-  double stereo_bm_s = 0.0090;    ///< StereoBM, 112 disparities (paper's rig, a Zen 4 core, November 2026)
+  double stereo_bm_s = 0.0090;    ///< StereoBM, 112 disparities (paper's rig, a Zen 4 core, 2026-11)
   double stereo_sgbm_s = 0.0127;  ///< StereoSGBM likewise, five paths
 };
 
@@ -135,8 +135,8 @@ void visit_fields(Visitor& visit, ComputeConfig& config) {
 }
 
 struct PerceptionSection {
-  DetectorKind detector = DetectorKind::pushbroom;
-  RulePreset rule = RulePreset::tuned;  ///< keys given under pushbroom win over it
+  DetectorKind detector = DetectorKind::pushbroom;  ///< true_depth and none look at no image
+  RulePreset rule = RulePreset::tuned;              ///< keys given under pushbroom win over it
   PushbroomConfig pushbroom = tuned_rule("long");
   StereoBmConfig stereo_bm;
   StereoSgbmConfig stereo_sgbm;
@@ -162,7 +162,7 @@ struct PerceptionSection {
 };
 
 struct EstimationSection {
-  StateKind source = StateKind::filter;
+  StateKind source = StateKind::filter;       ///< truth: the state is the true one, an oracle
   FilterPreset preset = FilterPreset::tuned;  ///< keys given under filter win over it
   FilterConfig filter;
 };
@@ -174,10 +174,10 @@ struct AutopilotSection {
 };
 
 struct Scenario {
-  std::string name = "unnamed";
-  std::uint64_t seed = 1000;  ///< of the course, and of everything else unless said otherwise
-  std::string rig = "long";   ///< a name in models/rigs, or a rig file, looked for beside the scenario first
-  Course course = Course::forest;
+  std::string name = "unnamed";  ///< letters, digits and - _ . : names the run's folder
+  std::uint64_t seed = 1000;     ///< of the course, and of everything else unless said otherwise
+  std::string rig = "long";  ///< a name in models/rigs, or a rig file, looked for beside the scenario first
+  Course course = Course::forest;                            ///< what stands in the way
   double time_limit_s = 30;                                  ///< of simulated time
   Eigen::Vector3d wind_world_mps = Eigen::Vector3d::Zero();  ///< mean, at wind.reference_height_m
   WindConfig wind;                                           ///< shear, turbulence, a gust, shelter

@@ -124,8 +124,8 @@ struct MagnetometerConfig {
   /// Sigma of the six numbers of the symmetric matrix by which iron on board distorts the field: soft iron
   /// and scale, as shares of the field.
   double soft_iron = 0;
-  double range_ut = 130.0;
-  double step_ut = 0.073;
+  double range_ut = 130.0;  ///< readings end at plus and minus this
+  double step_ut = 0.073;   ///< readings are whole multiples of it; 0: exact
 };
 
 template <typename Visitor>
@@ -166,11 +166,11 @@ void visit_fields(Visitor& visit, GpsConfig& config) {
 
 /// Rates must divide 1200 Hz (divides_physics_rate; whoever loads a scenario checks).
 struct SensorsConfig {
-  int imu_rate_hz = 200;
-  int pitot_rate_hz = 50;
-  int barometer_rate_hz = 50;
-  int magnetometer_rate_hz = 50;
-  int gps_rate_hz = 5;  ///< fixes, where sensors.gps.enabled
+  int imu_rate_hz = 200;          ///< divides 1200
+  int pitot_rate_hz = 50;         ///< divides 1200
+  int barometer_rate_hz = 50;     ///< divides 1200
+  int magnetometer_rate_hz = 50;  ///< divides 1200
+  int gps_rate_hz = 5;            ///< fixes, where sensors.gps.enabled
   ImuConfig imu;
   PitotConfig pitot;
   BarometerConfig barometer;
@@ -231,8 +231,8 @@ inline constexpr std::array<std::pair<std::string_view, FaultKind>, 5> fault_kin
 
 /// One entry of a scenario's `faults`: at_s <= t < at_s + duration_s, by the moment of measurement.
 struct FaultConfig {
-  FaultySensor sensor = FaultySensor::pitot;
-  FaultKind kind = FaultKind::dropout;
+  FaultySensor sensor = FaultySensor::pitot;  ///< that fails
+  FaultKind kind = FaultKind::dropout;        ///< how it fails (docs/sensors.md)
   double at_s = 0;           ///< of simulated time, which begins 0.25 s of rest before the catapult fires
   double duration_s = 1000;  ///< beyond any flight by default
   double value = 0;          ///< in the sensor's unit (rad/s, m/s^2, m/s, m, uT); see FaultKind

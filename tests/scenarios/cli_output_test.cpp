@@ -125,6 +125,27 @@ void expect_stopped(const std::string& arguments, const fs::path& folder,
   }
 }
 
+TEST(CliOutput, NoCommandWritesIntoAFolderThatAnotherWritesInto) {
+  const TemporaryFolder folder;
+  const std::string in_folder = "cd " + folder.path().string() + " && ";
+  ASSERT_EQ(understory("record clear --set forest.length_m=1 --quiet --out rec", in_folder).status, 0);
+  const std::string campaign = "campaign " UNDERSTORY_SOURCE_DIR "/scenarios/campaigns/gate.yaml";
+  folder.write("tune.yaml",
+               "scenario: clear\nparameters: {autopilot.flight_model.cruise_speed_mps: {from: 9, to: 12}}\n"
+               "objective: {maximize: progress}\nsearch: {method: random, trials: 1}\n"
+               "over: flights\ntraining: 1\nvalidation: 2\n");
+  for (const std::string& command :
+       {std::string("detect rec"), std::string("evaluate rec"), campaign, std::string("tune tune.yaml")}) {
+    expect_refusal(command + " --out /dev/null/x", "expected a writable output", 2, in_folder);
+    const std::string locked = in_folder + "mkdir -p out && flock out/lock ";
+    expect_refusal(command + " --out out", "out: another understory writes there at this moment", 2, locked);
+  }
+  fs::remove(folder.path() / "out/lock");
+  EXPECT_TRUE(fs::is_empty(folder.path() / "out"));
+  expect_refusal("evaluate none --out new", "none", 2, in_folder);
+  EXPECT_FALSE(fs::exists(folder.path() / "new"));
+}
+
 TEST(CliOutput, ASignalEndsEveryCommandInOneLineAndLeavesNothing) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "runs");

@@ -203,6 +203,16 @@ TEST(OutputFolder, OneProgramAtATimeWritesIntoAFolder) {
   }
 }
 
+TEST(OutputFolder, ALockLeavesNothingBehind) {
+  const TemporaryFolder folder;
+  const fs::path fresh = folder.path() / "new";
+  { const FolderLock lock(fresh, fresh); }
+  EXPECT_FALSE(fs::exists(fresh));
+  fs::create_directory(fresh);
+  { const FolderLock lock(fresh, fresh); }
+  EXPECT_TRUE(fs::is_empty(fresh));
+}
+
 TEST(OutputFolder, WhatAKilledProgramLeftIsClearedAway) {
   const TemporaryFolder folder;
   const fs::path run = folder.path() / "a-1";
