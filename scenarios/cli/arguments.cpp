@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "perception/io/calibration_file.hpp"
+#include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/errors.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
@@ -65,8 +66,9 @@ fs::path scenario_file(const std::string& argument) {
   const fs::path named = data_root() / "scenarios" / "library" / (argument + ".yaml");
   if (is_name && fs::exists(named, ignored)) return named;
   if (is_folder) throw ScenarioError(fmt::format("{}: expected a scenario file, this is a folder", argument));
-  throw ScenarioError(fmt::format("{}: expected a scenario file, or one of the library: {}", argument,
-                                  fmt::join(scenario_names(), ", ")));
+  const std::vector<std::string> names = scenario_names();
+  throw ScenarioError(fmt::format("{}: expected a scenario file, or one of the library: {}{}", argument,
+                                  fmt::join(names, ", "), did_you_mean(argument, names)));
 }
 
 std::vector<std::string> rig_names() { return yaml_names(data_root() / "models" / "rigs"); }
@@ -79,21 +81,6 @@ fs::path rig_path(const std::string& argument) {
   if (is_name && fs::exists(named, ignored)) return named;
   throw ScenarioError(fmt::format("{}: expected a rig file, a calibration's file or folder, or one of: {}",
                                   argument, fmt::join(rig_names(), ", ")));
-}
-
-std::vector<std::string> ScenarioArguments::all_settings() const {
-  std::vector<std::string> all = settings;
-  if (!seed.empty()) all.push_back("seed=" + seed);
-  return all;
-}
-
-void add_scenario_options(Command& command, ScenarioArguments& arguments) {
-  command
-      .text("scenario", "SCENARIO", arguments.scenario, "a scenario file, or a name from scenarios/library")
-      .required();
-  command.text("--seed", "N", arguments.seed, "of course and sensors; goes before the scenario's own");
-  add_with_option(command, arguments.with);
-  add_settings_option(command, arguments.settings);
 }
 
 void add_settings_option(Command& command, std::vector<std::string>& settings) {

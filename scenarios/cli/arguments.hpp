@@ -14,17 +14,6 @@ namespace understory {
 struct CalibrationOptions;
 struct VisionConfigSources;
 
-/// The scenario's name, --with and --set, as every command that flies has them.
-struct ScenarioArguments {
-  std::string scenario;               ///< a path, or a name in scenarios/library
-  std::vector<std::string> with;      ///< files of keys, over the scenario's own
-  std::vector<std::string> settings;  ///< key=value, over both
-  std::string seed;                   ///< over all; empty: theirs
-
-  std::vector<std::string> all_settings() const;  ///< the seed among them: a setting like any other
-  std::vector<std::filesystem::path> with_files() const { return {with.begin(), with.end()}; }
-};
-void add_scenario_options(Command& command, ScenarioArguments& arguments);
 /// --set alone.
 void add_settings_option(Command& command, std::vector<std::string>& settings);
 /// --with alone.

@@ -3,10 +3,52 @@
 #include <memory>
 
 #include "scenarios/campaign/campaign_folder.hpp"
-#include "scenarios/cli/campaign_report.hpp"
+#include "scenarios/campaign/campaign_summary.hpp"
+#include "scenarios/campaign/gate.hpp"
 #include "scenarios/cli/commands.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/output/file_output.hpp"
 
 namespace understory {
+namespace {
+
+struct GateArguments {
+  std::string baseline;
+  std::string candidate;
+  std::string junit;
+  GateRule rule;
+};
+
+int run_gate(const GateArguments& arguments) {
+  require_writable(arguments.junit);
+  const Comparison comparison =
+      compare_campaigns(read_campaign_rows(arguments.baseline), read_campaign_rows(arguments.candidate));
+  const GateVerdict verdict = judge(comparison, arguments.rule);
+  if (!arguments.junit.empty()) write_whole_file(arguments.junit, gate_junit(comparison, arguments.rule));
+  fmt::print("{}", to_report(comparison, verdict, arguments.rule));
+  return verdict.passes() ? exit_goal : exit_not_goal;
+}
+
+}  // namespace
+
+int report(const CampaignFolder& folder, const Collected& collected, const std::filesystem::path& junit) {
+  const Table table = summary_table(summarise(collected.rows));
+  write_whole_file(folder.path / "summary.md", to_markdown(table));
+  const std::string plots = campaign_svg(collected.rows);
+  if (!plots.empty()) write_whole_file(folder.path / "campaign.svg", plots);
+  if (!junit.empty()) write_whole_file(junit, campaign_junit(collected.rows));
+
+  fmt::print("{}", to_text(table));
+  std::size_t not_flown = 0;
+  for (const FlightRow& row : collected.rows) {
+    if (row.flown()) continue;
+    if (++not_flown <= 10) fmt::print("not flown: {}: {}\n", row.id, row.reason);
+  }
+  if (not_flown > 10) fmt::print("not flown: {} more, see flights.csv\n", not_flown - 10);
+  if (collected.missing > 0) fmt::print("missing: {} flights\n", collected.missing);
+  fmt::print("rows and plots: {}\n", folder.path.string());
+  return not_flown == 0 && collected.missing == 0 ? exit_goal : exit_not_goal;
+}
 
 void add_collect_command(CommandLine& line) {
   const auto folder = std::make_shared<std::string>();
@@ -18,6 +60,20 @@ void add_collect_command(CommandLine& line) {
     const CampaignFolder results{*folder};
     return report(results, collect(results, read_campaign(results)));
   });
+}
+
+void add_gate_command(CommandLine& line) {
+  const auto arguments = std::make_shared<GateArguments>();
+  Command& command = line.add({"gate", "compare two campaigns seed by seed",
+                               "understory gate --baseline results/before --candidate results/after",
+                               "the change may pass", "success fell too far"});
+  command.text("--baseline", "FOLDER", arguments->baseline, "campaign of the program before the change")
+      .required();
+  command.text("--candidate", "FOLDER", arguments->candidate, "campaign of the program with the change")
+      .required();
+  command.number("--max-drop", arguments->rule.max_drop, 0, 1, "share of goals that any condition may lose");
+  command.text("--junit", "FILE", arguments->junit, "write a test case per flight as JUnit XML");
+  command.runs([arguments] { return run_gate(*arguments); });
 }
 
 }  // namespace understory

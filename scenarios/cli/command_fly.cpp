@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -8,26 +10,84 @@
 #include "scenarios/campaign/gate.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/cli/flight_terminal.hpp"
 #include "scenarios/flight/fly.hpp"
 #include "scenarios/flight/run_record.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/output_folder.hpp"
+#include "scenarios/output/progress_line.hpp"
+#include "scenarios/recording/carried_path.hpp"
+#include "scenarios/recording/euroc_recording.hpp"
+#include "scenarios/recording/record.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
+#include "sim/render/offscreen_context.hpp"
 
 namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct FlyArguments : ScenarioArguments {
-  std::string out;  // empty: runs/<name>-<seed>, or with a row no run folder at all
-  std::string row;  // empty: none, as the next
-  std::string junit;
+struct FlightArguments {
+  std::string scenario;               // a path, or a name in scenarios/library
+  std::vector<std::string> with;      // files of keys, over the scenario's own
+  std::vector<std::string> settings;  // key=value, over both
+  std::string seed;                   // over all; empty: theirs
+  std::string out;                    // of fly, empty: runs/<name>-<seed>, or with a row no run folder at all
   RendererKind renderer = RendererKind::osmesa;
-  bool video = false;
   bool quiet = false;
   bool force = false;
+};
+
+void show(ProgressLine& line, const FlightProgress& progress) {
+  const std::string clearance =
+      std::isfinite(progress.min_clearance_m) ? fmt::format("{:.2f} m", progress.min_clearance_m) : "-";
+  line.show(
+      fmt::format("{:5.2f} s  {:5.1f} of {:.0f} m  {:4.1f} m/s  minimum clearance {}  {:.2f} x real time",
+                  progress.simulated_s, progress.progress_m, progress.goal_m, progress.speed_mps, clearance,
+                  progress.wall_s > 0 ? progress.simulated_s / progress.wall_s : 0.0));
+}
+
+/// Throws ScenarioError where the scenario's rig is neither a name in models/rigs nor a file: here, where it
+/// is still known which line named it.
+Scenario scenario_of(const FlightArguments& arguments) {
+  const fs::path file = scenario_file(arguments.scenario), rigs = data_root() / "models" / "rigs";
+  const std::vector<fs::path> with(arguments.with.begin(), arguments.with.end());
+  std::vector<std::string> settings = arguments.settings;
+  if (!arguments.seed.empty()) settings.push_back("seed=" + arguments.seed);
+  Scenario scenario = load_scenario(file, settings, with);
+  std::error_code ignored;
+  if (!fs::exists(rigs / (scenario.rig + ".yaml"), ignored) && !fs::is_regular_file(scenario.rig, ignored))
+    throw ScenarioError(fmt::format("{}: rig: expected a name in {} or a rig file, got '{}'",
+                                    where_given(file, settings, "rig", with), rigs.string(), scenario.rig));
+  return scenario;
+}
+
+FlyOptions options_of(const FlightArguments& arguments) {
+  FlyOptions options;
+  options.models_folder = data_root() / "models";
+  options.renderer = arguments.renderer;
+  return options;
+}
+
+/// The options that fly and record share; `out` and `force` say what those mean. Gives --out.
+Command::Added add_flight_options(Command& command, FlightArguments& arguments, const std::string& out,
+                                  const std::string& force) {
+  command
+      .text("scenario", "SCENARIO", arguments.scenario, "a scenario file, or a name from scenarios/library")
+      .required();
+  command.text("--seed", "N", arguments.seed, "of course and sensors; goes before the scenario's own");
+  add_with_option(command, arguments.with);
+  add_settings_option(command, arguments.settings);
+  const Command::Added folder = command.text("--out", "FOLDER", arguments.out, out);
+  add_renderer_option(command, arguments.renderer);
+  command.flag("--force", arguments.force, "replace " + force + " in the folder already");
+  command.flag("--quiet", arguments.quiet, "print nothing");
+  return folder;
+}
+
+struct FlyArguments : FlightArguments {
+  std::string row;  // empty: none, as the next
+  std::string junit;
+  bool video = false;
 };
 
 /// As a campaign reads it. The row file's name is the flight's id, the scenario's file that of its condition.
@@ -74,13 +134,9 @@ FlightResult flown(const Scenario& scenario, const FlyOptions& options, std::opt
 }
 
 int run_fly(const FlyArguments& arguments) {
-  const Scenario scenario =
-      load_scenario(scenario_file(arguments.scenario), arguments.all_settings(), arguments.with_files());
-  FlyOptions options;
-  options.models_folder = data_root() / "models";
-  require_rig(scenario, arguments, options.models_folder / "rigs");
+  const Scenario scenario = scenario_of(arguments);
+  FlyOptions options = options_of(arguments);
   options.video = arguments.video;
-  options.renderer = arguments.renderer;
   const fs::path folder = folder_of(arguments, scenario);
   if (options.video && folder.empty()) throw ScenarioError("--video: expected --out beside --row");
   for (const std::string& file : {arguments.row, arguments.junit}) require_writable_beside(folder, file);
@@ -104,22 +160,100 @@ int run_fly(const FlyArguments& arguments) {
   return result.ending == Ending::goal ? exit_goal : exit_not_goal;
 }
 
+struct RecordArguments : FlightArguments {
+  std::optional<double> walk_mps;  // nothing: flies
+  std::string path;                // empty: none to follow
+  std::optional<double> height_m;
+};
+
+std::string report_of(const FlownRecording& flight) {
+  return to_report(flight.result) + fmt::format("  {:<18}{}\n", "frames", flight.frames);
+}
+
+std::string report_of(const RecordedWalk& walk) {
+  return fmt::format(
+      "walked {:.1f} m in {:.1f} s, from x = {:.1f} m along y = {:.1f} m, {:.2f} m high: {} frames\n",
+      walk.carried.carried_m, walk.carried.carried_s, walk.path.from_x_m, walk.path.lane_y_m,
+      walk.path.config.height_m, walk.carried.frames);
+}
+
+std::string report_of(const Carried& carried) {
+  return fmt::format("carried {:.1f} m in {:.1f} s: {} frames\n", carried.carried_m, carried.carried_s,
+                     carried.frames);
+}
+
+/// As given, or in the source tree from any working directory: scenarios/paths/level.tum.
+fs::path path_file(const fs::path& given) {
+  std::error_code ignored;
+  const fs::path in_root = data_root() / given;
+  const bool only_there = !fs::exists(given, ignored) && fs::exists(in_root, ignored);
+  return only_there ? in_root : given;
+}
+
+std::string record(const RecordArguments& arguments, const Scenario& scenario, FlyOptions options) {
+  const std::vector<TimedPose> path =
+      arguments.path.empty() ? std::vector<TimedPose>{} : read_path(path_file(arguments.path));
+  ProgressLine line(!arguments.quiet);
+  options.on_progress = [&](const FlightProgress& progress) { show(line, progress); };
+  if (!path.empty()) return report_of(follow_recorded(scenario, path, options));
+  if (!arguments.walk_mps) return report_of(fly_recorded(scenario, options));
+  return report_of(walk_recorded(
+      scenario, {*arguments.walk_mps, arguments.height_m.value_or(WalkConfig{}.height_m)}, options));
+}
+
+int run_record(const RecordArguments& arguments) {
+  if (arguments.height_m && !arguments.walk_mps) throw ScenarioError("--height: expected beside --walk");
+  if (!arguments.path.empty() && arguments.walk_mps) throw ScenarioError("--path: expected without --walk");
+  const Scenario scenario = scenario_of(arguments);
+  FlyOptions options = options_of(arguments);
+  OutputFolder output(arguments.out, recording_contents(scenario),
+                      arguments.force ? Replace::anything : Replace::nothing);
+  options.output_folder = output.path();
+  const std::string report = record(arguments, scenario, options);
+  output.finish();
+  if (!arguments.quiet) fmt::print("{}  {:<18}{}\n", report, "files", arguments.out);
+  return exit_goal;
+}
+
 }  // namespace
+
+std::string renderer_of_this_machine() {
+  try {
+    OffscreenContext context;
+    context.make_current(16, 16);
+    return context.renderer();
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+}
 
 void add_fly_command(CommandLine& line) {
   const auto arguments = std::make_shared<FlyArguments>();
   Command& command = line.add({"fly", "fly a scenario once", "understory fly forest --seed 7 --video",
                                "the goal was reached", "it was not"});
-  add_scenario_options(command, *arguments);
-  command.text("--out", "FOLDER", arguments->out, "run folder (default: runs/NAME-SEED)");
-  add_renderer_option(command, arguments->renderer);
+  add_flight_options(command, *arguments, "run folder (default: runs/NAME-SEED)",
+                     "a run of another configuration that is");
   command.text("--row", "FILE", arguments->row,
                "write the flight's row there, as campaign and collect read it; no run folder");
   command.text("--junit", "FILE", arguments->junit, "write the flight as a JUnit test case");
   command.flag("--video", arguments->video, "also make flight.mp4 and still.png");
-  command.flag("--force", arguments->force, "replace a run of another configuration in the run folder");
-  command.flag("--quiet", arguments->quiet, "print nothing");
   command.runs([arguments] { return run_fly(*arguments); });
+}
+
+void add_record_command(CommandLine& line) {
+  const auto arguments = std::make_shared<RecordArguments>();
+  Command& command = line.add(
+      {"record",
+       "fly, walk or be carried through a scenario and keep images, true depth and poses as a EuRoC data set",
+       "understory record forest --out recordings/forest", "the recording is whole"});
+  add_flight_options(command, *arguments, "for the recording; gets mav0", "a recording that is").required();
+  command.flag_or_number("--walk", 1.4, arguments->walk_mps, 0.1, 5.0,
+                         "--walk or --walk=SPEED: carry the cameras through at a walk (1.4 m/s)");
+  command.text("--path", "FILE", arguments->path,
+               "carry the cameras along these poses: TUM, EuRoC, or a run's trajectory.csv");
+  command.number("--height", arguments->height_m, 0.3, 8.0,
+                 fmt::format("of the walk, m (default: {})", WalkConfig{}.height_m));
+  command.runs([arguments] { return run_record(*arguments); });
 }
 
 }  // namespace understory

@@ -32,11 +32,6 @@ void refuse_empty_assignments(int argc, char** argv) {
   }
 }
 
-std::string did_you_mean(std::string_view given, const std::vector<std::string>& known) {
-  const std::string near = nearest_name(given, known);
-  return near.empty() ? "" : fmt::format(" (did you mean {}?)", near);
-}
-
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> exit_statuses(const CommandText& command) {

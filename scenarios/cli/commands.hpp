@@ -9,6 +9,9 @@
 
 namespace understory {
 
+struct CampaignFolder;
+struct Collected;
+
 /// Each adds one command with its options.
 void add_fly_command(CommandLine& line);
 void add_record_command(CommandLine& line);
@@ -22,6 +25,11 @@ void add_evaluate_command(CommandLine& line);
 void add_rig_command(CommandLine& line);
 void add_bench_command(CommandLine& line);
 void add_keys_command(CommandLine& line);
+
+/// Prints what a campaign came to and leaves summary.md and campaign.svg in its folder, and with a name of a
+/// file there JUnit XML. Gives the exit status: 0 where every flight was flown, whatever its ending; 1 where
+/// one was not.
+int report(const CampaignFolder& folder, const Collected& collected, const std::filesystem::path& junit = {});
 
 /// OpenGL's name for what draws by default, or why nothing does.
 std::string renderer_of_this_machine();

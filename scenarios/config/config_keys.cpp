@@ -36,10 +36,9 @@ void require_known_keys(const ConfigNode& map, const std::vector<std::string>& k
                         const std::string& within) {
   for (const ConfigNode& node : map.children) {
     if (std::ranges::find(known, node.key) != known.end()) continue;
-    const std::string near = nearest_name(node.key, known);
+    const std::string near = did_you_mean(node.key, known);
     refuse_key(node, within + node.key,
-               near.empty() ? fmt::format("one of {}", fmt::join(known, ", "))
-                            : fmt::format("a known key (did you mean {}?)", near));
+               near.empty() ? fmt::format("one of {}", fmt::join(known, ", ")) : "a known key" + near);
   }
 }
 

@@ -85,10 +85,8 @@ class ConfigReader {
       bool is_known = false;
       for (const std::string& name : known_) is_known = is_known || name == child.key;
       if (is_known) continue;
-      const std::string near = nearest_name(child.key, known_);
-      throw ScenarioError(
-          fmt::format("{}: {}: expected a known key{}", child.origin, full(child.key),
-                      near.empty() ? std::string() : fmt::format(" (did you mean {}?)", near)));
+      throw ScenarioError(fmt::format("{}: {}: expected a known key{}", child.origin, full(child.key),
+                                      did_you_mean(child.key, known_)));
     }
   }
 

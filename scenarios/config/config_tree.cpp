@@ -180,11 +180,11 @@ std::string origin_of(const std::vector<ConfigNode>& sources, std::string_view p
   return "";
 }
 
-std::string nearest_name(std::string_view word, const std::vector<std::string>& known) {
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& known) {
   const std::string renamed = renamed_key(std::string(word));
-  if (std::ranges::find(known, renamed) != known.end()) return renamed;
   std::string best;
-  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
+  if (std::ranges::find(known, renamed) != known.end()) best = renamed;
+  std::size_t best_distance = !best.empty() ? 0 : std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string& name : known) {  // Levenshtein, one row at a time
     std::vector<std::size_t> row(name.size() + 1);
     for (std::size_t i = 0; i < row.size(); ++i) row[i] = i;
@@ -202,7 +202,7 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
       best = name;
     }
   }
-  return best;
+  return best.empty() ? "" : fmt::format(" (did you mean {}?)", best);
 }
 
 }  // namespace understory

@@ -39,7 +39,7 @@ ConfigNode under_keys(ConfigNode value, std::string keys);
 /// none does.
 std::string origin_of(const std::vector<ConfigNode>& sources, std::string_view path);
 
-/// The known name that `word` most likely meant; empty where none is near.
-std::string nearest_name(std::string_view word, const std::vector<std::string>& known);
+/// " (did you mean NAME?)", of the known name that `word` most likely meant; empty where none is near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace understory

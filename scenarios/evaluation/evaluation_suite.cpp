@@ -6,7 +6,7 @@
 
 #include "scenarios/config/config_keys.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/output/program_processes.hpp"
+#include "scenarios/output/program.hpp"
 #include "scenarios/output/progress_line.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"

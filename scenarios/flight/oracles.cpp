@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scenarios/output/require.hpp"
+#include "perception/assertion.hpp"
 
 namespace understory {
 namespace {
@@ -28,7 +28,7 @@ void TruthHistory::observe(const Truth& truth) {
 }
 
 const Truth& TruthHistory::at(std::int64_t t_ns) const {
-  require(!moments_.empty(), "a truth was observed before it is asked for");
+  assert_always(!moments_.empty(), "a truth was observed before it is asked for");
   const auto later = std::upper_bound(moments_.begin(), moments_.end(), t_ns,
                                       [](std::int64_t t, const Truth& truth) { return t < truth.t_ns; });
   return later == moments_.begin() ? *later : *std::prev(later);

@@ -118,18 +118,18 @@ FolderLock::FolderLock(const fs::path& folder, const fs::path& name) : folder_(f
       close(file_);
       throw ScenarioError(fmt::format("{}: another understory writes there at this moment", name.string()));
     }
-    if (is_file(file_, file)) return;
+    if (is_file(file_, file)) {
+      file_name_.emplace(file);
+      return;
+    }
     close(file_);
   }
 }
 
 FolderLock::~FolderLock() {
-  std::error_code ignored;
-  if (is_file(file_,
-              folder_ / lock_name)) {  // and not another's, where the folder has got its name meanwhile
-    fs::remove(folder_ / lock_name, ignored);
-    if (is_new_) ::rmdir(folder_.c_str());  // where it is empty
-  }
+  if (!is_file(file_, file_name_->path())) file_name_->keep();  // another's: the folder has got its name
+  file_name_.reset();
+  if (is_new_) ::rmdir(folder_.c_str());  // where it is empty
   close(file_);
 }
 

@@ -23,6 +23,7 @@ class FolderLock {
  private:
   std::filesystem::path folder_;
   int file_ = -1;
+  std::optional<Unfinished> file_name_;
   bool is_new_ = false;
 };
 

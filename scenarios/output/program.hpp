@@ -1,5 +1,11 @@
 #pragma once
 
+#include <sys/types.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -14,8 +20,44 @@ extern const char* const understory_commit;
 /// Of the program's file. Equal programs give equal results.
 std::string program_digest();
 
-/// Makes the calling process, fresh from fork(), this program anew, with `arguments` (without its name);
-/// exits with 127 where that fails.
-[[noreturn]] void become_this_program(const std::vector<std::string>& arguments);
+/// A process that has ended.
+struct EndedProcess {
+  pid_t pid = 0;
+  int wait_status = 0;        ///< as wait() gives it
+  double cpu_s = 0;           ///< of all its threads, in the kernel too
+  double peak_memory_mb = 0;  ///< 10^6 bytes, resident
+};
+
+/// Starts this program with `arguments` (without the program's name), in a process group of its own: Ctrl-C
+/// is ours to answer. `at_our_end`: the signal that it gets then. `log`: takes its standard error, its output
+/// goes nowhere; empty: both are ours. Throws MachineError where it cannot be started.
+pid_t start_this_program(const std::vector<std::string>& arguments, int at_our_end,
+                         const std::filesystem::path& log = {});
+
+/// Waits for `pid`, or with -1 for any child; with WNOHANG in `options` only looks: pid 0 where it runs yet.
+EndedProcess wait_for_process(pid_t pid, int options = 0);
+
+/// Runs copies of this very program, a few at a time: one process flies one flight, since OMPL's random
+/// generator is one per process.
+class ProgramProcesses {
+ public:
+  /// Called with the tag of a process and its exit status (128 + signal where it was killed).
+  using OnEnd = std::function<void(std::uint64_t tag, int status, const EndedProcess& process)>;
+
+  ProgramProcesses(int maximum_count, OnEnd on_end)
+      : maximum_count_(maximum_count), on_end_(std::move(on_end)) {}
+
+  /// Starts this program with `arguments` (without the program's name); first waits where all places are
+  /// taken. Throws MachineError where it cannot be started.
+  void start(std::uint64_t tag, const std::vector<std::string>& arguments);
+  void wait_for_all();
+
+ private:
+  void wait_for_one();
+
+  int maximum_count_;
+  OnEnd on_end_;
+  std::map<pid_t, std::uint64_t> running_;
+};
 
 }  // namespace understory

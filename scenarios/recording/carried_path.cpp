@@ -9,12 +9,12 @@
 #include <numbers>
 #include <random>
 
+#include "perception/assertion.hpp"
 #include "perception/io/text_table.hpp"
 #include "scenarios/config/bad_input.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/named_seed.hpp"
 #include "scenarios/flight/clearance.hpp"
-#include "scenarios/output/require.hpp"
 
 namespace understory {
 namespace {
@@ -108,7 +108,7 @@ std::vector<TimedPose> thinned(const std::vector<TimedPose>& poses) {
 }
 
 SmoothPath::SmoothPath(const std::vector<TimedPose>& poses) {
-  require(poses.size() >= 2, "a path has at least two poses");
+  assert_always(poses.size() >= 2, "a path has at least two poses");
   for (const TimedPose& pose : poses) {
     Channels value;
     const Eigen::Quaterniond q(pose.T_world_body.linear());

@@ -1,11 +1,12 @@
 #include "scenarios/report/line_plot.hpp"
 
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "scenarios/output/require.hpp"
+#include "perception/assertion.hpp"
 
 namespace understory {
 namespace {
@@ -262,9 +263,10 @@ class Panel {
 
 void require_well_formed(const LinePlot& plot) {
   for (const Series& series : plot.series) {
-    require(series.x.size() == series.y.size(), "a series has as many x as y");
-    require(series.low.size() == series.high.size(), "a series has as many lower ends as upper ends");
-    require(series.low.empty() || series.low.size() == series.x.size(), "a series has ends for every point");
+    assert_always(series.x.size() == series.y.size(), "a series has as many x as y");
+    assert_always(series.low.size() == series.high.size(), "a series has as many lower ends as upper ends");
+    assert_always(series.low.empty() || series.low.size() == series.x.size(),
+                  "a series has ends for every point");
   }
 }
 

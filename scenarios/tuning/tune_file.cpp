@@ -77,9 +77,7 @@ const NumericKey& key_of(const ConfigNode& node, const std::vector<NumericKey>& 
   if (found != keys.end()) return *found;
   std::vector<std::string> known;
   for (const NumericKey& key : keys) known.push_back(key.key);
-  const std::string near = nearest_name(node.key, known);
-  refuse_key(node, "parameters." + node.key,
-             "a numeric key of the scenario" + (near.empty() ? "" : " (did you mean " + near + "?)"));
+  refuse_key(node, "parameters." + node.key, "a numeric key of the scenario" + did_you_mean(node.key, known));
 }
 
 void read_parameters(const ConfigNode& group, TuneFile& tune) {

@@ -153,6 +153,9 @@ TEST(Cli, WrongArgumentsAreBadInput) {
   expect_refusal("", "expected a command: fly, record");
   expect_refusal("soar", "soar: expected a command: fly");
   expect_refusal("flly clear", "did you mean fly?");
+#ifdef UNDERSTORY_HAS_SIM
+  expect_refusal("fly forst", "windy (did you mean forest?)");
+#endif
   expect_refusal("rig long --dept 3", "rig --dept: expected an option that there is (did you mean --depth?)");
   expect_refusal("rig long --dept=3", "did you mean --depth?");
   expect_refusal("rig long paper", "rig paper: expected no further argument");
