@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -13,10 +14,21 @@ struct PushbroomConfig {
   std::vector<double> depths_m;  ///< to look at; empty: the rig's own detection depth. 0.1 .. 1000
   std::vector<double> depths_minimum_edge_sum;  ///< minimum_edge_sum of each depth; empty: one for all
   std::vector<double> depths_score_limit;       ///< score_limit of each depth; empty: one for all
-  int threads = 1;                              ///< 1 .. 64; hits do not depend on it
+  /// Whole disparities to look at, stated by hand as the original's configuration files do ([2],
+  /// docs/sources.md), in place of those nearest to depths_m; empty: these. -8192 .. 8192
+  std::vector<int> disparities_px;
+  /// Whole disparity of the infinitely distant, stated by hand; none: the calibration's, rounded.
+  /// -8192 .. 8192
+  std::optional<int> infinity_px;
+  int threads = 1;           ///< 1 .. 64; hits do not depend on it
   int stride_px = 5;         ///< from block to block, both ways; 1 .. 100; 5 sets the 5x5 blocks side by side
   bool every_pixel = false;  ///< dense: a window at every pixel, of each 5x5 cell of windows the best counts
-  int last_row_px = 205;     ///< top edge of the lowest row of blocks; rows below see the ground
+  /// Top edge of the lowest row of blocks in an image of 240 rows, in proportion in others; 0 .. 240. Rows
+  /// below see the ground. The original's lastValidPixelRow, 205, is the end of its lowest blocks.
+  int last_row_px = 200;
+  /// Columns that no block touches at the end of those compared, 0 .. 100. The original's loop over columns
+  /// leaves out a last block that ends with the image.
+  int right_margin_px = 1;
   int minimum_edge_sum = 860;         ///< Laplacian sum asked of each image's block by itself; 0 .. 6375
   double score_limit = 54.0 / 333.0;  ///< hit if S = SAD / (both edge sums) is below; exact to 1/333000
 
@@ -40,10 +52,8 @@ struct PushbroomConfig {
   double isolation_radius_m = 1.0;   ///< within which its company lies
 };
 
-/// The last row of blocks, 205 of the paper's 240 rows, in an image of this height.
-int last_row_px_of(int height_px);
-
-/// The paper's rule, exactly.
+/// The paper's rule as the original's code has it: its hits, their order and their scores, wherever the
+/// original stays inside the images. Hits lie half a pixel up and left of its points.
 PushbroomConfig paper_rule();
 /// Uniqueness instead of the invariance filter, gentler thresholds, 3 points within 1 m: on rendered forests
 /// its precision is 0.94 where the paper's thresholds give 0.37 (computed with one prototype;
@@ -76,7 +86,8 @@ void visit_fields(Visitor& visit, PushbroomConfig& config) {
   visit("threads", config.threads, 1, 64);
   visit("stride_px", config.stride_px, 1, 100);
   visit("every_pixel", config.every_pixel);
-  visit("last_row_px", config.last_row_px, 0, 4000);
+  visit("last_row_px", config.last_row_px, 0, 240);
+  visit("right_margin_px", config.right_margin_px, 0, 100);
   visit("minimum_edge_sum", config.minimum_edge_sum, 0, 6375);
   visit("score_limit", config.score_limit, 0.0, 10.0);
   visit("horizontal_invariance", config.horizontal_invariance);
@@ -89,6 +100,8 @@ void visit_fields(Visitor& visit, PushbroomConfig& config) {
   visit("uniqueness_minimum_depth_m", config.uniqueness_minimum_depth_m, 0.1, 100.0);
   visit("depths_minimum_edge_sum", config.depths_minimum_edge_sum, 0, 6375);
   visit("depths_score_limit", config.depths_score_limit, 0.0, 10.0);
+  visit("disparities_px", config.disparities_px, -8192, 8192);
+  visit("infinity_px", config.infinity_px, -8192, 8192);
   visit("subpixel", config.subpixel);
   visit("isolation", config.isolation);
   visit("isolation_minimum_points", config.isolation_minimum_points, 1, 1000);
@@ -170,7 +183,7 @@ struct FullStereoCrop {
   double maximum_below_m = 2.7;
   int cell_px = 5;                  ///< one hit for each cell of this size, the pushbroom's block
   int minimum_pixels_per_cell = 5;  ///< matched pixels inside the depths that make a hit (our choice)
-  int last_row_px = 205;            ///< top edge of the lowest row of cells, the pushbroom's
+  int last_row_px = 205;            ///< top edge of the lowest row of cells, as PushbroomConfig's
 };
 
 template <typename Visitor>
@@ -180,7 +193,7 @@ void visit_fields(Visitor& visit, FullStereoCrop& crop) {
   visit("maximum_below_m", crop.maximum_below_m, 0.1, 1000.0);
   visit("cell_px", crop.cell_px, 1, 100);
   visit("minimum_pixels_per_cell", crop.minimum_pixels_per_cell, 1, 10000);
-  visit("last_row_px", crop.last_row_px, 0, 4000);
+  visit("last_row_px", crop.last_row_px, 0, 240);
 }
 
 /// How long, how many and whom the map remembers.

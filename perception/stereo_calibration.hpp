@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <opencv2/core/matx.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,12 @@ struct StereoCalibration {
   CameraCalibration right;
   /// Where the raw left camera sits: its coordinates (OpenCV axes) into body coordinates.
   Eigen::Isometry3d T_body_left = Eigen::Isometry3d::Identity();
+};
+
+/// A rig, and the raw cameras behind it where images come raw (absent: they come rectified).
+struct CalibratedRig {
+  StereoRig rig;
+  std::optional<StereoCalibration> calibration;
 };
 
 /// The rectified pair that `calibration` describes, asked to look at `detection_depth_m`: focal length,

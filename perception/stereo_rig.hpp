@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace understory {
@@ -14,7 +16,7 @@ namespace understory {
 ///   center_right_x_px,
 /// so u_left - u_right = focal_px * baseline_m / z + infinity_disparity_px(). Calibrations in the field leave
 /// the two principal points apart (the paper's rig: 197.5 and 105.7), so "infinity" is far from zero; it is
-/// derived here and never typed in.
+/// derived here (PushbroomConfig::infinity_px states another by hand).
 struct StereoRig {
   std::string name;
   int width_px = 376;
@@ -35,6 +37,16 @@ struct StereoRig {
   }
   double depth_m(double disparity_px) const {
     return focal_px * baseline_m / (disparity_px - infinity_disparity_px());
+  }
+  /// Whether a detector can compare the images at this whole disparity: it lies more than a pixel nearer than
+  /// infinity, and leaves at least a tenth of the images' columns (and a 5x5 block).
+  bool can_look_at(double whole_disparity_px) const {
+    return whole_disparity_px - infinity_disparity_px() > 1.0 &&
+           std::abs(whole_disparity_px) <= std::min(0.9 * width_px, 1.0 * width_px - 5);
+  }
+  /// The row as far down these images as `row_of_240` is down the paper's, which have 240 rows.
+  int scaled_row_px(int row_of_240) const {
+    return static_cast<int>(std::lround(row_of_240 * height_px / 240.0));
   }
 };
 

@@ -25,7 +25,7 @@ const std::vector<StereoHit>& FullStereoDetector::detect(const StereoFrame& fram
   depth_m_ = stereo_.depth_m(frame);  // the same pixels, not a copy
   hits_.clear();
   const int cell_px = crop_.cell_px;
-  const int last_row_px = std::min(crop_.last_row_px, rig_.height_px - cell_px);
+  const int last_row_px = std::min(rig_.scaled_row_px(crop_.last_row_px), rig_.height_px - cell_px);
   for (int row_px = 0; row_px <= last_row_px; row_px += cell_px)
     for (int column_px = 0; column_px + cell_px <= rig_.width_px; column_px += cell_px)
       add_cell(depth_m_, column_px, row_px);

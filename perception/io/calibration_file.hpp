@@ -9,16 +9,9 @@ namespace understory {
 
 /// What some calibration formats do not say themselves.
 struct CalibrationOptions {
-  double meters_per_unit = 1;              ///< of the file's translations: 0.01 where they are in centimetres
-  std::optional<int> width_px, height_px;  ///< of the images, both, where the files do not tell
-  std::optional<double> detection_depth_m;  ///< goes before the rig file's own; 10 m where nobody says
-};
-
-/// A rig as read: rectified, and with the raw cameras where the files have them (absent: images come
-/// rectified).
-struct CalibratedRig {
-  StereoRig rig;
-  std::optional<StereoCalibration> calibration;
+  double meters_per_unit = 1;  ///< of the file's translations: 0.01 where they are in centimetres
+  std::optional<int> width_px{}, height_px{};  ///< of the images, both, where the files do not tell
+  std::optional<double> detection_depth_m{};   ///< goes before the rig file's own; 10 m where nobody says
 };
 
 /// Reads a rig from any of

@@ -9,7 +9,7 @@ namespace understory {
 
 SearchColumns search_columns(const BlockRule& rule, const DisparityRule& disparity) {
   const int d = disparity.disparity_px;
-  return {std::max(0, d), std::max(0, -d), rule.width_px - std::abs(d)};
+  return {std::max(0, d), std::max(0, -d), rule.width_px - std::abs(d) - rule.right_margin_px};
 }
 
 EdgeColumns edge_columns(const BlockRule& rule) {
@@ -49,9 +49,11 @@ int row_count(const BlockRule& rule) { return std::min(rule.last_row_px, rule.he
 void assert_sound(const BlockRule& rule) {
   assert_always(rule.width_px >= block_px && rule.height_px >= block_px, "images must hold a block");
   assert_always(rule.stride_px > 0 && rule.last_row_px >= 0, "blocks need a stride and a first row");
+  assert_always(rule.right_margin_px >= 0, "a margin lies inside the image");
   assert_always(!rule.disparities.empty(), "a rule needs a disparity");
   for (const DisparityRule& one : rule.disparities)
-    assert_always(std::abs(one.disparity_px) + block_px <= rule.width_px, "disparity wider than the image");
+    assert_always(std::abs(one.disparity_px) + rule.right_margin_px + block_px <= rule.width_px,
+                  "disparity wider than the image");
 }
 
 }  // namespace understory

@@ -22,7 +22,8 @@ struct BlockRule {
   /// Dense: a window at every pixel, and of each cell of 5x5 windows the one with the minimum score (the
   /// first of equals, by row, then column) goes on to the filters. The stride has no part in it.
   bool every_pixel = false;
-  int last_row_px = 0;  ///< top edge of the lowest blocks that may be looked at
+  int last_row_px = 0;      ///< top edge of the lowest blocks that may be looked at
+  int right_margin_px = 0;  ///< columns at the end of a search that no block touches
   std::vector<DisparityRule> disparities;
 
   bool horizontal_invariance = false;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <stdexcept>
 
 #include "perception/assertion.hpp"
 #include "perception/pushbroom/block_score.hpp"
@@ -23,14 +25,79 @@ double vertex_px(const BlockMatch& match) {
   return bend > 0 ? 0.5 * (match.sad_below - match.sad_above) / bend : 0;
 }
 
+/// The whole disparities that the rule looks at.
+std::vector<int> disparities_of(const PushbroomConfig& config, const StereoRig& rig) {
+  std::vector<int> disparities_px = config.disparities_px;
+  for (const double depth_m : config.depths_m) disparities_px.push_back(whole(rig.disparity_px(depth_m)));
+  if (disparities_px.empty()) disparities_px.push_back(whole(rig.disparity_px(rig.detection_depth_m)));
+  return disparities_px;
+}
+
+template <typename... Parts>
+std::string text_of(const Parts&... parts) {
+  std::ostringstream text;
+  (text << ... << parts);
+  return text.str();
+}
+
+/// The visitor that finds a number out of its range.
+struct RangeCheck {
+  std::string fault;
+  template <typename T>
+  void operator()(const char*, T&) {}
+  template <typename T, typename Bound>
+  void operator()(const char* name, const T& field, Bound minimum, Bound maximum) {
+    if constexpr (std::is_arithmetic_v<T>) {
+      if (!(field >= minimum && field <= maximum))  // written so that nan is refused
+        fault = text_of(name, ": expected ", minimum, " to ", maximum, ", found ", field);
+    } else if constexpr (requires { field.has_value(); }) {
+      if (field) (*this)(name, *field, minimum, maximum);
+    } else {
+      for (const auto value : field) (*this)(name, value, minimum, maximum);
+    }
+  }
+};
+
 }  // namespace
 
-int last_row_px_of(int height_px) { return whole(PushbroomConfig().last_row_px * height_px / 240.0); }
+std::vector<double> stated_depths_m(const PushbroomConfig& config, const StereoRig& rig) {
+  std::vector<double> depths_m = config.depths_m;
+  for (const int px : config.disparities_px) depths_m.push_back(rig.depth_m(px));
+  return depths_m;
+}
+
+std::string fault_of(const PushbroomConfig& config, const StereoRig& rig) {
+  RangeCheck range;
+  PushbroomConfig visited = config;  // visitors take fields they could change
+  visit_fields(range, visited);
+  range("depths_m", config.depths_m, 0.1, 1000.0);
+  if (!range.fault.empty()) return range.fault;
+  if (!config.depths_m.empty() && !config.disparities_px.empty())
+    return "disparities_px: expected these or depths_m, found both";
+  const std::vector<int> disparities_px = disparities_of(config, rig);
+  for (const auto& [name, thresholds] :
+       {std::pair("depths_minimum_edge_sum", &config.depths_minimum_edge_sum),
+        std::pair("depths_score_limit", &config.depths_score_limit)})
+    if (!thresholds->empty() && thresholds->size() != disparities_px.size())
+      return text_of(name, ": expected as many as depths, ", disparities_px.size(), ", or none, found ",
+                     thresholds->size());
+  for (std::size_t i = 0; i < disparities_px.size(); ++i) {
+    if (rig.can_look_at(disparities_px[i])) continue;
+    if (!config.disparities_px.empty())
+      return text_of("disparities_px: expected disparities the rig ", rig.name, " can look at, found ",
+                     disparities_px[i], " px");
+    return text_of("depths_m: expected depths the rig ", rig.name, " can look at, found ",
+                   config.depths_m.empty() ? rig.detection_depth_m : config.depths_m[i], " m");
+  }
+  return "";
+}
 
 PushbroomConfig paper_rule() { return {}; }
 
 PushbroomConfig robust_rule() {
   PushbroomConfig config;
+  config.last_row_px = 205;
+  config.right_margin_px = 0;
   config.minimum_edge_sum = 215;
   config.score_limit = 0.25;
   config.horizontal_invariance = false;
@@ -60,24 +127,20 @@ PushbroomConfig tuned_rule(std::string_view rig) {
 }
 
 PushbroomStereo::PushbroomStereo(const StereoRig& rig, const PushbroomConfig& config)
-    : rig_(rig), config_(config), infinity_px_(whole(rig.infinity_disparity_px())) {
-  std::vector<double> depths_m = config.depths_m;
-  if (depths_m.empty()) depths_m.push_back(rig.detection_depth_m);
-  for (const double asked_m : depths_m) {
-    const int px = whole(rig.disparity_px(asked_m));
-    assert_always(px > rig.infinity_disparity_px() + 1, "detection depth within a pixel of infinity");
+    : rig_(rig),
+      config_(config),
+      infinity_px_(config.infinity_px.value_or(whole(rig.infinity_disparity_px()))) {
+  if (const std::string fault = fault_of(config, rig); !fault.empty())
+    throw std::invalid_argument("PushbroomStereo: " + fault);
+  for (const int px : disparities_of(config, rig))
     depths_.push_back({px, rig.depth_m(px), {rig.depth_m(px + 1), rig.depth_m(px - 1)}});
-  }
-  for (const auto* thresholds : {&config.depths_minimum_edge_sum, &config.depths_score_limit})
-    assert_always(thresholds->empty() || thresholds->size() == depths_.size(),
-                  "expected a threshold for each depth, or none");
-  assert_always(config.stride_px > 0 && config.invariance_row_step_px > 0, "strides must be positive");
   for (int i = 0; i < config.threads; ++i) bands_.push_back({PushbroomKernel(block_rule()), {}, {}});
 }
 
-PushbroomStereo::PushbroomStereo(const StereoCalibration& calibration, double detection_depth_m,
-                                 const PushbroomConfig& config)
-    : PushbroomStereo(rectified_rig(calibration, detection_depth_m), config) {
+PushbroomStereo::PushbroomStereo(const CalibratedRig& rig, const PushbroomConfig& config)
+    : PushbroomStereo(rig.rig, config) {
+  if (!rig.calibration) return;
+  const StereoCalibration& calibration = *rig.calibration;
   const int width = calibration.width_px, height = calibration.height_px;
   const ReadColumns columns = read_columns(block_rule());
   maps_.emplace(Maps{{nearest_places(calibration.left, width, height), width, height, columns.left_first_px,
@@ -94,7 +157,8 @@ BlockRule PushbroomStereo::block_rule() const {
   rule.width_px = rig_.width_px;
   rule.height_px = rig_.height_px;
   rule.stride_px = config_.stride_px;
-  rule.last_row_px = config_.last_row_px;
+  rule.last_row_px = rig_.scaled_row_px(config_.last_row_px);
+  rule.right_margin_px = config_.right_margin_px;
   rule.every_pixel = config_.every_pixel;
   for (std::size_t i = 0; i < depths_.size(); ++i) {
     const double edges = config_.depths_minimum_edge_sum.empty() ? config_.minimum_edge_sum

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "perception/obstacle_detector.hpp"
@@ -12,19 +13,25 @@
 
 namespace understory {
 
+/// The depths that the rule states: depths_m, or where disparities_px lie. Empty: the rig's own.
+std::vector<double> stated_depths_m(const PushbroomConfig& config, const StereoRig& rig);
+
+/// Why the rule cannot look through this rig, in one line that begins with the key at fault ("threads:
+/// expected 1 to 64, found 0"): a number out of its range, as many thresholds as neither none nor depths, a
+/// depth out of the images' sight (StereoRig::can_look_at). Empty where it can.
+std::string fault_of(const PushbroomConfig& config, const StereoRig& rig);
+
 /// Pushbroom stereo (Barry & Tedrake 2015): looks at one disparity only (or a few), and lets the aircraft's
 /// motion sweep that surface through the world. Exact: the same hits on every instruction set and with any
 /// number of threads. Detection disparities and infinity come from the rig.
 class PushbroomStereo : public ObstacleDetector {
  public:
-  /// Asserts that each detection depth gives a disparity beyond infinity and inside the image, and that there
-  /// are as many thresholds as depths, or none.
+  /// Throws std::invalid_argument with fault_of's line where there is one.
   PushbroomStereo(const StereoRig& rig, const PushbroomConfig& config);
-  /// For raw pairs: each is rectified to the nearest pixel on the way, as far as the rule looks, which equals
-  /// Rectifier and then detection. detection_depth_m serves where the config names no depths. Images must be
-  /// at least ByteRemap::chunk_px wide.
-  PushbroomStereo(const StereoCalibration& calibration, double detection_depth_m,
-                  const PushbroomConfig& config);
+  /// Takes pairs as they come from the rig. Raw ones are rectified to the nearest pixel on the way, as far as
+  /// the rule looks, which equals Rectifier and then detection; they must be at least ByteRemap::chunk_px
+  /// wide.
+  PushbroomStereo(const CalibratedRig& rig, const PushbroomConfig& config);
 
   const std::vector<StereoHit>& detect(const StereoFrame& frame) override;
 

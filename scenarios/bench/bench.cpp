@@ -81,11 +81,11 @@ void add_detectors(const CalibratedRig& rig, const std::vector<StereoFrame>& raw
   const auto detect_raw = [&](const std::string& name, const PushbroomConfig& config) {
     if (!rig.calibration) return;
     cases.push_back({name, config.threads, remap_name, 1,
-                     [&raw, detector = PushbroomStereo(*rig.calibration, rig.rig.detection_depth_m, config)](
-                         std::size_t i) mutable { detector.detect(raw[i]); }});
+                     [&raw, detector = PushbroomStereo(rig, config)](std::size_t i) mutable {
+                       detector.detect(raw[i]);
+                     }});
   };
-  PushbroomConfig paper = paper_rule(), ours = robust_rule();
-  paper.last_row_px = ours.last_row_px = last_row_px_of(rig.rig.height_px);
+  const PushbroomConfig paper = paper_rule(), ours = robust_rule();
   PushbroomConfig two_threads = paper, dense = paper, four = paper;
   two_threads.threads = 2;
   dense.every_pixel = true;

@@ -49,17 +49,21 @@ class ConfigReader {
     if (node == nullptr) return;
     if constexpr (std::is_arithmetic_v<T>) {
       field = number<T>(*node, name, static_cast<T>(minimum), static_cast<T>(maximum));
+    } else if constexpr (requires { field.reset(); }) {  // std::optional
+      field.reset();
+      if (node->kind == ConfigNode::Kind::nothing) return;
+      using Number = typename T::value_type;
+      field = number<Number>(*node, name, static_cast<Number>(minimum), static_cast<Number>(maximum));
     } else {  // Eigen::Vector3d, std::vector<double>
       constexpr bool fixed = std::is_same_v<T, Eigen::Vector3d>;
       if (node->kind != ConfigNode::Kind::list || (fixed && node->children.size() != 3)) {
         refuse(*node, name, fixed ? "a list of three numbers [x, y, z]" : "a list of numbers [a, b, ...]");
       }
       if constexpr (!fixed) field.resize(node->children.size());
-      for (std::size_t i = 0; i < node->children.size(); ++i) {
-        const double bound[] = {static_cast<double>(minimum), static_cast<double>(maximum)};
-        field[static_cast<typename std::conditional_t<fixed, Eigen::Index, std::size_t>>(i)] =
-            number<double>(node->children[i], name, bound[0], bound[1]);
-      }
+      using Number = std::decay_t<decltype(field[0])>;
+      for (std::size_t i = 0; i < node->children.size(); ++i)
+        field[static_cast<typename std::conditional_t<fixed, Eigen::Index, std::size_t>>(i)] = number<Number>(
+            node->children[i], name, static_cast<Number>(minimum), static_cast<Number>(maximum));
     }
   }
 

@@ -36,9 +36,11 @@ class ConfigWriter {
   void operator()(std::string_view name, T& field, Least, Greatest) {
     if constexpr (std::is_arithmetic_v<T>) {
       line(name, fmt::format("{}", field));
+    } else if constexpr (requires { field.reset(); }) {  // std::optional
+      line(name, field ? fmt::format("{}", *field) : "~");
     } else {
       std::string list;
-      for (const double value : field) list += fmt::format("{}{}", list.empty() ? "" : ", ", value);
+      for (const auto value : field) list += fmt::format("{}{}", list.empty() ? "" : ", ", value);
       line(name, "[" + list + "]");
     }
   }

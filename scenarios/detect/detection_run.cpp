@@ -75,7 +75,7 @@ CalibratedRig rig_for(const DetectionOptions& options, const StereoRecording& re
 VisionConfig vision_for(const DetectionOptions& options, const StereoRig& rig) {
   std::string name = options.rig.empty() ? rig_named_in(options.inputs[0]) : "";
   if (name.empty()) name = rig.name;
-  const VisionConfig config = read_vision_config(options.vision, name, rig.height_px);
+  const VisionConfig config = read_vision_config(options.vision, name);
   check_depths(config.pushbroom, rig, "perception.depths_m", "perception.pushbroom");
   return config;
 }
@@ -183,7 +183,7 @@ DetectionResult described(const CalibratedRig& camera, const PushbroomStereo& de
   for (int i = 0; i < detector.depth_count(); ++i)
     result.depths.push_back(
         {detector.detection_depth_m(i), detector.detection_disparity_px(i), detector.one_pixel_interval(i)});
-  result.last_row_px = config.pushbroom.last_row_px;
+  result.last_row_px = camera.rig.scaled_row_px(config.pushbroom.last_row_px);
   result.frames_expected = recording.frame_count();
   result.unpaired_images = recording.unpaired();
   return result;

@@ -19,7 +19,7 @@ struct DetectionOptions {
   std::filesystem::path rig;       ///< as read_calibrated_rig takes it; empty: the EuRoC input's own
   CalibrationOptions calibration;  ///< sizes left open here are the images'
   Interpolation interpolation = Interpolation::nearest;  ///< of raw images, as in flight
-  VisionConfigSources vision;   ///< the rule's last row, for 240 rows, is taken in proportion to the images'
+  VisionConfigSources vision;
   std::filesystem::path poses;  ///< empty: no map
   std::filesystem::path output_folder = "detections";
   bool video = false;  ///< one film instead of a picture per frame

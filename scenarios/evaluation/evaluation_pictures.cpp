@@ -90,7 +90,7 @@ cv::Mat heat_maps(const VisionTally& tally, const char* title) {
 }
 
 cv::Mat annotated_frame(const EvaluationFrame& frame, const StereoRig& rig, const PushbroomConfig& rule) {
-  const DetectionGrid grid(rig, rule.depths_m, rule.last_row_px);
+  const DetectionGrid grid(rig, stated_depths_m(rule, rig), rule.last_row_px);
   PushbroomStereo detector(rig, rule);
   const std::vector<StereoHit>& hits = detector.detect(frame.pair);
   cv::Mat picture;

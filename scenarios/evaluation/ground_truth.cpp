@@ -88,7 +88,7 @@ LookedAtDepth looked_at_depth(const StereoRig& rig, double asked_m) {
 
 DetectionGrid::DetectionGrid(const StereoRig& rig, std::vector<double> depths_m, int last_row_px)
     : columns(rig.width_px / truth_block_px),
-      rows(std::min(rig.height_px / truth_block_px, last_row_px / truth_block_px + 1)) {
+      rows(std::min(rig.height_px / truth_block_px, rig.scaled_row_px(last_row_px) / truth_block_px + 1)) {
   if (depths_m.empty()) depths_m.push_back(rig.detection_depth_m);
   for (const double asked_m : depths_m) depths.push_back(looked_at_depth(rig, asked_m));
 }

@@ -93,6 +93,7 @@ LookedAtDepth looked_at_depth(const StereoRig& rig, double asked_m);
 /// Where something is to be found: blocks of 5x5 px side by side, down to the last row looked at, and only
 /// columns whose partner at the disparity lies in the right image. The same for every algorithm.
 struct DetectionGrid {
+  /// `last_row_px`: as PushbroomConfig's.
   DetectionGrid(const StereoRig& rig, std::vector<double> depths_m, int last_row_px);
 
   std::vector<LookedAtDepth> depths;

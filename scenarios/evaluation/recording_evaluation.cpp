@@ -44,7 +44,9 @@ double cost_s(std::size_t algorithm, const ComputeConfig& compute) {
 PushbroomConfig papers_rule_beside(const PushbroomConfig& rule) {
   PushbroomConfig paper = paper_rule();
   paper.depths_m = rule.depths_m;
+  paper.disparities_px = rule.disparities_px;
   paper.last_row_px = rule.last_row_px;
+  paper.right_margin_px = rule.right_margin_px;
   return paper;
 }
 
@@ -112,7 +114,8 @@ class Evaluator {
   Evaluator(const fs::path& folder, const EvaluationSettings& settings)
       : settings_(settings),
         recording_(folder),
-        grid_(recording_.rig(), settings.pushbroom.depths_m, settings.pushbroom.last_row_px) {
+        grid_(recording_.rig(), stated_depths_m(settings.pushbroom, recording_.rig()),
+              settings.pushbroom.last_row_px) {
     const StereoRig& rig = recording_.rig();
     check_depths(settings.pushbroom, rig, "perception.depths_m", "perception.pushbroom");
     for (const RecordedObject& object : recording_.objects()) kinds_[object.number] = object.kind;

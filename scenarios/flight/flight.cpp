@@ -36,8 +36,8 @@ Flight::Flight(const Scenario& scenario, const FlightMachine& machine, std::vect
       computer_(nanoseconds(scenario.perception.cost_s())),
       detector_(detector_of(scenario, rig_, obstacles_, history_)),
       state_source_(state_source_of(scenario, history_)),
-      autopilot_(autopilot_config_of(scenario), scenario.airframe, rig_.rig, scenario.mission(), *detector_,
-                 *state_source_, seed_for(scenario.seed, "planner")),
+      autopilot_(autopilot_config_of(scenario, rig_.rig), scenario.airframe, rig_.rig, scenario.mission(),
+                 *detector_, *state_source_, seed_for(scenario.seed, "planner")),
       referee_(scenario),
       clock_(scenario) {}
 

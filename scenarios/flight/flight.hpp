@@ -154,6 +154,6 @@ std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const Ca
 /// The autopilot's source of state. An oracle keeps a reference to the history.
 std::unique_ptr<StateSource> state_source_of(const Scenario& scenario, const TruthHistory& history);
 
-AutopilotConfig autopilot_config_of(const Scenario& scenario);
+AutopilotConfig autopilot_config_of(const Scenario& scenario, const StereoRig& rig);
 
 }  // namespace understory

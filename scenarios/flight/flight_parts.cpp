@@ -64,10 +64,7 @@ std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const Ca
   switch (perception.detector) {
     case DetectorKind::pushbroom:
       check_depths(perception.pushbroom, rig.rig, "perception.depths_m", "perception.pushbroom");
-      if (rig.calibration)
-        return std::make_unique<PushbroomStereo>(*rig.calibration, rig.rig.detection_depth_m,
-                                                 perception.pushbroom);
-      return std::make_unique<PushbroomStereo>(rig.rig, perception.pushbroom);
+      return std::make_unique<PushbroomStereo>(rig, perception.pushbroom);
     case DetectorKind::stereo_bm:
       return full_stereo_of(rig, perception.stereo_bm, perception.full_stereo);
     case DetectorKind::stereo_sgbm:
@@ -85,9 +82,9 @@ std::unique_ptr<StateSource> state_source_of(const Scenario& scenario, const Tru
   return std::make_unique<Filter>(scenario.estimation.filter);
 }
 
-AutopilotConfig autopilot_config_of(const Scenario& scenario) {
+AutopilotConfig autopilot_config_of(const Scenario& scenario, const StereoRig& rig) {
   AutopilotConfig config = scenario.autopilot.autopilot;
-  config.resightings.depths_m = scenario.perception.pushbroom.depths_m;
+  config.resightings.depths_m = stated_depths_m(scenario.perception.pushbroom, rig);
   return config;
 }
 

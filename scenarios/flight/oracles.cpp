@@ -10,7 +10,7 @@ namespace understory {
 namespace {
 
 constexpr int block_px = 5;
-constexpr int last_row_px = 205;  // the original detector looks no lower (docs/sources.md [2])
+constexpr int last_row_of_240 = 205;  // about where the original detector ends (docs/sources.md [2])
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A bar in the left camera's frame.
@@ -130,6 +130,7 @@ const std::vector<StereoHit>& TrueDepth::detect(const StereoFrame& frame) {
   }
   hits_.clear();
   if (bars.empty() && walls.empty()) return hits_;
+  const int last_row_px = rig_.scaled_row_px(last_row_of_240);
   for (int row = 0; row <= last_row_px && row + block_px <= rig_.height_px; row += block_px) {
     for (int column = 0; column + block_px <= rig_.width_px; column += block_px) {
       const Eigen::Vector3d ray((column + 2 - rig_.center_left_x_px) / rig_.focal_px,

@@ -231,7 +231,7 @@ void visit_fields(Visitor& visit, VisionConfig& config) {
   visit("autopilot", autopilot);
 }
 
-VisionConfig read_vision_config(const VisionConfigSources& sources, std::string_view rig, int height_px) {
+VisionConfig read_vision_config(const VisionConfigSources& sources, std::string_view rig) {
   std::vector<ConfigNode> trees;
   for (const std::string& file : sources.with) trees.push_back(parse_config_file(file));
   for (const std::string& setting : sources.settings) trees.push_back(parse_assignment(setting));
@@ -240,7 +240,6 @@ VisionConfig read_vision_config(const VisionConfigSources& sources, std::string_
   for (const ConfigNode& tree : trees) read_config(tree, first);
   VisionConfig config;
   config.pushbroom = rule_of(first.rule, rig);
-  config.pushbroom.last_row_px = last_row_px_of(height_px);
   for (const ConfigNode& tree : trees) read_config(tree, config);
   config.rule = first.rule;
   return config;

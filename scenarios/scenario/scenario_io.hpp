@@ -54,10 +54,9 @@ struct VisionConfigSources {
   std::vector<std::string> settings = {};  ///< key=value, over the files
 };
 
-/// The keys over the numbers that their rule has for a rig of this name, whose rectified images have so many
-/// rows. Throws ScenarioError, one line that names file and line or the setting.
-VisionConfig read_vision_config(const VisionConfigSources& sources, std::string_view rig,
-                                int height_px = 240);
+/// The keys over the numbers that their rule has for a rig of this name. Throws ScenarioError, one line that
+/// names file and line or the setting.
+VisionConfig read_vision_config(const VisionConfigSources& sources, std::string_view rig);
 
 /// The rig that a recording was made with, as its scenario.yaml names it; empty where others recorded. Throws
 /// ScenarioError where that file cannot be read.

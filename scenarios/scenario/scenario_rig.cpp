@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "perception/io/rig_file.hpp"
-#include "perception/io/rig_limits.hpp"
+#include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "scenarios/config/config_tree.hpp"
 
 namespace understory {
@@ -68,18 +67,11 @@ CalibratedRig rig_of(const Scenario& scenario, const fs::path& models_folder) {
 
 void check_depths(const PushbroomConfig& rule, const StereoRig& rig, const std::string& depths_key,
                   const std::string& section) {
-  const std::size_t depths = std::max<std::size_t>(1, rule.depths_m.size());
-  for (const auto* thresholds : {&rule.depths_minimum_edge_sum, &rule.depths_score_limit})
-    if (!thresholds->empty() && thresholds->size() != depths)
-      throw ScenarioError(fmt::format("{}: expected thresholds for each of {} depths or none, got {}",
-                                      section, depths, thresholds->size()));
-  for (const double depth_m : rule.depths_m) {
-    StereoRig asked = rig;
-    asked.detection_depth_m = depth_m;
-    if (!rig_limits::detection_depth_in_view(asked))
-      throw ScenarioError(
-          fmt::format("{}: expected depths the rig {} can look at, got {} m", depths_key, rig.name, depth_m));
-  }
+  const std::string fault = fault_of(rule, rig);
+  if (fault.empty()) return;
+  constexpr std::string_view depths = "depths_m";
+  throw ScenarioError(fault.starts_with("depths_m:") ? depths_key + fault.substr(depths.size())
+                                                     : section + "." + fault);
 }
 
 }  // namespace understory

@@ -14,9 +14,8 @@ namespace understory {
 /// ScenarioError in one line where there is no such rig or its files cannot be read.
 CalibratedRig rig_of(const Scenario& scenario, const std::filesystem::path& models_folder);
 
-/// Throws ScenarioError, one line, where the rig cannot look at one of the rule's depths or where thresholds
-/// are not as many as depths. The line names the keys as the user writes them: `depths_key`, and the section
-/// of the thresholds.
+/// Throws ScenarioError, one line, where the rule cannot look through the rig (fault_of). The line names the
+/// keys as the user writes them: `depths_key`, and the section of all others.
 void check_depths(const PushbroomConfig& rule, const StereoRig& rig, const std::string& depths_key,
                   const std::string& section);
 

@@ -26,15 +26,18 @@ class NumericKeyCollector {
   template <typename T, typename Least, typename Greatest>
   void operator()(std::string_view name, T& field, Least minimum, Greatest maximum) {
     const double low = static_cast<double>(minimum), high = static_cast<double>(maximum);
-    const std::string key = prefix_ + std::string(name);
+    const std::string key = fmt::format("{}{}", prefix_, name);
     if constexpr (std::is_same_v<T, std::uint64_t>) {
-      return;  // seeds
+      return;                                            // seeds
+    } else if constexpr (requires { field.reset(); }) {  // stated by hand or not at all
+      return;
     } else if constexpr (std::is_arithmetic_v<T>) {
       keys.push_back({key, std::is_integral_v<T>, low, high, static_cast<double>(field)});
     } else {
       int index = 0;
-      for (const double value : field)
-        keys.push_back({fmt::format("{}[{}]", key, index++), false, low, high, value});
+      for (const auto value : field)
+        keys.push_back({fmt::format("{}[{}]", key, index++), std::is_integral_v<decltype(value)>, low, high,
+                        static_cast<double>(value)});
     }
   }
 

@@ -34,7 +34,7 @@ class VisionJudge : public Judge {
       if (!is_same_rig(recording.rig(), rig_))
         throw ScenarioError(fmt::format("{}: expected the rig of {}, found another (one tuning, one rig)",
                                         folder.string(), folders.front().string()));
-      const DetectionGrid grid(rig_, usual_.depths_m, usual_.last_row_px);
+      const DetectionGrid grid(rig_, stated_depths_m(usual_, rig_), usual_.last_row_px);
       HeldRecording& held = recordings_.emplace_back();
       held.objects = recording.objects();
       for (std::size_t i = 0; i < recording.frame_count(); i += static_cast<std::size_t>(every)) {
@@ -81,10 +81,11 @@ class VisionJudge : public Judge {
   /// obstacles within 1 m and 3 m of the path that were found.
   Counts count(const HeldRecording& recording, const PushbroomConfig& rule) const {
     PushbroomStereo detector(rig_, rule);
-    const DetectionGrid grid(rig_, rule.depths_m, rule.last_row_px);
+    const DetectionGrid grid(rig_, stated_depths_m(rule, rig_), rule.last_row_px);
     ObstacleSightings sightings(recording.objects, rig_.baseline_m);
     Rates rates;
-    const bool looks_as_usual = rule.depths_m == usual_.depths_m && rule.last_row_px == usual_.last_row_px;
+    const bool looks_as_usual = stated_depths_m(rule, rig_) == stated_depths_m(usual_, rig_) &&
+                                rule.last_row_px == usual_.last_row_px;
     for (std::size_t i = 0; i < recording.frames.size(); ++i) {
       const EvaluationFrame& frame = recording.frames[i];
       const std::vector<StereoHit>& hits = detector.detect(frame.pair);

@@ -12,8 +12,17 @@ endfunction()
 
 must(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 must(${CMAKE_COMMAND} -S ${EXAMPLE} -B ${WORK}/build -G Ninja -D CMAKE_PREFIX_PATH=${WORK}/prefix
-     -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_BUILD_TYPE=Release)
+     -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_BUILD_TYPE=Release -D "CMAKE_CXX_FLAGS=-Wall -Wextra -Werror")
 must(${CMAKE_COMMAND} --build ${WORK}/build)
+# Who names no component is told of both all the same.
+file(WRITE ${WORK}/nameless/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)
+project(nameless LANGUAGES CXX)
+find_package(understory REQUIRED)
+if(NOT understory_perception_FOUND OR NOT understory_estimation_FOUND)
+  message(FATAL_ERROR \"components that are there are not told\")
+endif()
+")
+must(${CMAKE_COMMAND} -S ${WORK}/nameless -B ${WORK}/nameless/build -D CMAKE_PREFIX_PATH=${WORK}/prefix)
 # The installed program finds its module of picture codecs and its data wherever the prefix was moved to, from any
 # folder, and knows nothing of the source tree.
 file(RENAME ${WORK}/prefix ${WORK}/moved)
@@ -38,7 +47,29 @@ string(SUBSTRING "${pixels}" 0 90240 pixels)
 foreach(side left right)
   file(WRITE ${WORK}/${side}.pgm "P5\n376 240\n255\n${pixels}")
 endforeach()
+function(expect_words words)
+  if(NOT output MATCHES "${words}")
+    message(FATAL_ERROR "expected ${words}, the example said: ${output}")
+  endif()
+endfunction()
 must(${WORK}/build/example ${RIG} ${WORK}/left.pgm ${WORK}/right.pgm)
-if(NOT output MATCHES "looking 10.14 m ahead: [0-9]+ points")
-  message(FATAL_ERROR "the example said: ${output}")
-endif()
+expect_words("looking 10.14 m ahead: [0-9]+ hits, [0-9]+ points")
+# A rectified recording, as `understory record` writes it, of a camera without distortion.
+set(offset_0 0)
+set(offset_1 -0.3)
+foreach(camera 0 1)
+  file(WRITE ${WORK}/recorded/mav0/cam${camera}/sensor.yaml "sensor_type: camera
+T_BS: {rows: 4, cols: 4, data: [0, 0, 1, 0, -1, 0, 0, ${offset_${camera}}, 0, -1, 0, 0, 0, 0, 0, 1]}
+resolution: [376, 240]
+camera_model: pinhole
+intrinsics: [380, 380, 188, 120]
+distortion_model: radial-tangential
+distortion_coefficients: [0, 0, 0, 0]
+rectification: [1, 0, 0, 0, 1, 0, 0, 0, 1]
+rectified_intrinsics: [380, 188, 120]
+")
+  file(WRITE ${WORK}/recorded/mav0/cam${camera}/data.csv "#timestamp [ns],filename\n100,100.pgm\n")
+  file(WRITE ${WORK}/recorded/mav0/cam${camera}/data/100.pgm "P5\n376 240\n255\n${pixels}")
+endforeach()
+must(${WORK}/build/example ${WORK}/recorded ${WORK}/recorded)
+expect_words("looking [0-9.]+ m ahead: [0-9]+ hits, [0-9]+ points")

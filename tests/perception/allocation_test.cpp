@@ -46,7 +46,7 @@ TEST(Allocation, AFrameAllocatesNothingAfterTheFirst) {
     for (const int threads : {1, 2}) {
       config.threads = threads;
       PushbroomStereo rectified(rig, config);
-      PushbroomStereo raw(calibration_of(rig), rig.detection_depth_m, config);
+      PushbroomStereo raw(CalibratedRig{rig, calibration_of(rig)}, config);
       for (PushbroomStereo* detector : {&rectified, &raw}) expect_no_allocation(*detector, frames);
     }
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <random>
 
 #include "perception/pushbroom/pushbroom_stereo.hpp"
@@ -16,12 +17,8 @@ struct Reference {
   cv::Mat left, right, left_edges, right_edges;
   int disparity, infinity;
 
-  Reference(const StereoFrame& frame, const StereoRig& rig)
-      : left(frame.left),
-        right(frame.right),
-        disparity(static_cast<int>(std::lround(rig.focal_px * rig.baseline_m / rig.detection_depth_m +
-                                               rig.center_left_x_px - rig.center_right_x_px))),
-        infinity(static_cast<int>(std::lround(rig.center_left_x_px - rig.center_right_x_px))) {
+  Reference(const StereoFrame& frame, int disparity_px, int infinity_px)
+      : left(frame.left), right(frame.right), disparity(disparity_px), infinity(infinity_px) {
     cv::Laplacian(left, left_edges, CV_8U, 3);
     cv::Laplacian(right, right_edges, CV_8U, 3);
   }
@@ -85,11 +82,9 @@ cv::Mat noise_image(const StereoRig& rig, std::mt19937_64& generator, bool satur
 
 /// Random, saturated, flat, textured; the right image partly the left one moved, so that every branch is
 /// taken.
-std::vector<StereoFrame> frames(const StereoRig& rig) {
+std::vector<StereoFrame> frames(const StereoRig& rig, int disparity, int infinity) {
   std::vector<StereoFrame> list;
   std::mt19937_64 generator(4);
-  const int disparity = static_cast<int>(std::lround(rig.disparity_px(rig.detection_depth_m)));
-  const int infinity = static_cast<int>(std::lround(rig.infinity_disparity_px()));
   for (const bool saturated : {false, true}) {
     for (const int shift : {disparity, infinity + 2}) {
       StereoFrame frame{0, noise_image(rig, generator, saturated), noise_image(rig, generator, saturated)};
@@ -108,17 +103,42 @@ std::vector<StereoFrame> frames(const StereoRig& rig) {
   return list;
 }
 
-class ExactRule : public testing::TestWithParam<const char*> {};
+/// What the original's files state: a calibration, and by hand (or here from the calibration) two
+/// disparities.
+struct Case {
+  const char* rig_file;
+  std::optional<int> disparity_px, infinity_px;
+};
+
+void PrintTo(const Case& test, std::ostream* out) {
+  *out << test.rig_file << (test.disparity_px ? " by hand" : "");
+}
+
+class ExactRule : public testing::TestWithParam<Case> {
+ protected:
+  StereoRig rig = support::house_rig(GetParam().rig_file);
+  int disparity = GetParam().disparity_px.value_or(static_cast<int>(std::lround(
+      rig.focal_px * rig.baseline_m / rig.detection_depth_m + rig.center_left_x_px - rig.center_right_x_px)));
+  int infinity = GetParam().infinity_px.value_or(
+      static_cast<int>(std::lround(rig.center_left_x_px - rig.center_right_x_px)));
+
+  PushbroomConfig stated(PushbroomConfig config) const {
+    if (GetParam().disparity_px) config.disparities_px = {*GetParam().disparity_px};
+    config.infinity_px = GetParam().infinity_px;
+    return config;
+  }
+};
 
 TEST_P(ExactRule, PaperRuleEqualsTheReference) {
-  const StereoRig rig = support::house_rig(GetParam());
-  PushbroomStereo detector(rig, paper_rule());
+  PushbroomStereo detector(rig, stated(paper_rule()));
   std::size_t found = 0, rejected = 0;
-  for (const StereoFrame& frame : frames(rig)) {
-    const Reference reference(frame, rig);
+  for (const StereoFrame& frame : frames(rig, disparity, infinity)) {
+    const Reference reference(frame, disparity, infinity);
     Places expected;
-    for (int v = 0; v <= 205; v += 5)
-      for (int u = reference.disparity; u + 5 <= rig.width_px; u += 5) {
+    // The original's loops ([2], docs/sources.md): blocks wholly above lastValidPixelRow, columns j < cols
+    // - 5.
+    for (int v = 0; v + 5 <= 205; v += 5)
+      for (int u = reference.disparity; u < rig.width_px - 5; u += 5) {
         if (!reference.scores(u, v, 860, 54000)) continue;
         if (reference.repeats(u, v))
           ++rejected;
@@ -133,14 +153,13 @@ TEST_P(ExactRule, PaperRuleEqualsTheReference) {
 }
 
 TEST_P(ExactRule, UniquenessEqualsTheReference) {
-  const StereoRig rig = support::house_rig(GetParam());
-  PushbroomConfig config = robust_rule();
+  PushbroomConfig config = stated(robust_rule());
   config.isolation = false;
   PushbroomStereo detector(rig, config);
   const int maximum = static_cast<int>(std::floor(rig.disparity_px(config.uniqueness_minimum_depth_m)));
   std::size_t found = 0, rejected = 0;
-  for (const StereoFrame& frame : frames(rig)) {
-    const Reference reference(frame, rig);
+  for (const StereoFrame& frame : frames(rig, disparity, infinity)) {
+    const Reference reference(frame, disparity, infinity);
     Places expected;
     for (int v = 0; v <= 205; v += 5)
       for (int u = reference.disparity; u + 5 <= rig.width_px; u += 5) {
@@ -157,7 +176,12 @@ TEST_P(ExactRule, UniquenessEqualsTheReference) {
   EXPECT_GT(rejected, 100u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Rigs, ExactRule, testing::Values("paper.yaml", "long.yaml"));
+// The original's files say 95 and 21 px where the calibrations' infinity lies at 92 and 20. A disparity of
+// 106 leaves the left image columns for whole blocks only, of which the original leaves out the last.
+INSTANTIATE_TEST_SUITE_P(Rigs, ExactRule,
+                         testing::Values(Case{"paper.yaml", {}, {}}, Case{"long.yaml", {}, {}},
+                                         Case{"paper.yaml", 105, 95}, Case{"paper.yaml", 106, 95},
+                                         Case{"long.yaml", 31, 21}));
 
 }  // namespace
 }  // namespace understory

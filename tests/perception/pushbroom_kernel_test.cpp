@@ -202,8 +202,12 @@ TEST(PushbroomKernel, EqualsThePlainRuleForRulesDrawnAtRandom) {
     BlockRule rule = rule_of(width, height, {disparity});
     if (*rc::gen::arbitrary<bool>())
       rule.disparities.push_back({*rc::gen::inRange(-(width - 5), width - 4), 0, score_limit_units(10)});
+    int largest_px = 0;
+    for (const DisparityRule& one : rule.disparities)
+      largest_px = std::max(largest_px, std::abs(one.disparity_px));
     rule.stride_px = *rc::gen::inRange(1, 9);
     rule.every_pixel = *rc::gen::arbitrary<bool>();
+    rule.right_margin_px = *rc::gen::inRange(0, width - block_px - std::abs(largest_px) + 1);
     rule.last_row_px = *rc::gen::inRange(0, 60);
     rule.disparities.front().minimum_edge_sum = *rc::gen::inRange(0, largest_edge_sum + 1);
     rule.disparities.front().limit_units = *rc::gen::inRange<std::int64_t>(0, 10 * score_unit);
@@ -231,6 +235,9 @@ TEST(PushbroomKernel, RefusesRulesThatCannotBeMeant) {
   rule.disparities.front().disparity_px = 96;
   EXPECT_THROW(PushbroomKernel{rule}, std::logic_error);
   rule = rule_of(100, 4, {10});
+  EXPECT_THROW(PushbroomKernel{rule}, std::logic_error);
+  rule = rule_of(100, 50, {10});
+  rule.right_margin_px = 86;
   EXPECT_THROW(PushbroomKernel{rule}, std::logic_error);
   rule = rule_of(100, 50, {10});
   rule.stride_px = 0;

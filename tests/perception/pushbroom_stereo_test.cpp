@@ -26,16 +26,17 @@ using support::render_plane;
 using support::SyntheticPlane;
 
 /// Blocks of the detector's grid whose left and right edges suffice: those that could hit at all.
-int textured_blocks(const StereoFrame& frame, const PushbroomStereo& detector, int minimum_edge_sum) {
+int textured_blocks(const StereoFrame& frame, const PushbroomStereo& detector,
+                    const PushbroomConfig& config) {
   cv::Mat left, right;
   cv::Laplacian(frame.left, left, CV_8U, 3);
   cv::Laplacian(frame.right, right, CV_8U, 3);
   const int d = detector.detection_disparity_px();
   int count = 0;
-  for (int v = 0; v <= 205; v += 5)
-    for (int u = d; u + 5 <= left.cols; u += 5)
-      count += cv::sum(left(cv::Rect(u, v, 5, 5)))[0] >= minimum_edge_sum &&
-               cv::sum(right(cv::Rect(u - d, v, 5, 5)))[0] >= minimum_edge_sum;
+  for (int v = 0; v <= config.last_row_px; v += 5)
+    for (int u = d; u + 5 + config.right_margin_px <= left.cols; u += 5)
+      count += cv::sum(left(cv::Rect(u, v, 5, 5)))[0] >= config.minimum_edge_sum &&
+               cv::sum(right(cv::Rect(u - d, v, 5, 5)))[0] >= config.minimum_edge_sum;
   return count;
 }
 
@@ -51,7 +52,7 @@ Share share(const StereoRig& rig, const PushbroomConfig& config, SyntheticPlane 
   Share share;
   for (plane.seed = 1; plane.seed <= 4; ++plane.seed) {
     const StereoFrame frame = render_plane(rig, plane);
-    share.textured += textured_blocks(frame, detector, config.minimum_edge_sum);
+    share.textured += textured_blocks(frame, detector, config);
     share.hits += static_cast<int>(detector.detect(frame).size());
   }
   return share;
@@ -213,7 +214,7 @@ TEST(PushbroomStereo, RawPairsGiveTheHitsOfRectifiedOnesWithAnyNumberOfThreads) 
         for (const int threads : {1, 2, 3, 7}) {
           config.threads = threads;
           EXPECT_EQ(PushbroomStereo(rig, config).detect(rectified), expected);
-          PushbroomStereo raw_detector(calibration, rig.detection_depth_m, config);
+          PushbroomStereo raw_detector(CalibratedRig{rig, calibration}, config);
           EXPECT_EQ(raw_detector.detect(raw), expected);
           EXPECT_EQ(raw_detector.detect(raw), expected);
         }
@@ -298,6 +299,51 @@ TEST(PushbroomStereo, EachDepthHasItsOwnThresholdsWhereTheyAreGiven) {
   EXPECT_EQ(hits_at_7(config), all);
   config.depths_minimum_edge_sum = {215};
   EXPECT_THROW(PushbroomStereo(rig, config), std::logic_error);
+}
+
+// Of images of 480 rows, the rows looked at are twice as many as of 240; with those alone they would end
+// early.
+TEST(PushbroomStereo, LooksAsFarDownTallerImages) {
+  StereoRig rig = house_rig("long.yaml");
+  rig.height_px = 480;
+  rig.center_y_px = 240;
+  for (const auto& [config, last_row_px] : {std::pair(paper_rule(), 400), std::pair(robust_rule(), 410)}) {
+    PushbroomStereo detector(rig, config);
+    int lowest_px = 0;
+    for (const StereoHit& hit : detector.detect(render_plane(rig, {.depth_m = detector.detection_depth_m()})))
+      lowest_px = std::max(lowest_px, hit.row_px);
+    EXPECT_EQ(lowest_px, last_row_px);
+  }
+}
+
+TEST(PushbroomStereo, RefusesRulesThatCannotBeMeant) {
+  const StereoRig rig = house_rig("long.yaml");
+  const auto expect_fault = [&](const std::string& fault, const auto& change) {
+    PushbroomConfig config = robust_rule();
+    change(config);
+    EXPECT_EQ(fault_of(config, rig), fault);
+    EXPECT_THROW(PushbroomStereo(rig, config), std::invalid_argument);
+  };
+  EXPECT_EQ(fault_of(robust_rule(), rig), "");
+  for (const int threads : {0, -1, 65})
+    expect_fault("threads: expected 1 to 64, found " + std::to_string(threads),
+                 [&](PushbroomConfig& config) { config.threads = threads; });
+  expect_fault("score_limit: expected 0 to 10, found nan",
+               [](PushbroomConfig& config) { config.score_limit = std::nan(""); });
+  expect_fault("depths_m: expected depths the rig long can look at, found 900 m",
+               [](PushbroomConfig& config) {
+                 config.depths_m = {10, 900};
+               });
+  expect_fault("depths_m: expected 0.1 to 1000, found -1",
+               [](PushbroomConfig& config) { config.depths_m = {-1}; });
+  expect_fault("disparities_px: expected disparities the rig long can look at, found 20 px",
+               [](PushbroomConfig& config) {
+                 config.disparities_px = {30, 20};
+               });
+  expect_fault("disparities_px: expected these or depths_m, found both", [](PushbroomConfig& config) {
+    config.depths_m = {10};
+    config.disparities_px = {30};
+  });
 }
 
 TEST(PushbroomStereo, RefusesImagesOfAnotherSizeOrKind) {

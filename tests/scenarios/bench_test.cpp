@@ -22,7 +22,7 @@ TEST(StereoScenes, ShowTextureAtTheDetectionDepthAndNeverTheSameTwice) {
   const CalibratedRig rig = long_rig();
   const std::vector<StereoFrame> frames = stereo_scenes(rig, 4, 1);
   PushbroomConfig config = robust_rule();
-  PushbroomStereo detector(*rig.calibration, rig.rig.detection_depth_m, config);
+  PushbroomStereo detector(rig, config);
   std::size_t hits = 0;
   for (const StereoFrame& frame : frames) hits += detector.detect(frame).size();
   EXPECT_GT(hits, 10u);  // both eyes see one world

@@ -242,7 +242,7 @@ TEST(Cli, BadScenariosAreNamedByFileLineAndKey) {
                  "forest.clear_m: expected each key once");
   expect_refusal("fly clear --seed x", "seed: expected a whole number");
   expect_refusal("fly clear --set 'perception.depths_m=[10, 900]' --out " + folder.path.string(),
-                 "perception.depths_m: expected depths the rig long can look at, got 900 m");
+                 "perception.depths_m: expected depths the rig long can look at, found 900 m");
 }
 
 TEST(Cli, AnUnwritableFolderIsBadInput) {

@@ -210,9 +210,9 @@ TEST_F(Detect, BadInputIsOneLineAndLeavesNoResult) {
   refuse(detect + " --unit inch", "--unit");
   refuse(detect + " --set perception.pushbroom.edges=3", "perception.pushbroom.edges: expected a known key");
   refuse(detect + " --set perception.depths_m=[4.8,900]",
-         "perception.depths_m: expected depths the rig paper can look at, got 900 m");
+         "perception.depths_m: expected depths the rig paper can look at, found 900 m");
   refuse(detect + " --set perception.pushbroom.depths_score_limit=[0.1,0.2]",
-         "perception.pushbroom: expected thresholds for each of 1 depths or none, got 2");
+         "perception.pushbroom.depths_score_limit: expected as many as depths, 1, or none, found 2");
   refuse(detect + " --poses " + folder.write("p.txt", "0 0 0 0 0 0 0 1\n1 0 0\n").string(),
          "p.txt:2: expected");
   refuse(detect + " --poses " + folder.write("q.txt", "0 0 0 0 0 0 0 1\n").string(),

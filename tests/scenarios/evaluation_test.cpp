@@ -36,7 +36,7 @@ struct Plane {
   DetectionGrid grid;
   EvaluationFrame frame;
   Plane(const char* name, double beyond_m)
-      : rig(support::house_rig(name)), grid(rig, {}, PushbroomConfig().last_row_px) {
+      : rig(support::house_rig(name)), grid(rig, {}, robust_rule().last_row_px) {
     support::SyntheticPlane plane;
     plane.depth_m = grid.depths[0].depth_m + beyond_m;
     frame.pair = support::render_plane(rig, plane);

@@ -125,10 +125,7 @@ void expect_same_hits(const Flown& flight, const fs::path& recorded, const fs::p
                                            (recorded / "mav0/state_groundtruth_estimate0/data.csv").string() +
                                            " --out " + out.string());
   ASSERT_EQ(outcome.status, 0) << outcome.text;
-  const StereoRig& rig = flight.rig.rig;
-  PushbroomStereo detector =
-      flight.rig.calibration ? PushbroomStereo(*flight.rig.calibration, rig.detection_depth_m, robust_rule())
-                             : PushbroomStereo(rig, robust_rule());
+  PushbroomStereo detector(flight.rig, robust_rule());
   std::vector<FrameHits> expected;
   std::size_t hits = 0;
   for (const StereoFrame& frame : flight.frames) {

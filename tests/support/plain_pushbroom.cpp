@@ -129,7 +129,9 @@ std::vector<BlockMatch> plain_matches(const BlockRule& rule, const GrayView& lef
         const DisparityRule& one = rule.disparities[i];
         const int first = std::max(0, one.disparity_px), partner = column - one.disparity_px;
         if (column < first || (column - first) % stride != 0) continue;
-        if (!inside(left, column, row) || !inside(right, partner, row)) continue;
+        // The last block to be compared ends the margin before the image does, in whichever image ends first.
+        const int margin = rule.right_margin_px;
+        if (!inside(left, column + margin, row) || !inside(right, partner + margin, row)) continue;
         const BlockMatch match{column,
                                row,
                                static_cast<int>(i),
