@@ -60,9 +60,11 @@ class KeyLister {
     const std::string range = fmt::format("{} .. {}", minimum, maximum);
     if constexpr (std::is_arithmetic_v<T>) {
       add(name, fmt::format("{}", field), range);
+    } else if constexpr (requires { field.reset(); }) {  // std::optional
+      add(name, field ? fmt::format("{}", *field) : "~", range);
     } else {
       std::string values;
-      for (const double value : field) values += fmt::format("{}{}", values.empty() ? "" : ", ", value);
+      for (const auto value : field) values += fmt::format("{}{}", values.empty() ? "" : ", ", value);
       add(name, "[" + values + "]", range);
     }
   }

@@ -10,36 +10,48 @@ namespace understory {
 
 /// What is asked whether it is as large as the filter says: squared normalized errors (NEES) of three blocks,
 /// squared normalized innovations (NIS) of three measurements.
-inline constexpr int squared_count = 6;
-extern const std::array<const char*, squared_count> squared_names;
-extern const std::array<int, squared_count> squared_degrees;
+struct SquaredError {
+  const char* name;
+  int degrees;
+};
+inline constexpr std::array<SquaredError, 6> squared_errors{{{"attitude", 3},
+                                                             {"velocity", 3},
+                                                             {"position drift", 3},
+                                                             {"airspeed", 1},
+                                                             {"altitude", 1},
+                                                             {"sideslip", 1}}};
 
-/// Of one trial: at each moment since the release, s, the six; nan where nothing was measured.
-struct SquaredErrors {
-  std::vector<double> since_release_s;
-  std::vector<std::array<double, squared_count>> squared;
+/// Of one moment of a trial, since the release; nan where nothing was measured.
+struct SquaredMoment {
+  double since_release_s = 0;
+  std::array<double, squared_errors.size()> squared{};
 };
 
-SquaredErrors squared_errors(const std::vector<TrialMoment>& moments, double release_s, double from_s,
-                             double to_s);
+/// Between 0.3 and 5 s after the release, when every forest flight is on its way.
+std::vector<SquaredMoment> squared_moments(const FlightTrace& flight, const TrialConfig& trial);
+/// How long a flight must last for that.
+inline constexpr double consistency_minimum_s = 6;
 
 /// One of the six, averaged over flights at each moment, against the spread that an honest filter shows:
 /// chi-square (Bar-Shalom, Li and Kirubarajan 2001, section 5.4).
 struct Consistency {
   std::string name;
   int degrees = 3;
-  std::vector<double> since_release_s;
-  std::vector<double> average;   ///< over the flights; `degrees` is what it should be
+  std::vector<std::pair<double, double>>
+      averages;                  ///< since the release, s; over the flights: should be `degrees`
   double low = 0, high = 0;      ///< 95 % of the averages of an honest filter lie between
   double share_inside = 0;       ///< of the moments
   double mean_over_degrees = 0;  ///< of all moments and flights, divided by `degrees`: 1 is honest
 };
 
-/// Each trial is one flight with sensors of its own; the shortest decides how far it goes.
-std::vector<Consistency> consistency(const std::vector<SquaredErrors>& trials);
+/// Each trial is one flight with sensors of its own; the shortest decides how far it goes. Without what was
+/// never measured.
+std::vector<Consistency> consistency(const std::vector<std::vector<SquaredMoment>>& trials);
 
-/// The value below which a chi-square variable falls with `probability` (Wilson and Hilferty 1931; relative
-/// error below 1 % from 10 degrees on).
-double chi_square_quantile_of_many(double probability, double degrees);
+/// forest.yaml in calm air, the catapult firing midway between two IMU samples, as it does on average.
+Scenario matched_scenario(std::uint64_t seed);
+/// Sensors with white noise and constants alone, and a filter that is told their sizes. Aerodynamics as
+/// measurements are off: their noise is the accelerometer's, which moves the filter already.
+TrialConfig matched_trial(const FlightTrace& flight, std::uint64_t sensor_seed);
 
 }  // namespace understory

@@ -1,12 +1,19 @@
 #include "tests/validation/estimator_trial.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <cmath>
 #include <deque>
+#include <future>
 #include <limits>
+#include <memory>
+#include <random>
 
+#include "scenarios/flight/flight.hpp"
 #include "scenarios/flight/onboard_sensors.hpp"
 #include "scenarios/flight/oracles.hpp"
+#include "scenarios/flight/run_record.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 namespace {
@@ -39,7 +46,7 @@ class Sight {
 /// Tells the filter of what was seen again, one latency late.
 class SightingAgain {
  public:
-  SightingAgain(const RecordedFlight& flight, const TrialConfig& config)
+  SightingAgain(const FlightTrace& flight, const TrialConfig& config)
       : seen_(config.sightings),
         T_body_camera_(flight.rig.T_body_camera),
         latency_ns_(std::llround(flight.scenario.cameras.latency_s * 1e9)),
@@ -85,13 +92,48 @@ FilterConfig woken_at(const Truth& truth, FilterConfig filter) {
 
 }  // namespace
 
-void take_preset(TrialConfig& config, const FilterConfig& preset) {
-  const StartConfig start = config.filter.start;
-  config.filter = preset;
-  config.filter.start = start;
+FlightTrace traced_flight(Scenario scenario, StateKind flown_on) {
+  scenario.perception.detector = DetectorKind::true_depth;
+  scenario.estimation.source = flown_on;
+  RunRecord record;
+  Flight flight(scenario, {UNDERSTORY_SOURCE_DIR "/models"}, {&record});
+  FlightTrace trace{scenario, flight.rig().rig, flight.obstacles()};
+  while (!flight.ending()) {
+    if (!flight.launched()) ++trace.release_step;
+    trace.truths.push_back(flight.truth());
+    flight.step();
+  }
+  trace.result = record.finish(flight);
+  return trace;
 }
 
-Sightings sightings(const RecordedFlight& flight, const std::vector<double>& depths_m) {
+Scenario forest_in(const Air& air, std::uint64_t seed) {
+  Scenario scenario =
+      load_scenario(UNDERSTORY_SOURCE_DIR "/scenarios/library/forest.yaml", {fmt::format("seed={}", seed)});
+  scenario.autopilot = {};
+  scenario.wind_world_mps = {0, air.wind_mps, 0};
+  if (air.turbulent) scenario.wind.turbulence_wind20_mps = air.wind_mps;
+  return scenario;
+}
+
+int measure_flights(int flights, const std::function<Scenario(int)>& scenario, double minimum_s,
+                    const std::function<void(int, const FlightTrace&)>& measure) {
+  std::future<void> measured;
+  int left_out = 0;
+  for (int number = 0; number < flights; ++number) {
+    auto flight = std::make_shared<FlightTrace>(traced_flight(scenario(number)));
+    if (static_cast<double>(flight->truths.size()) < minimum_s * physics_rate_hz) {
+      ++left_out;
+      continue;
+    }
+    if (measured.valid()) measured.get();
+    measured = std::async(std::launch::async, [&measure, number, flight] { measure(number, *flight); });
+  }
+  if (measured.valid()) measured.get();
+  return left_out;
+}
+
+Sightings sightings(const FlightTrace& flight, const std::vector<double>& depths_m) {
   Sightings seen;
   TruthHistory history;
   std::deque<Sight> sights;
@@ -110,95 +152,67 @@ Sightings sightings(const RecordedFlight& flight, const std::vector<double>& dep
   return seen;
 }
 
-std::vector<TrialMoment> run_trial(const RecordedFlight& flight, const TrialConfig& config) {
+TrialConfig trial_of(const FlightTrace& flight, std::uint64_t sensor_seed) {
+  TrialConfig config;
+  config.filter = flight.scenario.estimation.filter;
+  config.sensors = flight.scenario.sensors.sensors;
+  config.sensor_seed = sensor_seed;
+  return config;
+}
+
+void take_preset(TrialConfig& config, const FilterConfig& preset) {
+  const StartConfig start = config.filter.start;
+  config.filter = preset;
+  config.filter.start = start;
+}
+
+void draw_aim(TrialConfig& config) {
+  std::mt19937_64 generator(config.sensor_seed);
+  StartConfig& start = config.filter.start;
+  start.yaw_rad = std::normal_distribution<double>(0, start.yaw_sigma_rad)(generator);
+}
+
+ErrorVector TrialMoment::error() const {
+  const Eigen::Matrix3d true_R = truth.T_world_body.linear();
+  const Eigen::AngleAxisd apart(Eigen::Matrix3d(estimate.T_world_body.linear().transpose() * true_R));
+  ErrorVector error = ErrorVector::Zero();
+  error.segment<3>(attitude_block) = apart.angle() * apart.axis();
+  error.segment<3>(velocity_block) =
+      true_R.transpose() * truth.velocity_world_mps - estimate.velocity_body_mps;
+  error.segment<3>(position_block) = truth.T_world_body.translation() - estimate.T_world_body.translation();
+  return error;
+}
+
+std::vector<TrialMoment> run_trial(const FlightTrace& flight, const TrialConfig& config) {
   Scenario scenario = flight.scenario;
   scenario.sensors.sensors = config.sensors;
   scenario.sensors.seed = config.sensor_seed;
-  scenario.faults = config.faults;
   OnboardSensors sensors(scenario);
-  const std::size_t first =
-      config.ground_velocity_unknown ? static_cast<std::size_t>(flight.release_step) : std::size_t{0};
-  Filter filter(config.ground_velocity_unknown ? woken_at(flight.truths.at(first), config.filter)
-                                               : config.filter);
+  FlightClock clock(scenario, config.ground_velocity_unknown ? flight.release_step : 0);
+  const auto truth_now = [&]() -> const Truth& {
+    return flight.truths.at(static_cast<std::size_t>(clock.step()));
+  };
+  Filter filter(config.ground_velocity_unknown ? woken_at(truth_now(), config.filter) : config.filter);
   SightingAgain sighting(flight, config);
-  FlightClock clock(scenario, static_cast<std::int64_t>(first));
   std::vector<TrialMoment> moments;
+  constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
   std::array<double, aid_count> seen{};
-  seen.fill(std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = first; i < flight.truths.size(); ++i, clock.advance()) {
-    const Truth& truth = flight.truths[i];
+  seen.fill(nothing);
+  for (; clock.step() < static_cast<std::int64_t>(flight.truths.size()); clock.advance()) {
+    const Truth& truth = truth_now();
     sensors.deliver(clock, truth, filter);
     sighting.step(truth.t_ns, filter);
     if (!clock.imu()) continue;
     TrialMoment& moment = moments.emplace_back();
     moment.truth = truth;
     moment.estimate = filter.state();
-    for (int aid = 0; aid < aid_count; ++aid) {
-      const auto a = static_cast<std::size_t>(aid);
+    for (std::size_t aid = 0; aid < seen.size(); ++aid) {
       const double newest = filter.innovation_squared(static_cast<Aid>(aid));
-      moment.innovations_squared[a] =
-          newest == seen[a] ? std::numeric_limits<double>::quiet_NaN() : newest;  // nan: none, or the same
-      seen[a] = newest;
-      moment.faulty[a] = filter.faulty(static_cast<Aid>(aid));
+      moment.innovations_squared[aid] = newest == seen[aid] ? nothing : newest;  // nothing: none, or the same
+      seen[aid] = newest;
     }
   }
   return moments;
-}
-
-std::vector<Drift> drifts(const RecordedFlight& flight, const std::vector<TrialMoment>& moments,
-                          double sight_m, double from_s) {
-  const double release_s = static_cast<double>(flight.release_step) / physics_rate_hz;
-  const Eigen::Vector3d forward_body =
-      (flight.rig.T_body_camera.linear() * Eigen::Vector3d::UnitZ()).normalized();
-  std::vector<Drift> found;
-  const auto seconds = [](const TrialMoment& moment) {
-    return 1e-9 * static_cast<double>(moment.truth.t_ns);
-  };
-  double next_s = release_s + from_s;
-  for (std::size_t seen = 0; seen < moments.size(); ++seen) {
-    if (seconds(moments[seen]) < next_s) continue;
-    next_s += 0.05;
-    const Eigen::Vector3d ahead_body = sight_m * forward_body;
-    const Eigen::Vector3d point_world = moments[seen].truth.T_world_body * ahead_body;
-    // Passed: the point no longer lies ahead along the course over ground.
-    std::size_t passed = seen + 1;
-    const auto ahead_m = [&](const TrialMoment& moment) {
-      return (point_world - moment.truth.T_world_body.translation()).dot(moment.truth.velocity_world_mps);
-    };
-    while (passed < moments.size() && ahead_m(moments[passed]) > 0) ++passed;
-    if (passed == moments.size()) break;
-    const TrialMoment& then = moments[seen];
-    const TrialMoment& now = moments[passed];
-    const Eigen::Vector3d true_body = now.truth.T_world_body.inverse() * point_world;
-    const Eigen::Vector3d remembered_body =
-        now.estimate.T_world_body.inverse() * (then.estimate.T_world_body * ahead_body);
-    const Eigen::Vector3d error_world = now.truth.T_world_body.linear() * (remembered_body - true_body);
-    const Eigen::Vector2d course = now.truth.velocity_world_mps.head<2>().normalized();
-    Drift& drift = found.emplace_back();
-    drift.seen_s = seconds(then);
-    drift.along_across_m = {error_world.head<2>().dot(course),
-                            error_world.head<2>().dot(Eigen::Vector2d(-course.y(), course.x()))};
-    drift.vertical_m = error_world.z();
-    // The position error grows by the velocity's, which lasts: sigma of the difference is the interval times
-    // the velocity's sigma, to first order (docs: the filter keeps no clone of its past).
-    const double interval_s = seconds(now) - seconds(then);
-    const auto velocity = now.estimate.covariance.block<3, 3>(velocity_block, velocity_block);
-    drift.stated_sigma_m = interval_s * std::sqrt(velocity.trace());
-  }
-  return found;
-}
-
-ErrorVector error_of(const TrialMoment& moment) {
-  const Eigen::Matrix3d R = moment.estimate.T_world_body.linear();
-  const Eigen::AngleAxisd apart(Eigen::Matrix3d(R.transpose() * moment.truth.T_world_body.linear()));
-  ErrorVector error = ErrorVector::Zero();
-  error.segment<3>(attitude_block) = apart.angle() * apart.axis();
-  error.segment<3>(velocity_block) =
-      moment.truth.T_world_body.linear().transpose() * moment.truth.velocity_world_mps -
-      moment.estimate.velocity_body_mps;
-  error.segment<3>(position_block) =
-      moment.truth.T_world_body.translation() - moment.estimate.T_world_body.translation();
-  return error;
 }
 
 }  // namespace understory

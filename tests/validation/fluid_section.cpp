@@ -1,15 +1,11 @@
-#include "tests/validation/fluid_section.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
-#include "scenarios/report/line_plot.hpp"
 #include "sim/aircraft/ellipsoid_fluid.hpp"
-#include "tests/validation/page.hpp"
+#include "tests/validation/sections.hpp"
 
 namespace understory {
 namespace {
@@ -21,10 +17,16 @@ constexpr double sideslip_attack_rad = 11 * degree;  // level flight's at that s
 /// Forces over dynamic pressure and wing area; moments over these and chord (pitch, nose up) or span (roll,
 /// right wing down; yaw, nose left).
 struct Coefficients {
+  double angle_deg;  ///< the one that is swept
   double lift, drag, side, roll, pitch, yaw;
 };
 
-using Model = std::function<Wrench(const AirState&)>;
+struct Model {
+  const char* name;
+  std::function<Wrench(const AirState&)> wrench;
+  Mark mark;
+  int colour;
+};
 
 Coefficients coefficients(const Airframe& airframe, const Model& model, double attack_rad,
                           double sideslip_rad) {
@@ -33,12 +35,13 @@ Coefficients coefficients(const Airframe& airframe, const Model& model, double a
   air.air_velocity_body_mps =
       speed_mps *
       Eigen::Vector3d(std::cos(attack_rad) * cosine, std::sin(sideslip_rad), -std::sin(attack_rad) * cosine);
-  const Wrench wrench = model(air);
+  const Wrench wrench = model.wrench(air);
   const double force_n = 0.5 * airframe.air_density_kgpm3 * speed_mps * speed_mps * airframe.wing_area_m2;
   const Eigen::Vector3d up(std::sin(attack_rad), 0, std::cos(attack_rad));
   const Eigen::Vector3d force = wrench.force_body_n / force_n;
   const Eigen::Vector3d moment = wrench.moment_body_nm / force_n;
-  return {force.dot(up),
+  return {0,
+          force.dot(up),
           -force.dot(air.air_velocity_body_mps.normalized()),
           force.y(),
           moment.x() / airframe.span_m,
@@ -46,32 +49,34 @@ Coefficients coefficients(const Airframe& airframe, const Model& model, double a
           moment.z() / airframe.span_m};
 }
 
-struct NamedModel {
-  std::string name;
-  Model model;
-  Mark mark;
-  int colour;
-};
+using Sweep = std::vector<Coefficients>;
 
-Series over(const Airframe& airframe, const NamedModel& named, bool attack, double from_deg, double to_deg,
-            double Coefficients::*value) {
-  Series series{named.name};
-  series.mark = named.mark;
-  series.colour = named.colour;
-  for (double angle = from_deg; angle < to_deg + 0.01; angle += 1) {
-    const Coefficients at = attack ? coefficients(airframe, named.model, angle * degree, 0)
-                                   : coefficients(airframe, named.model, sideslip_attack_rad, angle * degree);
-    series.x.push_back(angle);
-    series.y.push_back(at.*value);
+Sweep sweep(const Airframe& airframe, const Model& model, bool attack) {
+  Sweep all;
+  for (double angle = attack ? -10 : 0; angle < (attack ? 90.01 : 30.01); angle += 1) {
+    all.push_back(attack ? coefficients(airframe, model, angle * degree, 0)
+                         : coefficients(airframe, model, sideslip_attack_rad, angle * degree));
+    all.back().angle_deg = angle;
   }
-  return series;
+  return all;
 }
 
-double maximum_difference(const Series& a, const Series& b, double from) {
-  double maximum = 0;
-  for (std::size_t i = 0; i < a.x.size(); ++i)
-    if (a.x[i] >= from) maximum = std::max(maximum, std::abs(a.y[i] - b.y[i]));
-  return maximum;
+struct Panel {
+  const char* title;
+  const char* label;
+  double Coefficients::*value;
+};
+
+std::string picture(const std::vector<Model>& models, const std::vector<Sweep>& sweeps, const char* x_label,
+                    const std::vector<Panel>& panels) {
+  std::vector<LinePlot> plots;
+  for (const Panel& panel : panels) {
+    LinePlot& plot = plots.emplace_back(LinePlot{panel.title, x_label, panel.label});
+    for (std::size_t i = 0; i < models.size(); ++i)
+      plot.series.push_back(plotted(models[i].name, sweeps[i], &Coefficients::angle_deg, panel.value,
+                                    models[i].mark, models[i].colour));
+  }
+  return to_svg(plots, 2);
 }
 
 }  // namespace
@@ -85,80 +90,48 @@ Section fluid_section(const Airframe& airframe) {
   plate_like.blunt_drag = 1;
   plate_like.slender_drag = 0;
   const EllipsoidFluid defaults(airframe, {}), like(airframe, plate_like);
-  const std::vector<NamedModel> models{
+  const std::vector<Model> models{
       {"flat plates, same geometry", [&](const AirState& air) { return aerodynamic_wrench(bare, air); },
        Mark::line, 0},
       {"identified model", [&](const AirState& air) { return aerodynamic_wrench(airframe, air); },
        Mark::dashes, 2},
       {"MuJoCo, its defaults", [&](const AirState& air) { return defaults.wrench(air); }, Mark::line, 1},
       {"MuJoCo, drag of a plate", [&](const AirState& air) { return like.wrench(air); }, Mark::dashes, 3}};
-  const auto panel = [&](const char* title, const char* label, bool attack, double to_deg,
-                         double Coefficients::*value) {
-    LinePlot plot{title, attack ? "angle of attack (deg)" : "sideslip, drifting left (deg)", label};
-    for (const NamedModel& model : models)
-      plot.series.push_back(over(airframe, model, attack, attack ? -10 : 0, to_deg, value));
-    return plot;
-  };
-  const LinePlot lift = panel("Lift", "lift coefficient", true, 90, &Coefficients::lift);
-  const double lift_difference = maximum_difference(lift.series[0], lift.series[2], 10);
-
-  std::vector<std::vector<std::string>> rows;
-  for (const double attack : {5.0, 10.0, 20.0, 30.0, 45.0, 90.0}) {
-    std::vector<std::string> row{fmt::format("{:g}", attack)};
-    for (const std::size_t model : {0u, 2u, 3u}) {
-      const Coefficients at = coefficients(airframe, models[model].model, attack * degree, 0);
-      row.push_back(fmt::format("{:.2f} / {:.2f} / {:+.2f}", at.lift, at.drag, at.pitch));
-    }
-    rows.push_back(row);
+  std::vector<Sweep> attacks, slips;
+  for (const Model& model : models) {
+    attacks.push_back(sweep(airframe, model, true));
+    slips.push_back(sweep(airframe, model, false));
   }
-  Section section;
-  section.title = "Against MuJoCo's own fluid";
-  section.markdown =
-      fmt::format(
-          "MuJoCo 2.2 has a fluid model of its own (geom `fluidshape=\"ellipsoid\"`; documentation, "
-          "Computation, Fluid forces). `sim/aircraft/ellipsoid_fluid` gives it the same plates as flat "
-          "ellipsoids "
-          "of the same area, place and proportion, 10 mm thick, in the same air, and reads `qfrc_passive` "
-          "at a given velocity ({:g} m/s, elevons neutral, no rotation). Lift / drag / pitching moment "
-          "(nose up) coefficients:\n\n",
-          speed_mps) +
-      markdown_table(
-          {"angle of attack (deg)", "flat plates", "MuJoCo, its defaults", "MuJoCo, drag of a plate"}, rows) +
-      fmt::format(
-          "\n"
-          "- **Lift agrees**, within {:.3f} of a coefficient from 10 to 90 deg. It is the same formula: "
-          "for a thin ellipsoid MuJoCo's Kutta term becomes density times area times V² sin a cos a, which "
-          "is 2 sin a cos a on the dynamic pressure. Below 10 deg the ellipsoid's thickness adds a few "
-          "hundredths.\n"
-          "- **Drag does not.** MuJoCo takes for the area across the flow the root of a ratio that is the "
-          "plate's whole area as soon as the angle exceeds thickness over chord (3 deg here), so that a "
-          "plate at 5 deg drags almost like one at 90. A flat plate's 2 sin² a goes with the area that the "
-          "flow really meets. The real aircraft settles it: level flight at 12.27 m/s with 5.08 N is "
-          "possible only with the plates' drag; with MuJoCo's the same wing would need {:.0f} N.\n"
-          "- **Pitching moment has the other sign.** MuJoCo adds the moment of the displaced air's inertia "
-          "(Munk's moment), which turns a plate across its path; the identified model has the wing's force "
-          "at the centre of mass, and its elevons behind keep the nose down. A real wing with attached "
-          "flow carries its lift a quarter of the chord behind the leading edge, and neither model says "
-          "so: in the identified one the place of the centre of mass is part of what was identified.\n"
-          "- **Side force and rolling moment in sideslip** differ by the same drag term, of winglets and "
-          "wing. The yawing moment agrees with MuJoCo's defaults, where both terms happen to balance.\n\n"
-          "So the lift law does not rest on one implementation; drag, moments and damping rest on the "
-          "identification alone, and the replay above is their only test.\n",
-          lift_difference,
-          coefficients(airframe, models[2].model, 11 * degree, 0).drag * 0.5 * airframe.air_density_kgpm3 *
-              12.27 * 12.27 * airframe.wing_area_m2);
-  section.figures = {
-      {"fluid_attack", "Over angle of attack, without sideslip",
-       to_svg(
-           {lift, panel("Drag", "drag coefficient", true, 90, &Coefficients::drag),
-            panel("Pitching moment, nose up", "moment coefficient (chord)", true, 90, &Coefficients::pitch)},
-           2)},
-      {"fluid_sideslip", "Over sideslip, at 11 deg of angle of attack",
-       to_svg({panel("Side force, to the left", "side force coefficient", false, 30, &Coefficients::side),
-               panel("Rolling moment, right wing down", "moment coefficient (span)", false, 30,
-                     &Coefficients::roll),
-               panel("Yawing moment, nose left", "moment coefficient (span)", false, 30, &Coefficients::yaw)},
-              2)}};
+  double lift_difference = 0;
+  for (std::size_t i = 0; i < attacks[0].size(); ++i)
+    if (attacks[0][i].angle_deg >= 10)
+      lift_difference = std::max(lift_difference, std::abs(attacks[0][i].lift - attacks[2][i].lift));
+
+  Section section{"fluid"};
+  for (const double attack : {5.0, 10.0, 20.0, 30.0, 45.0, 90.0}) {
+    std::string row = fmt::format("{:g}", attack);
+    for (const std::size_t model : {0u, 2u, 3u}) {
+      const Coefficients at = coefficients(airframe, models[model], attack * degree, 0);
+      row += fmt::format(" | {:.2f} / {:.2f} / {:+.2f}", at.lift, at.drag, at.pitch);
+    }
+    section.row("table", row);
+  }
+  const double pressure_area = 0.5 * airframe.air_density_kgpm3 * 12.27 * 12.27 * airframe.wing_area_m2;
+  section.blocks.insert(
+      {{"lift", fmt::format("{:.3f}", lift_difference)},
+       {"thrust",
+        fmt::format("{:.0f}", coefficients(airframe, models[2], 11 * degree, 0).drag * pressure_area)}});
+  section.pictures = {
+      {"fluid_attack",
+       picture(models, attacks, "angle of attack (deg)",
+               {{"Lift", "lift coefficient", &Coefficients::lift},
+                {"Drag", "drag coefficient", &Coefficients::drag},
+                {"Pitching moment, nose up", "moment coefficient (chord)", &Coefficients::pitch}})},
+      {"fluid_sideslip",
+       picture(models, slips, "sideslip, drifting left (deg)",
+               {{"Side force, to the left", "side force coefficient", &Coefficients::side},
+                {"Rolling moment, right wing down", "moment coefficient (span)", &Coefficients::roll},
+                {"Yawing moment, nose left", "moment coefficient (span)", &Coefficients::yaw}})}};
   section.checks = {
       at_most("lift coefficient, plates less MuJoCo's ellipsoids, 10 to 90 deg", lift_difference, 0.05, "")};
   return section;

@@ -17,8 +17,8 @@ AirborneStart trimmed_start(const Airframe& airframe, double airspeed_mps) {
   return start;
 }
 
-FreeFlight::FreeFlight(const std::filesystem::path& models_folder, const Airframe& airframe)
-    : world_(build_world(models_folder, airframe, {}, WorldConfig{})) {}
+FreeFlight::FreeFlight(const Airframe& airframe)
+    : world_(build_world(UNDERSTORY_SOURCE_DIR "/models", airframe, {}, WorldConfig{})) {}
 
 Aircraft FreeFlight::begin(const Airframe& airframe, const AirborneStart& start) const {
   Aircraft aircraft(*world_.model, airframe, LaunchConfig{}, Eigen::Vector3d::Zero());

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <filesystem>
 
 #include "planning/airframe.hpp"
 #include "sim/aircraft/aircraft.hpp"
@@ -24,8 +23,8 @@ constexpr double start_altitude_m = 500;  ///< nothing is met on the way down
 /// An empty world of still air, for flights that begin `start_altitude_m` above the origin and meet nothing.
 class FreeFlight {
  public:
-  /// `models_folder`: the source tree's models/. Mass and inertia of every flight are `airframe`'s.
-  FreeFlight(const std::filesystem::path& models_folder, const Airframe& airframe);
+  /// Mass and inertia of every flight are `airframe`'s.
+  explicit FreeFlight(const Airframe& airframe);
 
   /// The simulator's own aircraft, its aerodynamics those of `airframe`. Must not outlive this.
   Aircraft begin(const Airframe& airframe, const AirborneStart& start) const;

@@ -4,25 +4,24 @@
 #include <string>
 #include <vector>
 
-#include "tests/validation/replay.hpp"
+#include "tests/validation/flight_record.hpp"
 
 namespace understory {
 
 /// A number of the airframe that the record might tell.
 struct FreeParameter {
   std::string name;
-  std::string unit;
   double& (*in)(Airframe&);
 };
-/// Roll damping, pitch damping, elevon lift: the three that the identification of the original model left to
-/// the flight records.
+/// Roll damping, pitch damping (N m s/rad), elevon lift factor: the three that the identification of the
+/// original model left to the flight records.
 const std::vector<FreeParameter>& free_parameters();
 
 struct FittedParameter {
   const FreeParameter* parameter = nullptr;
   double value = 0;
-  double formal_share = 0;  ///< standard deviation over value, were the residuals independent
-  double share = 0;  ///< the same for residuals that hang together as these do; NaN at the edge of the search
+  double share = 0;  ///< standard deviation over value, for residuals that hang together as these do; NaN at
+                     ///< the edge of the search
 };
 
 struct ReplayFit {

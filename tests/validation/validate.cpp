@@ -1,87 +1,111 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "tests/validation/aircraft_page.hpp"
-#include "tests/validation/estimator_page.hpp"
-#include "tests/validation/mismatch_page.hpp"
-#include "tests/validation/page.hpp"
+#include "tests/validation/sections.hpp"
 
 namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct ValidatedPart {
-  const char* name;                              ///< as --only has it
-  ValidationPage (*page)(const fs::path& root);  ///< measures and draws; `root`: the source tree
-};
-
-constexpr std::array parts{ValidatedPart{"aircraft", aircraft_page},
-                           ValidatedPart{"estimator", estimator_page},
-                           ValidatedPart{"mismatch", mismatch_page}};
-
-struct ValidateArguments {
-  std::string out = UNDERSTORY_SOURCE_DIR "/docs";
-  std::vector<std::string> only;  // empty: all
-};
-
-void require_known(const std::vector<std::string>& names) {
-  for (const std::string& name : names) {
-    if (std::any_of(parts.begin(), parts.end(), [&](const ValidatedPart& part) { return part.name == name; }))
-      continue;
-    std::vector<std::string> known;
-    for (const ValidatedPart& part : parts) known.emplace_back(part.name);
-    throw ScenarioError(fmt::format("--only {}: expected one of: {}", name, fmt::join(known, ", ")));
-  }
+std::vector<Section> aircraft_sections() {
+  const Airframe airframe;
+  const FreeFlight air(airframe);
+  const FlightRecord record = real_left_jog();
+  return {trim_section(airframe),
+          modes_section(airframe),
+          turn_section(airframe),
+          glide_section(airframe),
+          roll_section(air, airframe),
+          dodge_section(air, airframe),
+          replay_section(air, airframe, record),
+          tracking_section(air, airframe, record),
+          fluid_section(airframe)};
 }
 
-int run_validate(const ValidateArguments& arguments) {
-  require_known(arguments.only);
-  const fs::path folder = arguments.out;
-  prepare_output_folder(folder);
-  int broken = 0;
-  for (const ValidatedPart& part : parts) {
-    const auto& only = arguments.only;
-    if (!only.empty() && std::find(only.begin(), only.end(), part.name) == only.end()) continue;
-    const ValidationPage page = part.page(UNDERSTORY_SOURCE_DIR);
-    write_page(page, folder);
-    broken += broken_checks(page);
-    fmt::print("{}{}\n", check_lines(page), (folder / (page.file + ".md")).string());
-    std::fflush(stdout);
+std::vector<Section> estimator_sections() {
+  return {calm_consistency_section(100), turbulent_consistency_section(100), drift_section(24)};
+}
+
+struct Page {
+  std::string name;  ///< docs/NAME.md, its pictures in docs/NAME
+  std::vector<Section> (*sections)();
+};
+
+const std::vector<Page> pages{{"flight_model", aircraft_sections},
+                              {"estimator", estimator_sections},
+                              {"model_mismatch", mismatch_sections}};
+
+std::string read_text(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Writes the file, or with --check says whether it agrees. How many faults that is.
+int deliver(const fs::path& file, const std::string& content, bool check) {
+  if (!check) write_whole_file(file, content);
+  if (!check || agree(read_text(file), content)) return 0;
+  fmt::print("broken  {}: not what is measured; make it again: ./run validate\n", file.string());
+  return 1;
+}
+
+/// How many tolerances are broken, and with --check files that say something else.
+int validate(const Page& page, bool check) {
+  const fs::path docs = UNDERSTORY_SOURCE_DIR "/docs", file = docs / (page.name + ".md");
+  const std::vector<Section> sections = page.sections();
+  int faults = 0;
+  for (const Section& section : sections) {
+    fmt::print("{}", lines_of(section.checks));
+    for (const Check& tolerance : section.checks) faults += tolerance.holds ? 0 : 1;
+    for (const auto& [name, svg] : section.pictures)
+      faults += deliver(docs / page.name / (name + ".svg"), svg, check);
   }
-  if (broken > 0) fmt::print("{} broken\n", broken);
-  return broken > 0 ? 1 : 0;
+  try {
+    faults += deliver(file, filled(read_text(file), sections), check);
+  } catch (const ScenarioError& error) {
+    throw ScenarioError(fmt::format("{}: {}", file.string(), error.what()));
+  }
+  std::fflush(stdout);
+  return faults;
+}
+
+int run(const std::vector<std::string>& arguments) {
+  std::vector<Page> chosen;
+  bool check = false;
+  for (const std::string& argument : arguments) {
+    const auto page =
+        std::find_if(pages.begin(), pages.end(), [&](const Page& p) { return p.name == argument; });
+    if (argument == "--check")
+      check = true;
+    else if (page != pages.end())
+      chosen.push_back(*page);
+    else
+      throw ScenarioError(argument + ": expected --check, flight_model, estimator or model_mismatch");
+  }
+  int faults = 0;
+  for (const Page& page : chosen.empty() ? pages : chosen) faults += validate(page, check);
+  if (faults > 0) fmt::print("{} broken\n", faults);
+  return faults > 0 ? 1 : 0;
 }
 
 }  // namespace
 }  // namespace understory
 
-/// Measures the models against what is known and writes the pages. Exit status: 0, or 1 where a tolerance is
-/// broken, 2 for bad input, 3 where the machine failed.
+/// understory_validate [--check] [PAGE ...]: measures, and fills the pages of docs/ and their pictures; with
+/// --check it writes nothing. Exit status: 0; 1 where a tolerance is broken or, with --check, a page says
+/// something else; 2 for a wrong argument or a page without its blocks; 3 where the machine failed.
 int main(int argc, char** argv) {
-  using namespace understory;
-  CLI::App app("Measures the models against what is known; writes pages with plots");
-  ValidateArguments arguments;
-  app.add_option("--out", arguments.out, "folder of the pages")->capture_default_str();
-  app.add_option("--only", arguments.only, "these parts and no others, for instance aircraft")
-      ->delimiter(',');
   try {
-    app.parse(argc, argv);
-    return run_validate(arguments);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  } catch (const ScenarioError& error) {
-    fmt::print(stderr, "understory_validate: {}\n", error.what());
-    return 2;
+    return understory::run({argv + 1, argv + argc});
   } catch (const std::exception& error) {
     fmt::print(stderr, "understory_validate: {}\n", error.what());
-    return 3;
+    return dynamic_cast<const understory::ScenarioError*>(&error) != nullptr ? 2 : 3;
   }
 }

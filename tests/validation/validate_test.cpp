@@ -1,13 +1,12 @@
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <limits>
 
+#include "scenarios/config/config_tree.hpp"
 #include "tests/support/program.hpp"
-#include "tests/support/temporary_folder.hpp"
 #include "tests/validation/page.hpp"
 
-/// The pages that `validate` writes, and their plots.
+/// What makes the pages on models, and the page on the flight model itself.
 namespace understory {
 namespace {
 
@@ -21,59 +20,67 @@ TEST(Check, HoldsOrDoesNot) {
   const double nothing = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(at_most("error", nothing, 1, "m").holds || at_least("error", nothing, 1, "m").holds ||
                within("error", nothing, 1, 1, "m").holds);
-}
-
-ValidationPage small_page() {
-  ValidationPage page{"small", "A small page", "Why.", {}};
-  page.sections = {{"First", "Words.", {{"plot", "A plot", "<svg/>"}}, {at_most("error", 1, 2, "m")}},
-                   {"Second", "More.", {}, {at_most("drift", 3, 2, "m")}}};
-  return page;
-}
-
-TEST(Page, SaysWhatWasMeasuredAskedAndBroken) {
-  const ValidationPage page = small_page();
-  EXPECT_EQ(broken_checks(page), 1);
-  EXPECT_EQ(check_lines(page),
+  EXPECT_EQ(lines_of({at_most("error", 1, 2, "m"), at_most("drift", 3, 2, "m")}),
             "ok      error: 1 m, asked at most 2 m\n"
             "broken  drift: 3 m, asked at most 2 m\n");
-  const std::string markdown = to_markdown(page);
-  EXPECT_NE(markdown.find("| drift | 3 m | at most 2 m | **broken** |"), std::string::npos) << markdown;
-  EXPECT_NE(markdown.find("![A plot](small/plot.svg)"), std::string::npos);
 }
 
-TEST(Page, LiesBesideItsFigures) {
-  const support::TemporaryFolder folder;
-  write_page(small_page(), folder.path());
-  EXPECT_TRUE(std::filesystem::exists(folder.path() / "small.md"));
-  EXPECT_TRUE(std::filesystem::exists(folder.path() / "small" / "plot.svg"));
+Section small_section() {
+  Section section{"trim"};
+  section.blocks["slowest"] = "7.91";
+  section.row("table", "8 | level");
+  section.pictures["trim"] = "<svg/>";
+  section.checks = {at_most("drift", 3, 2, "m")};
+  return section;
+}
+
+const std::string page =
+    "<!-- A note. -->\nLevel from <!-- trim.slowest -->9<!-- end --> m/s ([plot](x/trim.svg)).\n\n"
+    "<!-- trim.table -->\n| speed | path |\n|---|---|\n| 1 | 2 |\n| 3 | 4 |\n<!-- end -->\n"
+    "<!-- trim.checks -->\n| check | measured | asked | |\n|---|---|---|---|\n<!-- end -->\n";
+
+TEST(Page, HasItsBlocksFilledAndNothingElseChanged) {
+  const std::string once = filled(page, {small_section()});
+  EXPECT_EQ(once,
+            "<!-- A note. -->\nLevel from <!-- trim.slowest -->7.91<!-- end --> m/s ([plot](x/trim.svg)).\n\n"
+            "<!-- trim.table -->\n| speed | path |\n|---|---|\n| 8 | level |\n<!-- end -->\n"
+            "<!-- trim.checks -->\n| check | measured | asked | |\n|---|---|---|---|\n"
+            "| drift | 3 m | at most 2 m | **broken** |\n<!-- end -->\n");
+  EXPECT_EQ(filled(once, {small_section()}), once);
+}
+
+TEST(Page, ShowsAllThatIsMeasuredAndNothingMore) {
+  Section section = small_section();
+  section.blocks["fastest"] = "12.78";
+  EXPECT_THROW(filled(page, {section}), ScenarioError);
+  section = small_section();
+  section.pictures["glide"] = "<svg/>";
+  EXPECT_THROW(filled(page, {section}), ScenarioError);
+  section = small_section();
+  section.row("table", "9 | level | 4.07");
+  EXPECT_THROW(filled(page, {section}), ScenarioError);
+  EXPECT_THROW(filled(page, {}), ScenarioError);
+}
+
+TEST(Page, AgreesWhereOnlyRoundingDiffers) {
+  EXPECT_TRUE(agree("from 7.91 to 12.78 m/s, 100 %", "from 7.92 to 12.6 m/s, 101 %"));
+  EXPECT_TRUE(agree("7.202e-23", "1.1e-22"));
+  EXPECT_FALSE(agree("from 7.91 m/s", "from 8.11 m/s"));
+  EXPECT_FALSE(agree("within 0.194 m", "within 0.194 s"));
+  EXPECT_FALSE(agree("+0.5", "-0.5"));
+  EXPECT_FALSE(agree("one 1", "one 1 more"));
 }
 
 TEST(Validate, RefusesWhatItDoesNotKnow) {
-  EXPECT_EQ(support::understory("--only soaring").status, 2);
-  EXPECT_EQ(support::understory("everything").status, 2);
+  EXPECT_EQ(support::understory("soaring").status, 2);
+  EXPECT_EQ(support::understory("flight_model --quietly").status, 2);
 }
 
-/// Headings of a page: what it is about, whatever was measured.
-std::vector<std::string> headings(const std::filesystem::path& page) {
-  std::vector<std::string> found;
-  std::ifstream stream(page);
-  for (std::string line; std::getline(stream, line);)
-    if (line.starts_with("#")) found.push_back(line);
-  return found;
-}
-
-TEST(Validate, WritesTheFlightModelsPageAndHoldsItsTolerances) {
-  const support::TemporaryFolder folder;
-  const support::Outcome outcome = support::understory("--only aircraft --out " + folder.path().string());
+TEST(Validate, TheFlightModelsPageSaysWhatIsMeasuredAndItsTolerancesHold) {
+  const support::Outcome outcome = support::understory("flight_model --check");
   EXPECT_EQ(outcome.status, 0) << outcome.text;
   EXPECT_NE(outcome.text.find("ok      replayed jog, horizontal at 1.5 s:"), std::string::npos);
   EXPECT_EQ(outcome.text.find("broken"), std::string::npos) << outcome.text;
-  const std::filesystem::path committed = UNDERSTORY_SOURCE_DIR "/docs/flight_model.md";
-  EXPECT_EQ(headings(folder.path() / "flight_model.md"), headings(committed))
-      << "make it again: ./run validate";
-  for (const auto& figure : std::filesystem::directory_iterator(folder.path() / "flight_model"))
-    EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(UNDERSTORY_SOURCE_DIR "/docs/flight_model") /
-                                        figure.path().filename()));
 }
 
 }  // namespace

@@ -6,10 +6,8 @@
 #include <random>
 
 #include "sim/aircraft/aerodynamics.hpp"
-#include "tests/validation/damped_least_squares.hpp"
+#include "tests/validation/flight_mechanics.hpp"
 #include "tests/validation/free_flight.hpp"
-#include "tests/validation/modes.hpp"
-#include "tests/validation/steady_flight.hpp"
 
 /// What the flight model's page is computed with, against closed forms and the simulator.
 namespace understory {
@@ -73,10 +71,7 @@ TEST(SteadyFlight, GlideSpendsItsHeight) {
   given.climb_angle_rad = -0.5;
   const std::optional<SteadyFlight> glide = steady_flight(airframe, given, Solved::climb_angle);
   ASSERT_TRUE(glide);
-  AirState air;
-  air.air_velocity_body_mps = air_velocity_body_of(*glide);
-  air.left_elevon_rad = glide->left_elevon_rad;
-  air.right_elevon_rad = glide->right_elevon_rad;
+  const AirState air = glide->air();
   const double taken_w = -aerodynamic_wrench(airframe, air).force_body_n.dot(air.air_velocity_body_mps);
   EXPECT_NEAR(airframe.mass_kg * airframe.gravity_mps2 * glide->sink_mps(), taken_w, 1e-6);
 }
@@ -88,7 +83,7 @@ TEST(SteadyFlight, NothingBeyondTheCapOfTheAngleOfAttack) {
 /// Six equations of our own against one step of MuJoCo's, in wild attitudes.
 TEST(Modes, EquationsAreTheSimulators) {
   const Airframe airframe;
-  const FreeFlight air(UNDERSTORY_SOURCE_DIR "/models", airframe);
+  const FreeFlight air(airframe);
   std::mt19937_64 generator(4);
   const auto uniform = [&](double minimum, double maximum) {
     return std::uniform_real_distribution<double>(minimum, maximum)(generator);
@@ -177,32 +172,6 @@ TEST(Modes, OfTheAircraftAreFiveAndNamed) {
   std::vector<std::string> names;
   for (const Mode& mode : found.lateral) names.push_back(mode.name);
   EXPECT_EQ(names, (std::vector<std::string>{"roll subsidence", "dutch roll", "spiral"}));
-}
-
-/// A straight line through points: the normal equations' own answer and covariance.
-TEST(LeastSquares, FindsALineAndItsCovariance) {
-  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(20, 0, 1);
-  const Eigen::VectorXd y = 2 * x + Eigen::VectorXd::Constant(20, 1) + 0.1 * (17 * x).array().sin().matrix();
-  const auto residuals = [&](const Eigen::VectorXd& p) -> Eigen::VectorXd {
-    return Eigen::VectorXd((p[0] * x).array() + p[1]) - y;
-  };
-  const LeastSquares found = least_squares(residuals, Eigen::Vector2d(0, 0), Eigen::Vector2d(1e-4, 1e-4));
-  Eigen::MatrixXd design(20, 2);
-  design << x, Eigen::VectorXd::Ones(20);
-  const Eigen::Matrix2d inverse = (design.transpose() * design).inverse();
-  const Eigen::Vector2d expected = inverse * design.transpose() * y;
-  EXPECT_LT((found.parameters - expected).norm(), 1e-6);
-  EXPECT_NEAR(found.variance, (design * expected - y).squaredNorm() / 18, 1e-9);
-  EXPECT_LT((found.covariance - found.variance * inverse).norm(), 1e-9);
-}
-
-/// Rosenbrock's valley: undamped Gauss-Newton from here leaves it.
-TEST(LeastSquares, CrossesACurvedValley) {
-  const auto residuals = [](const Eigen::VectorXd& p) -> Eigen::VectorXd {
-    return Eigen::Vector3d(10 * (p[1] - p[0] * p[0]), 1 - p[0], 0);
-  };
-  const LeastSquares found = least_squares(residuals, Eigen::Vector2d(-1.2, 1), Eigen::Vector2d(1e-5, 1e-5));
-  EXPECT_LT((found.parameters - Eigen::Vector2d(1, 1)).norm(), 1e-4);
 }
 
 }  // namespace
