@@ -37,11 +37,20 @@ State starting_state(const FilterConfig& config) {
   return state;
 }
 
+/// The smallest rotation that takes a unit vector onto the z axis. Eigen's FromTwoVectors is the same to the
+/// bit, but compiles a singular value decomposition for the vector straight down.
+Eigen::Quaterniond turn_onto_z(const Eigen::Vector3d& unit) {
+  const double twice_cosine = std::sqrt((1 + unit.z()) * 2);  // of half the angle
+  if (twice_cosine < 1e-6) return Eigen::Quaterniond(0, 1, 0, 0);
+  Eigen::Quaterniond turn;
+  turn.vec() = unit.cross(Eigen::Vector3d::UnitZ()) * (1 / twice_cosine);
+  turn.w() = twice_cosine * 0.5;
+  return turn;
+}
+
 /// Roll and pitch from the measured gravity; yaw as configured.
 Eigen::Matrix3d levelled(const Eigen::Vector3d& specific_force_body_mps2, double yaw_rad) {
-  const Eigen::Matrix3d tilt =
-      Eigen::Quaterniond::FromTwoVectors(specific_force_body_mps2, Eigen::Vector3d::UnitZ())
-          .toRotationMatrix();
+  const Eigen::Matrix3d tilt = turn_onto_z(specific_force_body_mps2.normalized()).toRotationMatrix();
   const double yaw_of_tilt = std::atan2(tilt(1, 0), tilt(0, 0));
   return Eigen::AngleAxisd(yaw_rad - yaw_of_tilt, Eigen::Vector3d::UnitZ()).toRotationMatrix() * tilt;
 }

@@ -1,6 +1,6 @@
 #include "scenarios/flight/run_record.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <iterator>

@@ -1,6 +1,6 @@
 #include "scenarios/recording/carried_path.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

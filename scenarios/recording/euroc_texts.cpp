@@ -1,10 +1,10 @@
 #include "scenarios/recording/euroc_texts.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
-#include <iterator>
 #include <opencv2/core/eigen.hpp>
+#include <span>
 
 #include "scenarios/output/program.hpp"
 
@@ -15,14 +15,21 @@ std::string pose_text(const Eigen::Isometry3d& T_body_sensor) {
   const Eigen::Matrix4d& m = T_body_sensor.matrix();
   std::string text = "T_BS:\n  cols: 4\n  rows: 4\n  data: [";
   for (int row = 0; row < 4; ++row)
-    fmt::format_to(std::back_inserter(text), "{}{}, {}, {}, {}", row > 0 ? ",\n         " : "", m(row, 0),
-                   m(row, 1), m(row, 2), m(row, 3));
+    text += fmt::format("{}{}, {}, {}, {}", row > 0 ? ",\n         " : "", m(row, 0), m(row, 1), m(row, 2),
+                        m(row, 3));
   return text + "]\n";
 }
 
 std::string head_text(const char* type, const std::string& comment, const Eigen::Isometry3d& T_body_sensor) {
   return fmt::format("sensor_type: {}\ncomment: understory {}, {}\n\n{}", type, understory_version, comment,
                      pose_text(T_body_sensor));
+}
+
+/// "1, 2, 3". With fmt::join every file would compile fmt's writing of numbers anew.
+std::string list_text(std::span<const double> values) {
+  std::string text;
+  for (const double value : values) text += fmt::format("{}{}", text.empty() ? "" : ", ", value);
+  return text;
 }
 
 /// What cameras and depth images share.
@@ -32,8 +39,7 @@ std::string pinhole_text(const CameraCalibration& camera, const StereoRig& rig, 
       "\nrate_hz: {}\nresolution: [{}, {}]\ncamera_model: pinhole\n"
       "intrinsics: [{}, {}, {}, {}] # fu, fv, cu, cv\n"
       "distortion_model: radial-tangential\ndistortion_coefficients: [{}]\n",
-      rate_hz, rig.width_px, rig.height_px, K(0, 0), K(1, 1), K(0, 2), K(1, 2),
-      fmt::join(camera.distortion, ", "));
+      rate_hz, rig.width_px, rig.height_px, K(0, 0), K(1, 1), K(0, 2), K(1, 2), list_text(camera.distortion));
 }
 
 CameraCalibration rectified_camera(const StereoRig& rig, double center_x_px) {
@@ -77,7 +83,7 @@ std::string camera_sensor_text(const RecordedCamera& recorded, const StereoRig& 
              "where "
              "the detector looks.\nrectification: [{}]\nrectified_intrinsics: [{}, {}, {}]\n"
              "detection_depth_m: {}\n",
-             fmt::join(camera.rectification.val, ", "), P(0, 0), P(0, 2), P(1, 2), rig.detection_depth_m);
+             list_text(camera.rectification.val), P(0, 0), P(0, 2), P(1, 2), rig.detection_depth_m);
 }
 
 std::string depth_sensor_text(const StereoRig& rig, int rate_hz) {
@@ -120,8 +126,8 @@ std::string objects_text(const std::vector<Obstacle>& obstacles) {
   std::string text = objects_header;
   const auto add = [&](std::size_t number, std::string_view name, std::string_view kind, const Obstacle& bar,
                        double radius_m) {
-    fmt::format_to(std::back_inserter(text), "{},{},{}{}{},{:.6f}\n", number, name, kind,
-                   vector_text(bar.from_world, 6), vector_text(bar.to_world, 6), radius_m);
+    text += fmt::format("{},{},{}{}{},{:.6f}\n", number, name, kind, vector_text(bar.from_world, 6),
+                        vector_text(bar.to_world, 6), radius_m);
   };
   add(object_ground, "ground", "ground", Obstacle{}, 0);
   for (std::size_t i = 0; i < obstacles.size(); ++i)

@@ -2,9 +2,10 @@
 
 #include <mujoco/mujoco.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "sim/scene/meshes.hpp"
@@ -117,6 +118,17 @@ std::string texture_xml(const char* name, int width_px, int height_px) {
       name, width_px, height_px);
 }
 
+/// The smallest rotation that takes the z axis onto a unit vector. Eigen's FromTwoVectors is the same to the
+/// bit, but compiles a singular value decomposition for the vector straight down.
+Eigen::Quaterniond turn_from_z(const Eigen::Vector3d& unit) {
+  const double twice_cosine = std::sqrt((1 + unit.z()) * 2);  // of half the angle
+  if (twice_cosine < 1e-6) return Eigen::Quaterniond(0, 1, 0, 0);
+  Eigen::Quaterniond turn;
+  turn.vec() = Eigen::Vector3d::UnitZ().cross(unit) * (1 / twice_cosine);
+  turn.w() = twice_cosine * 0.5;
+  return turn;
+}
+
 }  // namespace
 
 SceneryXml scenery_xml(const std::vector<Obstacle>& obstacles, const WorldConfig& config) {
@@ -138,8 +150,7 @@ SceneryXml scenery_xml(const std::vector<Obstacle>& obstacles, const WorldConfig
       xml.bodies += geom_xml(name, "facade", obstacle.from_world, Eigen::Quaterniond::Identity());
       continue;
     }
-    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(
-                                        Eigen::Vector3d::UnitZ(), obstacle.to_world - obstacle.from_world) *
+    const Eigen::Quaterniond turn = turn_from_z((obstacle.to_world - obstacle.from_world).normalized()) *
                                     Eigen::AngleAxisd(obstacle.texture_turn_rad, Eigen::Vector3d::UnitZ());
     xml.assets += mesh_xml(name, trunk_mesh(obstacle, bark_width_m, bark_height_m));
     xml.bodies += geom_xml(name, "bark", obstacle.from_world, turn);
