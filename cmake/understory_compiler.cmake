@@ -12,6 +12,9 @@ add_library(understory_settings INTERFACE)
 target_include_directories(understory_settings INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                            $<INSTALL_INTERFACE:include/understory>)
 target_compile_features(understory_settings INTERFACE cxx_std_20)
+# An assertion (OpenCV's CV_Assert) names its file from the top of the tree, not where somebody built it.
+target_compile_options(understory_settings INTERFACE
+  "$<BUILD_INTERFACE:-fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=>")
 # Warnings are the project's own affair: who uses the installed package keeps theirs.
 target_compile_options(understory_settings INTERFACE
   "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wnon-virtual-dtor;-Werror;-ffp-contract=off>")
