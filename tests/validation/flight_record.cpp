@@ -7,7 +7,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "scenarios/output/require.hpp"
+#include "perception/assertion.hpp"
 
 namespace understory {
 namespace {
@@ -52,10 +52,10 @@ FlightRecord real_left_jog() {
     std::istringstream cells(line);
     RecordedLine numbers{};
     for (double& number : numbers) cells >> number;
-    require(!cells.fail(), "the record of the left jog has 16 numbers a line");
+    assert_always(!cells.fail(), "the record of the left jog has 16 numbers a line");
     record.push_back(moment(numbers));
   }
-  require(!record.empty(), "the record of the left jog can be read");
+  assert_always(!record.empty(), "the record of the left jog can be read");
   const std::vector<Vector3d> integrated = integrated_velocity(record);
   for (std::size_t i = 0; i < integrated.size(); ++i) record[i].position_world.z() = integrated[i].z();
   return record;
