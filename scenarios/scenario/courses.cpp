@@ -65,6 +65,7 @@ std::vector<Obstacle> windows(const WindowsConfig& config, double goal_x_m) {
   wall.to_world = {x, 0.5 * config.width_m, config.height_m};
   return {wall};
 }
+
 namespace {
 
 /// A straight piece on the ground from `from` to `to`.

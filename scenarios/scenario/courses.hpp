@@ -73,7 +73,7 @@ void visit_fields(Visitor& visit, GoalpostsConfig& config) {
 /// the near one, left or right by the seed, is pass_minimum_m .. pass_maximum_m from it.
 std::vector<Obstacle> goalposts(const GoalpostsConfig& config, std::uint64_t seed);
 
-/// A facade of equal windows across the way behind the goal (sim/scene/facade.hpp): repeated texture, which
+/// A facade of equal windows across the way behind the goal (sim/scene/meshes.hpp): repeated texture, which
 /// misled the paper's detector without its invariance filter (docs/sources.md [1]).
 struct WindowsConfig {
   double behind_goal_m = 12;  ///< from the goal plane to its face; flights end before it

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "scenarios/config/config_reader.hpp"
 #include "scenarios/config/config_writer.hpp"
@@ -34,7 +35,6 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
   };
   expect(is_plain_word(scenario.name),
          "name: expected letters, digits, '-', '_' and '.', at most 100, no '.' first");
-  const auto divides = [](int rate_hz) { return physics_rate_hz % rate_hz == 0; };
   expect(scenario.forest.radius_min_m <= scenario.forest.radius_max_m,
          "forest.radius_min_m: expected at most forest.radius_max_m");
   expect(scenario.band.minimum_altitude_m < scenario.band.maximum_altitude_m,
@@ -46,30 +46,27 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
   expect(scenario.actuators.pitch_speed_mps == 0 ||
              scenario.actuators.pitch_speed_mps > scenario.actuators.thrust_speed_mps,
          "actuators.pitch_speed_mps: expected 0 or more than actuators.thrust_speed_mps");
-  expect(divides(scenario.autopilot.replan_rate_hz),
-         "autopilot.replan_rate_hz: expected a rate that divides 1200");
-  expect(divides(scenario.cameras.rate_hz), "cameras.rate_hz: expected a rate that divides 1200");
-  expect(divides(scenario.sensors.sensors.imu_rate_hz),
-         "sensors.imu_rate_hz: expected a rate that divides 1200");
-  expect(divides(scenario.sensors.sensors.pitot_rate_hz),
-         "sensors.pitot_rate_hz: expected a rate that divides 1200");
-  expect(divides(scenario.sensors.sensors.barometer_rate_hz),
-         "sensors.barometer_rate_hz: expected a rate that divides 1200");
-  expect(divides(scenario.sensors.sensors.magnetometer_rate_hz),
-         "sensors.magnetometer_rate_hz: expected a rate that divides 1200");
-  expect(divides(scenario.sensors.sensors.gps_rate_hz),
-         "sensors.gps_rate_hz: expected a rate that divides 1200");
+  const SensorsConfig& sensors = scenario.sensors.sensors;
+  const std::pair<const char*, int> rates_hz[] = {{"autopilot.replan_", scenario.autopilot.replan_rate_hz},
+                                                  {"cameras.", scenario.cameras.rate_hz},
+                                                  {"sensors.imu_", sensors.imu_rate_hz},
+                                                  {"sensors.pitot_", sensors.pitot_rate_hz},
+                                                  {"sensors.barometer_", sensors.barometer_rate_hz},
+                                                  {"sensors.magnetometer_", sensors.magnetometer_rate_hz},
+                                                  {"sensors.gps_", sensors.gps_rate_hz}};
+  for (const auto& [key, rate_hz] : rates_hz)
+    expect(physics_rate_hz % rate_hz == 0, fmt::format("{}rate_hz: expected a rate that divides 1200", key));
   const PerceptionSection& perception = scenario.perception;
-  expect(perception.stereo_bm.window_px % 2 == 1, "perception.stereo_bm.window_px: expected an odd number");
-  expect(perception.stereo_sgbm.window_px % 2 == 1,
-         "perception.stereo_sgbm.window_px: expected an odd number");
-  expect(perception.stereo_bm.prefilter_size_px % 2 == 1,
-         "perception.stereo_bm.prefilter_size_px: expected an odd number");
-  expect(perception.stereo_bm.disparities % 16 == 0,
-         "perception.stereo_bm.disparities: expected a multiple of 16");
-  expect(perception.stereo_sgbm.disparities % 16 == 0,
-         "perception.stereo_sgbm.disparities: expected a multiple of 16");
-  expect(perception.stereo_sgbm.smoothness_1 < perception.stereo_sgbm.smoothness_2,
+  const StereoBmConfig& bm = perception.stereo_bm;
+  const StereoSgbmConfig& sgbm = perception.stereo_sgbm;
+  const std::pair<const char*, int> odd_numbers[] = {{"stereo_bm.window_px", bm.window_px},
+                                                     {"stereo_sgbm.window_px", sgbm.window_px},
+                                                     {"stereo_bm.prefilter_size_px", bm.prefilter_size_px}};
+  for (const auto& [key, number] : odd_numbers)
+    expect(number % 2 == 1, fmt::format("perception.{}: expected an odd number", key));
+  expect(bm.disparities % 16 == 0, "perception.stereo_bm.disparities: expected a multiple of 16");
+  expect(sgbm.disparities % 16 == 0, "perception.stereo_sgbm.disparities: expected a multiple of 16");
+  expect(sgbm.smoothness_1 < sgbm.smoothness_2,
          "perception.stereo_sgbm.smoothness_1: expected less than smoothness_2");
   expect(perception.full_stereo.minimum_depth_m < perception.full_stereo.maximum_depth_m,
          "perception.full_stereo.minimum_depth_m: expected less than maximum_depth_m");

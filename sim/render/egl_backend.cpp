@@ -4,6 +4,7 @@
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <cstring>
@@ -65,38 +66,26 @@ struct EglDisplay {
 
 /// EGL gives deeper colours first: takes what was asked for, not more.
 EGLConfig config_of(const EglLibrary& egl, EGLDisplay display) {
-  const std::array<EGLint, 15> asked{EGL_SURFACE_TYPE,
-                                     EGL_PBUFFER_BIT,
-                                     EGL_RENDERABLE_TYPE,
-                                     EGL_OPENGL_BIT,
-                                     EGL_RED_SIZE,
-                                     8,
-                                     EGL_GREEN_SIZE,
-                                     8,
-                                     EGL_BLUE_SIZE,
-                                     8,
-                                     EGL_ALPHA_SIZE,
-                                     8,
-                                     EGL_DEPTH_SIZE,
-                                     24,
-                                     EGL_NONE};
+  constexpr std::pair<EGLint, EGLint> exactly[] = {{EGL_RED_SIZE, 8},    {EGL_GREEN_SIZE, 8},
+                                                   {EGL_BLUE_SIZE, 8},   {EGL_ALPHA_SIZE, 8},
+                                                   {EGL_DEPTH_SIZE, 24}, {EGL_SAMPLES, 0}};
+  std::vector<EGLint> asked{EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT};
+  for (const auto& [attribute, value] : exactly) asked.insert(asked.end(), {attribute, value});
+  asked.push_back(EGL_NONE);
   std::array<EGLConfig, 256> configs{};
   EGLint count = 0;
   if (!egl.core<PFNEGLCHOOSECONFIGPROC>("eglChooseConfig")(display, asked.data(), configs.data(),
                                                            static_cast<EGLint>(configs.size()), &count))
     return nullptr;
   const auto get = egl.core<PFNEGLGETCONFIGATTRIBPROC>("eglGetConfigAttrib");
-  const auto is = [&](EGLConfig config, EGLint attribute, EGLint wanted) {
-    EGLint value = 0;
-    return get(display, config, attribute, &value) && value == wanted;
+  const auto fits = [&](EGLConfig config) {
+    return std::ranges::all_of(exactly, [&](const auto& wanted) {
+      EGLint value = 0;
+      return get(display, config, wanted.first, &value) && value == wanted.second;
+    });
   };
-  for (int i = 0; i < count; ++i) {
-    EGLConfig config = configs[static_cast<std::size_t>(i)];
-    if (is(config, EGL_RED_SIZE, 8) && is(config, EGL_GREEN_SIZE, 8) && is(config, EGL_BLUE_SIZE, 8) &&
-        is(config, EGL_ALPHA_SIZE, 8) && is(config, EGL_DEPTH_SIZE, 24) && is(config, EGL_SAMPLES, 0))
-      return config;
-  }
-  return nullptr;
+  const auto found = std::find_if(configs.begin(), configs.begin() + count, fits);
+  return found == configs.begin() + count ? nullptr : *found;
 }
 
 std::vector<EGLDeviceEXT> gpus(const EglLibrary& egl) {

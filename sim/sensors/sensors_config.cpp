@@ -50,35 +50,16 @@ SensorsConfig worse(SensorsConfig sensors, double factor) {
   BarometerConfig& barometer = sensors.barometer;
   MagnetometerConfig& magnetometer = sensors.magnetometer;
   GpsConfig& gps = sensors.gps;
-  for (double* error : {&imu.gyro_noise_radps,
-                        &imu.gyro_bias_radps,
-                        &imu.gyro_bias_instability_radps,
-                        &imu.gyro_walk_radpsps_rthz,
-                        &imu.gyro_scale,
-                        &imu.gyro_misalignment,
-                        &imu.gyro_vibration_radpspn,
-                        &imu.accelerometer_noise_mps2,
-                        &imu.accelerometer_bias_mps2,
-                        &imu.accelerometer_bias_instability_mps2,
-                        &imu.accelerometer_walk_mps2ps_rthz,
-                        &imu.accelerometer_scale,
-                        &imu.accelerometer_misalignment,
-                        &imu.accelerometer_vibration_mps2pn,
-                        &pitot.pressure_noise_pa,
-                        &pitot.pressure_bias_pa,
-                        &pitot.dead_zone_pa,
-                        &pitot.recovery_loss,
-                        &barometer.noise_m,
-                        &barometer.drift_m,
-                        &barometer.wash_m_per_n,
-                        &magnetometer.noise_ut,
-                        &magnetometer.hard_iron_ut,
-                        &magnetometer.soft_iron,
-                        &gps.velocity_noise_mps,
-                        &gps.position_noise_m,
-                        &gps.position_drift_m}) {
-    *error *= factor;
-  }
+  const auto scale = [factor](auto&... errors) { ((errors *= factor), ...); };
+  scale(imu.gyro_noise_radps, imu.gyro_bias_radps, imu.gyro_bias_instability_radps,
+        imu.gyro_walk_radpsps_rthz, imu.gyro_scale, imu.gyro_misalignment, imu.gyro_vibration_radpspn,
+        imu.accelerometer_noise_mps2, imu.accelerometer_bias_mps2, imu.accelerometer_bias_instability_mps2,
+        imu.accelerometer_walk_mps2ps_rthz, imu.accelerometer_scale, imu.accelerometer_misalignment,
+        imu.accelerometer_vibration_mps2pn);
+  scale(pitot.pressure_noise_pa, pitot.pressure_bias_pa, pitot.dead_zone_pa, pitot.recovery_loss);
+  scale(barometer.noise_m, barometer.drift_m, barometer.wash_m_per_n);
+  scale(magnetometer.noise_ut, magnetometer.hard_iron_ut, magnetometer.soft_iron);
+  scale(gps.velocity_noise_mps, gps.position_noise_m, gps.position_drift_m);
   return sensors;
 }
 
