@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <ompl/datastructures/NearestNeighborsLinear.h>
 #include <cmath>
+#include <random>
 
 #include "tests/planning/forests.hpp"
 
@@ -103,6 +105,153 @@ TEST(CourseCommand, TurnsBackToTheCourse) {
   EXPECT_GT(course_command(flight.task(), flight.start).bank_rad, 0.1);
   flight.start.position_world = {0, 0, flight.mission.cruise_altitude_m - 1};
   EXPECT_GT(course_command(flight.task(), flight.start).climb_mps, 0.1);
+}
+
+/// Everything that a search is asked with, in a forest of its own.
+struct Search {
+  explicit Search(std::vector<Trunk> standing)
+      : trunks(std::move(standing)), field(field_config, points_of(trunks), 0) {
+    start.position_world.z() = mission.cruise_altitude_m;
+  }
+  FlightTask task() const { return {model, trajectory, mission, field, start.position_world}; }
+  std::optional<Manoeuvre> run(std::uint64_t seed) const {
+    return search_manoeuvre(task(), start, {}, config, seed);
+  }
+
+  FlightModel model{Airframe{}, FlightModelConfig{}};
+  TrajectoryConfig trajectory;
+  Mission mission;
+  ManoeuvreSearchConfig config;
+  ObstacleFieldConfig field_config;
+  std::vector<Trunk> trunks;
+  ObstacleField field;
+  FlightState start;
+};
+
+Search random_search(std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  std::vector<Trunk> trunks = random_forest(generator, 8, 4, 13);
+  trunks.push_back({{8, 0.2}});  // one right ahead
+  Search search(std::move(trunks));
+  search.start.bank_rad = std::uniform_real_distribution<double>(-0.5, 0.5)(generator);
+  search.start.heading_rad = std::uniform_real_distribution<double>(-0.3, 0.3)(generator);
+  return search;
+}
+
+bool same(const std::optional<Manoeuvre>& one, const std::optional<Manoeuvre>& other) {
+  if (!one || !other) return one.has_value() == other.has_value();
+  return std::equal(one->begin(), one->end(), other->begin(), other->end(),
+                    [](const ManoeuvrePart& a, const ManoeuvrePart& b) {
+                      return a.command == b.command && a.duration_s == b.duration_s;
+                    });
+}
+
+TEST(ManoeuvreSearch, RepeatsExactlyWhateverWasSearchedBefore) {
+  const Search search({{{9, 0.1}}, {{11, 2.5}}, {{12, -2}}}), other = random_search(2);
+  const std::optional<Manoeuvre> first = search.run(42);
+  ASSERT_TRUE(first.has_value());
+  EXPECT_TRUE(same(first, search.run(42)));
+  other.run(7);
+  search.run(43);
+  EXPECT_TRUE(same(first, search.run(42)));
+  EXPECT_TRUE(same(first, Search(search.trunks).run(42)));  // all objects new
+}
+
+TEST(ManoeuvreSearch, SeedsDiffer) {
+  const Search search({{{9, 0.1}}, {{11, 2.5}}, {{12, -2}}});
+  int different = 0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed)
+    different += !same(search.run(seed), search.run(seed + 100));
+  EXPECT_GE(different, 3);
+}
+
+TEST(ManoeuvreSearch, WhatItFindsKeepsClearOfEveryKnownTrunk) {
+  int found_count = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const Search search = random_search(seed);
+    const std::optional<Manoeuvre> found = search.run(seed);
+    if (!found) continue;
+    ++found_count;
+    const double limit = search.trajectory.minimum_clearance_m;
+    Plan plan;
+    const Rollout rollout = fly_out(search.task(), search.start, *found, limit, true);
+    EXPECT_TRUE(rollout.reached_horizon) << "seed " << seed;
+    plan.points = rollout.points;
+    const ObstacleFieldConfig& field = search.field_config;
+    const double around_m = field.wing_radius_m + field.sigma_zero_m + 0.5 * field.cell_m;
+    EXPECT_GE(plan_distance_m(plan, search.trunks, field), around_m + limit - 1e-9) << "seed " << seed;
+    for (const PlanPoint& point : plan.points) {
+      EXPECT_GT(point.position_world.z(), search.mission.minimum_altitude_m);
+      EXPECT_LT(point.position_world.z(), search.mission.maximum_altitude_m);
+    }
+  }
+  EXPECT_GE(found_count, 45);
+}
+
+TEST(ManoeuvreSearch, FindsNothingThroughAWall) {
+  const Search search(wall(8));
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) EXPECT_FALSE(search.run(seed).has_value());
+}
+
+TEST(ManoeuvreSearch, FindsTheDoorInAWall) {
+  std::vector<Trunk> trunks = wall(9);
+  std::erase_if(trunks,
+                [](const Trunk& trunk) { return trunk.foot_world.y() > 0.2 && trunk.foot_world.y() < 3.5; });
+  const Search search(std::move(trunks));
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) found += search.run(seed).has_value();
+  EXPECT_GE(found, 4);
+}
+
+/// Coarse steps, so that many places are equally far.
+FlightPlace random_place(std::mt19937_64& generator) {
+  const auto step = [&] { return static_cast<double>(generator() % 7) * 0.25; };
+  return {{step(), step(), step()}, 0.3 * step(), 0.8 * step()};
+}
+
+TEST(FlightPlaces, AnswerAsOmplsLinearSearchDoes) {
+  std::mt19937_64 generator(3);
+  for (int trial = 0; trial < 40; ++trial) {
+    FlightPlaces places;
+    std::vector<FlightPlace> all;
+    ompl::NearestNeighborsLinear<int> plain;  // numbers; the last is the place asked about
+    plain.setDistanceFunction([&](int one, int other) {
+      return std::sqrt(
+          squared_distance(all[static_cast<std::size_t>(one)], all[static_cast<std::size_t>(other)]));
+    });
+    const int count = 1 + static_cast<int>(generator() % 200);
+    for (int i = 0; i < count; ++i) {
+      all.push_back(random_place(generator));
+      places.add(all.back());
+      plain.add(i);
+    }
+    const auto asked = static_cast<int>(all.size());
+    all.push_back(random_place(generator));
+    const FlightPlace place = all.back();
+    EXPECT_EQ(static_cast<int>(places.nearest(place)), plain.nearest(asked));
+    std::vector<int> expected;
+    const auto equals = [&](const std::vector<std::size_t>& numbers) {
+      return std::equal(numbers.begin(), numbers.end(), expected.begin(), expected.end(),
+                        [](std::size_t one, int other) { return static_cast<int>(one) == other; });
+    };
+    for (const std::size_t k : {std::size_t{1}, std::size_t{6}, std::size_t{500}}) {
+      plain.nearestK(asked, k, expected);
+      EXPECT_TRUE(equals(places.nearest(place, k))) << k;
+    }
+    for (const double radius : {0.0, 0.5, 0.6, 3.0}) {
+      plain.nearestR(asked, radius, expected);
+      EXPECT_TRUE(equals(places.within(place, radius))) << radius;
+    }
+  }
+}
+
+TEST(FlightPlaces, ARemovedPlaceIsGoneAndLaterOnesMoveUp) {
+  FlightPlaces places;
+  for (const double x : {0.0, 1.0, 2.0}) places.add({{x, 0, 0}, 0, 0});
+  places.remove(1);
+  EXPECT_EQ(places.size(), 2u);
+  EXPECT_EQ(places.nearest({{1.9, 0, 0}, 0, 0}), 1u);
+  EXPECT_EQ(places.nearest({{0.9, 0, 0}, 0, 0}), 0u);
 }
 
 }  // namespace

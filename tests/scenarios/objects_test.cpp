@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <limits>
 #include <numbers>
-#include <opencv2/imgcodecs.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -14,10 +13,9 @@
 #include "perception/io/pose_file.hpp"
 #include "scenarios/flight/oracles.hpp"
 #include "scenarios/recording/carried_path.hpp"
-#include "scenarios/recording/euroc_texts.hpp"
 #include "scenarios/recording/record.hpp"
-#include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
+#include "tests/scenarios/recordings.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 /// The recorded images of objects, read back, against rays sent at the course.
@@ -25,8 +23,6 @@ namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
-
-const fs::path root = UNDERSTORY_SOURCE_DIR;
 
 /// A line of objects.csv.
 struct Object {
@@ -78,9 +74,7 @@ cv::Mat expected_objects(const std::vector<Object>& objects, const StereoRig& ri
   cv::Mat expected(rig.height_px, rig.width_px, CV_16UC1);
   for (int row = 0; row < rig.height_px; ++row)
     for (int column = 0; column < rig.width_px; ++column) {
-      const Eigen::Vector3d ray_camera((column - rig.center_left_x_px) / rig.focal_px,
-                                       (row - rig.center_y_px) / rig.focal_px, 1);
-      const Eigen::Vector3d ray = T_world_camera.linear() * ray_camera;
+      const Eigen::Vector3d ray = T_world_camera.linear() * ray_of_pixel(rig, row, column);
       std::size_t first = 0;
       double nearest = std::numeric_limits<double>::infinity();
       const double to_ground = -eye.z() / ray.z();
@@ -124,11 +118,8 @@ struct Recorded {
 /// A second of walking, compared frame by frame.
 Recorded walked(const std::string& name, std::vector<std::string> settings, const fs::path& folder) {
   settings.insert(settings.end(), {"seed=1003", "time_limit_s=1", "cameras.rate_hz=4"});
-  const Scenario scenario = load_scenario(root / "scenarios/library" / (name + ".yaml"), settings);
-  FlyOptions options;
-  options.models_folder = root / "models";
-  options.output_folder = folder;
-  walk_recorded(scenario, {}, options);
+  const Scenario scenario = library_scenario(name, settings);
+  walk_recorded(scenario, {}, into(folder));
   Recorded recorded{read_objects(folder / "mav0/objects0/objects.csv"), {}};
   EXPECT_EQ(recorded.objects.size(), 2 + course_obstacles(scenario).size());
   EXPECT_EQ(support::content_of(folder / "mav0/objects0/data.csv"),
@@ -193,20 +184,14 @@ TEST(Objects, AWallAheadHasOneDepth) {
   const support::TemporaryFolder folder;
   const fs::path knots = folder.write(
       "straight", "0 0 0 4.5 0 -0.095585155 0 0.995421257\n1 12 0 4.5 0 -0.095585155 0 0.995421257\n");
-  FlyOptions options;
-  options.models_folder = root / "models";
-  options.output_folder = folder.path() / "followed";
-  follow_recorded(load_scenario(root / "scenarios/library/windows.yaml", {"cameras.rate_hz=4"}),
-                  read_path(knots), options);
-  const Eigen::Vector3d camera_body =
-      read_calibrated_rig(options.output_folder, {}).rig.T_body_camera.translation();
+  const fs::path followed = folder.path() / "followed";
+  follow_recorded(library_scenario("windows", {"cameras.rate_hz=4"}), read_path(knots), into(followed));
+  const Eigen::Vector3d camera_body = read_calibrated_rig(followed, {}).rig.T_body_camera.translation();
   const double nose_up_rad = 10.97 / 180 * std::numbers::pi;
   const double ahead_m = camera_body.x() * std::cos(nose_up_rad) - camera_body.z() * std::sin(nose_up_rad);
   for (const int quarter : {3, 4}) {  // before, 65.535 m do not reach
-    const std::string name = std::to_string(recorded_ns(quarter * std::int64_t{250'000'000})) + ".png";
-    const fs::path mav0 = options.output_folder / "mav0";
-    const cv::Mat depth = cv::imread((mav0 / "depth0/data" / name).string(), cv::IMREAD_UNCHANGED);
-    const cv::Mat objects = cv::imread((mav0 / "objects0/data" / name).string(), cv::IMREAD_UNCHANGED);
+    const cv::Mat depth = image_of(followed, "depth0", quarter * std::int64_t{250'000'000});
+    const cv::Mat objects = image_of(followed, "objects0", quarter * std::int64_t{250'000'000});
     double minimum = 0, maximum = 0;
     cv::minMaxLoc(depth, &minimum, &maximum, nullptr, nullptr, objects == 2);
     EXPECT_GT(cv::countNonZero(objects == 2), 20'000);
@@ -219,12 +204,11 @@ TEST(Objects, AWallAheadHasOneDepth) {
 /// Along the banked path, which goes through trunks: where it is at a time is known, and its roll.
 TEST(Objects, AlongTheBankedPathAreThoseThatRaysMeet) {
   const support::TemporaryFolder folder;
-  const Scenario scenario = load_scenario(root / "scenarios/library/forest.yaml",
-                                          {"seed=1003", "cameras.rate_hz=2", "cameras.view_distance_m=200"});
-  FlyOptions options;
-  options.models_folder = root / "models";
-  options.output_folder = folder.path();
-  EXPECT_EQ(follow_recorded(scenario, read_path(root / "scenarios/paths/banked.tum"), options).frames, 14);
+  const Scenario scenario =
+      library_scenario("forest", {"seed=1003", "cameras.rate_hz=2", "cameras.view_distance_m=200"});
+  EXPECT_EQ(
+      follow_recorded(scenario, read_path(root / "scenarios/paths/banked.tum"), into(folder.path())).frames,
+      14);
   const StereoRig rig = read_calibrated_rig(folder.path(), {}).rig;
   const auto objects = read_objects(folder.path() / "mav0/objects0/objects.csv");
   constexpr double degree = std::numbers::pi / 180;
@@ -235,9 +219,7 @@ TEST(Objects, AlongTheBankedPathAreThoseThatRaysMeet) {
     pose.linear() = (Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitX()) *
                      Eigen::AngleAxisd(-10.97 * degree, Eigen::Vector3d::UnitY()))
                         .toRotationMatrix();
-    const std::string name = std::to_string(recorded_ns(i * std::int64_t{500'000'000})) + ".png";
-    const cv::Mat found =
-        cv::imread((folder.path() / "mav0/objects0/data" / name).string(), cv::IMREAD_UNCHANGED);
+    const cv::Mat found = image_of(folder.path(), "objects0", i * std::int64_t{500'000'000});
     const Agreement one = compare(found, expected_objects(objects, rig, pose));
     all.compared += one.compared, all.agreed += one.agreed, all.on_obstacles += one.on_obstacles;
   }
@@ -259,13 +241,9 @@ TEST(Objects, BeyondTheViewAreNone) {
 
 TEST(Objects, MoreThanTheirNumbersCanTellAreRefused) {
   const support::TemporaryFolder folder;
-  const Scenario scenario =
-      load_scenario(root / "scenarios/library/forest.yaml",
-                    {"forest.length_m=1000", "forest.half_width_m=200", "forest.square_metres_per_tree=4"});
-  FlyOptions options;
-  options.models_folder = root / "models";
-  options.output_folder = folder.path();
-  EXPECT_THROW(fly_recorded(scenario, options), ScenarioError);
+  const Scenario scenario = library_scenario(
+      "forest", {"forest.length_m=1000", "forest.half_width_m=200", "forest.square_metres_per_tree=4"});
+  EXPECT_THROW(fly_recorded(scenario, into(folder.path())), ScenarioError);
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 

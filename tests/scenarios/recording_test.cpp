@@ -18,8 +18,8 @@
 #include "scenarios/flight/fly.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/recording/euroc_recording.hpp"
-#include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
+#include "tests/scenarios/recordings.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -31,12 +31,10 @@ namespace fs = std::filesystem;
 using support::content_of;
 using support::TemporaryFolder;
 
-const fs::path root = UNDERSTORY_SOURCE_DIR;
-
 Scenario scenario_with(const std::string& name, std::vector<std::string> settings) {
   settings.push_back("seed=1007");
   settings.push_back("cameras.rate_hz=60");
-  return load_scenario(root / "scenarios/library" / (name + ".yaml"), settings);
+  return library_scenario(name, settings);
 }
 
 /// Launch and some metres towards a dense stand of trees.
@@ -70,8 +68,7 @@ struct Flown : FlightObserver {
 
 Flown flown(const Scenario& scenario, const fs::path& folder) {
   Flown flight;
-  FlyOptions options;
-  options.models_folder = root / "models";
+  FlyOptions options = into({});
   flight.rig = rig_of(scenario, options.models_folder);
   flight.trunks = course_obstacles(scenario);
   EurocRecording recording(folder, scenario, flight.rig, 2);
@@ -83,10 +80,6 @@ Flown flown(const Scenario& scenario, const fs::path& folder) {
 
 bool same_bytes(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && cv::norm(a, b, cv::NORM_INF) == 0;
-}
-
-double apart_rad(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
-  return Eigen::Quaterniond(a.linear()).angularDistance(Eigen::Quaterniond(b.linear()));
 }
 
 void expect_alike(const StereoRig& read, const StereoRig& rig) {

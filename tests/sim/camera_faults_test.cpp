@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
 
@@ -204,6 +205,20 @@ TEST(CameraFaults, FramesDropAsOftenAsTheProbabilitySays) {
     lost += is_lost;
   }
   EXPECT_NEAR(lost, 0.05 * count, 4 * std::sqrt(0.05 * 0.95 * count));
+}
+
+TEST(RoundedGaussians, AreTheStandardLibrarysRounded) {
+  constexpr std::size_t count = 1 << 17;
+  for (const double deviation : {1e-3, 0.3, 1.0, 2.0, 7.5, 60.0, 1e4})
+    for (const std::uint64_t seed : {0u, 1u, 1000u}) {
+      std::mt19937_64 ours(seed), theirs(seed);
+      const std::vector<std::int8_t> rounded = rounded_gaussians(count, deviation, ours);
+      std::normal_distribution<double> gaussian(0.0, deviation);
+      for (std::size_t i = 0; i < count; ++i)
+        ASSERT_EQ(rounded[i], std::clamp(std::lround(gaussian(theirs)), -127L, 127L))
+            << "number " << i << ", deviation " << deviation << ", seed " << seed;
+      EXPECT_EQ(ours, theirs);  // as many draws
+    }
 }
 
 }  // namespace
