@@ -31,7 +31,7 @@ set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/understory)
 set_target_properties(perception_io PROPERTIES EXPORT_NAME perception)
 set_target_properties(perception PROPERTIES EXPORT_NAME detection)
 install(TARGETS understory_settings opencv_core_parts opencv_file_parts perception_types pushbroom_kernel perception
-                picture_codecs perception_io estimation_types estimation
+                picture_codecs perception_text perception_io estimation_types estimation
         EXPORT understory-targets)
 install(EXPORT understory-targets NAMESPACE understory:: DESTINATION ${package_folder})
 install(DIRECTORY perception estimation DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/understory

@@ -34,7 +34,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "detector and estimator of Understory, 
  detector with its readers, and of the error-state filter, as they run on an
  aircraft: find_package(understory COMPONENTS perception estimation).")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libeigen3-dev, libopencv-dev, libyaml-cpp-dev, libfmt-dev, libtbb-dev, libhwy-dev")
+    "libeigen3-dev, libopencv-dev, libyaml-cpp-dev, libpugixml-dev, libfmt-dev, libtbb-dev, libhwy-dev")
 
 # Debian asks for a copyright file and a changelog in each package.
 file(READ LICENSE license)

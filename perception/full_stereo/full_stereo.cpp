@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <opencv2/core.hpp>
@@ -13,6 +14,8 @@ namespace understory {
 namespace {
 
 constexpr double steps_per_px = cv::StereoMatcher::DISP_SCALE;
+constexpr double uncertainty_px = 0.5;
+constexpr double unlimited_m = 1000;
 
 int mode_of(SgbmPaths paths) {
   switch (paths) {
@@ -28,8 +31,10 @@ int mode_of(SgbmPaths paths) {
 
 }  // namespace
 
-FullStereo::FullStereo(const StereoRig& rig, int window_px, int min_disparity_px, int disparities)
+FullStereoDetector::FullStereoDetector(const StereoRig& rig, const FullStereoCrop& crop, int window_px,
+                                       int min_disparity_px, int disparities)
     : rig_(rig),
+      crop_(crop),
       min_disparity_px_(min_disparity_px),
       pad_px_(min_disparity_px + disparities + window_px / 2) {
   const auto shift_px = static_cast<int>(std::lround(rig.infinity_disparity_px()));
@@ -43,8 +48,9 @@ FullStereo::FullStereo(const StereoRig& rig, int window_px, int min_disparity_px
                 "the rig's infinity leaves its images no common part");
 }
 
-FullStereo::FullStereo(const StereoRig& rig, const StereoBmConfig& config)
-    : FullStereo(rig, config.window_px, config.min_disparity_px, config.disparities) {
+FullStereoDetector::FullStereoDetector(const StereoRig& rig, const StereoBmConfig& config,
+                                       const FullStereoCrop& crop)
+    : FullStereoDetector(rig, crop, config.window_px, config.min_disparity_px, config.disparities) {
   const auto matcher = cv::StereoBM::create(config.disparities, config.window_px);
   matcher->setMinDisparity(config.min_disparity_px);
   matcher->setTextureThreshold(config.texture_threshold);
@@ -56,8 +62,9 @@ FullStereo::FullStereo(const StereoRig& rig, const StereoBmConfig& config)
   matcher_ = matcher;
 }
 
-FullStereo::FullStereo(const StereoRig& rig, const StereoSgbmConfig& config)
-    : FullStereo(rig, config.window_px, config.min_disparity_px, config.disparities) {
+FullStereoDetector::FullStereoDetector(const StereoRig& rig, const StereoSgbmConfig& config,
+                                       const FullStereoCrop& crop)
+    : FullStereoDetector(rig, crop, config.window_px, config.min_disparity_px, config.disparities) {
   assert_always(config.smoothness_2 > config.smoothness_1, "StereoSGBM wants P2 greater than P1");
   const int area = config.window_px * config.window_px;
   matcher_ = cv::StereoSGBM::create(config.min_disparity_px, config.disparities, config.window_px,
@@ -66,7 +73,7 @@ FullStereo::FullStereo(const StereoRig& rig, const StereoSgbmConfig& config)
                                     config.speckle_window_px, config.speckle_range_px, mode_of(config.paths));
 }
 
-const cv::Mat& FullStereo::depth_m(const StereoFrame& frame) {
+void FullStereoDetector::match(const StereoFrame& frame) {
   view_of(frame.left, rig_);  // for their assertions
   view_of(frame.right, rig_);
   // A border around part of an image is filled from the image, as far as it goes.
@@ -89,7 +96,50 @@ const cv::Mat& FullStereo::depth_m(const StereoFrame& frame) {
       if (is_matched && parallax_px > 0) depth[u] = static_cast<float>(scale_m / parallax_px);
     }
   }
-  return depth_m_;
+}
+
+FullStereoCrop one_pixel_crop(const StereoRig& rig) {
+  const double disparity_px = std::round(rig.disparity_px(rig.detection_depth_m));
+  FullStereoCrop crop;
+  crop.minimum_depth_m = rig.depth_m(disparity_px + 1);
+  crop.maximum_depth_m = rig.depth_m(disparity_px - 1);
+  crop.maximum_below_m = unlimited_m;  // the pushbroom's rows alone
+  return crop;
+}
+
+const std::vector<StereoHit>& FullStereoDetector::detect(const StereoFrame& frame) {
+  match(frame);
+  hits_.clear();
+  const int cell_px = crop_.cell_px;
+  const int last_row_px = std::min(rig_.scaled_row_px(crop_.last_row_px), rig_.height_px - cell_px);
+  for (int row_px = 0; row_px <= last_row_px; row_px += cell_px)
+    for (int column_px = 0; column_px + cell_px <= rig_.width_px; column_px += cell_px)
+      add_cell(column_px, row_px);
+  return hits_;
+}
+
+void FullStereoDetector::add_cell(int column_px, int row_px) {
+  cell_m_.clear();
+  for (int v = row_px; v < row_px + crop_.cell_px; ++v) {
+    const auto* row = depth_m_.ptr<float>(v);
+    for (int u = column_px; u < column_px + crop_.cell_px; ++u)
+      if (row[u] >= crop_.minimum_depth_m && row[u] <= crop_.maximum_depth_m) cell_m_.push_back(row[u]);
+  }
+  if (cell_m_.size() < static_cast<std::size_t>(crop_.minimum_pixels_per_cell)) return;
+  const auto middle = cell_m_.begin() + static_cast<std::ptrdiff_t>(cell_m_.size() / 2);
+  std::nth_element(cell_m_.begin(), middle, cell_m_.end());
+  const double z_m = *middle, center_px = 0.5 * (crop_.cell_px - 1);
+  StereoHit hit;
+  hit.column_px = column_px;
+  hit.row_px = row_px;
+  hit.disparity_px = rig_.disparity_px(z_m);
+  hit.position_camera = {(column_px + center_px - rig_.center_left_x_px) * z_m / rig_.focal_px,
+                         (row_px + center_px - rig_.center_y_px) * z_m / rig_.focal_px, z_m};
+  if (hit.position_camera.y() > crop_.maximum_below_m) return;
+  const double farther_px = hit.disparity_px - uncertainty_px;
+  hit.depth = {rig_.depth_m(hit.disparity_px + uncertainty_px),
+               farther_px > rig_.infinity_disparity_px() ? rig_.depth_m(farther_px) : crop_.maximum_depth_m};
+  hits_.push_back(hit);
 }
 
 }  // namespace understory

@@ -1,30 +1,45 @@
 #pragma once
 
 #include <opencv2/calib3d.hpp>
+#include <vector>
 
+#include "perception/obstacle_detector.hpp"
 #include "perception/perception_config.hpp"
 #include "perception/stereo_frame.hpp"
 #include "perception/stereo_rig.hpp"
 
 namespace understory {
 
-/// The depth of every pixel that OpenCV matches: full stereo, which the pushbroom detector does without
-/// (docs/decisions/012). Neither depends on the number of OpenCV's threads.
-class FullStereo {
+/// The depths that the pushbroom detector means on this rig: one pixel of disparity either way of the whole
+/// disparity nearest to its detection depth.
+FullStereoCrop one_pixel_crop(const StereoRig& rig);
+
+/// Full stereo in the detector's place, which the pushbroom detector does without (docs/decisions/012):
+/// OpenCV matches every pixel. A hit is a cell of the left image with enough pixels at the wanted depths, at
+/// the median of those; its score and edge sum are 0, for full stereo tells neither. Its depth interval is
+/// that of half a pixel of disparity either way, beyond which another whole disparity would have matched
+/// better. Does not depend on the number of OpenCV's threads.
+class FullStereoDetector : public ObstacleDetector {
  public:
   /// Precondition (asserted): window_px is odd, disparities a multiple of 16, smoothness_2 above
   /// smoothness_1, and the rig's infinity leaves the images a common part wider than the window.
-  FullStereo(const StereoRig& rig, const StereoBmConfig& config);
-  FullStereo(const StereoRig& rig, const StereoSgbmConfig& config);
+  FullStereoDetector(const StereoRig& rig, const StereoBmConfig& config, const FullStereoCrop& crop);
+  FullStereoDetector(const StereoRig& rig, const StereoSgbmConfig& config, const FullStereoCrop& crop);
 
-  /// Depth in the left image, CV_32FC1, metres along the optical axis, 0 where unmatched. `frame` is
-  /// rectified and has the rig's size (asserted). Holds until the next call.
-  const cv::Mat& depth_m(const StereoFrame& frame);
+  /// `frame` is rectified and has the rig's size (asserted).
+  const std::vector<StereoHit>& detect(const StereoFrame& frame) override;
+  /// Of the last frame: depth in the left image, CV_32FC1, metres along the optical axis, 0 where unmatched.
+  /// Empty before the first.
+  const cv::Mat& depth_m() const { return depth_m_; }
 
  private:
-  FullStereo(const StereoRig& rig, int window_px, int min_disparity_px, int disparities);
+  FullStereoDetector(const StereoRig& rig, const FullStereoCrop& crop, int window_px, int min_disparity_px,
+                     int disparities);
+  void match(const StereoFrame& frame);
+  void add_cell(int column_px, int row_px);
 
   StereoRig rig_;
+  FullStereoCrop crop_;
   int min_disparity_px_;
   int pad_px_;        // on the left, which OpenCV leaves unmatched
   int left_from_px_;  // first column of either image that a point at infinity shows in both
@@ -34,6 +49,8 @@ class FullStereo {
   cv::Ptr<cv::StereoMatcher> matcher_;
   cv::Mat left_, right_, disparity_;  // padded; disparity CV_16S, sixteenths of a pixel
   cv::Mat depth_m_;
+  std::vector<float> cell_m_;
+  std::vector<StereoHit> hits_;
 };
 
 }  // namespace understory

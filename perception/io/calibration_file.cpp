@@ -4,13 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+#include <numbers>
 
-#include "perception/io/euroc_calibration.hpp"
-#include "perception/io/image_size.hpp"
-#include "perception/io/opencv_calibration.hpp"
-#include "perception/io/rig_file.hpp"
-#include "perception/io/rig_limits.hpp"
+#include "perception/io/calibration_formats.hpp"
+#include "perception/io/strict_map.hpp"
 #include "perception/io/text_file.hpp"
 
 namespace understory {
@@ -31,12 +28,12 @@ std::string name_of(const fs::path& path) {
 void look_at(StereoRig& rig, double detection_depth_m, const fs::path& path) {
   rig.detection_depth_m = detection_depth_m;
   if (!(detection_depth_m >= minimum_depth_m && detection_depth_m <= maximum_depth_m))
-    throw_file_fault(path.string(), 0, "detection depth",
-                     fmt::format("expected {} to {} m, was given {}", minimum_depth_m, maximum_depth_m,
-                                 detection_depth_m));
-  if (!detection_depth_in_view(rig))
-    throw_file_fault(
-        path.string(), 0, "detection depth",
+    refuse_input(path.string(), "detection depth",
+                 fmt::format("expected {} to {} m, was given {}", minimum_depth_m, maximum_depth_m,
+                             detection_depth_m));
+  if (!rig.can_look_at(std::round(rig.disparity_px(detection_depth_m))))
+    refuse_input(
+        path.string(), "detection depth",
         fmt::format("expected a depth more than a pixel of disparity nearer than infinity and inside "
                     "the image, {:.4g} m lies at {:.1f} px with infinity at {:.1f} px",
                     detection_depth_m, rig.disparity_px(detection_depth_m), rig.infinity_disparity_px()));
@@ -47,8 +44,8 @@ void require_in_range(const StereoRig& rig, const fs::path& path) {
   const auto require = [&](const std::string& key, double value, double minimum, double maximum,
                            const std::string& hint) {
     if (!(value >= minimum && value <= maximum))
-      throw_file_fault(path.string(), 0, key,
-                       fmt::format("expected {} to {}, found {:.6g}{}", minimum, maximum, value, hint));
+      refuse_input(path.string(), key,
+                   fmt::format("expected {} to {}, found {:.6g}{}", minimum, maximum, value, hint));
   };
   require("focal length in px", rig.focal_px, minimum_focal_px, maximum_focal_px, "");
   require("baseline in m", rig.baseline_m, minimum_baseline_m, maximum_baseline_m,
@@ -67,7 +64,7 @@ bool is_rectified(const CameraCalibration& camera) {
 
 CalibratedRig from_rig_file(const fs::path& path, const CalibrationOptions& options) {
   if (options.meters_per_unit != 1)
-    throw_file_fault(path.string(), 0, "unit", "expected metres: a rig file has no other");
+    refuse_input(path.string(), "unit", "expected metres: a rig file has no other");
   CalibratedRig read{read_rig(path), std::nullopt};
   agreed_image_size(path.string(), ImageSize{read.rig.width_px, read.rig.height_px}, options);
   look_at(read.rig, options.detection_depth_m.value_or(read.rig.detection_depth_m), path);
@@ -90,9 +87,43 @@ CalibratedRig from_cameras(StereoCalibration calibration, const fs::path& path,
 
 }  // namespace
 
+Eigen::Isometry3d T_body_camera_of(const Eigen::Vector3d& left_camera_body_m, double pitch_down_rad) {
+  const double c = std::cos(pitch_down_rad), s = std::sin(pitch_down_rad);
+  Eigen::Isometry3d T_body_camera = Eigen::Isometry3d::Identity();
+  T_body_camera.linear().col(0) = Eigen::Vector3d(0, -1, 0);   // camera x: to the right
+  T_body_camera.linear().col(1) = Eigen::Vector3d(-s, 0, -c);  // camera y: down
+  T_body_camera.linear().col(2) = Eigen::Vector3d(c, 0, -s);   // camera z: ahead
+  T_body_camera.translation() = left_camera_body_m;
+  return T_body_camera;
+}
+
+StereoRig read_rig(const std::filesystem::path& file) {
+  StrictMap map(parse_yaml(read_file(file), file.string()));
+  StereoRig rig;
+  rig.name = map.text("name");
+  rig.width_px = map.whole("width_px", minimum_size_px, maximum_size_px);
+  rig.height_px = map.whole("height_px", minimum_size_px, maximum_size_px);
+  rig.focal_px = map.number("focal_px", minimum_focal_px, maximum_focal_px);
+  rig.baseline_m = map.number("baseline_m", minimum_baseline_m, maximum_baseline_m);
+  rig.center_left_x_px = map.number("center_left_x_px", minimum_center_px, maximum_center_px);
+  rig.center_right_x_px = map.number("center_right_x_px", minimum_center_px, maximum_center_px);
+  rig.center_y_px = map.number("center_y_px", minimum_center_px, maximum_center_px);
+  rig.detection_depth_m = map.number("detection_depth_m", minimum_depth_m, maximum_depth_m);
+  const std::vector<double> left_camera_body_m =
+      map.numbers("left_camera_body_m", 3, -maximum_offset_m, maximum_offset_m);
+  const double pitch_down_deg = map.number("pitch_down_deg", -90, 90);
+  map.refuse_others();
+  rig.T_body_camera =
+      T_body_camera_of(Eigen::Vector3d(left_camera_body_m.data()), pitch_down_deg * std::numbers::pi / 180);
+  if (!rig.can_look_at(std::round(rig.disparity_px(rig.detection_depth_m))))
+    map.fail("detection_depth_m",
+             "expected a depth more than a pixel nearer than infinity and inside the image");
+  return rig;
+}
+
 CalibratedRig read_calibrated_rig(const fs::path& path, const CalibrationOptions& options) {
   if (!(options.meters_per_unit > 0 && options.meters_per_unit <= 1000))
-    throw_file_fault(path.string(), 0, "unit", "expected a length above 0 and up to 1000 m");
+    refuse_input(path.string(), "unit", "expected a length above 0 and up to 1000 m");
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) {
     if (const auto folder = euroc_folder(path)) {
@@ -104,7 +135,7 @@ CalibratedRig read_calibrated_rig(const fs::path& path, const CalibrationOptions
     }
     return from_cameras(read_opencv_calibration(path, options), path, options);
   }
-  if (looks_like_opencv(read_text_file(path)))
+  if (looks_like_opencv(read_file(path)))
     return from_cameras(read_opencv_calibration(path, options), path, options);
   return from_rig_file(path, options);
 }

@@ -1,11 +1,8 @@
-#include "perception/io/euroc_calibration.hpp"
-
+#include <Eigen/Geometry>
 #include <cmath>
 #include <opencv2/core/eigen.hpp>
 
-#include "perception/io/image_size.hpp"
-#include "perception/io/rig_limits.hpp"
-#include "perception/io/stereo_rectification.hpp"
+#include "perception/io/calibration_formats.hpp"
 #include "perception/io/strict_map.hpp"
 #include "perception/io/text_file.hpp"
 
@@ -23,13 +20,6 @@ struct Sensor {
   std::optional<double> detection_depth_m;
 };
 
-constexpr double rotation_tolerance = 1e-3;  // files rounded by hand
-
-bool is_rotation(const Eigen::Matrix3d& matrix) {
-  const double departure = (matrix * matrix.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  return departure < rotation_tolerance && matrix.determinant() > 0;
-}
-
 Eigen::Isometry3d pose(StrictMap& map, double meters_per_unit) {
   constexpr double maximum_value = 1e6;  // an offset in some unit; checked in metres below
   StrictMap fields = map.map("T_BS");
@@ -38,7 +28,8 @@ Eigen::Isometry3d pose(StrictMap& map, double meters_per_unit) {
   const std::vector<double> data = fields.numbers("data", 16, -maximum_value, maximum_value);
   const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(data.data());
   const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
-  if (!is_rotation(rotation)) map.fail("T_BS", "expected a rotation in the first three rows and columns");
+  if (!is_rotation(cv::Matx44d(data.data()).get_minor<3, 3>(0, 0)))
+    map.fail("T_BS", "expected a rotation in the first three rows and columns");
   if (!(matrix.row(3) == Eigen::RowVector4d(0, 0, 0, 1)))
     map.fail("T_BS", "expected a last row of 0, 0, 0, 1");
   Eigen::Isometry3d T_body_sensor = Eigen::Isometry3d::Identity();
@@ -62,9 +53,8 @@ void read_additions(StrictMap& map, Sensor& sensor) {
   sensor.says_rectification = map.has("rectification");
   if (!sensor.says_rectification) return;
   const std::vector<double> rotation = map.numbers("rectification", 9, -1.1, 1.1);
-  if (!is_rotation(Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rotation.data())))
-    map.fail("rectification", "expected a rotation, row by row");
   sensor.camera.rectification = cv::Matx33d(rotation.data());
+  if (!is_rotation(sensor.camera.rectification)) map.fail("rectification", "expected a rotation, row by row");
   const std::vector<double> pinhole =
       map.numbers("rectified_intrinsics", 3, minimum_center_px, maximum_focal_px);
   sensor.camera.projection =
@@ -73,7 +63,7 @@ void read_additions(StrictMap& map, Sensor& sensor) {
 
 Sensor read_sensor(const fs::path& file, double meters_per_unit) {
   constexpr double maximum_coefficient = 1e4;
-  StrictMap map(file.string(), parse_yaml(read_text_file(file), file.string()));
+  StrictMap map(parse_yaml(read_file(file), file.string()));
   Sensor sensor;
   sensor.T_body_sensor = pose(map, meters_per_unit);
   const std::vector<double> size = map.numbers("resolution", 2, minimum_size_px, maximum_size_px);
@@ -108,8 +98,7 @@ EurocCalibration read_euroc_calibration(const fs::path& folder, const Calibratio
   const fs::path right_file = folder / "cam1" / "sensor.yaml";
   const Sensor left = read_sensor(folder / "cam0" / "sensor.yaml", options.meters_per_unit);
   const Sensor right = read_sensor(right_file, options.meters_per_unit);
-  if (left.size.width_px != right.size.width_px || left.size.height_px != right.size.height_px)
-    throw_file_fault(right_file.string(), 0, "resolution", "expected the same as cam0's");
+  if (left.size != right.size) refuse_input(right_file.string(), "resolution", "expected the same as cam0's");
   const ImageSize size = agreed_image_size(folder.string(), left.size, options);
 
   StereoCalibration calibration;
@@ -119,8 +108,7 @@ EurocCalibration read_euroc_calibration(const fs::path& folder, const Calibratio
   calibration.right = right.camera;
   calibration.T_body_left = left.T_body_sensor;
   if (left.says_rectification != right.says_rectification)
-    throw_file_fault(right_file.string(), 0, "rectification",
-                     "expected in both cameras' files or in neither");
+    refuse_input(right_file.string(), "rectification", "expected in both cameras' files or in neither");
   const Eigen::Isometry3d T_right_left = right.T_body_sensor.inverse() * left.T_body_sensor;
   if (left.says_rectification) {
     calibration.right.projection(0, 3) =
@@ -132,8 +120,8 @@ EurocCalibration read_euroc_calibration(const fs::path& folder, const Calibratio
   cv::eigen2cv(Eigen::Matrix3d(T_right_left.linear()), R_right_left);
   cv::eigen2cv(Eigen::Vector3d(T_right_left.translation()), t_right_m);
   if (!rectify_pair(calibration, R_right_left, t_right_m))
-    throw_file_fault(right_file.string(), 0, "T_BS",
-                     "expected two cameras that cv::stereoRectify brings side by side");
+    refuse_input(right_file.string(), "T_BS",
+                 "expected two cameras that cv::stereoRectify brings side by side");
   return {calibration, left.detection_depth_m};
 }
 

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <stdexcept>
+#include <cstdio>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
+#include "perception/io/calibration_formats.hpp"
 #include "perception/io/picture_codecs.hpp"
-#include "perception/io/text_table.hpp"
+#include "perception/io/text_file.hpp"
 
 namespace understory {
 namespace {
@@ -32,23 +34,88 @@ bool begins_as_image(std::string_view bytes) {
          });
 }
 
-}  // namespace
+struct ClaimedSize {
+  std::uint32_t width_px = 0, height_px = 0;
+};
 
-bool is_image_name(const std::filesystem::path& file) {
-  constexpr std::array<const char*, 7> endings{".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".pgm"};
+/// `count` bytes as a whole number; 0 past the end.
+std::uint32_t whole_at(std::string_view bytes, std::size_t at, std::size_t count, bool big_end_first) {
+  if (at > bytes.size() || bytes.size() - at < count) return 0;
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    value = value << 8U | static_cast<unsigned char>(bytes[at + (big_end_first ? i : count - 1 - i)]);
+  return value;
+}
+
+/// From the start-of-frame segment.
+ClaimedSize size_of_jpeg(std::string_view bytes) {
+  for (std::size_t at = 2; at + 9 < bytes.size(); at += 2 + whole_at(bytes, at + 2, 2, true)) {
+    const std::uint32_t marker = whole_at(bytes, at + 1, 1, true);
+    const bool is_frame =
+        marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+    if (is_frame) return {whole_at(bytes, at + 7, 2, true), whole_at(bytes, at + 5, 2, true)};
+  }
+  return {};
+}
+
+/// From the first directory's tags 256 and 257.
+ClaimedSize size_of_tiff(std::string_view bytes) {
+  const bool big_end_first = bytes[0] == 'M';
+  const auto whole = [&](std::size_t at, std::size_t count) {
+    return whole_at(bytes, at, count, big_end_first);
+  };
+  ClaimedSize size;
+  const std::size_t directory = whole(4, 4);
+  for (std::size_t at = directory + 2; at < directory + 2 + 12 * whole(directory, 2); at += 12) {
+    const std::uint32_t value = whole(at + 8, whole(at + 2, 2) == 3 ? 2 : 4);
+    if (whole(at, 2) == 256) size.width_px = value;
+    if (whole(at, 2) == 257) size.height_px = value;
+  }
+  return size;
+}
+
+/// What the header says, 0 where it says nothing: a file of some kilobytes can hold an image of gigabytes.
+ClaimedSize claimed_size(const std::string& bytes) {
+  if (bytes[0] == '\x89') return {whole_at(bytes, 16, 4, true), whole_at(bytes, 20, 4, true)};
+  if (bytes[0] == '\xFF') return size_of_jpeg(bytes);
+  if (bytes[0] == 'I' || bytes[0] == 'M') return size_of_tiff(bytes);
+  ClaimedSize size;
+  if (bytes[0] == 'P') {
+    std::sscanf(bytes.c_str() + 2, " %9u %9u", &size.width_px, &size.height_px);
+    return size;
+  }
+  const std::uint32_t height_px = whole_at(bytes, 22, 4, false);  // negative: rows from the top
+  return {whole_at(bytes, 18, 4, false), std::min(height_px, 0 - height_px)};
+}
+
+bool ends_as_one_of(const std::filesystem::path& file, std::initializer_list<std::string_view> endings) {
   std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return std::find(endings.begin(), endings.end(), ending) != endings.end();
 }
 
-cv::Mat read_gray_image(const std::filesystem::path& file) {
-  const std::string bytes = text_of(file);
+}  // namespace
+
+bool is_image_name(const std::filesystem::path& file) {
+  return ends_as_one_of(file, {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".pgm"});
+}
+
+bool is_video_name(const std::filesystem::path& file) {
+  return ends_as_one_of(file, {".mp4", ".m4v", ".mov", ".mkv", ".avi", ".webm", ".mpg", ".mpeg", ".ogv"});
+}
+
+cv::Mat read_gray_image(const std::filesystem::path& file, int depth) {
+  const std::string kind = depth == CV_8U ? "an 8-bit gray image" : "a 16-bit gray image";
   const auto expected = [&](const std::string& found) {
-    return std::runtime_error(file.string() + ": expected an 8-bit gray image, found " + found);
+    return InputError(file.string() + ": expected " + kind + ", found " + found);
   };
+  const std::string bytes = read_file(file, maximum_image_bytes);
   if (bytes.empty()) throw expected("an empty file");
   if (!begins_as_image(bytes)) throw expected("no image, or a damaged one");
+  const ClaimedSize size = claimed_size(bytes);
+  if (std::max(size.width_px, size.height_px) > rig_limits::maximum_size_px)
+    throw expected(std::to_string(size.width_px) + "x" + std::to_string(size.height_px) +
+                   " px: at most 8192x8192 are read");
   cv::Mat image;
   try {
     image = picture_codecs().decode(bytes);
@@ -56,7 +123,7 @@ cv::Mat read_gray_image(const std::filesystem::path& file) {
     throw expected("what OpenCV cannot decode");
   }
   if (image.empty()) throw expected("no image, or a damaged one");
-  if (image.type() != CV_8UC1) throw expected(kind_of(image));
+  if (image.type() != CV_MAKETYPE(depth, 1)) throw expected(kind_of(image));
   return image;
 }
 

@@ -1,98 +1,168 @@
-#include "perception/io/opencv_calibration.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <vector>
 
-#include "perception/io/image_size.hpp"
-#include "perception/io/opencv_matrix.hpp"
-#include "perception/io/rig_file.hpp"
-#include "perception/io/rig_limits.hpp"
-#include "perception/io/stereo_rectification.hpp"
+#include "perception/io/calibration_formats.hpp"
+#include "perception/io/strict_map.hpp"
 #include "perception/io/text_file.hpp"
 
 namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace rig_limits;
+
+constexpr double maximum_value = 1e9;           // of anything: focal lengths times millimetres stay far below
+constexpr double maximum_coefficient = 1e4;     // wild calibrations reach 13 (the paper's rig)
+constexpr double coefficient_tolerance = 1e-9;  // what counts as 0
+
+struct Matrix {
+  int rows = 0, cols = 0;
+  std::vector<double> values;  // row by row
+};
+
+Matrix matrix(StrictMap& map, const std::string& key) {
+  constexpr int maximum_side = 16;
+  if (map.type(key) != "opencv-matrix") map.fail(key, "expected an OpenCV matrix (opencv-matrix)");
+  StrictMap fields = map.map(key);
+  Matrix matrix;
+  matrix.rows = fields.whole("rows", 0, maximum_side);
+  matrix.cols = fields.whole("cols", 0, maximum_side);
+  const std::string type = fields.text("dt");
+  if (type != "d" && type != "f") fields.fail("dt", "expected d or f, found '" + type + "'");
+  const auto count = static_cast<std::size_t>(matrix.rows * matrix.cols);
+  matrix.values = fields.numbers("data", count, -maximum_value, maximum_value);
+  return matrix;
+}
+
+template <int rows, int cols>
+cv::Matx<double, rows, cols> matrix_of_shape(StrictMap& map, const std::string& key) {
+  const Matrix found = matrix(map, key);
+  if (found.rows != rows || found.cols != cols)
+    map.fail(key, fmt::format("expected {} x {} numbers, found {} x {}", rows, cols, found.rows, found.cols));
+  return cv::Matx<double, rows, cols>(found.values.data());
+}
+
+bool in_range(double value, double minimum, double maximum) { return value >= minimum && value <= maximum; }
+
+/// 3x3.
+cv::Matx33d opencv_rotation(StrictMap& map, const std::string& key) {
+  const auto rotation = matrix_of_shape<3, 3>(map, key);
+  if (!is_rotation(rotation)) map.fail(key, "expected a rotation: orthonormal, determinant 1");
+  return rotation;
+}
+
+/// 3x3: fx 0 cx, 0 fy cy, 0 0 1.
+cv::Matx33d opencv_camera_matrix(StrictMap& map, const std::string& key) {
+  const auto camera = matrix_of_shape<3, 3>(map, key);
+  if (camera(0, 1) != 0 || camera(1, 0) != 0 || camera(2, 0) != 0 || camera(2, 1) != 0 || camera(2, 2) != 1)
+    map.fail(key, "expected the form fx 0 cx, 0 fy cy, 0 0 1");
+  for (const double focal_px : {camera(0, 0), camera(1, 1)})
+    if (!in_range(focal_px, minimum_focal_px, maximum_focal_px))
+      map.fail(key, fmt::format("expected focal lengths from {} to {} px, found {}", minimum_focal_px,
+                                maximum_focal_px, focal_px));
+  for (const double center_px : {camera(0, 2), camera(1, 2)})
+    if (!in_range(center_px, minimum_center_px, maximum_center_px))
+      map.fail(key, fmt::format("expected a principal point from {} to {} px, found {}", minimum_center_px,
+                                maximum_center_px, center_px));
+  return camera;
+}
+
+/// 3x4: f 0 cx t, 0 f cy 0, 0 0 1 0; t in focal lengths times the file's unit.
+cv::Matx34d opencv_projection(StrictMap& map, const std::string& key) {
+  const auto projection = matrix_of_shape<3, 4>(map, key);
+  const bool has_form = projection(0, 1) == 0 && projection(1, 0) == 0 && projection(1, 3) == 0 &&
+                        projection.row(2) == cv::Matx14d(0, 0, 1, 0);
+  if (!has_form)
+    map.fail(key, "expected the form f 0 cx t, 0 f cy 0, 0 0 1 0: cameras side by side, rectified");
+  return projection;
+}
+
+/// 3x1 or 1x3, in the file's unit.
+cv::Vec3d opencv_translation(StrictMap& map, const std::string& key) {
+  const Matrix found = matrix(map, key);
+  if (std::min(found.rows, found.cols) != 1 || std::max(found.rows, found.cols) != 3)
+    map.fail(key, fmt::format("expected 3 x 1 numbers, found {} x {}", found.rows, found.cols));
+  return cv::Vec3d(found.values.data());
+}
+
+/// None, 4, 5 or 8 coefficients in a row or a column; 12 or 14 where those past the 8th are 0, as
+/// cv::stereoCalibrate leaves them.
+std::vector<double> opencv_distortion(StrictMap& map, const std::string& key) {
+  constexpr std::size_t maximum_count = 8;
+  Matrix found = matrix(map, key);
+  const std::size_t count = found.values.size();
+  if (count == 0) return {};
+  const bool is_count = count == 4 || count == 5 || count == 8 || count == 12 || count == 14;
+  if (std::min(found.rows, found.cols) != 1 || !is_count)
+    map.fail(key,
+             fmt::format("expected 4, 5 or 8 coefficients in a row, found {} x {}", found.rows, found.cols));
+  for (const double coefficient : found.values)
+    if (std::abs(coefficient) > maximum_coefficient)
+      map.fail(key,
+               fmt::format("expected coefficients within +-{}, found {}", maximum_coefficient, coefficient));
+  for (std::size_t i = maximum_count; i < count; ++i)
+    if (std::abs(found.values[i]) > coefficient_tolerance)
+      map.fail(key, "expected 4, 5 or 8 coefficients: thin prisms and tilted sensors are not supported");
+  found.values.resize(std::min(count, maximum_count));
+  return found.values;
+}
 
 bool is_xml(const std::string& text) {
   const std::size_t first = text.find_first_not_of("\xEF\xBB\xBF \t\r\n");
   return first != std::string::npos && text[first] == '<';
 }
 
-StrictMap read_map(const fs::path& file) {
-  const std::string text = read_text_file(file), name = file.string();
-  return {name, is_xml(text) ? parse_opencv_xml(text, name) : parse_yaml(text, name)};
+TextNode read_tree(const fs::path& file) {
+  const std::string text = read_file(file), name = file.string();
+  return is_xml(text) ? parse_opencv_xml(text, name) : parse_yaml(text, name);
 }
 
-/// The file, or the folder's files, in which the matrices are looked up by name.
-class Matrices {
- public:
-  explicit Matrices(const fs::path& path) : path_(path) {
-    std::error_code ignored;
-    is_folder_ = fs::is_directory(path, ignored);
-    if (!is_folder_) {
-      maps_.push_back(read_map(path));
-      return;
-    }
-    for (const char* name :
-         {"intrinsics", "extrinsics", "M1", "D1", "R1", "P1", "M2", "D2", "R2", "P2", "R", "T"})
-      for (const char* extension : {".xml", ".yml", ".yaml"})
-        if (const fs::path file = path / (name + std::string(extension)); fs::exists(file, ignored))
-          maps_.push_back(read_map(file));
-  }
-
-  bool has(const std::string& key) const {
-    for (const StrictMap& map : maps_)
-      if (map.has(key)) return true;
-    return false;
-  }
-
-  /// The one map that holds `key`.
-  StrictMap& with(const std::string& key) {
-    StrictMap* holder = nullptr;
-    for (StrictMap& map : maps_) {
-      if (!map.has(key)) continue;
-      if (holder != nullptr) map.fail(key, "expected once, found in " + holder->file() + " too");
-      holder = &map;
-    }
-    if (holder == nullptr)
-      throw_file_fault(path_.string(), 0, key,
-                       is_folder_ ? fmt::format("expected this key in {0}.xml, {0}.yml or {0}.yaml", key)
-                                  : "expected this key, found none");
-    return *holder;
-  }
-
- private:
-  fs::path path_;
-  bool is_folder_ = false;
-  std::vector<StrictMap> maps_;
-};
-
-std::optional<ImageSize> size_in(Matrices& matrices) {
-  using namespace rig_limits;
-  if (!matrices.has("image_width") && !matrices.has("image_height")) return std::nullopt;
-  return ImageSize{matrices.with("image_width").whole("image_width", minimum_size_px, maximum_size_px),
-                   matrices.with("image_height").whole("image_height", minimum_size_px, maximum_size_px)};
+/// The keys of the file, or of all the folder's files.
+StrictMap read_keys(const fs::path& path) {
+  std::error_code ignored;
+  const bool is_folder = fs::is_directory(path, ignored);
+  TextNode all;
+  if (!is_folder) all = read_tree(path);
+  all.kind = TextNode::Kind::map;
+  all.origin = path.string();
+  if (!is_folder) return StrictMap(all);
+  for (const std::string name :
+       {"intrinsics", "extrinsics", "M1", "D1", "R1", "P1", "M2", "D2", "R2", "P2", "R", "T"})
+    for (const char* extension : {".xml", ".yml", ".yaml"})
+      if (const fs::path file = path / (name + extension); fs::exists(file, ignored))
+        for (TextNode& child : read_tree(file).children) all.children.push_back(std::move(child));
+  refuse_double_keys(all);
+  const StrictMap keys(all);
+  for (const char* key : {"M1", "D1", "M2", "D2"})
+    if (!keys.has(key)) keys.fail(key, fmt::format("expected this key in {0}.xml, {0}.yml or {0}.yaml", key));
+  return keys;
 }
 
-void read_rectification(Matrices& matrices, StereoCalibration& calibration, double meters_per_unit) {
-  calibration.left.rectification = opencv_rotation(matrices.with("R1"), "R1");
-  calibration.right.rectification = opencv_rotation(matrices.with("R2"), "R2");
-  calibration.left.projection = opencv_projection(matrices.with("P1"), "P1");
-  calibration.right.projection = opencv_projection(matrices.with("P2"), "P2");
+std::optional<ImageSize> size_in(StrictMap& keys) {
+  if (!keys.has("image_width") && !keys.has("image_height")) return std::nullopt;
+  return ImageSize{keys.whole("image_width", minimum_size_px, maximum_size_px),
+                   keys.whole("image_height", minimum_size_px, maximum_size_px)};
+}
+
+void read_rectification(StrictMap& keys, StereoCalibration& calibration, double meters_per_unit) {
+  calibration.left.rectification = opencv_rotation(keys, "R1");
+  calibration.right.rectification = opencv_rotation(keys, "R2");
+  calibration.left.projection = opencv_projection(keys, "P1");
+  calibration.right.projection = opencv_projection(keys, "P2");
   if (calibration.left.projection(0, 3) != 0)
-    matrices.with("P1").fail("P1", "expected P1(0,3) to be 0: the left camera is the origin");
+    keys.fail("P1", "expected P1(0,3) to be 0: the left camera is the origin");
   calibration.right.projection(0, 3) *= meters_per_unit;
 }
 
-void rectify(Matrices& matrices, StereoCalibration& calibration, double meters_per_unit) {
-  const cv::Matx33d R_right_left = opencv_rotation(matrices.with("R"), "R");
-  const cv::Vec3d t_right_m = opencv_translation(matrices.with("T"), "T") * meters_per_unit;
+void rectify(StrictMap& keys, StereoCalibration& calibration, double meters_per_unit) {
+  const cv::Matx33d R_right_left = opencv_rotation(keys, "R");
+  const cv::Vec3d t_right_m = opencv_translation(keys, "T") * meters_per_unit;
   if (!rectify_pair(calibration, R_right_left, t_right_m))
-    matrices.with("R").fail("R", "expected two cameras that cv::stereoRectify brings side by side");
+    keys.fail("R", "expected two cameras that cv::stereoRectify brings side by side");
 }
 
 }  // namespace
@@ -102,22 +172,22 @@ bool looks_like_opencv(const std::string& text) {
 }
 
 StereoCalibration read_opencv_calibration(const fs::path& path, const CalibrationOptions& options) {
-  Matrices matrices(path);
+  StrictMap keys = read_keys(path);
   StereoCalibration calibration;
   calibration.T_body_left = T_body_camera_of(Eigen::Vector3d::Zero(), 0);
-  calibration.left.camera_matrix = opencv_camera_matrix(matrices.with("M1"), "M1");
-  calibration.left.distortion = opencv_distortion(matrices.with("D1"), "D1");
-  calibration.right.camera_matrix = opencv_camera_matrix(matrices.with("M2"), "M2");
-  calibration.right.distortion = opencv_distortion(matrices.with("D2"), "D2");
-  const ImageSize size = agreed_image_size(path.string(), size_in(matrices), options);
+  calibration.left.camera_matrix = opencv_camera_matrix(keys, "M1");
+  calibration.left.distortion = opencv_distortion(keys, "D1");
+  calibration.right.camera_matrix = opencv_camera_matrix(keys, "M2");
+  calibration.right.distortion = opencv_distortion(keys, "D2");
+  const ImageSize size = agreed_image_size(path.string(), size_in(keys), options);
   calibration.width_px = size.width_px;
   calibration.height_px = size.height_px;
   // Where both are there, R and T say nothing more: these are what the rig's maker rectified with.
   const std::array<std::string, 4> rectified{"R1", "R2", "P1", "P2"};
-  if (std::any_of(rectified.begin(), rectified.end(), [&](const auto& key) { return matrices.has(key); }))
-    read_rectification(matrices, calibration, options.meters_per_unit);
+  if (std::any_of(rectified.begin(), rectified.end(), [&](const auto& key) { return keys.has(key); }))
+    read_rectification(keys, calibration, options.meters_per_unit);
   else
-    rectify(matrices, calibration, options.meters_per_unit);
+    rectify(keys, calibration, options.meters_per_unit);
   return calibration;
 }
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <stdexcept>
 
+#include "perception/io/text_file.hpp"
 #include "perception/io/text_table.hpp"
 
 namespace understory {
@@ -50,35 +50,26 @@ TimedPose pose_in(const TableLine& line, const Form& form, const std::string& na
   return pose;
 }
 
-std::vector<TimedPose> poses_in(const std::vector<TableLine>& lines, const Form& form,
-                                const std::string& name) {
+}  // namespace
+
+std::vector<TimedPose> read_poses(const std::filesystem::path& file) {
+  return parse_poses(read_file(file, maximum_table_bytes), file.string());
+}
+
+std::vector<TimedPose> parse_poses(std::string_view text, const std::string& name) {
+  std::vector<TableLine> lines = table_lines(text, CellsParted::by_commas, name);
+  const bool is_tum = lines.empty() || lines.front().cells.size() == 1;
+  if (is_tum) lines = table_lines(text, CellsParted::by_blanks, name);
   std::vector<TimedPose> poses;
   poses.reserve(lines.size());
   for (const TableLine& line : lines) {
-    const TimedPose pose = pose_in(line, form, name);
+    const TimedPose pose = pose_in(line, is_tum ? tum : euroc, name);
     if (!poses.empty() && pose.t_ns <= poses.back().t_ns)
       fail_at_line(name, line.number, "expected times that increase from line to line");
     poses.push_back(pose);
   }
-  if (poses.empty()) throw std::runtime_error(name + ": expected at least one pose, found none");
+  if (poses.empty()) throw InputError(name + ": expected at least one pose, found none");
   return poses;
-}
-
-}  // namespace
-
-std::vector<TimedPose> read_poses(const std::filesystem::path& file) {
-  const std::string text = text_of(file);
-  const std::vector<TableLine> by_commas = table_lines(text, CellsParted::by_commas);
-  const bool has_commas = !by_commas.empty() && by_commas.front().cells.size() > 1;
-  return has_commas ? poses_in(by_commas, euroc, file.string()) : parse_tum_poses(text, file.string());
-}
-
-std::vector<TimedPose> parse_tum_poses(std::string_view text, const std::string& name) {
-  return poses_in(table_lines(text, CellsParted::by_blanks), tum, name);
-}
-
-std::vector<TimedPose> parse_euroc_poses(std::string_view text, const std::string& name) {
-  return poses_in(table_lines(text, CellsParted::by_commas), euroc, name);
 }
 
 std::optional<Eigen::Isometry3d> pose_at(const std::vector<TimedPose>& poses, std::int64_t t_ns) {

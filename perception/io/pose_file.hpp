@@ -16,18 +16,15 @@ struct TimedPose {
   Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();
 };
 
-/// Reads a trajectory, in either of the two common forms: TUM where the first line that is no comment has no
-/// comma, else EuRoC. Times increase strictly from line to line. Throws std::runtime_error "file:line: what
-/// was expected" at a broken line, and "file: ..." where there is nothing to read.
+/// Reads a trajectory, in either of the two common forms. Throws InputError "file:line: what was expected" at
+/// a broken line, and "file: ..." where there is nothing to read.
 std::vector<TimedPose> read_poses(const std::filesystem::path& file);
 
-/// The TUM form: "t tx ty tz qx qy qz qw", parted by blanks; seconds, metres, rotation of body into world.
-/// `name` stands for the file in messages.
-std::vector<TimedPose> parse_tum_poses(std::string_view text, const std::string& name);
-
-/// The EuRoC/ASL ground truth form: "t, px, py, pz, qw, qx, qy, qz, ...", parted by commas; nanoseconds,
-/// metres. What follows (velocity, biases) is passed over.
-std::vector<TimedPose> parse_euroc_poses(std::string_view text, const std::string& name);
+/// The same from text; `name` stands for the file in messages. Where the first line that is no comment has no
+/// comma, TUM's form: "t tx ty tz qx qy qz qw", parted by blanks; seconds, metres, rotation of body into
+/// world. Else the EuRoC/ASL ground truth's: "t, px, py, pz, qw, qx, qy, qz, ...", parted by commas;
+/// nanoseconds, metres; what follows (velocity, biases) is passed over. Times increase strictly.
+std::vector<TimedPose> parse_poses(std::string_view text, const std::string& name);
 
 /// The pose at t_ns: between its two neighbours the position linearly, the attitude along the shorter arc at
 /// a constant rate. Nothing before the first or after the last pose; an end still counts 1 us outside, since

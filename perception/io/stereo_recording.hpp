@@ -3,16 +3,42 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <opencv2/core/types.hpp>
+#include <opencv2/core/mat.hpp>
 #include <optional>
 #include <vector>
 
 #include "perception/io/image_sequence.hpp"
 #include "perception/stereo_frame.hpp"
 
+namespace cv {
+class VideoCapture;
+}
+
 namespace understory {
 
-class SideBySideVideo;
+/// A video whose pictures hold the left image in their left half and the right image in their right half.
+/// Colour becomes gray, as video codecs know no other (a gray one comes back as it was). Not copyable.
+class SideBySideVideo {
+ public:
+  /// Throws InputError "file: expected ..." where there is nothing to decode or the width is odd.
+  explicit SideBySideVideo(const std::filesystem::path& file);
+  ~SideBySideVideo();
+
+  /// The next pair; t_ns counts from the video's start at its rate. False at the end. The images stay the
+  /// caller's.
+  bool read(StereoFrame& frame);
+
+  double rate_hz() const { return rate_hz_; }
+  std::int64_t claimed_count() const { return claimed_count_; }    ///< by the container; some only estimate
+  cv::Size image_size() const { return {width_px_, height_px_}; }  ///< of one eye
+
+ private:
+  std::filesystem::path file_;
+  std::unique_ptr<cv::VideoCapture> capture_;
+  double rate_hz_ = 0;
+  std::int64_t claimed_count_ = 0, next_ = 0;
+  int width_px_ = 0, height_px_ = 0;
+};
 
 /// Moments between which a recording's images lie.
 struct TimeSpan {
@@ -25,12 +51,12 @@ struct TimeSpan {
 class StereoRecording {
  public:
   /// `inputs`: a EuRoC/ASL folder; a left and a right folder of images; a left and a right image; or one
-  /// side-by-side video. Reads the first pair. Throws std::runtime_error, one line that names the file, where
+  /// side-by-side video. Reads the first pair. Throws InputError, one line that names the file, where
   /// the inputs are none of these or cannot be read.
   explicit StereoRecording(const std::vector<std::filesystem::path>& inputs);
   ~StereoRecording();
 
-  /// The next pair, false at the end. Throws std::runtime_error, one line that names the file, at an image
+  /// The next pair, false at the end. Throws InputError, one line that names the file, at an image
   /// that is missing, damaged, not 8-bit gray, or of another size than the first.
   bool read(StereoFrame& frame);
 

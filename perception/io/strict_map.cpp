@@ -6,17 +6,12 @@
 #include <cmath>
 
 #include "perception/io/text_file.hpp"
+#include "perception/io/text_table.hpp"
 
 namespace understory {
 
-StrictMap::StrictMap(std::string file, TextNode map, std::string prefix)
-    : file_(std::move(file)), map_(std::move(map)), prefix_(std::move(prefix)) {
-  if (map_.kind != TextNode::Kind::map)
-    throw_file_fault(file_, map_.line, map_.key.empty() ? "rig" : map_.key, "expected a map of keys");
-  std::set<std::string> seen;
-  for (const TextNode& child : map_.children)
-    if (!seen.insert(child.key).second)
-      throw_file_fault(file_, child.line, prefix_ + child.key, "expected once, found again");
+StrictMap::StrictMap(TextNode map, std::string prefix) : map_(std::move(map)), prefix_(std::move(prefix)) {
+  if (map_.kind != TextNode::Kind::map) refuse_input(map_.origin, map_.key, "expected a map of keys");
 }
 
 std::string StrictMap::text(const std::string& key) {
@@ -53,7 +48,7 @@ std::size_t StrictMap::length(const std::string& key) const {
   return node != nullptr && node->kind == TextNode::Kind::list ? node->children.size() : 0;
 }
 
-StrictMap StrictMap::map(const std::string& key) { return {file_, take(key), prefix_ + key + "."}; }
+StrictMap StrictMap::map(const std::string& key) { return StrictMap(take(key), prefix_ + key + "."); }
 
 void StrictMap::refuse_others() const {
   for (const TextNode& child : map_.children)
@@ -63,7 +58,7 @@ void StrictMap::refuse_others() const {
 
 void StrictMap::fail(const std::string& key, const std::string& expected) const {
   const TextNode* node = find(key);
-  throw_file_fault(file_, node != nullptr ? node->line : map_.line, prefix_ + key, expected);
+  refuse_input(node != nullptr ? node->origin : map_.origin, prefix_ + key, expected);
 }
 
 const TextNode* StrictMap::find(const std::string& key) const {
@@ -80,11 +75,11 @@ const TextNode& StrictMap::take(const std::string& key) {
 }
 
 double StrictMap::number(const TextNode& node, const std::string& key, double minimum, double maximum) const {
-  const auto value = node.kind == TextNode::Kind::scalar ? finite_number(node.text) : std::nullopt;
+  const auto value = node.kind == TextNode::Kind::scalar ? number_in(node.text) : std::nullopt;
   if (value && *value >= minimum && *value <= maximum) return *value;
-  throw_file_fault(file_, node.line, prefix_ + key,
-                   fmt::format("expected a number from {} to {}{}", minimum, maximum,
-                               node.kind == TextNode::Kind::scalar ? ", found '" + node.text + "'" : ""));
+  refuse_input(node.origin, prefix_ + key,
+               fmt::format("expected a number from {} to {}{}", minimum, maximum,
+                           node.kind == TextNode::Kind::scalar ? ", found '" + node.text + "'" : ""));
 }
 
 }  // namespace understory

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <set>
 #include <string>
 #include <vector>
 
@@ -8,15 +7,13 @@
 
 namespace understory {
 
-/// One map of a file, read key by key; says where it went wrong. Every function throws as throw_file_fault
-/// does where the key is missing, mistyped or out of range.
+/// One map of a file, read key by key; says where it went wrong. Every function throws InputError
+/// where the key is missing, mistyped or out of range.
 class StrictMap {
  public:
-  /// `prefix`: how the map itself is called in messages, "T_BS." for instance. Throws where `map` is no map
-  /// or holds a key twice (yaml-cpp itself takes that silently).
-  StrictMap(std::string file, TextNode map, std::string prefix = "");
+  /// `prefix`: how the map itself is called in messages, "T_BS." for instance. Throws where `map` is no map.
+  explicit StrictMap(TextNode map, std::string prefix = "");
 
-  const std::string& file() const { return file_; }
   bool has(const std::string& key) const { return find(key) != nullptr; }
 
   std::string text(const std::string& key);
@@ -40,7 +37,6 @@ class StrictMap {
   const TextNode& take(const std::string& key);
   double number(const TextNode& node, const std::string& key, double minimum, double maximum) const;
 
-  std::string file_;
   TextNode map_;
   std::string prefix_;
   std::vector<std::string> known_;  // in the order asked for

@@ -1,16 +1,14 @@
 #include "perception/io/text_file.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
 #include <array>
-#include <charconv>
-#include <cmath>
-#include <fstream>
-#include <stdexcept>
+#include <cstdio>
+#include <memory>
 
 namespace understory {
 namespace {
-
-constexpr std::size_t maximum_bytes = 1 << 20;
-constexpr std::size_t maximum_quote = 80;
 
 /// What a file said may be anything: a message stays one line of moderate length.
 std::string quotable(std::string text, std::size_t maximum) {
@@ -20,39 +18,51 @@ std::string quotable(std::string text, std::size_t maximum) {
   return text;
 }
 
+struct Closer {
+  void operator()(std::FILE* stream) const { std::fclose(stream); }
+};
+
+/// Opens a pipe without waiting for somebody to write: where nobody does, it is at its end at once.
+std::unique_ptr<std::FILE, Closer> opened(const std::string& file) {
+  const int descriptor = open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+  if (descriptor < 0) return nullptr;
+  fcntl(descriptor, F_SETFL, 0);  // whoever has the pipe open for writing is waited for
+  return std::unique_ptr<std::FILE, Closer>(fdopen(descriptor, "rb"));
+}
+
 }  // namespace
 
-void throw_file_fault(const std::string& file, int line, const std::string& key,
-                      const std::string& expected) {
-  throw std::runtime_error(quotable(file, 4096) + (line > 0 ? ":" + std::to_string(line) : "") + ": " +
-                           quotable(key, maximum_quote) + ": " + quotable(expected, 5 * maximum_quote));
+void refuse_input(const std::string& place, const std::string& key, const std::string& expected) {
+  constexpr std::size_t maximum_place = 4096, maximum_key = 80, maximum_expected = 400;
+  throw InputError(quotable(place, maximum_place) + ": " + quotable(key, maximum_key) +
+                   (key.empty() ? "" : ": ") + quotable(expected, maximum_expected));
 }
 
-std::string read_text_file(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored))
-    throw_file_fault(file.string(), 0, "rig", "expected a file, this is a folder");
-  std::ifstream stream(file, std::ios::binary);
+std::string place_in(const std::string& file, int line) { return file + ":" + std::to_string(line); }
+
+std::string read_file(const std::filesystem::path& file, std::size_t maximum_bytes) {
+  const std::string name = file.string();
+  const auto refuse = [&](const char* found) {
+    refuse_input(name, "", std::string("expected a readable file") + found);
+  };
+  const std::string too_large = "expected at most " + std::to_string(maximum_bytes >> 20) + " MiB";
+  struct stat is {};
+  if (stat(name.c_str(), &is) != 0) refuse("");
+  if (S_ISDIR(is.st_mode)) refuse(", this is a folder");
+  if (!S_ISREG(is.st_mode) && !S_ISFIFO(is.st_mode)) refuse(", this is a device");
+  if (S_ISREG(is.st_mode) && static_cast<std::size_t>(is.st_size) > maximum_bytes)
+    refuse_input(name, "", too_large);
+  const auto stream = opened(name);
+  if (!stream) refuse("");
   std::string text;
-  std::array<char, 8192> piece;
-  while (stream && text.size() <= maximum_bytes) {
-    stream.read(piece.data(), piece.size());
-    text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
+  text.reserve(static_cast<std::size_t>(is.st_size));
+  std::array<char, 65536> piece;
+  while (const std::size_t count = std::fread(piece.data(), 1, piece.size(), stream.get())) {
+    text.append(piece.data(), count);
+    if (text.size() > maximum_bytes) refuse_input(name, "", too_large);
   }
-  if (!stream.is_open() || stream.bad())
-    throw_file_fault(file.string(), 0, "rig", "expected a readable file");
-  if (text.size() > maximum_bytes)
-    throw_file_fault(file.string(), 0, "rig", "expected a text file of at most 1 MiB");
+  if (std::ferror(stream.get()) != 0) refuse("");
   return text;
-}
-
-std::optional<double> finite_number(const std::string& text) {
-  const bool has_plus = text.size() > 1 && text[0] == '+' && text[1] != '-';  // from_chars knows no plus
-  const char* const end = text.data() + text.size();
-  double value = 0;
-  const auto [stop, error] = std::from_chars(text.data() + (has_plus ? 1 : 0), end, value);
-  if (error != std::errc() || stop != end || !std::isfinite(value)) return std::nullopt;
-  return value;
 }
 
 }  // namespace understory

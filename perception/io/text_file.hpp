@@ -1,22 +1,32 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
-#include <optional>
+#include <stdexcept>
 #include <string>
 
 namespace understory {
 
-/// The whole content of a small text file. Throws as throw_file_fault does where `file` is a folder, cannot
-/// be read, or holds more than 1 MiB: a calibration takes a few kilobytes, and a parser should not be fed a
-/// picture or a device without end.
-std::string read_text_file(const std::filesystem::path& file);
+/// What a person gave cannot be used. One line "file:line: key: what was expected", or "--set a.b=3: ...".
+struct InputError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
-/// Throws std::runtime_error "file[:line]: key: expected", always one line of at most a few hundred
-/// characters, whatever bytes the file had for a key or a value. `line` counts from 1; 0: none to name.
-[[noreturn]] void throw_file_fault(const std::string& file, int line, const std::string& key,
-                                   const std::string& expected);
+/// Throws InputError "place: key: expected", always one line of at most a few hundred characters, whatever
+/// bytes the file had for a key or a value. An empty `key` leaves itself out.
+[[noreturn]] void refuse_input(const std::string& place, const std::string& key, const std::string& expected);
 
-/// `text` as a finite number, all of it; empty where it is none.
-std::optional<double> finite_number(const std::string& text);
+/// "file:line"; lines count from 1.
+std::string place_in(const std::string& file, int line);
+
+/// How much of a file its reader takes at most. A parser should not be fed a picture or a device without end.
+constexpr std::size_t maximum_keyed_bytes = std::size_t{1} << 20;  ///< scenarios, calibrations
+constexpr std::size_t maximum_json_bytes = std::size_t{16} << 20;
+constexpr std::size_t maximum_table_bytes = std::size_t{256} << 20;  ///< poses, lists of images, rows
+constexpr std::size_t maximum_image_bytes = std::size_t{256} << 20;
+
+/// The whole content of a regular file, or of a pipe that somebody writes. Throws InputError where `file` is
+/// none of these, cannot be read, or holds more than `maximum_bytes` (of a regular file: before reading).
+std::string read_file(const std::filesystem::path& file, std::size_t maximum_bytes = maximum_keyed_bytes);
 
 }  // namespace understory

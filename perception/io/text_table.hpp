@@ -1,10 +1,12 @@
 #pragma once
 
+#include <charconv>
+#include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace understory {
@@ -20,10 +22,21 @@ struct TableLine {
 enum class CellsParted { by_commas, by_blanks };
 
 /// The lines that hold anything; those that start with '#' are comments. Takes line ends of any system.
-std::vector<TableLine> table_lines(std::string_view text, CellsParted parted);
+/// Throws InputError, with `name` for the file, at more than 16 million cells.
+std::vector<TableLine> table_lines(std::string_view text, CellsParted parted, const std::string& name);
 
-/// The whole cell as a finite number; nothing where it is none.
-std::optional<double> number_in(std::string_view cell);
+/// The whole of `text` as a number, a plus before it or not; nothing where it is none, does not fit, or is
+/// not finite. Whatever the locale.
+template <typename Number = double>
+std::optional<Number> number_in(std::string_view text) {
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);  // from_chars takes none
+  Number value{};
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || stop != text.data() + text.size()) return std::nullopt;
+  if constexpr (std::is_floating_point_v<Number>)
+    if (!std::isfinite(value)) return std::nullopt;
+  return value;
+}
 
 /// The whole cell as nanoseconds, a whole number from 0; nothing where it is none.
 std::optional<std::int64_t> nanoseconds_in(std::string_view cell);
@@ -32,10 +45,7 @@ std::optional<std::int64_t> nanoseconds_in(std::string_view cell);
 /// holds the seconds of this century to 0.2 us only; those with an exponent go through a double.
 std::optional<std::int64_t> seconds_in(std::string_view cell);
 
-/// The file's text. Throws std::runtime_error "file: expected ..." where it cannot be read.
-std::string text_of(const std::filesystem::path& file);
-
-/// Throws std::runtime_error "name:line: what was expected".
+/// Throws InputError "name:line: what was expected".
 [[noreturn]] void fail_at_line(const std::string& name, int line, const std::string& expected);
 
 }  // namespace understory

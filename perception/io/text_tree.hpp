@@ -5,24 +5,36 @@
 
 namespace understory {
 
-/// A small file of keys and values as written, before anybody knows what the keys mean: the common ground of
-/// YAML and of OpenCV's XML. StrictMap takes typed values out of it.
+/// Keys and values as written, before anybody knows what the keys mean: the common ground of YAML, OpenCV's
+/// XML and --set arguments. StrictMap (calibrations) and ConfigReader (scenarios) take typed values out of
+/// it.
 struct TextNode {
   enum class Kind { nothing, scalar, list, map };
   Kind kind = Kind::nothing;
-  int line = 1;      ///< where its key (in a list: the value) stands
-  std::string key;   ///< within the enclosing map; empty in lists and at the top
-  std::string type;  ///< YAML's tag without "!!", XML's type_id: "opencv-matrix"; mostly empty
-  std::string text;  ///< of a scalar
+  std::string origin;   ///< "forest.yaml:12", of its key (in a list: of the value), or "--set a.b=20"
+  std::string key;      ///< within the enclosing map; empty in lists and at the top
+  std::string type;     ///< YAML's tag without "!!", XML's type_id: "opencv-matrix"; mostly empty
+  std::string text;     ///< of a scalar
+  bool quoted = false;  ///< a quoted scalar is a string, never a number
   std::vector<TextNode> children;
 };
 
 /// Reads one YAML document whose top is a map; `file` stands for it in messages. OpenCV's own dialect
-/// ("%YAML:1.0" in the first line) is YAML enough. Throws as throw_file_fault does.
+/// ("%YAML:1.0" in the first line) is YAML enough. An alias becomes a copy of what it names. Throws
+/// InputError at broken YAML, a key given twice, more than 16 levels, or more than 100,000 values, copies
+/// included.
 TextNode parse_yaml(const std::string& text, const std::string& file);
 
+/// Reads any YAML value, as parse_yaml does; nothing from an empty text. Every node's origin is `origin`;
+/// `key` stands before the value's own keys in messages.
+TextNode parse_yaml_value(const std::string& text, const std::string& origin, const std::string& key);
+
 /// Reads XML as OpenCV writes it: elements below <opencv_storage>, type_id the only attribute with a meaning,
-/// several words in an element a list. No DOCTYPE, no CDATA. Throws as throw_file_fault does.
+/// several words in an element a list. No DOCTYPE, no CDATA. Throws as parse_yaml does.
 TextNode parse_opencv_xml(const std::string& text, const std::string& file);
+
+/// Throws InputError where a map in the tree holds a key twice, as the parsers above do. `path` stands before
+/// the tree's own keys in the message.
+void refuse_double_keys(const TextNode& node, const std::string& path = "");
 
 }  // namespace understory

@@ -9,6 +9,45 @@
 
 namespace understory {
 
+void PointGrid::clear() {
+  heads_.assign(heads_.empty() ? 1024 : heads_.size(), -1);
+  next_.clear();
+  cells_.clear();
+}
+
+std::size_t PointGrid::bucket_of(const Cell& cell) const {
+  // Three large odd primes (Teschner et al. 2003, spatial hashing); unsigned arithmetic wraps, which is
+  // meant.
+  const auto mixed = static_cast<std::uint64_t>(cell[0]) * 73856093u ^
+                     static_cast<std::uint64_t>(cell[1]) * 19349663u ^
+                     static_cast<std::uint64_t>(cell[2]) * 83492791u;
+  return static_cast<std::size_t>(mixed ^ (mixed >> 17)) & (heads_.size() - 1);
+}
+
+void PointGrid::add(const Eigen::Vector3d& position) {
+  cells_.push_back(cell_of(position));
+  next_.push_back(-1);
+  if (cells_.size() <= heads_.size()) return link(cells_.size() - 1);
+  heads_.assign(heads_.size() * 2, -1);
+  for (std::size_t index = 0; index < cells_.size(); ++index) link(index);
+}
+
+void PointGrid::link(std::size_t index) {
+  int& head = heads_[bucket_of(cells_[index])];
+  next_[index] = head;
+  head = static_cast<int>(index);
+}
+
+int PointGrid::find_in_cell(const Eigen::Vector3d& position) const {
+  int found = -1;
+  const auto take_first = [&](int index) {
+    found = index;
+    return false;
+  };
+  visit_cell(cell_of(position), take_first);
+  return found;
+}
+
 LocalMap::LocalMap(const LocalMapConfig& config)
     : config_(config), voxels_(config.voxel_m > 0 ? config.voxel_m : 1.0) {
   assert_always(config.max_points > 0, "the map must hold at least one point");
@@ -23,7 +62,6 @@ void LocalMap::insert(const std::vector<StereoHit>& hits, const Eigen::Isometry3
     point.t_ns = t_ns;
     point.score = hit.score;
     point.distance_flown_m = distance_flown_m;
-    ++inserted_count_;
     if (merge(point)) continue;
     points_.push_back(point);
     voxels_.add(point.position_world);

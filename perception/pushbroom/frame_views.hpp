@@ -3,7 +3,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "perception/assertion.hpp"
-#include "perception/pushbroom/gray_view.hpp"
+#include "perception/gray_view.hpp"
 #include "perception/stereo_rig.hpp"
 
 namespace understory {

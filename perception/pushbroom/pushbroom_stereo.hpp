@@ -8,7 +8,7 @@
 #include "perception/obstacle_detector.hpp"
 #include "perception/perception_config.hpp"
 #include "perception/pushbroom/pushbroom_kernel.hpp"
-#include "perception/rectify.hpp"
+#include "perception/rectification/rectify.hpp"
 #include "perception/stereo_rig.hpp"
 
 namespace understory {
@@ -20,6 +20,12 @@ std::vector<double> stated_depths_m(const PushbroomConfig& config, const StereoR
 /// expected 1 to 64, found 0"): a number out of its range, as many thresholds as neither none nor depths, a
 /// depth out of the images' sight (StereoRig::can_look_at). Empty where it can.
 std::string fault_of(const PushbroomConfig& config, const StereoRig& rig);
+
+/// Puts into `kept` the hits that have company: at least `minimum_points` of the same frame, itself included,
+/// within `radius_m` (camera frame). Order is kept. The original's avoidance counted a point with 3
+/// within 1.0 m.
+void without_isolated(const std::vector<StereoHit>& hits, int minimum_points, double radius_m,
+                      std::vector<StereoHit>& kept);
 
 /// Pushbroom stereo (Barry & Tedrake 2015): looks at one disparity only (or a few), and lets the aircraft's
 /// motion sweep that surface through the world. Exact: the same hits on every instruction set and with any

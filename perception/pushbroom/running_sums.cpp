@@ -1,4 +1,4 @@
-#include "perception/pushbroom/running_sums.hpp"
+#include "perception/pushbroom/dense_search.hpp"
 
 #include <algorithm>
 #include <bit>

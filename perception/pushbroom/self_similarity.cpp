@@ -1,9 +1,8 @@
-#include "perception/pushbroom/self_similarity.hpp"
+#include "perception/pushbroom/match_filters.hpp"
 
 #include <cstring>
 
 #include "perception/pushbroom/block_rule.hpp"
-#include "perception/pushbroom/block_score.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "perception/pushbroom/self_similarity.cpp"

@@ -4,9 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "perception/pushbroom/aligned_vector.hpp"
-#include "perception/pushbroom/block_score.hpp"
-#include "perception/pushbroom/gray_view.hpp"
+#include "perception/gray_view.hpp"
+#include "perception/pushbroom/block_rule.hpp"
 
 /// The detector's inner loops in portable SIMD (Highway, dispatched at run time): everything that must be
 /// looked at for every pixel of a strip of block rows. All of it is exact: what is computed equals

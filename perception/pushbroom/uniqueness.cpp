@@ -1,11 +1,11 @@
-#include "perception/pushbroom/uniqueness.hpp"
+#include "perception/pushbroom/match_filters.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
 #include "perception/assertion.hpp"
-#include "perception/pushbroom/block_score.hpp"
+#include "perception/pushbroom/block_rule.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "perception/pushbroom/uniqueness.cpp"

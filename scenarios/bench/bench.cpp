@@ -6,9 +6,9 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "perception/full_stereo/full_stereo_detector.hpp"
+#include "perception/full_stereo/full_stereo.hpp"
 #include "perception/pushbroom/pushbroom_stereo.hpp"
-#include "perception/rectify.hpp"
+#include "perception/rectification/rectify.hpp"
 #include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/statistics/statistics.hpp"
 

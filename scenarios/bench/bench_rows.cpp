@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "scenarios/config/json_text.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/report/table.hpp"
 
@@ -61,8 +61,7 @@ ClosedLoopRow closed_loop_row(const std::string& name, int processes, const std:
 
 TimedFlight timed_flight(const std::filesystem::path& result_file) {
   try {
-    std::ifstream file(result_file);
-    const auto result = nlohmann::json::parse(file);
+    const auto result = parse_json(read_file(result_file, maximum_json_bytes));
     TimedFlight flight;
     flight.simulated_s = result.at("simulated_s");
     flight.frames = result.at("frames");

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <set>
 
+#include "perception/io/text_table.hpp"
 #include "scenarios/config/config_keys.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
@@ -109,13 +109,12 @@ std::vector<Variant> with_grid(std::vector<Variant> variants, const ConfigNode* 
 }
 
 std::uint64_t seed_of(std::string_view word, const std::string& where, const std::string& whole) {
-  std::uint64_t seed = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), seed);
-  if (word.empty() || error != std::errc() || end != word.data() + word.size() || seed > maximum_seed)
+  const auto seed = number_in<std::uint64_t>(word);
+  if (!seed || *seed > maximum_seed)
     throw ScenarioError(
         fmt::format("{}: expected first..last (1..200), a seed from 0 to 2^32, or a list of such, got '{}'",
                     where, whole));
-  return seed;
+  return *seed;
 }
 
 /// "1..200", "7" or a list of such things, as seeds. Throws ScenarioError, beginning with `where`.

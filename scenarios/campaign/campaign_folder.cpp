@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "scenarios/config/config_tree.hpp"
+#include "scenarios/config/json_text.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/program.hpp"
 #include "scenarios/report/table.hpp"
@@ -38,7 +36,7 @@ Json manifest_in(const CampaignFolder& folder) {
   if (!text)
     throw ScenarioError(
         fmt::format("{}: expected a campaign's results, with {}", folder.path.string(), manifest_name));
-  const Json json = Json::parse(*text, nullptr, false);
+  const Json json = parse_json(*text);
   if (!json.is_object() || !json.contains("format"))
     throw ScenarioError(fmt::format("{}: expected a campaign's description, whole", file.string()));
   if (json["format"] != results_format)
@@ -72,9 +70,8 @@ void require_same(const CampaignFolder& folder, const Campaign& campaign) {
 }  // namespace
 
 std::optional<std::string> text_if_there(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return {};
-  return std::string(std::istreambuf_iterator<char>(stream), {});
+  if (!fs::exists(file)) return {};
+  return read_file(file, maximum_table_bytes);
 }
 
 std::vector<CampaignTask> tasks_of(const Campaign& campaign) {

@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <concepts>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "scenarios/config/config_tree.hpp"
+#include "perception/io/text_table.hpp"
+#include "scenarios/config/json_text.hpp"
 #include "scenarios/flight/flight_result.hpp"
 #include "scenarios/report/table.hpp"
 
@@ -94,8 +94,9 @@ bool take(const std::string& text, Value& value) {
     return found != status_names.end();
   } else {
     if (text.empty()) return true;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc() && end == text.data() + text.size();
+    const auto number = number_in<Value>(text);
+    if (number) value = *number;
+    return number.has_value();
   }
 }
 
@@ -151,7 +152,7 @@ std::string to_json(const FlightFile& file) {
 }
 
 std::optional<FlightFile> flight_file_from_json(const std::string& text) {
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = parse_json(text);
   if (!json.is_object() || json.value("format", 0) != results_format || !json.contains("row")) return {};
   FlightFile file;
   const auto text_of = [&](std::string_view name) {

@@ -4,11 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <thread>
 
 #include "perception/io/calibration_file.hpp"
+#include "perception/io/text_table.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/errors.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
@@ -125,15 +125,11 @@ CalibrationOptions calibration_options(const CalibrationArguments& arguments) {
   options.meters_per_unit = arguments.meters_per_unit;
   options.detection_depth_m = arguments.depth_m;
   if (arguments.size.empty()) return options;
-  const char* const end = arguments.size.data() + arguments.size.size();
-  int width_px = 0, height_px = 0;
-  const auto [cross, width_error] = std::from_chars(arguments.size.data(), end, width_px);
-  const bool has_cross = width_error == std::errc() && cross != end && *cross == 'x';
-  const auto [stop, height_error] = std::from_chars(has_cross ? cross + 1 : end, end, height_px);
-  if (!has_cross || height_error != std::errc() || stop != end)
+  const std::size_t cross = std::min(arguments.size.find('x'), arguments.size.size() - 1);
+  options.width_px = number_in<int>(arguments.size.substr(0, cross));
+  options.height_px = number_in<int>(arguments.size.substr(cross + 1));
+  if (!options.width_px || !options.height_px)
     throw ScenarioError(fmt::format("--size {}: expected WIDTHxHEIGHT in pixels: 376x240", arguments.size));
-  options.width_px = width_px;
-  options.height_px = height_px;
   return options;
 }
 

@@ -5,22 +5,20 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 
+#include "perception/io/text_table.hpp"
 #include "scenarios/config/config_tree.hpp"
 
 namespace understory {
 namespace {
 
 template <typename Number>
-Number number_in(const std::string& name, const std::string& given, Number least, Number most) {
-  Number value{};
-  const char* const end = given.data() + given.size();
-  const auto [stop, error] = std::from_chars(given.data(), end, value);
-  if (error != std::errc() || stop != end || !(value >= least && value <= most))  // nan is refused
+Number number_given(const std::string& name, const std::string& given, Number least, Number most) {
+  const auto value = number_in<Number>(given);
+  if (!value || *value < least || *value > most)
     throw ScenarioError(fmt::format("{} {}: expected a {} from {} to {}", name, given,
                                     std::is_integral_v<Number> ? "whole number" : "number", least, most));
-  return value;
+  return *value;
 }
 
 /// "--seed=" in front of another argument would take that for its value.
@@ -110,22 +108,24 @@ Command::Added Command::texts(std::string name, std::string placeholder, std::ve
 }
 
 Command::Added Command::whole(std::string name, int& value, int least, int most, std::string meaning) {
-  return add(
-      {name, "N", std::move(meaning), value == 0 ? "" : fmt::format("{}", value)},
-      [&value, name, least, most](const std::string& given) { value = number_in(name, given, least, most); });
+  return add({name, "N", std::move(meaning), value == 0 ? "" : fmt::format("{}", value)},
+             [&value, name, least, most](const std::string& given) {
+               value = number_given(name, given, least, most);
+             });
 }
 
 Command::Added Command::number(std::string name, double& value, double least, double most,
                                std::string meaning) {
-  return add(
-      {name, "X", std::move(meaning), fmt::format("{}", value)},
-      [&value, name, least, most](const std::string& given) { value = number_in(name, given, least, most); });
+  return add({name, "X", std::move(meaning), fmt::format("{}", value)},
+             [&value, name, least, most](const std::string& given) {
+               value = number_given(name, given, least, most);
+             });
 }
 
 Command::Added Command::number(std::string name, std::optional<double>& value, double least, double most,
                                std::string meaning) {
   return add({name, "X", std::move(meaning)}, [&value, name, least, most](const std::string& given) {
-    value = number_in(name, given, least, most);
+    value = number_given(name, given, least, most);
   });
 }
 
@@ -136,7 +136,7 @@ Command::Added Command::flag_or_number(std::string name, double number_of_flag, 
   const auto text = std::make_shared<std::string>();
   CLI::Option* option = app_.add_flag(fmt::format("{}{{{}}}", name, number_of_flag), *text, kept.meaning);
   option->check([&value, text, name, least, most](const std::string& given) {
-    value = number_in(name, given, least, most);
+    value = number_given(name, given, least, most);
     return std::string();
   });
   return {*this, *option, kept};

@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
+
+#include "perception/io/text_table.hpp"
 
 namespace understory {
 namespace {
@@ -11,20 +12,17 @@ namespace {
 template <typename Number>
 Number parsed(const ConfigNode& node, const std::string& key, Number minimum, Number maximum,
               const char* what) {
-  Number value{};
-  const char* const end = node.text.data() + node.text.size();
-  const auto [stop, error] = std::from_chars(node.text.data(), end, value);
-  const bool is_number =
-      node.kind == ConfigNode::Kind::scalar && !node.quoted && error == std::errc() && stop == end;
-  if (!is_number || !(value >= minimum && value <= maximum))  // written so that nan is refused
+  const bool is_plain = node.kind == ConfigNode::Kind::scalar && !node.quoted;
+  const auto value = is_plain ? number_in<Number>(node.text) : std::nullopt;
+  if (!value || *value < minimum || *value > maximum)
     refuse_key(node, key, fmt::format("{} from {} to {}", what, minimum, maximum));
-  return value;
+  return *value;
 }
 
 }  // namespace
 
 void refuse_key(const ConfigNode& node, const std::string& key, const std::string& expected) {
-  throw ScenarioError(fmt::format("{}: {}: expected {}", node.origin, key, expected));
+  refuse_input(node.origin, key, "expected " + expected);
 }
 
 const ConfigNode* find_child(const ConfigNode& map, std::string_view key) {

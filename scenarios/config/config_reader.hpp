@@ -4,13 +4,13 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <charconv>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "perception/io/text_table.hpp"
 #include "scenarios/config/config_tree.hpp"
 
 namespace understory {
@@ -89,8 +89,7 @@ class ConfigReader {
       bool is_known = false;
       for (const std::string& name : known_) is_known = is_known || name == child.key;
       if (is_known) continue;
-      throw ScenarioError(fmt::format("{}: {}: expected a known key{}", child.origin, full(child.key),
-                                      did_you_mean(child.key, known_)));
+      refuse_input(child.origin, full(child.key), "expected a known key" + did_you_mean(child.key, known_));
     }
   }
 
@@ -122,16 +121,13 @@ class ConfigReader {
 
   template <typename T>
   T number(const ConfigNode& node, std::string_view name, T minimum, T maximum) const {
-    T value{};
-    const char* end = node.text.data() + node.text.size();
-    const auto [stop, error] = std::from_chars(node.text.data(), end, value);
-    const bool is_number =
-        node.kind == ConfigNode::Kind::scalar && !node.quoted && error == std::errc() && stop == end;
-    if (!is_number || !(value >= minimum && value <= maximum)) {  // written so that nan is refused
+    const bool is_plain = node.kind == ConfigNode::Kind::scalar && !node.quoted;
+    const auto value = is_plain ? number_in<T>(node.text) : std::nullopt;
+    if (!value || *value < minimum || *value > maximum) {
       constexpr std::string_view what = std::is_integral_v<T> ? "a whole number" : "a number";
       refuse(node, name, fmt::format("{} from {} to {}", what, minimum, maximum));
     }
-    return value;
+    return *value;
   }
 
   [[noreturn]] void refuse(const ConfigNode& node, std::string_view name, std::string_view expected) const {
@@ -139,7 +135,7 @@ class ConfigReader {
     if (node.kind == ConfigNode::Kind::nothing) got = "nothing";
     if (node.kind == ConfigNode::Kind::list) got = fmt::format("a list of {}", node.children.size());
     if (node.kind == ConfigNode::Kind::map) got = "a group of keys";
-    throw ScenarioError(fmt::format("{}: {}: expected {}, got {}", node.origin, full(name), expected, got));
+    refuse_input(node.origin, full(name), fmt::format("expected {}, got {}", expected, got));
   }
 
   const ConfigNode& map_;

@@ -8,7 +8,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "perception/io/euroc_calibration.hpp"
+#include "perception/io/calibration_file.hpp"
 #include "perception/io/hit_files.hpp"
 #include "perception/io/pose_file.hpp"
 #include "perception/io/stereo_recording.hpp"

@@ -9,7 +9,7 @@
 
 #include "perception/io/calibration_file.hpp"
 #include "perception/pushbroom/pushbroom_stereo.hpp"
-#include "perception/rectify.hpp"
+#include "perception/rectification/rectify.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {

@@ -7,9 +7,9 @@
 #include <opencv2/core.hpp>
 #include <stdexcept>
 
-#include "perception/io/euroc_calibration.hpp"
+#include "perception/io/calibration_file.hpp"
 #include "perception/io/image_file.hpp"
-#include "perception/io/picture_codecs.hpp"
+#include "perception/io/text_file.hpp"
 #include "perception/io/text_table.hpp"
 #include "scenarios/config/config_tree.hpp"
 
@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 
 /// A 16-bit image of the rig's size: depth in millimetres, numbers of objects.
 cv::Mat read_16_bit_image(const fs::path& file, const StereoRig& rig) {
-  const cv::Mat image = picture_codecs().decode(text_of(file));
-  if (image.type() != CV_16UC1 || image.size() != cv::Size(rig.width_px, rig.height_px))
+  const cv::Mat image = read_gray_image(file, CV_16U);
+  if (image.size() != cv::Size(rig.width_px, rig.height_px))
     throw std::runtime_error(
         fmt::format("{}: expected a 16-bit gray image of {}x{}", file.string(), rig.width_px, rig.height_px));
   return image;
@@ -57,7 +57,7 @@ auto bad_input_where_refused(Read&& read) {
 std::vector<RecordedObject> parse_recorded_objects(const std::string& text, const std::string& name) {
   constexpr const char* expected = "expected 'number,name,kind,from_x,from_y,from_z,to_x,to_y,to_z,radius'";
   std::vector<RecordedObject> objects;
-  for (const TableLine& line : table_lines(text, CellsParted::by_commas)) {
+  for (const TableLine& line : table_lines(text, CellsParted::by_commas, name)) {
     if (line.cells.size() != 10) fail_at_line(name, line.number, expected);
     const auto number = [&](std::size_t cell) {
       const auto value = number_in(line.cells[cell]);
@@ -88,7 +88,8 @@ EvaluationRecording::EvaluationRecording(const fs::path& folder, const Calibrati
     estimates_ = poses_where_there(folder_ / "estimate0/data.csv");
     has_depth_ = fs::exists(folder_ / "depth0/data.csv");
     const fs::path objects = folder_ / "objects0/objects.csv";
-    if (fs::exists(objects)) objects_ = parse_recorded_objects(text_of(objects), objects.string());
+    if (fs::exists(objects))
+      objects_ = parse_recorded_objects(read_file(objects, maximum_table_bytes), objects.string());
     return 0;
   });
   if (camera_.calibration) rectifier_.emplace(*camera_.calibration, Interpolation::nearest);

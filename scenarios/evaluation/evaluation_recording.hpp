@@ -7,7 +7,7 @@
 #include "perception/io/calibration_file.hpp"
 #include "perception/io/image_sequence.hpp"
 #include "perception/io/pose_file.hpp"
-#include "perception/rectify.hpp"
+#include "perception/rectification/rectify.hpp"
 #include "scenarios/evaluation/ground_truth.hpp"
 
 namespace understory {

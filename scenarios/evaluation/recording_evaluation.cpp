@@ -8,7 +8,7 @@
 #include <random>
 #include <utility>
 
-#include "perception/full_stereo/full_stereo_detector.hpp"
+#include "perception/full_stereo/full_stereo.hpp"
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "scenarios/evaluation/evaluation_recording.hpp"
 #include "scenarios/evaluation/ground_truth.hpp"

@@ -5,7 +5,7 @@
 #include <opencv2/core/mat.hpp>
 #include <optional>
 
-#include "perception/rectify.hpp"
+#include "perception/rectification/rectify.hpp"
 #include "scenarios/flight/flight.hpp"
 #include "scenarios/report/pictures.hpp"
 

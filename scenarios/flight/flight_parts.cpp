@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "estimation/filter.hpp"
-#include "perception/full_stereo/full_stereo_detector.hpp"
+#include "perception/full_stereo/full_stereo.hpp"
 #include "perception/pushbroom/pushbroom_stereo.hpp"
-#include "perception/rectifying_detector.hpp"
+#include "perception/rectification/rectify.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/named_seed.hpp"
 #include "scenarios/flight/oracles.hpp"

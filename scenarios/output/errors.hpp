@@ -4,13 +4,13 @@
 #include <stdexcept>
 #include <string>
 
+#include "perception/io/text_file.hpp"
+
 /// How a command ends that did not get to its end. Each is one line on standard error.
 namespace understory {
 
 /// Bad input from a person: where (file:line, an option), the key, what was expected. Exit status 2.
-struct ScenarioError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+using ScenarioError = InputError;
 
 /// The machine failed us: a full disk, a missing GL library. Exit status 3.
 struct MachineError : std::runtime_error {

@@ -9,8 +9,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <fstream>
-#include <iterator>
 
 #include "scenarios/output/file_output.hpp"
 
@@ -36,11 +34,6 @@ std::vector<fs::path> files_of(const fs::path& folder, const std::vector<std::st
   return files;
 }
 
-std::string text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 void refuse_to_replace(const fs::path& folder, const fs::path& given, const FolderContents& contents,
                        Replace replace) {
   const std::vector<fs::path> held = files_of(folder, contents.patterns);
@@ -53,7 +46,8 @@ void refuse_to_replace(const fs::path& folder, const fs::path& given, const Fold
                        held.front().string(), contents.manifest));
   if (replace == Replace::nothing)
     refuse("holds results already: --force replaces them, --out names another folder");
-  if (replace == Replace::same && text_of(folder / contents.manifest) != contents.manifest_text)
+  if (replace == Replace::same &&
+      read_file(folder / contents.manifest, maximum_json_bytes) != contents.manifest_text)
     refuse(fmt::format(
         "holds results of another configuration ({}): --force replaces them, --out names another folder",
         contents.manifest));

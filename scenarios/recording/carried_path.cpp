@@ -10,6 +10,7 @@
 #include <random>
 
 #include "perception/assertion.hpp"
+#include "perception/io/text_file.hpp"
 #include "perception/io/text_table.hpp"
 #include "scenarios/config/bad_input.hpp"
 #include "scenarios/config/config_tree.hpp"
@@ -44,10 +45,10 @@ std::string as_tum(const std::vector<TableLine>& lines, const std::string& name)
 }
 
 std::vector<TimedPose> poses_in(const std::filesystem::path& file) {
-  const std::string text = text_of(file);
-  const std::vector<TableLine> lines = table_lines(text, CellsParted::by_commas);
-  return is_trajectory(lines) ? parse_tum_poses(as_tum(lines, file.string()), file.string())
-                              : read_poses(file);
+  const std::string text = read_file(file, maximum_table_bytes);
+  const std::vector<TableLine> lines = table_lines(text, CellsParted::by_commas, file.string());
+  return is_trajectory(lines) ? parse_poses(as_tum(lines, file.string()), file.string())
+                              : parse_poses(text, file.string());
 }
 
 constexpr double shoulder_room_m = 0.5;  // between the lane and the next trunk

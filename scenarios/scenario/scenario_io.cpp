@@ -173,7 +173,7 @@ Scenario load_changed_scenario(const std::filesystem::path& file, const std::vec
 
 Scenario scenario_from_text(const std::string& text, const std::string& name,
                             const std::vector<std::string>& settings) {
-  return compose(sources_of(parse_config_text(text, name), settings), name);
+  return compose(sources_of(parse_yaml(text, name), settings), name);
 }
 
 std::string where_given(const std::filesystem::path& file, const std::vector<std::string>& settings,

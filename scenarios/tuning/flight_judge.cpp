@@ -22,9 +22,10 @@ Counts counts_of(const FlightRow& row) {
 /// Flights of another scenario that went by this name are of no use any more.
 void keep_condition(const CampaignFolder& folder, const Campaign& campaign) {
   const Condition& condition = campaign.conditions.front();
-  if (text_if_there(folder.condition_file(condition)) == condition.scenario_text) return;
+  const fs::path file = folder.condition_file(condition);
+  if (text_if_there(file) == condition.scenario_text) return;
   for (const CampaignTask& task : tasks_of(campaign)) fs::remove(folder.flight_file(task));
-  write_lasting_file(folder.condition_file(condition), condition.scenario_text);
+  write_lasting_file(file, condition.scenario_text);
 }
 
 class FlightJudge : public Judge {

@@ -219,13 +219,13 @@ void read_data(const ConfigNode& top, const fs::path& file, TuneFile& tune) {
 }  // namespace
 
 TuneFile load_tune_file(const fs::path& file, const FindScenario& find_scenario) {
-  const ConfigNode top = parse_config_file(file);
+  TuneFile tune;
+  tune.text = read_file(file);
+  const ConfigNode top = parse_yaml(tune.text, file.string());
   require_known_keys(top,
                      {"name", "scenario", "parameters", "objective", "search", "over", "training",
                       "validation", "every", "timeout_s"},
                      "");
-  TuneFile tune;
-  tune.text = text_if_there(file).value_or("");
   tune.name = name_in(top, file);
   const ConfigNode& scenario = required(top, "scenario", "the scenario whose keys are tuned");
   tune.scenario_file = scenario_beside(file, scenario, scenario.text, find_scenario);

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/campaign/campaign_folder.hpp"
-#include "scenarios/config/config_tree.hpp"
+#include "scenarios/config/json_text.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/program.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
@@ -50,7 +50,7 @@ bool take_numbers(const Json& json, const std::vector<std::string>& names, std::
 /// False where the line is not whole or of another tuning.
 bool take_trial(const std::string& line, const std::vector<std::string>& parameters,
                 const std::vector<std::string>& figures, Trial& trial) try {
-  const Json json = Json::parse(line);
+  const Json json = parse_json(line);
   if (json.contains("refused")) trial.refused = json.at("refused");
   return json.at("trial") == trial.number && take_numbers(json.at("parameters"), parameters, trial.point) &&
          (!trial.refused.empty() || take_numbers(json.at("figures"), figures, trial.figures));
@@ -129,7 +129,7 @@ void prepare_tune_folder(const fs::path& folder, const TuneFile& file, const std
       throw ScenarioError(
           fmt::format("{}: holds a tuning already: --resume goes on with it, --out names another folder",
                       folder.string()));
-    const Json held = Json::parse(text_if_there(manifest_file).value_or(""), nullptr, false);
+    const Json held = parse_json(text_if_there(manifest_file).value_or(""));
     for (const auto& [key, value] : manifest.items())
       if (!held.is_object() || held.value(key, Json()) != value)
         throw ScenarioError(

@@ -47,7 +47,7 @@ class Tuning {
     Scenario scenario;
     try {
       const std::string text = to_yaml(file_.space, point);
-      scenario = load_changed_scenario(file_.scenario_file, {parse_config_text(text, "trial")});
+      scenario = load_changed_scenario(file_.scenario_file, {parse_yaml(text, "trial")});
     } catch (const ScenarioError& error) {  // keys that contradict each other
       return {{}, error.what()};
     }

@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "perception/pushbroom/byte_remap.hpp"
 #include "perception/pushbroom/pushbroom_kernel.hpp"
+#include "perception/rectification/byte_remap.hpp"
 #include "tests/support/plain_pushbroom.hpp"
 
 using namespace understory;

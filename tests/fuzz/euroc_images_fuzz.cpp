@@ -1,4 +1,4 @@
-#include "perception/io/euroc_images.hpp"
+#include "perception/io/image_sequence.hpp"
 #include "tests/fuzz/recorded_text.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,4 +1,4 @@
-#include "perception/io/image_names.hpp"
+#include "perception/io/image_sequence.hpp"
 
 #include <algorithm>
 #include <string>

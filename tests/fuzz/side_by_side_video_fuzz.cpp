@@ -1,4 +1,4 @@
-#include "perception/io/side_by_side_video.hpp"
+#include "perception/io/stereo_recording.hpp"
 #include "tests/fuzz/recorded_text.hpp"
 
 /// Any bytes under a video's name: FFmpeg tells the container by what they hold. A few frames of it.

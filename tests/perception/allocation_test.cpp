@@ -19,7 +19,7 @@ StereoCalibration calibration_of(const StereoRig& rig) {
     camera.camera_matrix = {f, 0, u, 0, f, v, 0, 0, 1};
     camera.distortion = {0, 0, 0, 0};
     camera.rectification = cv::Matx33d::eye();
-    camera.projection = {f, 0, u, is_left ? 0 : -f * rig.baseline_m, 0, f, v, 0, 0, 0, 1, 0};
+    camera.projection = support::projection_of(f, u, v, is_left ? 0 : rig.baseline_m);
   }
   return calibration;
 }

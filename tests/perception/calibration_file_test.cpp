@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <numbers>
 #include <opencv2/core/persistence.hpp>
 #include <string>
 
@@ -16,7 +18,7 @@ namespace {
 
 using support::TemporaryFolder;
 
-const std::filesystem::path rigs = std::filesystem::path(UNDERSTORY_SOURCE_DIR) / "models" / "rigs";
+const std::filesystem::path rigs = support::house_rigs;
 
 CalibratedRig paper_rig(double depth_m = 4.8) {
   CalibrationOptions options;
@@ -187,6 +189,145 @@ TEST(CalibrationFile, ReadsARealEurocFolder) {
   EXPECT_NEAR(read.rig.focal_px, 458, 25);        // near the raw cameras' own
   // Cameras look along the IMU's z.
   EXPECT_NEAR(read.rig.T_body_camera.linear()(2, 2), 1, 0.01);
+}
+
+constexpr const char* good =
+    "name: test\nwidth_px: 376\nheight_px: 240\nfocal_px: 180\nbaseline_m: 0.35\ncenter_left_x_px: 197\n"
+    "center_right_x_px: 105\ncenter_y_px: 101\ndetection_depth_m: 4.8\nleft_camera_body_m: [0.1, 0.2, 0.3]\n"
+    "pitch_down_deg: 30\n";
+
+std::string complaint_of_rig(const std::string& text) {
+  const TemporaryFolder folder;
+  return support::complaint_of([&] { read_rig(folder.write("rig.yaml", text)); });
+}
+
+void expect_complaint(const std::string& from, const std::string& to, const std::string& line_and_key,
+                      const std::string& expectation) {
+  std::string text = good;
+  text.replace(text.find(from), from.size(), to);
+  const std::string found = complaint_of_rig(text);
+  support::expect_line(found.substr(found.find("rig.yaml")), "rig.yaml:" + line_and_key + ":", expectation);
+}
+
+TEST(RigFile, ReadsEveryKey) {
+  const TemporaryFolder folder;
+  const StereoRig rig = read_rig(folder.write("rig.yaml", good));
+  EXPECT_EQ(rig.name, "test");
+  EXPECT_EQ(rig.width_px, 376);
+  EXPECT_EQ(rig.height_px, 240);
+  EXPECT_EQ(rig.focal_px, 180);
+  EXPECT_EQ(rig.baseline_m, 0.35);
+  EXPECT_EQ(rig.center_left_x_px, 197);
+  EXPECT_EQ(rig.center_right_x_px, 105);
+  EXPECT_EQ(rig.center_y_px, 101);
+  EXPECT_EQ(rig.detection_depth_m, 4.8);
+  EXPECT_TRUE(rig.T_body_camera.translation().isApprox(Eigen::Vector3d(0.1, 0.2, 0.3)));
+  // Pitched down 30 deg: the axis points ahead and down, the image's right to the right of the aircraft.
+  const Eigen::Matrix3d R = rig.T_body_camera.linear();
+  EXPECT_TRUE(R.col(2).isApprox(Eigen::Vector3d(std::sqrt(0.75), 0, -0.5), 1e-12));
+  EXPECT_TRUE(R.col(0).isApprox(Eigen::Vector3d(0, -1, 0), 1e-12));
+  EXPECT_NEAR(R.determinant(), 1, 1e-12);
+  EXPECT_TRUE((R.transpose() * R).isApprox(Eigen::Matrix3d::Identity(), 1e-12));
+}
+
+TEST(RigFile, NamesFileLineAndKeyOfEveryFault) {
+  expect_complaint("focal_px: 180", "focal_pix: 180", "1: focal_px", "found none");
+  expect_complaint("pitch_down_deg: 30", "pitch_down_deg: 30\ncolour: red", "12: colour", "unknown key");
+  expect_complaint("height_px: 240", "height_px: 240\nwidth_px: 376", "4: width_px", "once");
+  expect_complaint("focal_px: 180", "focal_px: wide", "4: focal_px", "expected a number from 10 to 20000");
+  expect_complaint("focal_px: 180", "focal_px: [180]", "4: focal_px", "expected a number");
+  expect_complaint("focal_px: 180", "focal_px: .nan", "4: focal_px", "expected a number");
+  expect_complaint("baseline_m: 0.35", "baseline_m: -0.35", "5: baseline_m", "from 0.01 to 10");
+  expect_complaint("width_px: 376", "width_px: 376.5", "2: width_px", "whole number");
+  expect_complaint("[0.1, 0.2, 0.3]", "[0.1, 0.2]", "10: left_camera_body_m", "3 numbers");
+  expect_complaint("name: test", "name: [a]", "1: name", "text");
+  expect_complaint("detection_depth_m: 4.8", "detection_depth_m: 900", "9: detection_depth_m", "infinity");
+  expect_complaint("height_px: 240", "height_px: [240", "4: expected YAML", "sequence");
+}
+
+TEST(RigFile, SaysWhenThereIsNothingToRead) {
+  for (const char* text : {"", "just text"}) EXPECT_NE(complaint_of_rig(text), "none");
+  for (const char* none : {"/nonexistent/rig.yaml", "/tmp"}) EXPECT_THROW(read_rig(none), std::runtime_error);
+}
+
+TEST(HouseRigs, LookAlongThePathWithTheAxisLevelAtTrim) {
+  for (const char* name : {"paper.yaml", "long.yaml"}) {
+    const StereoRig rig = support::house_rig(name);
+    const double trim_rad = 10.97 * std::numbers::pi / 180;  // level trim at 12.27 m/s, nose up
+    const Eigen::Matrix3d nose_up = Eigen::AngleAxisd(-trim_rad, Eigen::Vector3d::UnitY()).toRotationMatrix();
+    EXPECT_TRUE((nose_up * rig.T_body_camera.linear().col(2)).isApprox(Eigen::Vector3d::UnitX(), 1e-12))
+        << name;
+    EXPECT_NEAR(rig.T_body_camera.translation().y(), rig.baseline_m / 2, 1e-4) << name;
+  }
+}
+
+/// What a recording adds to a EuRoC folder's sensor.yaml: how its pair is rectified.
+std::string additions(double center_x_px) {
+  return "rectification: [1, 0, 0, 0, 0, -1, 0, 1, 0]\nrectified_intrinsics: [310, " +
+         std::to_string(center_x_px) + ", 150]\n";
+}
+
+std::string left_text() { return support::euroc_sensor_text(support::euroc_left(), 300, 201); }
+std::string right_text() { return support::euroc_sensor_text(support::euroc_right(), 302, 197); }
+
+CalibratedRig rig_of(const TemporaryFolder& folder, const std::string& left, const std::string& right,
+                     const CalibrationOptions& options = {}) {
+  folder.write("mav0/cam0/sensor.yaml", left);
+  folder.write("mav0/cam1/sensor.yaml", right);
+  return read_calibrated_rig(folder.path(), options);
+}
+
+std::string complaint_of(const TemporaryFolder& folder, const std::string& left, const std::string& right) {
+  return support::complaint_of([&] { rig_of(folder, left, right); });
+}
+
+TEST(RecordedEuroc, SaysHowThePairIsRectified) {
+  const TemporaryFolder folder;
+  const CalibratedRig read = rig_of(folder, left_text() + additions(205) + "detection_depth_m: 4.8\n",
+                                    right_text() + additions(180));
+  EXPECT_EQ(read.rig.focal_px, 310);
+  EXPECT_EQ(read.rig.center_left_x_px, 205);
+  EXPECT_EQ(read.rig.center_right_x_px, 180);
+  EXPECT_EQ(read.rig.center_y_px, 150);
+  EXPECT_EQ(read.rig.detection_depth_m, 4.8);
+  EXPECT_NEAR(read.rig.baseline_m, Eigen::Vector3d(0.2, 0.003, -0.002).norm(), 1e-12);
+  EXPECT_EQ(read.calibration->left.rectification, cv::Matx33d(1, 0, 0, 0, 0, -1, 0, 1, 0));
+  // The rectified camera's y axis is the raw one's -z.
+  const Eigen::Vector3d y_body = read.rig.T_body_camera.linear().col(1);
+  EXPECT_TRUE(y_body.isApprox(-support::euroc_left().linear().col(2), 1e-12));
+}
+
+TEST(RecordedEuroc, TheCallersDepthGoesBeforeTheFiles) {
+  const TemporaryFolder folder;
+  CalibrationOptions options;
+  options.detection_depth_m = 7;
+  const std::string left = left_text() + additions(205) + "detection_depth_m: 4.8\n";
+  EXPECT_EQ(rig_of(folder, left, right_text() + additions(180), options).rig.detection_depth_m, 7);
+}
+
+TEST(RecordedEuroc, TakesOpenCvsLongerDistortions) {
+  const TemporaryFolder folder;
+  std::string left = left_text();
+  const std::string four = "-0.28, 0.07, 0.0002, -0.0001";
+  left.replace(left.find(four), four.size(), four + ", 0.01");
+  EXPECT_EQ(rig_of(folder, left, right_text()).calibration->left.distortion.size(), 5u);
+  left.replace(left.find(four), four.size(), "1, " + four);
+  EXPECT_NE(complaint_of(folder, left, right_text()).find("expected a list of 4 numbers, found 6"),
+            std::string::npos);
+}
+
+TEST(RecordedEuroc, RefusesHalfARectification) {
+  const TemporaryFolder folder;
+  const auto refuses = [&](const std::string& left, const std::string& right, const std::string& part) {
+    const std::string complaint = complaint_of(folder, left_text() + left, right_text() + right);
+    EXPECT_NE(complaint.find(part), std::string::npos) << part << " not in: " << complaint;
+  };
+  refuses(additions(205), "", "rectification: expected in both");
+  refuses("rectification: [1, 0, 0, 0, 1, 0, 0, 0, 1]\n", additions(180), "rectified_intrinsics");
+  refuses("rectification: [1, 0, 0, 0, 1, 0, 0, 0, 0.9]\nrectified_intrinsics: [310, 205, 150]\n",
+          additions(180), "rectification: expected a rotation");
+  refuses("rectification: [1, 0, 0, 0, 0, -1, 0, 1, 0]\nrectified_intrinsics: [320, 205, 150]\n",
+          additions(180), "same focal length");
 }
 
 }  // namespace

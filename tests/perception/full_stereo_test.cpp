@@ -6,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "perception/full_stereo/full_stereo_detector.hpp"
 #include "tests/perception/rigs.hpp"
 #include "tests/support/synthetic_stereo.hpp"
 
@@ -20,18 +19,15 @@ support::SyntheticPlane plane_at(double depth_m) {
 /// The two matchers under one roof.
 struct Matcher {
   const char* name;
-  FullStereo (*stereo)(const StereoRig&);
   FullStereoDetector (*detector)(const StereoRig&, const FullStereoCrop&);
 };
 
-const Matcher matchers[] = {{"bm", [](const StereoRig& rig) { return FullStereo(rig, StereoBmConfig{}); },
-                             [](const StereoRig& rig, const FullStereoCrop& crop) {
-                               return FullStereoDetector(rig, StereoBmConfig{}, crop);
-                             }},
-                            {"sgbm", [](const StereoRig& rig) { return FullStereo(rig, StereoSgbmConfig{}); },
-                             [](const StereoRig& rig, const FullStereoCrop& crop) {
-                               return FullStereoDetector(rig, StereoSgbmConfig{}, crop);
-                             }}};
+template <typename Config>
+FullStereoDetector detector_with(const StereoRig& rig, const FullStereoCrop& crop) {
+  return FullStereoDetector(rig, Config{}, crop);
+}
+
+const Matcher matchers[] = {{"bm", detector_with<StereoBmConfig>}, {"sgbm", detector_with<StereoSgbmConfig>}};
 
 class FullStereoOf : public testing::TestWithParam<std::tuple<Matcher, const char*>> {
  protected:
@@ -64,14 +60,15 @@ ParallaxErrors errors_of(const StereoRig& rig, const cv::Mat& depth_m, double pl
 }
 
 TEST_P(FullStereoOf, PutsAPlaneWhereItIsWhereverBothEyesSeeIt) {
-  FullStereo stereo = matcher().stereo(rig());
+  FullStereoDetector stereo = matcher().detector(rig(), {});
   // Of the search: whole disparities are exact, and between them OpenCV's parabola leans to the nearer.
   for (const double disparity_px : {8.0, 13.0, 40.0, 8.4, 12.7, 21.25}) {
     const double infinity_px = rig().infinity_disparity_px();
     const double parallax_px = disparity_px + std::round(infinity_px) - infinity_px;
     const double tolerance_px = disparity_px == std::round(disparity_px) ? 1.01 / 16 : 0.4;
     const double plane_m = rig().focal_px * rig().baseline_m / parallax_px;
-    const cv::Mat& depth_m = stereo.depth_m(support::render_plane(rig(), plane_at(plane_m)));
+    stereo.detect(support::render_plane(rig(), plane_at(plane_m)));
+    const cv::Mat& depth_m = stereo.depth_m();
     // Half a window off the right image's first column; the same off the left image's last.
     const int first_px = static_cast<int>(std::ceil(rig().disparity_px(plane_m))) + 2;
     const int last_px = rig().width_px - 2;
@@ -124,9 +121,11 @@ TEST_P(FullStereoOf, HitsLieOnThePlaneInsideTheirDepthInterval) {
 
 TEST_P(FullStereoOf, SaysTheSameAgain) {
   const StereoFrame frame = support::render_plane(rig(), plane_at(7));
-  FullStereo one = matcher().stereo(rig()), other = matcher().stereo(rig());
-  one.depth_m(support::render_plane(rig(), plane_at(3)));  // leaves nothing behind
-  EXPECT_EQ(cv::norm(one.depth_m(frame), other.depth_m(frame), cv::NORM_INF), 0);
+  FullStereoDetector one = matcher().detector(rig(), {}), other = matcher().detector(rig(), {});
+  one.detect(support::render_plane(rig(), plane_at(3)));  // leaves nothing behind
+  one.detect(frame);
+  other.detect(frame);
+  EXPECT_EQ(cv::norm(one.depth_m(), other.depth_m(), cv::NORM_INF), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Rigs, FullStereoOf,

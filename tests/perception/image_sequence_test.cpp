@@ -5,22 +5,14 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "perception/io/euroc_images.hpp"
-#include "perception/io/image_names.hpp"
+#include "tests/perception/rigs.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace understory {
 namespace {
 
-template <typename Read>
-std::string complaint(Read&& read) {
-  try {
-    read();
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "none";
-}
+using support::complaint_of;
+using support::expect_line;
 
 using Names = std::vector<std::string>;
 
@@ -81,10 +73,8 @@ TEST(ImageSequence, TakesTimesFromNames) {
   EXPECT_EQ(sequence.pairs[1].t_ns, 10'250'000'000);
   folder.write("l/9.8.png", "");
   folder.write("r/9.8.png", "");  // a time after 9.75, but a number before 75: order and times disagree
-  EXPECT_NE(complaint([&] {
-              folder_sequence(folder.path() / "l", folder.path() / "r");
-            }).find("9.75.png: expected times"),
-            std::string::npos);
+  expect_line(complaint_of([&] { folder_sequence(folder.path() / "l", folder.path() / "r"); }), "",
+              "9.75.png: expected times");
 }
 
 TEST(ImageSequence, SaysWhichImageHasNoPartner) {
@@ -93,23 +83,17 @@ TEST(ImageSequence, SaysWhichImageHasNoPartner) {
   folder.write("l/2.png", "");
   folder.write("r/1.png", "");
   const auto pairing = [&] {
-    return complaint([&] { folder_sequence(folder.path() / "l", folder.path() / "r"); });
+    return complaint_of([&] { folder_sequence(folder.path() / "l", folder.path() / "r"); });
   };
   EXPECT_EQ(pairing(), (folder.path() / "l/2.png").string() + ": expected its partner in " +
                            (folder.path() / "r").string() + ", found none (2 left images, 1 right)");
   std::filesystem::create_directories(folder.path() / "empty");
-  EXPECT_NE(complaint([&] {
-              folder_sequence(folder.path() / "empty", folder.path() / "r");
-            }).find("expected images"),
-            std::string::npos);
-  EXPECT_NE(complaint([&] {
-              folder_sequence(folder.path() / "none", folder.path() / "r");
-            }).find("readable folder"),
-            std::string::npos);
-  EXPECT_NE(complaint([&] {
-              single_pair(folder.path() / "l/1.png", folder.path() / "r/2.png");
-            }).find("r/2.png: expected"),
-            std::string::npos);
+  expect_line(complaint_of([&] { folder_sequence(folder.path() / "empty", folder.path() / "r"); }), "",
+              "expected images");
+  expect_line(complaint_of([&] { folder_sequence(folder.path() / "none", folder.path() / "r"); }), "",
+              "readable folder");
+  expect_line(complaint_of([&] { single_pair(folder.path() / "l/1.png", folder.path() / "r/2.png"); }), "",
+              "r/2.png: expected");
 }
 
 struct Euroc : testing::Test {
@@ -138,23 +122,21 @@ TEST_F(Euroc, PairsByTimeAndCountsTheRest) {
 }
 
 TEST_F(Euroc, RefusesWhatIsMissing) {
-  EXPECT_NE(complaint([&] { euroc_sequence(folder.path()); }).find("expected a EuRoC folder"),
-            std::string::npos);
+  expect_line(complaint_of([&] { euroc_sequence(folder.path()); }), "", "expected a EuRoC folder");
   write("cam0", {"100"});
   write("cam1", {"200"});
-  EXPECT_NE(complaint([&] { euroc_sequence(folder.path()); }).find("found none"), std::string::npos);
+  expect_line(complaint_of([&] { euroc_sequence(folder.path()); }), "", "found none");
   write("cam1", {"100"});
   std::filesystem::remove(folder.path() / "mav0/cam1/data/100.png");
-  EXPECT_NE(complaint([&] { euroc_sequence(folder.path()); }).find("cam1/data/100.png: expected the image"),
-            std::string::npos);
+  expect_line(complaint_of([&] { euroc_sequence(folder.path()); }), "",
+              "cam1/data/100.png: expected the image");
   std::filesystem::remove(folder.path() / "mav0/cam1/data.csv");
-  EXPECT_NE(complaint([&] { euroc_sequence(folder.path()); }).find("cam1/data.csv: expected a readable"),
-            std::string::npos);
+  expect_line(complaint_of([&] { euroc_sequence(folder.path()); }), "", "cam1/data.csv: expected a readable");
 }
 
 TEST(EurocImages, NamesTheLineOfEveryFault) {
   const auto reading = [](const std::string& text) {
-    return complaint([&] { parse_euroc_images(text, "d"); });
+    return complaint_of([&] { parse_euroc_images(text, "d"); });
   };
   EXPECT_EQ(reading("1,a.png\n2,b.png"), "none");
   for (const char* broken : {"2", "2,", "x,b.png", "2,b.png,c", "-2,b.png", "2,../b.png", "2.5,b.png"})

@@ -6,20 +6,13 @@
 #include <stdexcept>
 
 #include "perception/io/text_table.hpp"
+#include "tests/perception/rigs.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace understory {
 namespace {
 
-template <typename Read>
-std::string complaint(Read&& read) {
-  try {
-    read();
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "none";
-}
+using support::complaint_of;
 
 constexpr std::int64_t s = 1'000'000'000;
 
@@ -45,10 +38,10 @@ TEST(PoseAt, FollowsASteadyTurnExactly) {
 TEST(PoseAt, TurnsTheShorterWayWhateverTheQuaternionsSigns) {
   // 170 and -170 degrees about z lie 20 degrees apart, and q and -q are one attitude.
   const auto poses =
-      parse_tum_poses("0 0 0 0 0 0 0.99619470 0.08715574\n1 0 0 0 0 0 -0.99619470 0.08715574\n", "t");
+      parse_poses("0 0 0 0 0 0 0.99619470 0.08715574\n1 0 0 0 0 0 -0.99619470 0.08715574\n", "t");
   const Eigen::Matrix3d half_way = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   EXPECT_TRUE(pose_at(poses, s / 2)->linear().isApprox(half_way, 1e-7));
-  const auto signs = parse_tum_poses("0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 -1\n", "t");
+  const auto signs = parse_poses("0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 -1\n", "t");
   EXPECT_TRUE(pose_at(signs, s / 3)->isApprox(Eigen::Isometry3d::Identity(), 1e-12));
 }
 
@@ -101,26 +94,28 @@ TEST(PoseFile, SecondsKeepTheirNanoseconds) {
 }
 
 TEST(PoseFile, NamesTheLineOfEveryFault) {
-  const auto tum = [](const std::string& text) { return complaint([&] { parse_tum_poses(text, "p"); }); };
-  const auto euroc = [](const std::string& text) { return complaint([&] { parse_euroc_poses(text, "p"); }); };
+  const auto complaint = [](const std::string& text) {
+    return complaint_of([&] { parse_poses(text, "p"); });
+  };
   const std::string good = "0 0 0 0 0 0 0 1\n";
-  EXPECT_EQ(tum(good + "1 0 0 0 0 0 0\n").find("p:2: expected 't tx"), 0u);
-  EXPECT_EQ(tum(good + "1 0 0 0 0 0 0 1 0\n").find("p:2: expected 't tx"), 0u);
-  EXPECT_EQ(tum(good + "1 0 0 0 0 0 zero 1\n").find("p:2: expected 't tx"), 0u);
-  EXPECT_EQ(tum(good + "1 0 nan 0 0 0 0 1\n").find("p:2: expected 't tx"), 0u);
-  EXPECT_EQ(tum(good + "# all is well\n1 0 0 0 0 0 0 0.5\n"), "p:3: expected a quaternion of length 1");
-  EXPECT_EQ(tum(good + "1 0 0 0 0 0 0 0\n"), "p:2: expected a quaternion of length 1");
-  EXPECT_EQ(tum(good + "1 1e9 0 0 0 0 0 1\n"), "p:2: expected a position within 1e8 m");
-  EXPECT_EQ(tum(good + good), "p:2: expected times that increase from line to line");
-  EXPECT_EQ(tum("-1 0 0 0 0 0 0 1\n").find("p:1: expected 't tx"), 0u);
-  EXPECT_EQ(tum("# nothing\n"), "p: expected at least one pose, found none");
-  EXPECT_EQ(euroc("5,0,0,0,1,0,0\n").find("p:1: expected 't,px"), 0u);
-  EXPECT_EQ(euroc("5.5,0,0,0,1,0,0,0\n").find("p:1: expected 't,px"), 0u);
-  EXPECT_EQ(euroc("5,0,0,0,1,0,0,0\n4,0,0,0,1,0,0,0\n"),
+  EXPECT_EQ(complaint(good + "1 0 0 0 0 0 0\n").find("p:2: expected 't tx"), 0u);
+  EXPECT_EQ(complaint(good + "1 0 0 0 0 0 0 1 0\n").find("p:2: expected 't tx"), 0u);
+  EXPECT_EQ(complaint(good + "1 0 0 0 0 0 zero 1\n").find("p:2: expected 't tx"), 0u);
+  EXPECT_EQ(complaint(good + "1 0 nan 0 0 0 0 1\n").find("p:2: expected 't tx"), 0u);
+  EXPECT_EQ(complaint(good + "# all is well\n1 0 0 0 0 0 0 0.5\n"), "p:3: expected a quaternion of length 1");
+  EXPECT_EQ(complaint(good + "1 0 0 0 0 0 0 0\n"), "p:2: expected a quaternion of length 1");
+  EXPECT_EQ(complaint(good + "1 1e9 0 0 0 0 0 1\n"), "p:2: expected a position within 1e8 m");
+  EXPECT_EQ(complaint(good + good), "p:2: expected times that increase from line to line");
+  EXPECT_EQ(complaint("-1 0 0 0 0 0 0 1\n").find("p:1: expected 't tx"), 0u);
+  EXPECT_EQ(complaint("# nothing\n"), "p: expected at least one pose, found none");
+  EXPECT_EQ(complaint("5,0,0,0,1,0,0\n").find("p:1: expected 't,px"), 0u);
+  EXPECT_EQ(complaint("5.5,0,0,0,1,0,0,0\n").find("p:1: expected 't,px"), 0u);
+  EXPECT_EQ(complaint("5,0,0,0,1,0,0,0\n4,0,0,0,1,0,0,0\n"),
             "p:2: expected times that increase from line to line");
-  EXPECT_EQ(complaint([] { read_poses("/nonexistent"); }), "/nonexistent: expected a readable file");
-  EXPECT_EQ(complaint([] { read_poses("/dev/zero"); }), "/dev/zero: expected a readable file");
-  EXPECT_EQ(complaint([] { read_poses("/tmp"); }), "/tmp: expected a readable file");
+  EXPECT_EQ(complaint_of([] { read_poses("/nonexistent"); }), "/nonexistent: expected a readable file");
+  EXPECT_EQ(complaint_of([] { read_poses("/dev/zero"); }),
+            "/dev/zero: expected a readable file, this is a device");
+  EXPECT_EQ(complaint_of([] { read_poses("/tmp"); }), "/tmp: expected a readable file, this is a folder");
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include <opencv2/imgproc.hpp>
 #include <optional>
-#include <random>
 
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "tests/perception/rigs.hpp"
@@ -71,23 +70,15 @@ Places places(const std::vector<StereoHit>& hits) {
   return list;
 }
 
-cv::Mat noise_image(const StereoRig& rig, std::mt19937_64& generator, bool saturated) {
-  cv::Mat image(rig.height_px, rig.width_px, CV_8UC1);
-  for (auto it = image.begin<std::uint8_t>(); it != image.end<std::uint8_t>(); ++it) {
-    const auto bits = static_cast<std::uint8_t>(generator() >> 56);
-    *it = saturated ? (bits & 1 ? 255 : 0) : bits;
-  }
-  return image;
-}
-
 /// Random, saturated, flat, textured; the right image partly the left one moved, so that every branch is
 /// taken.
 std::vector<StereoFrame> frames(const StereoRig& rig, int disparity, int infinity) {
   std::vector<StereoFrame> list;
-  std::mt19937_64 generator(4);
+  std::uint64_t seed = 4;
   for (const bool saturated : {false, true}) {
     for (const int shift : {disparity, infinity + 2}) {
-      StereoFrame frame{0, noise_image(rig, generator, saturated), noise_image(rig, generator, saturated)};
+      StereoFrame frame{0, support::noise(rig.width_px, rig.height_px, seed++, saturated),
+                        support::noise(rig.width_px, rig.height_px, seed++, saturated)};
       const int half = rig.height_px / 2, wide = rig.width_px - shift;
       frame.left(cv::Rect(shift, 0, wide, half)).copyTo(frame.right(cv::Rect(0, 0, wide, half)));
       list.push_back(frame);

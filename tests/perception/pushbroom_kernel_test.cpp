@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include <opencv2/imgproc.hpp>
 #include <random>
 
 #include "perception/io/stereo_recording.hpp"
-#include "perception/pushbroom/block_score.hpp"
+#include "perception/pushbroom/block_rule.hpp"
+#include "tests/perception/rigs.hpp"
 #include "tests/support/instruction_sets.hpp"
 #include "tests/support/plain_pushbroom.hpp"
 #include "tests/support/shared_data.hpp"
@@ -242,6 +244,67 @@ TEST(PushbroomKernel, RefusesRulesThatCannotBeMeant) {
   rule = rule_of(100, 50, {10});
   rule.stride_px = 0;
   EXPECT_THROW(PushbroomKernel{rule}, std::logic_error);
+}
+
+GrayView view(const cv::Mat& image) {
+  return {image.data, static_cast<std::ptrdiff_t>(image.step[0]), image.cols, image.rows};
+}
+
+void expect_edges_of_opencv(const cv::Mat& image) {
+  cv::Mat expected;
+  cv::Laplacian(image, expected, CV_8U, 3);
+  std::vector<std::uint8_t> edges;
+  support::edge_map(view(image), edges);
+  const cv::Mat found(image.rows, image.cols, CV_8UC1, edges.data());
+  EXPECT_EQ(cv::countNonZero(found != expected), 0) << image.cols << "x" << image.rows;
+}
+
+TEST(EdgeMap, EqualsOpenCvsLaplacianBitForBit) {
+  for (const auto& [rows, cols] :
+       std::vector<std::pair<int, int>>{{240, 376}, {2, 2}, {7, 3}, {5, 33}, {31, 2}}) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      expect_edges_of_opencv(support::noise(cols, rows, seed, false));
+      expect_edges_of_opencv(support::noise(cols, rows, seed, true));
+    }
+    expect_edges_of_opencv(cv::Mat(rows, cols, CV_8UC1, cv::Scalar(77)));
+    expect_edges_of_opencv(cv::Mat(rows, cols, CV_8UC1, cv::Scalar(255)));
+  }
+}
+
+TEST(EdgeMap, ReadsImagesWithPaddedRows) {
+  const cv::Mat whole = support::noise(80, 60, 5);
+  const cv::Mat part = whole(cv::Rect(7, 9, 50, 40)).clone();
+  cv::Mat padded = whole.clone();
+  part.copyTo(padded(cv::Rect(0, 0, 50, 40)));
+  std::vector<std::uint8_t> from_padded, from_packed;
+  support::edge_map(view(padded(cv::Rect(0, 0, 50, 40))), from_padded);
+  support::edge_map(view(part), from_packed);
+  EXPECT_EQ(from_padded, from_packed);
+}
+
+TEST(Block, SumsAndDifferencesEqualOpenCvs) {
+  for (const bool saturated : {false, true}) {
+    const cv::Mat left = support::noise(50, 40, 11, saturated), right = support::noise(50, 40, 12, saturated);
+    for (int v = 0; v + block_px <= left.rows; v += 3) {
+      for (int u = 0; u + block_px <= left.cols; ++u) {
+        const cv::Rect block(u, v, block_px, block_px);
+        EXPECT_EQ(block_sum(left.ptr(v) + u, 50), static_cast<int>(cv::sum(left(block))[0]));
+        EXPECT_EQ(block_sad(left.ptr(v) + u, 50, right.ptr(v) + u, 50),
+                  static_cast<int>(cv::norm(left(block), right(block), cv::NORM_L1)));
+      }
+    }
+  }
+}
+
+TEST(Score, IsTheOriginalsIntegerTestAtEveryEdgeSum) {
+  const std::int64_t limit = score_limit_units(54.0 / 333.0), twice = score_limit_units(108.0 / 333.0);
+  for (int edge_sum = 0; edge_sum <= 2 * largest_edge_sum; edge_sum += 37) {
+    for (const int offset : {-1, 0, 1}) {
+      const int sad = std::max(0, 54 * edge_sum / 333 + offset);
+      EXPECT_EQ(scores_below(sad, edge_sum, limit), 333 * sad < 54 * edge_sum);
+      EXPECT_EQ(scores_below(2 * sad, edge_sum, twice), 333 * 2 * sad < 108 * edge_sum);
+    }
+  }
 }
 
 }  // namespace

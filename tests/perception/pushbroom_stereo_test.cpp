@@ -177,18 +177,8 @@ StereoCalibration distorting_calibration(const StereoRig& rig) {
     cv::Mat turn;
     cv::Rodrigues(cv::Vec3d(0.01, is_left ? 0.02 : -0.02, is_left ? 0.005 : -0.008), turn);
     turn.copyTo(camera.rectification);
-    camera.projection = {rig.focal_px,
-                         0,
-                         center,
-                         is_left ? 0 : -rig.focal_px * rig.baseline_m,
-                         0,
-                         rig.focal_px,
-                         rig.center_y_px,
-                         0,
-                         0,
-                         0,
-                         1,
-                         0};
+    camera.projection =
+        support::projection_of(rig.focal_px, center, rig.center_y_px, is_left ? 0 : rig.baseline_m);
     (is_left ? calibration.left : calibration.right) = camera;
   }
   return calibration;
@@ -353,6 +343,24 @@ TEST(PushbroomStereo, RefusesImagesOfAnotherSizeOrKind) {
   EXPECT_THROW(detector.detect({0, right_size, small}), std::logic_error);
   EXPECT_THROW(detector.detect({0, cv::Mat(240, 376, CV_8UC3, cv::Scalar()), right_size}), std::logic_error);
   EXPECT_TRUE(detector.detect({0, right_size, right_size}).empty());
+}
+
+TEST(Isolation, KeepsExactlyTheHitsWithCompany) {
+  std::vector<StereoHit> hits(6);
+  const double x[] = {0.0, 0.9, 5.0,
+                      1.7, 5.5, 9.0};  // 0.0 has one other within 1 m, 0.9 two, 1.7 one, 5.0 one
+  for (std::size_t i = 0; i < 6; ++i) hits[i].position_camera = {x[i], 0, 10};
+  const auto kept = [&](int minimum_points) {
+    std::vector<StereoHit> some;
+    without_isolated(hits, minimum_points, 1.0, some);
+    return some;
+  };
+  ASSERT_EQ(kept(3).size(), 1u);
+  EXPECT_DOUBLE_EQ(kept(3)[0].position_camera.x(), 0.9);
+  EXPECT_EQ(kept(2).size(), 5u);
+  EXPECT_EQ(kept(1).size(), 6u);
+  hits.clear();
+  EXPECT_TRUE(kept(3).empty());
 }
 
 }  // namespace

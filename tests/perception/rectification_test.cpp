@@ -4,10 +4,13 @@
 #include <functional>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/persistence.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "perception/io/calibration_file.hpp"
-#include "perception/rectify.hpp"
+#include "perception/rectification/rectify.hpp"
+#include "tests/perception/rigs.hpp"
 #include "tests/support/euroc_text.hpp"
+#include "tests/support/instruction_sets.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -99,7 +102,7 @@ void expect_landing(const CalibratedRig& read, const cv::Matx33d& R_right_left, 
 }
 
 TEST(Rectification, LandsWhereTheRigSaysWithRealCalibrations) {
-  const std::filesystem::path raw = std::filesystem::path(UNDERSTORY_SOURCE_DIR) / "models/rigs/raw";
+  const std::filesystem::path raw = support::house_rigs / "raw";
   for (const auto& [name, unit] : {std::pair("paper.xml", 0.01), {"long.xml", 1.0}}) {
     CalibrationOptions options;
     options.meters_per_unit = unit;
@@ -143,8 +146,7 @@ TEST(Rectification, LandsWhereTheRigSaysWithEuroc) {
 
 /// The other way round: cv::undistortPoints brings a raw pixel to the rectified one.
 TEST(Rectification, OpenCvUndistortsToWhereTheRigSays) {
-  const CalibratedRig read =
-      read_calibrated_rig(std::filesystem::path(UNDERSTORY_SOURCE_DIR) / "models/rigs/raw/long.xml", {});
+  const CalibratedRig read = read_calibrated_rig(support::house_rigs / "raw/long.xml", {});
   const StereoCalibration& calibration = *read.calibration;
   for (const double z_m : {2.0, 5.0, 10.0, 40.0}) {
     const cv::Vec3d point_rectified(0.15 * z_m, -0.1 * z_m, z_m);
@@ -164,6 +166,89 @@ TEST(Rectification, OpenCvUndistortsToWhereTheRigSays) {
     EXPECT_NEAR(left[0].y, right[0].y, 1e-3);
     EXPECT_NEAR(left[0].x, 0.15 * read.rig.focal_px + read.rig.center_left_x_px, 1e-3);
   }
+}
+
+using support::noise;
+
+StereoCalibration calibration(int width_px, int height_px, double distortion, double turn_rad) {
+  StereoCalibration calibration;
+  calibration.name = "test";
+  calibration.width_px = width_px;
+  calibration.height_px = height_px;
+  for (const double side : {-1.0, 1.0}) {
+    CameraCalibration camera;
+    camera.camera_matrix = {
+        0.85 * width_px, 0, 0.52 * width_px, 0, 0.86 * width_px, 0.47 * height_px, 0, 0, 1};
+    camera.distortion = {-0.35 * distortion, 0.12 * distortion, 0.001, -0.0007, 0.02, 0.01, 0.004, 0.0};
+    cv::Mat rotation;
+    cv::Rodrigues(cv::Vec3d(0.02, 0.03 * side, side * turn_rad), rotation);
+    rotation.copyTo(camera.rectification);
+    camera.projection =
+        support::projection_of(0.95 * width_px, 0.5 * width_px, 0.5 * height_px, side > 0 ? 0.3 / 0.95 : 0);
+    (side < 0 ? calibration.left : calibration.right) = camera;
+  }
+  return calibration;
+}
+
+cv::Mat remapped(const CameraCalibration& camera, const cv::Mat& raw, int interpolation) {
+  cv::Mat u, v, image;
+  cv::initUndistortRectifyMap(camera.camera_matrix, camera.distortion, camera.rectification,
+                              camera.projection, raw.size(), CV_32FC1, u, v);
+  cv::Mat places, fractions;
+  cv::convertMaps(u, v, places, fractions, CV_16SC2, interpolation == cv::INTER_NEAREST);
+  cv::remap(raw, image, places, fractions, interpolation, cv::BORDER_CONSTANT);
+  return image;
+}
+
+TEST(Rectifier, EqualsOpenCvsRemapBitForBitOnEveryInstructionSet) {
+  // From no distortion to a picture turned half way round with its corners outside the source.
+  for (const auto& [width, height] :
+       std::vector<std::pair<int, int>>{{376, 240}, {32, 9}, {33, 5}, {752, 480}, {31, 9}, {9, 9}})
+    for (const double distortion : {0.0, 1.0, -2.0})
+      for (const double turn_rad : {0.0, 0.01, 0.4, 1.6}) {
+        const StereoCalibration rig = calibration(width, height, distortion, turn_rad);
+        for (const auto interpolation : {Interpolation::nearest, Interpolation::bilinear}) {
+          Rectifier rectifier(rig, interpolation);
+          const int flag = interpolation == Interpolation::nearest ? cv::INTER_NEAREST : cv::INTER_LINEAR;
+          for (const std::uint64_t seed : {1u, 2u}) {
+            const StereoFrame raw{5, noise(width, height, seed), noise(width, height, seed + 10)};
+            const cv::Mat left = remapped(rig.left, raw.left, flag),
+                          right = remapped(rig.right, raw.right, flag);
+            support::on_every_instruction_set([&](const std::string& name) {
+              const StereoFrame frame = rectifier.rectify(raw);
+              EXPECT_EQ(frame.t_ns, 5);
+              EXPECT_EQ(cv::norm(frame.left, left, cv::NORM_L1), 0) << name;
+              EXPECT_EQ(cv::norm(frame.right, right, cv::NORM_L1), 0) << name;
+            });
+          }
+        }
+      }
+}
+
+TEST(Rectifier, ReadsImagesWithPaddedRows) {
+  const StereoCalibration rig = calibration(100, 60, 1.0, 0.02);
+  Rectifier rectifier(rig, Interpolation::nearest);
+  const cv::Mat large = noise(130, 60, 3), part = large(cv::Rect(9, 0, 100, 60));
+  const cv::Mat expected = rectifier.rectify({0, part.clone(), part}).left.clone();
+  EXPECT_EQ(cv::norm(rectifier.rectify({0, part, part}).left, expected, cv::NORM_L1), 0);
+}
+
+TEST(Rectifier, RefusesImagesOfAnotherSizeOrKind) {
+  Rectifier rectifier(calibration(100, 60, 1.0, 0.02), Interpolation::nearest);
+  for (const cv::Mat& wrong : {noise(60, 100, 1), cv::Mat(60, 100, CV_16UC1, cv::Scalar(0))})
+    EXPECT_THROW(rectifier.rectify({0, wrong, wrong}), std::logic_error);
+}
+
+TEST(RectifiedRig, TakesFocalLengthBaselineAndCentresFromTheProjections) {
+  const StereoCalibration given = calibration(100, 60, 1.0, 0.0);
+  const StereoRig rig = rectified_rig(given, 4.0);
+  EXPECT_DOUBLE_EQ(rig.focal_px, 95);
+  EXPECT_DOUBLE_EQ(rig.baseline_m, 0.3 / 0.95);
+  EXPECT_DOUBLE_EQ(rig.infinity_disparity_px(), 0);
+  EXPECT_DOUBLE_EQ(rig.disparity_px(3.0), 10);
+  StereoCalibration swapped = given;
+  std::swap(swapped.left, swapped.right);
+  EXPECT_THROW(rectified_rig(swapped, 4.0), std::runtime_error);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <opencv2/videoio.hpp>
 #include <stdexcept>
 
+#include "tests/perception/rigs.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace understory {
@@ -15,11 +16,8 @@ namespace {
 
 constexpr int width_px = 64, height_px = 48;
 
-cv::Mat noise(std::uint64_t seed, cv::Size size = {width_px, height_px}, int type = CV_8UC1) {
-  cv::RNG generator(seed);
-  cv::Mat image(size, type);
-  generator.fill(image, cv::RNG::UNIFORM, 0, 256);
-  return image;
+cv::Mat noise(std::uint64_t seed, int type = CV_8UC1) {
+  return support::noise(width_px, height_px, seed, false, type);
 }
 
 bool same(const cv::Mat& a, const cv::Mat& b) {
@@ -36,20 +34,15 @@ struct Recording : testing::Test {
   }
 
   std::string complaint(const std::vector<std::filesystem::path>& inputs) {
-    try {
+    return support::complaint_of([&] {
       StereoRecording recording(inputs);
       for (StereoFrame frame; recording.read(frame);) {
       }
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "none";
+    });
   }
 
   void expect_complaint(const std::vector<std::filesystem::path>& inputs, const std::string& part) {
-    const std::string found = complaint(inputs);
-    EXPECT_NE(found.find(part), std::string::npos) << found;
-    EXPECT_EQ(found.find('\n'), std::string::npos) << found;
+    support::expect_line(complaint(inputs), "", part);
   }
 };
 
@@ -99,9 +92,9 @@ TEST_F(Recording, SplitsASideBySideVideo) {
 
 TEST_F(Recording, RefusesWhatIsNoPairOfGrayImagesOfOneSize) {
   const std::string good = image("good.png", noise(1));
-  const std::string deep = image("deep.png", noise(1, {width_px, height_px}, CV_16UC1));
-  const std::string colour = image("colour.png", noise(1, {width_px, height_px}, CV_8UC3));
-  const std::string small = image("small.png", noise(1, {width_px, height_px - 1}));
+  const std::string deep = image("deep.png", noise(1, CV_16UC1));
+  const std::string colour = image("colour.png", noise(1, CV_8UC3));
+  const std::string small = image("small.png", support::noise(width_px, height_px - 1, 1));
   const std::string whole = support::content_of(good);
   const std::filesystem::path cut = folder.write("cut.png", whole.substr(0, whole.size() / 2));
   EXPECT_EQ(complaint({good, good}), "none");

@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "perception/pushbroom/pushbroom_stereo.hpp"
-#include "perception/rectify.hpp"
+#include "perception/rectification/rectify.hpp"
 
 namespace understory {
 namespace {

@@ -203,8 +203,7 @@ TEST(Cli, BadRigsAreNamedInOneLine) {
   expect_refusal("rig " + raw_rigs + "long.xml --depth 800", "nearer than infinity");
   expect_refusal("rig " + folder.path.string(), "M1: expected this key in M1.xml");
   expect_refusal("rig " + folder.file("rig.yaml", "name: [\n"), "rig.yaml:");
-  expect_refusal("rig " + folder.file("rig.xml", "<opencv_storage><M1>"),
-                 "rig.xml:1: rig: expected OpenCV's XML");
+  expect_refusal("rig " + folder.file("rig.xml", "<opencv_storage><M1>"), "rig.xml:1: expected OpenCV's XML");
 }
 
 TEST(Cli, APictureThatCannotBeWrittenIsBadInput) {
@@ -226,7 +225,16 @@ TEST(Cli, BadScenariosAreNamedByFileLineAndKey) {
   expect_refusal("fly clear --set forest.length_m=-1", "--set forest.length_m=-1: forest.length_m: expected");
   expect_refusal("fly " + folder.file("c.yaml", ""), "c.yaml:1: expected one YAML document");
   expect_refusal("fly " + folder.file("d.yaml", "forest: &again [*again]\n"),
-                 "d.yaml:1: forest: expected at most");
+                 "d.yaml:1: expected an alias of what ends before it");
+  std::string bomb = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
+  for (int i = 1; i < 9; ++i) {
+    const std::string alias = "*a" + std::to_string(i - 1), name = "a" + std::to_string(i);
+    bomb += name + ": &" + name + " [" + alias;
+    for (int copy = 1; copy < 10; ++copy) bomb += ", " + alias;
+    bomb += "]\n";
+  }
+  expect_refusal("fly " + folder.file("bomb.yaml", bomb), "expected at most 100,000 values");
+  expect_refusal("fly /dev/zero", "/dev/zero: expected a readable file, this is a device");
   expect_refusal("fly " + folder.file("e.yaml", "name: a/b\n"), "e.yaml:1: name: expected letters");
   expect_refusal("fly " + folder.file("f.yaml", "cameras:\n  rate_hz: 7\n"),
                  "f.yaml:2: cameras.rate_hz: expected");

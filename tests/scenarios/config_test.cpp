@@ -64,7 +64,7 @@ void visit_fields(Visitor& visit, Outer& outer) {
 
 Outer read(const std::string& text) {
   Outer outer;
-  read_config(parse_config_text(text, "a.yaml"), outer);
+  read_config(parse_yaml(text, "a.yaml"), outer);
   return outer;
 }
 
@@ -142,7 +142,7 @@ TEST(Config, RefusesBrokenOrEmptyYaml) {
   EXPECT_EQ(refusal(""), "a.yaml:1: expected one YAML document with keys and values");
   EXPECT_EQ(refusal("just words\n"), "a.yaml:1: expected one YAML document with keys and values");
   EXPECT_EQ(refusal("on: true\n---\non: true\n"),
-            "a.yaml:1: expected one YAML document with keys and values");
+            "a.yaml:2: expected one YAML document with keys and values");
   EXPECT_EQ(refusal(", w"), "a.yaml:1: expected one YAML document with keys and values");
   EXPECT_THROW(parse_config_file("/nowhere/to/be.yaml"), ScenarioError);
   EXPECT_THROW(parse_config_file("/"), ScenarioError);
@@ -206,7 +206,7 @@ TEST(Config, AnAssignmentReplacesAListOfGroups) {
 
 TEST(Config, FindsWhereAKeyOfAListWasGiven) {
   const std::vector<ConfigNode> sources{
-      parse_config_text("on: true\nentries:\n  - count: 1\n  - colour: red\n    count: 2\n", "a.yaml")};
+      parse_yaml("on: true\nentries:\n  - count: 1\n  - colour: red\n    count: 2\n", "a.yaml")};
   EXPECT_EQ(origin_of(sources, "entries[1].count"), "a.yaml:5");
   EXPECT_EQ(origin_of(sources, "entries[0].count"), "a.yaml:3");
   EXPECT_EQ(origin_of(sources, "entries[0].colour"), "");

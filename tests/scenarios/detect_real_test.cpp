@@ -8,7 +8,7 @@
 #include "perception/io/calibration_file.hpp"
 #include "perception/io/stereo_recording.hpp"
 #include "perception/io/text_table.hpp"
-#include "perception/rectify.hpp"
+#include "perception/rectification/rectify.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -51,7 +51,7 @@ struct Agreement {
 Agreement agreement(const std::string& csv, const std::vector<cv::Mat>& disparities) {
   Agreement found;
   const std::string text = csv.substr(csv.find('\n') + 1);
-  for (const TableLine& line : table_lines(text, CellsParted::by_commas)) {
+  for (const TableLine& line : table_lines(text, CellsParted::by_commas, "")) {
     const auto cell = [&](std::size_t i) { return static_cast<int>(*number_in(line.cells[i])); };
     const cv::Mat& dense = disparities[static_cast<std::size_t>(cell(0))];
     const int sixteenths = dense.at<std::int16_t>(cell(5) + 2, cell(6) + 2);

@@ -99,7 +99,7 @@ void expect_alike(const StereoRig& read, const StereoRig& rig) {
 double share_on_trunks(std::string map, const std::vector<Obstacle>& trunks) {
   map.erase(0, map.find("end_header") + 10);
   int on_trunks = 0, count = 0;
-  const auto lines = table_lines(map, CellsParted::by_blanks);
+  const auto lines = table_lines(map, CellsParted::by_blanks, "");
   for (const TableLine& line : lines) {
     const Eigen::Vector3d point(*number_in(line.cells[0]), *number_in(line.cells[1]),
                                 *number_in(line.cells[2]));
@@ -170,7 +170,7 @@ TEST(EurocRecording, TheImuTableHoldsItsSamples) {
   const Flown flight = flown(short_flight({"perception.detector=none"}), folder.path());
   ASSERT_FALSE(flight.frames.empty());  // rendered although nobody on board looks
   const std::string text = content_of(folder.path() / "mav0/imu0/data.csv");
-  const auto lines = table_lines(text, CellsParted::by_commas);
+  const auto lines = table_lines(text, CellsParted::by_commas, "");
   ASSERT_EQ(lines.size(), flight.samples.size());
   for (std::size_t i = 0; i < lines.size(); ++i) {
     ASSERT_EQ(lines[i].cells.size(), 7u);
@@ -192,7 +192,7 @@ TEST(EurocRecording, TheBiasesAreTheFlightsOwn) {
                                           "sensors.imu.accelerometer_noise_mps2=0", "time_limit_s=0.3"});
   const Flown flight = flown(scenario, folder.path());
   const std::string text = content_of(folder.path() / "mav0/state_groundtruth_estimate0/data.csv");
-  const auto line = table_lines(text, CellsParted::by_commas).front();
+  const auto line = table_lines(text, CellsParted::by_commas, "").front();
   ASSERT_EQ(line.cells.size(), 17u);
   const Eigen::Vector3d gravity_body =
       flight.truths[0].T_world_body.linear().transpose() * Eigen::Vector3d(0, 0, 9.81);

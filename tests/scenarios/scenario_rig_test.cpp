@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "perception/io/rig_file.hpp"
+#include "perception/io/calibration_file.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -6,12 +6,10 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "perception/full_stereo/full_stereo_detector.hpp"
+#include "perception/full_stereo/full_stereo.hpp"
 #include "perception/io/calibration_file.hpp"
-#include "perception/io/rig_file.hpp"
 #include "perception/pushbroom/pushbroom_stereo.hpp"
-#include "perception/rectify.hpp"
-#include "perception/rectifying_detector.hpp"
+#include "perception/rectification/rectify.hpp"
 #include "tests/sim/camera_scenes.hpp"
 
 /// Raw images of the two real rigs: rendered by undoing the distortion, checked by OpenCV's projection (which
@@ -114,13 +112,11 @@ TEST_P(RawImages, TheDetectorFindsAWallAtItsDepthInThem) {
   const World world = forest_world(false);
   // Straight down from the detection depth onto the textured ground.
   StereoCameras eyes(world, cameras.rig, {.noise_gray = 2}, {1, 1}, cameras.calibration);
-  const StereoFrame frame =
-      eyes.capture(body_at({10, 0, detector.detection_depth_m()}, straight_down), 0);
+  const StereoFrame frame = eyes.capture(body_at({10, 0, detector.detection_depth_m()}, straight_down), 0);
   const auto hits = detector.detect(frame);
   EXPECT_GT(hits.size(), 300u);
   const World above = forest_world(false);
-  EXPECT_LT(detector.detect(eyes.capture(body_at({10, 0, 2 * GetParam().depth_m}, straight_down), 0))
-                .size(),
+  EXPECT_LT(detector.detect(eyes.capture(body_at({10, 0, 2 * GetParam().depth_m}, straight_down), 0)).size(),
             hits.size() / 10);
 }
 

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "perception/pushbroom/block_score.hpp"
+#include "perception/pushbroom/block_rule.hpp"
 
 namespace understory::support {
 namespace {

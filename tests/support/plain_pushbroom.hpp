@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "perception/pushbroom/gray_view.hpp"
+#include "perception/gray_view.hpp"
 #include "perception/pushbroom/pushbroom_kernel.hpp"
 
 /// The detector's rule written plainly, one block after the other: what the fast kernel must equal bit for

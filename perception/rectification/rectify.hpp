@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
-#include "perception/pushbroom/byte_remap.hpp"
+#include "perception/obstacle_detector.hpp"
+#include "perception/rectification/byte_remap.hpp"
 #include "perception/stereo_calibration.hpp"
 #include "perception/stereo_frame.hpp"
 
@@ -27,10 +30,6 @@ class Rectifier {
   /// are 0.
   StereoFrame rectify(const StereoFrame& raw);
 
-  /// One of the two: threads may turn one each at the same time.
-  const cv::Mat& rectify_left(const cv::Mat& raw) { return rectify(raw, left_); }
-  const cv::Mat& rectify_right(const cv::Mat& raw) { return rectify(raw, right_); }
-
  private:
   struct Eye {
     std::optional<ByteRemap> remap;  // for nearest, where the image is wide enough
@@ -42,6 +41,20 @@ class Rectifier {
   int width_px_, height_px_;
   Interpolation interpolation_;
   Eye left_, right_;
+};
+
+/// Gives raw pairs, rectified to the nearest pixel, to a detector that knows rectified ones only.
+class RectifyingDetector : public ObstacleDetector {
+ public:
+  RectifyingDetector(const StereoCalibration& calibration, std::unique_ptr<ObstacleDetector> detector)
+      : rectifier_(calibration, Interpolation::nearest), detector_(std::move(detector)) {}
+  const std::vector<StereoHit>& detect(const StereoFrame& raw) override {
+    return detector_->detect(rectifier_.rectify(raw));
+  }
+
+ private:
+  Rectifier rectifier_;
+  std::unique_ptr<ObstacleDetector> detector_;
 };
 
 }  // namespace understory

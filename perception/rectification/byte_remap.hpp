@@ -4,8 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "perception/pushbroom/aligned_vector.hpp"
-#include "perception/pushbroom/gray_view.hpp"
+#include "perception/gray_view.hpp"
 
 namespace understory {
 

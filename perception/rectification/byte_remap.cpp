@@ -1,4 +1,4 @@
-#include "perception/pushbroom/byte_remap.hpp"
+#include "perception/rectification/byte_remap.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include "perception/assertion.hpp"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "perception/pushbroom/byte_remap.cpp"
+#define HWY_TARGET_INCLUDE "perception/rectification/byte_remap.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target, which decides what highway.h means.
 #include <hwy/highway.h>

@@ -3,9 +3,36 @@
 #include <cstdint>
 #include <vector>
 
-#include "perception/pushbroom/gray_view.hpp"
+#include "perception/gray_view.hpp"
+#include "perception/pushbroom/block_rule.hpp"
 
 namespace understory {
+
+/// Drops matches whose left block also matches a right block of the window around its place at infinity. A
+/// window that leaves the image counts as similar: nothing can be said there.
+class SelfSimilarityFilter {
+ public:
+  SelfSimilarityFilter(const SelfSimilarityWindow& window, int infinity_px);
+
+  /// `right_edges` is the right image's edge map. The matches left keep their order.
+  void drop_similar(const GrayView& left, const GrayView& right, const GrayView& right_edges,
+                    std::vector<BlockMatch>& matches);
+
+  /// A left block, its window's first column and row in the right image and its edge map, its match.
+  struct Task {
+    const std::uint8_t* block = nullptr;
+    const std::uint8_t* right = nullptr;
+    const std::uint8_t* right_edges = nullptr;
+    int left_edge_sum = 0;
+    int match = 0;  ///< index
+  };
+
+ private:
+  SelfSimilarityWindow window_;
+  int infinity_px_;
+  std::vector<Task> tasks_;
+  std::vector<std::uint8_t> unlike_;  ///< of each match: nothing similar was found
+};
 
 /// Whether one disparity stands out along the row: its SAD is a local minimum, and no other disparity of the
 /// range comes within `ratio` times it. Neighbours one pixel away share most of the match, so they only have

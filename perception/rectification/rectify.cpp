@@ -1,4 +1,4 @@
-#include "perception/rectify.hpp"
+#include "perception/rectification/rectify.hpp"
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
