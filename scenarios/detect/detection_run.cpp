@@ -17,7 +17,6 @@
 #include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/output_folder.hpp"
-#include "scenarios/report/overlay.hpp"
 #include "scenarios/report/pictures.hpp"
 #include "scenarios/report/table.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"

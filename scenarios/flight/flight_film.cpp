@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 
 #include "scenarios/flight/flight.hpp"
-#include "scenarios/report/overlay.hpp"
+#include "scenarios/report/pictures.hpp"
 
 namespace understory {
 

@@ -1,4 +1,3 @@
-#include "scenarios/report/overlay.hpp"
 
 #include <gtest/gtest.h>
 

@@ -27,23 +27,24 @@ TEST_F(TuningTest, ReadsWhatIsTunedForWhat) {
       1u);
 }
 
-TEST_F(TuningTest, RefusesBadFilesInOneLineWithFileLineAndKey) {
-  const std::string rest =
-      "objective: {maximize: success}\nsearch: {method: random, trials: 5}\n" + over_flights;
+/// A file that is refused, and what the refusal says.
+struct BadFile {
+  std::string text;
+  const char* part;
+};
+
+const std::string success = "{maximize: success}", any_search = "{method: random, trials: 5}";
+
+std::string with(const std::string& objective, const std::string& search, const std::string& data) {
+  return two_keys + "objective: " + objective + "\nsearch: " + search + "\n" + data;
+}
+
+TEST_F(TuningTest, RefusesBadParametersInOneLineWithFileLineAndKey) {
   const auto parameter = [&](const std::string& line) {
-    return "scenario: forest\nparameters:\n  " + line + "\n" + rest;
+    return "scenario: forest\nparameters:\n  " + line + "\nobjective: " + success +
+           "\nsearch: " + any_search + "\n" + over_flights;
   };
-  const auto with = [&](const std::string& objective, const std::string& search, const std::string& data) {
-    return two_keys + "objective: " + objective + "\nsearch: " + search + "\n" + data;
-  };
-  const std::string success = "{maximize: success}", random = "{method: random, trials: 5}";
-  folder.write("seen/a/frames", "");
-  folder.write("seen/b/frames", "");
-  const std::string recordings = "over: recordings\ntraining: [seen/a]\n";
-  const struct {
-    std::string text;
-    const char* part;
-  } cases[] = {
+  const BadFile cases[] = {
       {tuning_text() + "trails: 4\n", "t.yaml:10: trails: expected one of"},
       {tuning_text() + "overs: 4\n", "t.yaml:10: overs: expected a known key (did you mean over?)"},
       {"parameters: {}\n", "scenario: expected the scenario whose keys are tuned"},
@@ -70,12 +71,22 @@ TEST_F(TuningTest, RefusesBadFilesInOneLineWithFileLineAndKey) {
       {parameter("perception.pushbroom.score_limit: {values: [0.1]}"), "score_limit.values: expected two"},
       {parameter("perception.pushbroom.score_limit: {values: [0.1, 0.1]}"),
        "score_limit.values: expected each value once"},
-      {with("{maximize: speed}", random, over_flights),
+  };
+  for (const BadFile& one : cases) expect_part(refusal_of(one.text), one.part);
+}
+
+TEST_F(TuningTest, RefusesBadObjectivesSearchesAndDataInOneLine) {
+  folder.write("seen/a/frames", "");
+  folder.write("seen/b/frames", "");
+  const std::string recordings = "over: recordings\ntraining: [seen/a]\n";
+  const BadFile cases[] = {
+      {with("{maximize: speed}", any_search, over_flights),
        "t.yaml:5: objective.maximize: expected one of success, progress"},
-      {with("{at_least: {success: 1}}", random, over_flights), "objective: expected maximize or minimize"},
-      {with("{maximize: success, minimize: success}", random, over_flights),
+      {with("{at_least: {success: 1}}", any_search, over_flights),
+       "objective: expected maximize or minimize"},
+      {with("{maximize: success, minimize: success}", any_search, over_flights),
        "objective.minimize: expected each figure once"},
-      {with("{maximize: success, at_least: 1}", random, over_flights),
+      {with("{maximize: success, at_least: 1}", any_search, over_flights),
        "objective.at_least: expected bounds of figures"},
       {with(success, "{method: best, trials: 5}", over_flights),
        "t.yaml:6: search.method: expected random | grid | cma_es | nsga2"},
@@ -89,26 +100,26 @@ TEST_F(TuningTest, RefusesBadFilesInOneLineWithFileLineAndKey) {
       {with(success, "{method: grid, trials: 9}", over_flights), "search.trials: expected none"},
       {with(success, "{method: grid}", over_flights),
        "parameters.perception.pushbroom.minimum_edge_sum: expected values, or a range with steps"},
-      {with(success, random, "over: walks\n"), "t.yaml:7: over: expected recordings | flights"},
-      {with(success, random, "over: flights\ntraining: 1..5\n"), "validation: expected the seeds"},
-      {with(success, random, "over: flights\ntraining: 1..5\nvalidation: 5..9\n"),
+      {with(success, any_search, "over: walks\n"), "t.yaml:7: over: expected recordings | flights"},
+      {with(success, any_search, "over: flights\ntraining: 1..5\n"), "validation: expected the seeds"},
+      {with(success, any_search, "over: flights\ntraining: 1..5\nvalidation: 5..9\n"),
        "t.yaml:9: validation: expected no seed of training, 5 is one"},
-      {with(success, random, "over: flights\ntraining: 5..1\nvalidation: 6\n"),
+      {with(success, any_search, "over: flights\ntraining: 5..1\nvalidation: 6\n"),
        "t.yaml:8: training: expected first <= last"},
-      {with("{maximize: recall}", random, recordings + "validation: [seen/b, seen/a]\n"),
+      {with("{maximize: recall}", any_search, recordings + "validation: [seen/b, seen/a]\n"),
        "t.yaml:9: validation: expected no recording of training"},
-      {with("{maximize: recall}", random, recordings + "validation: [seen]\n"),
+      {with("{maximize: recall}", any_search, recordings + "validation: [seen]\n"),
        "t.yaml:9: validation: expected no recording of training"},
-      {with("{maximize: recall}", random, recordings + "validation: [seen/c]\n"),
+      {with("{maximize: recall}", any_search, recordings + "validation: [seen/c]\n"),
        "t.yaml:9: validation: expected folders of recordings, there is no seen/c"},
-      {with("{maximize: recall}", random, recordings + "validation: [seen/b, seen/b]\n"),
+      {with("{maximize: recall}", any_search, recordings + "validation: [seen/b, seen/b]\n"),
        "expected each recording once"},
       {"scenario: forest\nparameters:\n  forest.length_m: {from: 10, to: 20}\nobjective: {maximize: recall}\n"
        "search: {method: random, trials: 5}\n" +
            recordings + "validation: [seen/b]\n",
        "t.yaml:3: parameters.forest.length_m: expected a key of perception.pushbroom"},
   };
-  for (const auto& one : cases) expect_part(refusal_of(one.text), one.part);
+  for (const BadFile& one : cases) expect_part(refusal_of(one.text), one.part);
 }
 
 TEST_F(TuningTest, NumbersOfAScenarioHaveTheirBoundsAndEntriesOfListsTheirPlaces) {
