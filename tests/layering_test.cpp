@@ -146,8 +146,8 @@ TEST(Layering, FoldersReachOnlyWhomTheyMay) {
 /// apart.
 bool arrow_points_down(const std::string& from, const std::string& to) {
   static const std::map<std::string, int> floors{
-      {"config", 1}, {"scenario", 2},   {"flight", 3},   {"recording", 4},  {"detect", 4}, {"bench", 4},
-      {"tuning", 5}, {"evaluation", 5}, {"campaign", 5}, {"experiment", 5}, {"cli", 6}};
+      {"config", 1}, {"course", 2}, {"scenario", 3}, {"flight", 4},     {"recording", 5}, {"detect", 5},
+      {"bench", 5},  {"tuning", 6}, {"campaign", 6}, {"evaluation", 6}, {"cli", 7}};
   if (from == "statistics" || from == "output") return false;  // they know nobody
   if (to == "statistics" || to == "output") return true;
   if (from == "report") return to == "config";

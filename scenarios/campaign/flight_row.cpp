@@ -14,6 +14,7 @@
 #include "scenarios/config/json_text.hpp"
 #include "scenarios/flight/flight_result.hpp"
 #include "scenarios/report/table.hpp"
+#include "scenarios/scenario/scenario.hpp"
 
 namespace understory {
 namespace {
@@ -119,8 +120,13 @@ Table empty_table() {
 
 }  // namespace
 
-FlightRow flown_row(const FlightResult& result) {
+FlightRow flown_row(const std::string& condition, const Scenario& scenario, const FlightResult& result) {
   FlightRow row;
+  row.id = fmt::format("{}-{}", condition, result.seed);
+  row.condition = condition;
+  row.cruise_speed_mps = scenario.autopilot.autopilot.flight_model.cruise_speed_mps;
+  row.square_metres_per_tree = scenario.forest.square_metres_per_tree;
+  row.goal_m = scenario.goal_x_m();
   row.seed = result.seed;
   row.status = RunStatus::flown;
   row.outcome = word_for(result.ending);

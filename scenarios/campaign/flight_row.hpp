@@ -10,6 +10,7 @@
 namespace understory {
 
 struct FlightResult;
+struct Scenario;
 
 /// Of rows and of the folders that hold them: results of another format are refused.
 inline constexpr int results_format = 1;
@@ -64,8 +65,8 @@ struct FlightFile {
   FlightCost cost;
 };
 
-/// The row of a flight that came to an ending. Sets all but id, condition and what was asked.
-FlightRow flown_row(const FlightResult& result);
+/// The row of a flight that came to an ending: a condition's name and the seed are its id.
+FlightRow flown_row(const std::string& condition, const Scenario& scenario, const FlightResult& result);
 
 /// One line of JSON without its newline; numbers in full precision, null where there is nothing to say.
 std::string to_json_line(const FlightRow& row);

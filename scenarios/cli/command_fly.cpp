@@ -90,18 +90,6 @@ struct FlyArguments : FlightArguments {
   bool video = false;
 };
 
-/// As a campaign reads it. The row file's name is the flight's id, the scenario's file that of its condition.
-FlightRow row_of(const FlyArguments& arguments, const Scenario& scenario, const FlightResult& result) {
-  FlightRow row = flown_row(result);
-  row.cruise_speed_mps = scenario.autopilot.autopilot.flight_model.cruise_speed_mps;
-  row.square_metres_per_tree = scenario.forest.square_metres_per_tree;
-  row.goal_m = scenario.goal_x_m();
-  row.condition = fs::path(arguments.scenario).stem().string();
-  row.id = arguments.row.empty() ? fmt::format("{}-{}", row.condition, row.seed)
-                                 : fs::path(arguments.row).stem().string();
-  return row;
-}
-
 FlightCost cost_of(const FlightResult& result) {
   struct rusage usage {};
   getrusage(RUSAGE_SELF, &usage);
@@ -149,7 +137,8 @@ int run_fly(const FlyArguments& arguments) {
   options.on_progress = [&](const FlightProgress& progress) { show(line, progress); };
   const FlightResult result = flown(scenario, options, output);
   line.clear();
-  const FlightRow row = row_of(arguments, scenario, result);
+  FlightRow row = flown_row(fs::path(arguments.scenario).stem().string(), scenario, result);
+  if (!arguments.row.empty()) row.id = fs::path(arguments.row).stem().string();  // as the campaign asked
   if (!arguments.row.empty()) write_lasting_file(arguments.row, to_json(FlightFile{row, cost_of(result)}));
   if (!arguments.junit.empty()) write_whole_file(arguments.junit, campaign_junit({row}));
   if (!arguments.quiet) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <optional>
 
@@ -88,7 +89,12 @@ std::string to_text(const Table& table) {
 
 std::string to_markdown(const Table& table) {
   std::string text = markdown_line(table.head) + "|";
-  for (std::size_t column = 0; column < table.head.size(); ++column) text += column == 0 ? "---|" : "---:|";
+  for (std::size_t column = 0; column < table.head.size(); ++column) {
+    const bool has_words = std::ranges::any_of(table.rows, [&](const std::vector<std::string>& row) {
+      return !row[column].empty() && std::isalpha(static_cast<unsigned char>(row[column][0]));
+    });
+    text += column == 0 || has_words ? "---|" : "---:|";
+  }
   text += "\n";
   for (const auto& row : table.rows) text += markdown_line(row);
   return text;

@@ -25,7 +25,7 @@ std::string number_text(double value, int decimals);
 /// their text does.
 std::string to_text(const Table& table);
 
-/// The same as Markdown; a | in a cell is escaped.
+/// The same as Markdown, words to the left; a | in a cell is escaped.
 std::string to_markdown(const Table& table);
 
 /// CSV as RFC 4180 has it, lines ended by \n alone: a cell with a comma, a quotation mark or a line break is

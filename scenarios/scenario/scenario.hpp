@@ -14,7 +14,7 @@
 #include "planning/airframe.hpp"
 #include "planning/autopilot_config.hpp"
 #include "planning/plan.hpp"
-#include "scenarios/scenario/courses.hpp"
+#include "scenarios/course/courses.hpp"
 #include "sim/aircraft/aircraft_config.hpp"
 #include "sim/cameras/camera_config.hpp"
 #include "sim/scene/world_config.hpp"

@@ -153,7 +153,7 @@ void Aircraft::follow_rail() {
   data_->time = static_cast<double>(step_) * step_s_;
 }
 
-/// The aerodynamic force at truth_, with the present positions of the actuators.
+/// The air as the wing meets it at truth_, with the present positions of the actuators.
 AirState Aircraft::air() const {
   AirState air;
   air.air_velocity_body_mps =

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "scenarios/config/named_seed.hpp"
-#include "scenarios/scenario/courses.hpp"
+#include "scenarios/course/courses.hpp"
 
 namespace understory {
 namespace {

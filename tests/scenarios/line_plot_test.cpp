@@ -100,6 +100,8 @@ TEST(Table, LinesUpForPeopleAndForMarkdown) {
   const Table table{{"a|b", "m²"}, {{"long name", "1"}, {"é", "1000"}}};
   EXPECT_EQ(to_text(table), "a|b          m²\nlong name     1\né          1000\n");
   EXPECT_EQ(to_markdown(table), "| a\\|b | m² |\n|---|---:|\n| long name | 1 |\n| é | 1000 |\n");
+  EXPECT_EQ(to_markdown({{"key", "meaning"}, {{"a", "said"}}}),
+            "| key | meaning |\n|---|---|\n| a | said |\n");
 }
 
 TEST(Table, QuotesCellsAsRfc4180Says) {

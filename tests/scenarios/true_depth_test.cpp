@@ -8,7 +8,7 @@
 #include <random>
 
 #include "scenarios/flight/clearance.hpp"
-#include "scenarios/scenario/courses.hpp"
+#include "scenarios/course/courses.hpp"
 
 namespace understory {
 namespace {

@@ -1,4 +1,4 @@
-#include "scenarios/scenario/courses.hpp"
+#include "scenarios/course/courses.hpp"
 
 #include <fmt/format.h>
 
