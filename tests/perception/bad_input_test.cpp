@@ -92,15 +92,16 @@ TEST(BadInput, APipeIsReadToItsEndAndNobodyIsWaitedFor) {
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   EXPECT_EQ(read_file(pipe), "");  // nobody writes
   const std::string text(200'000, 'a');
-  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);  // so that the writer is there for certain
+  // Reads nothing: it lets the writer open the pipe, and keep it open whoever comes first.
+  const int idle_reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
   std::ofstream stream(pipe);
-  close(reader);
   std::thread writer([&] {
     stream << text;
     stream.close();
   });
   EXPECT_EQ(read_file(pipe), text);
   writer.join();
+  close(idle_reader);
 }
 
 /// Some bytes of header that ask for gigabytes.
