@@ -2,10 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <numbers>
 #include <opencv2/core/persistence.hpp>
-#include <string>
 
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "tests/perception/rigs.hpp"
@@ -16,9 +14,12 @@
 namespace understory {
 namespace {
 
-using support::TemporaryFolder;
+using namespace support;
+using CalibrationFile = FolderTest;
+using RigFile = FolderTest;
+using RecordedEuroc = FolderTest;
 
-const std::filesystem::path rigs = support::house_rigs;
+const std::filesystem::path rigs = house_rigs;
 
 CalibratedRig paper_rig(double depth_m = 4.8) {
   CalibrationOptions options;
@@ -28,7 +29,7 @@ CalibratedRig paper_rig(double depth_m = 4.8) {
 }
 
 /// Figures of the original aircraft's records: nearest whole disparity and one pixel either way.
-TEST(CalibrationFile, ThePapersRigLooksWhereItsRecordsSay) {
+TEST_F(CalibrationFile, ThePapersRigLooksWhereItsRecordsSay) {
   const CalibratedRig read = paper_rig();
   EXPECT_EQ(read.rig.name, "paper");
   EXPECT_NEAR(read.rig.focal_px, 180.4, 0.01);
@@ -44,7 +45,7 @@ TEST(CalibrationFile, ThePapersRigLooksWhereItsRecordsSay) {
   EXPECT_NEAR(detector.one_pixel_interval().far_m, 5.20, 0.005);
 }
 
-TEST(CalibrationFile, TheLaterRigLooksWhereItsRecordsSay) {
+TEST_F(CalibrationFile, TheLaterRigLooksWhereItsRecordsSay) {
   const CalibratedRig read = read_calibrated_rig(rigs / "raw" / "long.xml", {});  // 10 m: nobody says
   EXPECT_NEAR(read.rig.focal_px, 386.9, 0.05);
   EXPECT_NEAR(read.rig.baseline_m, 0.334, 5e-4);
@@ -56,11 +57,11 @@ TEST(CalibrationFile, TheLaterRigLooksWhereItsRecordsSay) {
   EXPECT_NEAR(detector.one_pixel_interval().far_m, 11.0, 0.05);
 }
 
-TEST(CalibrationFile, TheRecordsOwnFoldersSayTheSame) {
-  for (const auto& [folder, name, unit] : {std::tuple("rigs/calib-02-20-2014", "paper.xml", 0.01),
-                                           std::tuple("rigs/calib-odroid-cam1", "long.xml", 1.0)}) {
-    const auto path = support::shared_data(folder);
-    if (!path) GTEST_SKIP() << support::missing_data(folder);
+TEST_F(CalibrationFile, TheRecordsOwnFoldersSayTheSame) {
+  for (const auto& [records, name, unit] : {std::tuple("rigs/calib-02-20-2014", "paper.xml", 0.01),
+                                            std::tuple("rigs/calib-odroid-cam1", "long.xml", 1.0)}) {
+    const auto path = shared_data(records);
+    if (!path) GTEST_SKIP() << missing_data(records);
     CalibrationOptions options{unit, 376, 240, 5.0};
     const CalibratedRig theirs = read_calibrated_rig(*path, options);
     const CalibratedRig ours = read_calibrated_rig(rigs / "raw" / name, options);
@@ -72,11 +73,11 @@ TEST(CalibrationFile, TheRecordsOwnFoldersSayTheSame) {
   }
 }
 
-TEST(CalibrationFile, RigFilesComeRectified) {
+TEST_F(CalibrationFile, RigFilesComeRectified) {
   const CalibratedRig read = read_calibrated_rig(rigs / "paper.yaml", {});
   EXPECT_FALSE(read.calibration);
   EXPECT_EQ(read.rig.detection_depth_m, 4.8);
-  EXPECT_TRUE(read.rig.T_body_camera.isApprox(support::house_rig("paper.yaml").T_body_camera, 0));
+  EXPECT_TRUE(read.rig.T_body_camera.isApprox(house_rig("paper.yaml").T_body_camera, 0));
   CalibrationOptions options;
   options.detection_depth_m = 3;
   EXPECT_EQ(read_calibrated_rig(rigs / "paper.yaml", options).rig.detection_depth_m, 3);
@@ -102,11 +103,10 @@ void expect_equal(const StereoCalibration& found, const StereoCalibration& expec
 }
 
 /// OpenCV itself writes what we read, every bit of every number.
-TEST(CalibrationFile, ReadsWhatOpenCvWrites) {
-  const TemporaryFolder folder;
+TEST_F(CalibrationFile, ReadsWhatOpenCvWrites) {
   StereoCalibration calibration = *paper_rig().calibration;  // in metres by now
   for (const char* name : {"one.xml", "one.yml", "one.yaml"}) {
-    cv::FileStorage storage((folder.path() / name).string(), cv::FileStorage::WRITE);
+    cv::FileStorage storage(path(name), cv::FileStorage::WRITE);
     storage << "calibration_time"
             << "Thu 20 Feb 2014, 12:00"
             << "image_width" << 376 << "image_height" << 240 << "views" << std::vector<double>{1, 2, 3};
@@ -116,8 +116,7 @@ TEST(CalibrationFile, ReadsWhatOpenCvWrites) {
   }
 }
 
-TEST(CalibrationFile, ReadsFoldersOfOneMatrixAFile) {
-  const TemporaryFolder folder;
+TEST_F(CalibrationFile, ReadsFoldersOfOneMatrixAFile) {
   const StereoCalibration calibration = *paper_rig().calibration;
   const cv::FileStorage all((rigs / "raw" / "paper.xml").string(), cv::FileStorage::READ);
   for (const std::string name : {"M1", "D1", "R1", "P1", "M2", "D2", "R2", "P2"}) {
@@ -134,18 +133,17 @@ TEST(CalibrationFile, ReadsFoldersOfOneMatrixAFile) {
 }
 
 /// As OpenCV's stereo_calib sample leaves them; and with 14 coefficients, as cv::stereoCalibrate gives them.
-TEST(CalibrationFile, RectifiesWhereOnlyRotationAndTranslationAreKnown) {
-  const TemporaryFolder folder;
+TEST_F(CalibrationFile, RectifiesWhereOnlyRotationAndTranslationAreKnown) {
   const StereoCalibration calibration = *paper_rig().calibration;
   const cv::Matx33d R = calibration.right.rectification.t() * calibration.left.rectification;
   const cv::Vec3d t_cm = calibration.right.rectification.t() * cv::Vec3d(-35.3, 0, 0);
-  cv::FileStorage intrinsics((folder.path() / "intrinsics.yml").string(), cv::FileStorage::WRITE);
+  cv::FileStorage intrinsics(path("intrinsics.yml"), cv::FileStorage::WRITE);
   cv::Mat left14 = cv::Mat::zeros(1, 14, CV_64F);
   cv::Mat(calibration.left.distortion).reshape(0, 1).copyTo(left14.colRange(0, 8));
   intrinsics << "M1" << cv::Mat(calibration.left.camera_matrix) << "D1" << left14 << "M2"
              << cv::Mat(calibration.right.camera_matrix) << "D2" << cv::Mat(calibration.right.distortion);
   intrinsics.release();
-  cv::FileStorage extrinsics((folder.path() / "extrinsics.yml").string(), cv::FileStorage::WRITE);
+  cv::FileStorage extrinsics(path("extrinsics.yml"), cv::FileStorage::WRITE);
   extrinsics << "R" << cv::Mat(R) << "T" << cv::Mat(t_cm);
   extrinsics.release();
   const CalibratedRig read = read_calibrated_rig(folder.path(), {0.01, 376, 240, 4.8});
@@ -157,10 +155,9 @@ TEST(CalibrationFile, RectifiesWhereOnlyRotationAndTranslationAreKnown) {
   EXPECT_NEAR(x_right[0], -1, 1e-9);
 }
 
-TEST(CalibrationFile, ReadsEurocFoldersAndKeepsTheirBody) {
-  const TemporaryFolder folder;
-  folder.write("mav0/cam0/sensor.yaml", support::euroc_sensor_text(support::euroc_left(), 300, 201));
-  folder.write("mav0/cam1/sensor.yaml", support::euroc_sensor_text(support::euroc_right(), 302, 197));
+TEST_F(CalibrationFile, ReadsEurocFoldersAndKeepsTheirBody) {
+  folder.write("mav0/cam0/sensor.yaml", euroc_sensor_text(euroc_left(), 300, 201));
+  folder.write("mav0/cam1/sensor.yaml", euroc_sensor_text(euroc_right(), 302, 197));
   for (const std::filesystem::path& path : {folder.path(), folder.path() / "mav0", folder.path() / "mav0/"}) {
     const CalibratedRig read = read_calibrated_rig(path, {});
     EXPECT_EQ(read.rig.name, folder.path().filename().string());
@@ -168,20 +165,19 @@ TEST(CalibrationFile, ReadsEurocFoldersAndKeepsTheirBody) {
     EXPECT_EQ(read.rig.height_px, 300);
     EXPECT_EQ(read.calibration->left.camera_matrix, cv::Matx33d(300, 0, 201, 0, 301, 148.5, 0, 0, 1));
     EXPECT_EQ(read.calibration->right.distortion, (std::vector<double>{-0.28, 0.07, 0.0002, -0.0001}));
-    EXPECT_TRUE(read.calibration->T_body_left.isApprox(support::euroc_left(), 1e-12));
-    const Eigen::Vector3d between_body_m =
-        support::euroc_right().translation() - support::euroc_left().translation();
+    EXPECT_TRUE(read.calibration->T_body_left.isApprox(euroc_left(), 1e-12));
+    const Eigen::Vector3d between_body_m = euroc_right().translation() - euroc_left().translation();
     EXPECT_NEAR(read.rig.baseline_m, between_body_m.norm(), 1e-9);
     // The rectified camera's x axis points to the right camera.
     EXPECT_TRUE(read.rig.T_body_camera.linear().col(0).isApprox(between_body_m.normalized(), 1e-9));
-    EXPECT_TRUE(read.rig.T_body_camera.translation().isApprox(support::euroc_left().translation(), 1e-12));
+    EXPECT_TRUE(read.rig.T_body_camera.translation().isApprox(euroc_left().translation(), 1e-12));
   }
 }
 
-TEST(CalibrationFile, ReadsARealEurocFolder) {
+TEST_F(CalibrationFile, ReadsARealEurocFolder) {
   const std::string name = "stereo/euroc-v1_01";
-  const auto path = support::shared_data(name);
-  if (!path) GTEST_SKIP() << support::missing_data(name);
+  const auto path = shared_data(name);
+  if (!path) GTEST_SKIP() << missing_data(name);
   const CalibratedRig read = read_calibrated_rig(*path, {});
   EXPECT_EQ(read.rig.width_px, 752);
   EXPECT_EQ(read.rig.height_px, 480);
@@ -198,7 +194,7 @@ constexpr const char* good =
 
 std::string complaint_of_rig(const std::string& text) {
   const TemporaryFolder folder;
-  return support::complaint_of([&] { read_rig(folder.write("rig.yaml", text)); });
+  return refusal_of([&] { read_rig(folder.write("rig.yaml", text)); });
 }
 
 void expect_complaint(const std::string& from, const std::string& to, const std::string& line_and_key,
@@ -206,11 +202,10 @@ void expect_complaint(const std::string& from, const std::string& to, const std:
   std::string text = good;
   text.replace(text.find(from), from.size(), to);
   const std::string found = complaint_of_rig(text);
-  support::expect_line(found.substr(found.find("rig.yaml")), "rig.yaml:" + line_and_key + ":", expectation);
+  expect_line(found.substr(found.find("rig.yaml")), "rig.yaml:" + line_and_key + ":", expectation);
 }
 
-TEST(RigFile, ReadsEveryKey) {
-  const TemporaryFolder folder;
+TEST_F(RigFile, ReadsEveryKey) {
   const StereoRig rig = read_rig(folder.write("rig.yaml", good));
   EXPECT_EQ(rig.name, "test");
   EXPECT_EQ(rig.width_px, 376);
@@ -230,7 +225,7 @@ TEST(RigFile, ReadsEveryKey) {
   EXPECT_TRUE((R.transpose() * R).isApprox(Eigen::Matrix3d::Identity(), 1e-12));
 }
 
-TEST(RigFile, NamesFileLineAndKeyOfEveryFault) {
+TEST_F(RigFile, NamesFileLineAndKeyOfEveryFault) {
   expect_complaint("focal_px: 180", "focal_pix: 180", "1: focal_px", "found none");
   expect_complaint("pitch_down_deg: 30", "pitch_down_deg: 30\ncolour: red", "12: colour", "unknown key");
   expect_complaint("height_px: 240", "height_px: 240\nwidth_px: 376", "4: width_px", "once");
@@ -245,14 +240,14 @@ TEST(RigFile, NamesFileLineAndKeyOfEveryFault) {
   expect_complaint("height_px: 240", "height_px: [240", "4: expected YAML", "sequence");
 }
 
-TEST(RigFile, SaysWhenThereIsNothingToRead) {
-  for (const char* text : {"", "just text"}) EXPECT_NE(complaint_of_rig(text), "none");
+TEST_F(RigFile, SaysWhenThereIsNothingToRead) {
+  for (const char* text : {"", "just text"}) EXPECT_NE(complaint_of_rig(text), "");
   for (const char* none : {"/nonexistent/rig.yaml", "/tmp"}) EXPECT_THROW(read_rig(none), std::runtime_error);
 }
 
 TEST(HouseRigs, LookAlongThePathWithTheAxisLevelAtTrim) {
   for (const char* name : {"paper.yaml", "long.yaml"}) {
-    const StereoRig rig = support::house_rig(name);
+    const StereoRig rig = house_rig(name);
     const double trim_rad = 10.97 * std::numbers::pi / 180;  // level trim at 12.27 m/s, nose up
     const Eigen::Matrix3d nose_up = Eigen::AngleAxisd(-trim_rad, Eigen::Vector3d::UnitY()).toRotationMatrix();
     EXPECT_TRUE((nose_up * rig.T_body_camera.linear().col(2)).isApprox(Eigen::Vector3d::UnitX(), 1e-12))
@@ -267,8 +262,8 @@ std::string additions(double center_x_px) {
          std::to_string(center_x_px) + ", 150]\n";
 }
 
-std::string left_text() { return support::euroc_sensor_text(support::euroc_left(), 300, 201); }
-std::string right_text() { return support::euroc_sensor_text(support::euroc_right(), 302, 197); }
+std::string left_text() { return euroc_sensor_text(euroc_left(), 300, 201); }
+std::string right_text() { return euroc_sensor_text(euroc_right(), 302, 197); }
 
 CalibratedRig rig_of(const TemporaryFolder& folder, const std::string& left, const std::string& right,
                      const CalibrationOptions& options = {}) {
@@ -278,11 +273,10 @@ CalibratedRig rig_of(const TemporaryFolder& folder, const std::string& left, con
 }
 
 std::string complaint_of(const TemporaryFolder& folder, const std::string& left, const std::string& right) {
-  return support::complaint_of([&] { rig_of(folder, left, right); });
+  return refusal_of([&] { rig_of(folder, left, right); });
 }
 
-TEST(RecordedEuroc, SaysHowThePairIsRectified) {
-  const TemporaryFolder folder;
+TEST_F(RecordedEuroc, SaysHowThePairIsRectified) {
   const CalibratedRig read = rig_of(folder, left_text() + additions(205) + "detection_depth_m: 4.8\n",
                                     right_text() + additions(180));
   EXPECT_EQ(read.rig.focal_px, 310);
@@ -294,33 +288,28 @@ TEST(RecordedEuroc, SaysHowThePairIsRectified) {
   EXPECT_EQ(read.calibration->left.rectification, cv::Matx33d(1, 0, 0, 0, 0, -1, 0, 1, 0));
   // The rectified camera's y axis is the raw one's -z.
   const Eigen::Vector3d y_body = read.rig.T_body_camera.linear().col(1);
-  EXPECT_TRUE(y_body.isApprox(-support::euroc_left().linear().col(2), 1e-12));
+  EXPECT_TRUE(y_body.isApprox(-euroc_left().linear().col(2), 1e-12));
 }
 
-TEST(RecordedEuroc, TheCallersDepthGoesBeforeTheFiles) {
-  const TemporaryFolder folder;
+TEST_F(RecordedEuroc, TheCallersDepthGoesBeforeTheFiles) {
   CalibrationOptions options;
   options.detection_depth_m = 7;
   const std::string left = left_text() + additions(205) + "detection_depth_m: 4.8\n";
   EXPECT_EQ(rig_of(folder, left, right_text() + additions(180), options).rig.detection_depth_m, 7);
 }
 
-TEST(RecordedEuroc, TakesOpenCvsLongerDistortions) {
-  const TemporaryFolder folder;
+TEST_F(RecordedEuroc, TakesOpenCvsLongerDistortions) {
   std::string left = left_text();
   const std::string four = "-0.28, 0.07, 0.0002, -0.0001";
   left.replace(left.find(four), four.size(), four + ", 0.01");
   EXPECT_EQ(rig_of(folder, left, right_text()).calibration->left.distortion.size(), 5u);
   left.replace(left.find(four), four.size(), "1, " + four);
-  EXPECT_NE(complaint_of(folder, left, right_text()).find("expected a list of 4 numbers, found 6"),
-            std::string::npos);
+  expect_part(complaint_of(folder, left, right_text()), "expected a list of 4 numbers, found 6");
 }
 
-TEST(RecordedEuroc, RefusesHalfARectification) {
-  const TemporaryFolder folder;
+TEST_F(RecordedEuroc, RefusesHalfARectification) {
   const auto refuses = [&](const std::string& left, const std::string& right, const std::string& part) {
-    const std::string complaint = complaint_of(folder, left_text() + left, right_text() + right);
-    EXPECT_NE(complaint.find(part), std::string::npos) << part << " not in: " << complaint;
+    expect_part(complaint_of(folder, left_text() + left, right_text() + right), part);
   };
   refuses(additions(205), "", "rectification: expected in both");
   refuses("rectification: [1, 0, 0, 0, 1, 0, 0, 0, 1]\n", additions(180), "rectified_intrinsics");

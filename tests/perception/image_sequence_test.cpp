@@ -11,8 +11,8 @@
 namespace understory {
 namespace {
 
-using support::complaint_of;
-using support::expect_line;
+using namespace support;
+using ImageSequencePairs = FolderTest;
 
 using Names = std::vector<std::string>;
 
@@ -47,8 +47,7 @@ TEST(ImageNames, PairWhereNothingCanBeMissing) {
   EXPECT_EQ(lone({"ann", "bob"}, {"ann", "cat"}), "bob");
 }
 
-TEST(ImageSequence, PairsFoldersInNumericalOrder) {
-  const support::TemporaryFolder folder;
+TEST_F(ImageSequencePairs, PairsFoldersInNumericalOrder) {
   for (const char* number : {"1", "2", "10"}) {
     folder.write(std::string("l/img_") + number + ".png", "");
     folder.write(std::string("r/img_") + number + ".PNG", "");
@@ -63,8 +62,7 @@ TEST(ImageSequence, PairsFoldersInNumericalOrder) {
   EXPECT_EQ(sequence.pairs[2].t_ns, 0);
 }
 
-TEST(ImageSequence, TakesTimesFromNames) {
-  const support::TemporaryFolder folder;
+TEST_F(ImageSequencePairs, TakesTimesFromNames) {
   for (const char* eye : {"l/", "r/"})
     for (const char* time : {"9.75", "10.25"}) folder.write(std::string(eye) + time + ".png", "");
   const ImageSequence sequence = folder_sequence(folder.path() / "l", folder.path() / "r");
@@ -73,31 +71,29 @@ TEST(ImageSequence, TakesTimesFromNames) {
   EXPECT_EQ(sequence.pairs[1].t_ns, 10'250'000'000);
   folder.write("l/9.8.png", "");
   folder.write("r/9.8.png", "");  // a time after 9.75, but a number before 75: order and times disagree
-  expect_line(complaint_of([&] { folder_sequence(folder.path() / "l", folder.path() / "r"); }), "",
+  expect_line(refusal_of([&] { folder_sequence(folder.path() / "l", folder.path() / "r"); }), "",
               "9.75.png: expected times");
 }
 
-TEST(ImageSequence, SaysWhichImageHasNoPartner) {
-  const support::TemporaryFolder folder;
+TEST_F(ImageSequencePairs, SaysWhichImageHasNoPartner) {
   folder.write("l/1.png", "");
   folder.write("l/2.png", "");
   folder.write("r/1.png", "");
   const auto pairing = [&] {
-    return complaint_of([&] { folder_sequence(folder.path() / "l", folder.path() / "r"); });
+    return refusal_of([&] { folder_sequence(folder.path() / "l", folder.path() / "r"); });
   };
-  EXPECT_EQ(pairing(), (folder.path() / "l/2.png").string() + ": expected its partner in " +
-                           (folder.path() / "r").string() + ", found none (2 left images, 1 right)");
+  EXPECT_EQ(pairing(), path("l/2.png") + ": expected its partner in " + path("r") +
+                           ", found none (2 left images, 1 right)");
   std::filesystem::create_directories(folder.path() / "empty");
-  expect_line(complaint_of([&] { folder_sequence(folder.path() / "empty", folder.path() / "r"); }), "",
+  expect_line(refusal_of([&] { folder_sequence(folder.path() / "empty", folder.path() / "r"); }), "",
               "expected images");
-  expect_line(complaint_of([&] { folder_sequence(folder.path() / "none", folder.path() / "r"); }), "",
+  expect_line(refusal_of([&] { folder_sequence(folder.path() / "none", folder.path() / "r"); }), "",
               "readable folder");
-  expect_line(complaint_of([&] { single_pair(folder.path() / "l/1.png", folder.path() / "r/2.png"); }), "",
+  expect_line(refusal_of([&] { single_pair(folder.path() / "l/1.png", folder.path() / "r/2.png"); }), "",
               "r/2.png: expected");
 }
 
-struct Euroc : testing::Test {
-  support::TemporaryFolder folder;
+struct Euroc : FolderTest {
   void write(const std::string& camera, const std::vector<std::string>& times) {
     std::string list = "#timestamp [ns],filename\r\n";
     for (const std::string& time : times) {
@@ -122,23 +118,23 @@ TEST_F(Euroc, PairsByTimeAndCountsTheRest) {
 }
 
 TEST_F(Euroc, RefusesWhatIsMissing) {
-  expect_line(complaint_of([&] { euroc_sequence(folder.path()); }), "", "expected a EuRoC folder");
+  expect_line(refusal_of([&] { euroc_sequence(folder.path()); }), "", "expected a EuRoC folder");
   write("cam0", {"100"});
   write("cam1", {"200"});
-  expect_line(complaint_of([&] { euroc_sequence(folder.path()); }), "", "found none");
+  expect_line(refusal_of([&] { euroc_sequence(folder.path()); }), "", "found none");
   write("cam1", {"100"});
   std::filesystem::remove(folder.path() / "mav0/cam1/data/100.png");
-  expect_line(complaint_of([&] { euroc_sequence(folder.path()); }), "",
+  expect_line(refusal_of([&] { euroc_sequence(folder.path()); }), "",
               "cam1/data/100.png: expected the image");
   std::filesystem::remove(folder.path() / "mav0/cam1/data.csv");
-  expect_line(complaint_of([&] { euroc_sequence(folder.path()); }), "", "cam1/data.csv: expected a readable");
+  expect_line(refusal_of([&] { euroc_sequence(folder.path()); }), "", "cam1/data.csv: expected a readable");
 }
 
 TEST(EurocImages, NamesTheLineOfEveryFault) {
   const auto reading = [](const std::string& text) {
-    return complaint_of([&] { parse_euroc_images(text, "d"); });
+    return refusal_of([&] { parse_euroc_images(text, "d"); });
   };
-  EXPECT_EQ(reading("1,a.png\n2,b.png"), "none");
+  EXPECT_EQ(reading("1,a.png\n2,b.png"), "");
   for (const char* broken : {"2", "2,", "x,b.png", "2,b.png,c", "-2,b.png", "2,../b.png", "2.5,b.png"})
     EXPECT_EQ(reading("1,a.png\n" + std::string(broken)).find("d:2: expected 't,file name'"), 0u) << broken;
   EXPECT_EQ(reading("2,a.png\n2,b.png"), "d:2: expected times that increase from line to line");

@@ -12,7 +12,7 @@
 namespace understory {
 namespace {
 
-using support::complaint_of;
+using support::refusal_of;
 
 constexpr std::int64_t s = 1'000'000'000;
 
@@ -94,9 +94,7 @@ TEST(PoseFile, SecondsKeepTheirNanoseconds) {
 }
 
 TEST(PoseFile, NamesTheLineOfEveryFault) {
-  const auto complaint = [](const std::string& text) {
-    return complaint_of([&] { parse_poses(text, "p"); });
-  };
+  const auto complaint = [](const std::string& text) { return refusal_of([&] { parse_poses(text, "p"); }); };
   const std::string good = "0 0 0 0 0 0 0 1\n";
   EXPECT_EQ(complaint(good + "1 0 0 0 0 0 0\n").find("p:2: expected 't tx"), 0u);
   EXPECT_EQ(complaint(good + "1 0 0 0 0 0 0 1 0\n").find("p:2: expected 't tx"), 0u);
@@ -112,10 +110,10 @@ TEST(PoseFile, NamesTheLineOfEveryFault) {
   EXPECT_EQ(complaint("5.5,0,0,0,1,0,0,0\n").find("p:1: expected 't,px"), 0u);
   EXPECT_EQ(complaint("5,0,0,0,1,0,0,0\n4,0,0,0,1,0,0,0\n"),
             "p:2: expected times that increase from line to line");
-  EXPECT_EQ(complaint_of([] { read_poses("/nonexistent"); }), "/nonexistent: expected a readable file");
-  EXPECT_EQ(complaint_of([] { read_poses("/dev/zero"); }),
+  EXPECT_EQ(refusal_of([] { read_poses("/nonexistent"); }), "/nonexistent: expected a readable file");
+  EXPECT_EQ(refusal_of([] { read_poses("/dev/zero"); }),
             "/dev/zero: expected a readable file, this is a device");
-  EXPECT_EQ(complaint_of([] { read_poses("/tmp"); }), "/tmp: expected a readable file, this is a folder");
+  EXPECT_EQ(refusal_of([] { read_poses("/tmp"); }), "/tmp: expected a readable file, this is a folder");
 }
 
 }  // namespace

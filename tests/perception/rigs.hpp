@@ -7,6 +7,7 @@
 #include <string>
 
 #include "perception/io/calibration_file.hpp"
+#include "tests/support/text.hpp"
 
 /// What many of perception's tests begin with.
 namespace understory::support {
@@ -16,22 +17,11 @@ inline const std::filesystem::path house_rigs =
 
 inline StereoRig house_rig(const char* name) { return read_rig(house_rigs / name); }
 
-/// What `read` complains of; "none" where it finds nothing wrong.
-template <typename Read>
-std::string complaint_of(Read&& read) {
-  try {
-    read();
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "none";
-}
-
 /// One line, with `part` in it, from `beginning` on.
 inline void expect_line(const std::string& found, const std::string& beginning, const std::string& part) {
   EXPECT_EQ(found.find(beginning), 0u) << found << "\n  should begin with " << beginning;
-  EXPECT_NE(found.find(part), std::string::npos) << found << "\n  should say " << part;
-  EXPECT_EQ(found.find('\n'), std::string::npos) << found;
+  expect_part(found, part);
+  expect_no_part(found, "\n");
 }
 
 /// Uniform noise; `saturated`: of black and white alone.

@@ -24,9 +24,7 @@ bool same(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
 }
 
-struct Recording : testing::Test {
-  support::TemporaryFolder folder;
-
+struct Recording : support::FolderTest {
   std::string image(const std::string& name, const cv::Mat& pixels) {
     const std::string file = folder.write(name, "").string();
     cv::imwrite(file, pixels);
@@ -34,7 +32,7 @@ struct Recording : testing::Test {
   }
 
   std::string complaint(const std::vector<std::filesystem::path>& inputs) {
-    return support::complaint_of([&] {
+    return support::refusal_of([&] {
       StereoRecording recording(inputs);
       for (StereoFrame frame; recording.read(frame);) {
       }
@@ -65,7 +63,7 @@ TEST_F(Recording, GivesFoldersImagesBackInOrder) {
 }
 
 TEST_F(Recording, SplitsASideBySideVideo) {
-  const std::string file = (folder.path() / "both.mkv").string();
+  const std::string file = path("both.mkv");
   cv::VideoWriter writer(file, cv::CAP_FFMPEG, cv::VideoWriter::fourcc('F', 'F', 'V', '1'), 20,
                          cv::Size(2 * width_px, height_px));  // a codec without loss
   if (!writer.isOpened()) GTEST_SKIP() << "FFmpeg has no FFV1 encoder here";
@@ -97,7 +95,7 @@ TEST_F(Recording, RefusesWhatIsNoPairOfGrayImagesOfOneSize) {
   const std::string small = image("small.png", support::noise(width_px, height_px - 1, 1));
   const std::string whole = support::content_of(good);
   const std::filesystem::path cut = folder.write("cut.png", whole.substr(0, whole.size() / 2));
-  EXPECT_EQ(complaint({good, good}), "none");
+  EXPECT_EQ(complaint({good, good}), "");
   expect_complaint({good, deep}, "deep.png: expected an 8-bit gray image, found 16-bit gray");
   expect_complaint({colour, good}, "colour.png: expected an 8-bit gray image, found 8-bit colour");
   expect_complaint({good, small}, "small.png: expected 64x48 as");

@@ -7,11 +7,7 @@
 namespace understory {
 namespace {
 
-using support::expect_no_part;
-using support::expect_part;
-
-using support::failed_row;
-using support::flown_row;
+using namespace support;
 
 std::vector<FlightRow> rows() {
   std::vector<FlightRow> all{flown_row("forest", 1, "goal", 75.4), flown_row("forest", 2, "collision", 30),

@@ -6,9 +6,12 @@
 
 #include "scenarios/config/config_reader.hpp"
 #include "scenarios/config/config_writer.hpp"
+#include "tests/support/text.hpp"
 
 namespace understory {
 namespace {
+
+using namespace support;
 
 enum class Colour { red, green };
 
@@ -69,23 +72,12 @@ Outer read(const std::string& text) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    read(text);
-  } catch (const ScenarioError& error) {
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-    return error.what();
-  }
-  return "accepted";
+  return refusal_of<ScenarioError>([&] { read(text); });
 }
 
 std::string set_refusal(const std::string& assignment) {
   Outer outer;
-  try {
-    read_config(parse_assignment(assignment), outer);
-  } catch (const ScenarioError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal_of<ScenarioError>([&] { read_config(parse_assignment(assignment), outer); });
 }
 
 TEST(Config, ReadsEveryKindOfField) {
@@ -108,32 +100,42 @@ TEST(Config, AbsentKeysKeepTheirDefaults) {
 }
 
 TEST(Config, RefusesInOneLineWithFileLineKeyAndExpectation) {
-  EXPECT_EQ(refusal("count: 1\ncuont: 2\n"), "a.yaml:2: cuont: expected a known key (did you mean count?)");
-  EXPECT_EQ(refusal("inner:\n  lenght_m: 2\n"),
-            "a.yaml:2: inner.lenght_m: expected a known key (did you mean length_m?)");
-  EXPECT_EQ(refusal("zzzzzz: 2\n"), "a.yaml:1: zzzzzz: expected a known key");
-  EXPECT_EQ(refusal("count: 1\n\ncount: 1\n"),
-            "a.yaml:3: count: expected each key once, this one is given twice");
-  EXPECT_EQ(refusal("inner:\n  gains: [1]\n  gains: [1]\n"),
-            "a.yaml:3: inner.gains: expected each key once, this one is given twice");
-  EXPECT_EQ(refusal("count: 10\n"), "a.yaml:1: count: expected a whole number from 0 to 9, got 10");
-  EXPECT_EQ(refusal("inner: {length_m: far}\n"),
-            "a.yaml:1: inner.length_m: expected a number from 0 to 10, got far");
-  EXPECT_EQ(refusal("on: maybe\n"), "a.yaml:1: on: expected true or false, got maybe");
-  EXPECT_EQ(refusal("colour: blue\n"), "a.yaml:1: colour: expected red | green, got blue");
-  EXPECT_EQ(refusal("wind: [1, 2]\n"),
-            "a.yaml:1: wind: expected a list of three numbers [x, y, z], got a list of 2");
-  EXPECT_EQ(refusal("inner: 3\n"), "a.yaml:1: inner: expected a group of keys, got 3");
-  EXPECT_EQ(refusal("inner:\n"), "a.yaml:1: inner: expected a group of keys, got nothing");
+  const std::pair<const char*, std::string> cases[] = {
+      {"count: 1\ncuont: 2\n", "2: cuont: expected a known key (did you mean count?)"},
+      {"inner:\n  lenght_m: 2\n", "2: inner.lenght_m: expected a known key (did you mean length_m?)"},
+      {"zzzzzz: 2\n", "1: zzzzzz: expected a known key"},
+      {"count: 1\n\ncount: 1\n", "3: count: expected each key once, this one is given twice"},
+      {"inner:\n  gains: [1]\n  gains: [1]\n",
+       "3: inner.gains: expected each key once, this one is given twice"},
+      {"count: 10\n", "1: count: expected a whole number from 0 to 9, got 10"},
+      {"inner: {length_m: far}\n", "1: inner.length_m: expected a number from 0 to 10, got far"},
+      {"on: maybe\n", "1: on: expected true or false, got maybe"},
+      {"colour: blue\n", "1: colour: expected red | green, got blue"},
+      {"wind: [1, 2]\n", "1: wind: expected a list of three numbers [x, y, z], got a list of 2"},
+      {"inner: 3\n", "1: inner: expected a group of keys, got 3"},
+      {"inner:\n", "1: inner: expected a group of keys, got nothing"},
+      // Of a list it names the entry.
+      {"entries:\n  - count: 2\n  - count: 2\n    cuont: 3\n",
+       "4: entries[1].cuont: expected a known key (did you mean count?)"},
+      {"entries:\n  - colour: red\n    inner:\n      length_m: 11\n",
+       "4: entries[0].inner.length_m: expected a number from 0 to 10, got 11"},
+      {"entries:\n  - {count: 1, count: 2}\n",
+       "2: entries[0].count: expected each key once, this one is given twice"},
+      {"entries:\n  - 3\n", "2: entries[0]: expected a group of keys, got 3"},
+      {"entries: 3\n", "1: entries: expected a list of groups [{...}, ...], got 3"},
+      {"entries: {count: 3}\n", "1: entries: expected a list of groups [{...}, ...], got a group of keys"},
+      {"entries:\n", "1: entries: expected a list of groups [{...}, ...], got nothing"},
+  };
+  for (const auto& [text, says] : cases) EXPECT_EQ(refusal(text), "a.yaml:" + says);
 }
 
 TEST(Config, RefusesNumbersThatAreNot) {
   for (const char* value : {"1.5", "\"3\"", "-1", "0x3", "3 ", "1e1", "[3]", "", "nan"}) {
     const bool is_plain_three = std::string(value) == "3 ";  // YAML trims
-    EXPECT_EQ(refusal("count: " + std::string(value) + "\n") == "accepted", is_plain_three) << value;
+    EXPECT_EQ(refusal("count: " + std::string(value) + "\n") == "", is_plain_three) << value;
   }
   for (const char* value : {"nan", "inf", ".inf", "\"1\"", "1,5", "1m"}) {
-    EXPECT_NE(refusal("inner: {length_m: " + std::string(value) + "}\n"), "accepted") << value;
+    EXPECT_NE(refusal("inner: {length_m: " + std::string(value) + "}\n"), "") << value;
   }
 }
 
@@ -160,11 +162,11 @@ TEST(Config, AssignmentsPassTheSameChecks) {
             "--set iner.length_m=4: iner: expected a known key (did you mean inner?)");
   EXPECT_EQ(set_refusal("wind=[1,2,30]"),
             "--set wind=[1,2,30]: wind: expected a number from -5 to 5, got 30");
-  EXPECT_NE(set_refusal("count"), "accepted");
-  EXPECT_NE(set_refusal("=3"), "accepted");
-  EXPECT_NE(set_refusal("name="), "accepted");
-  EXPECT_NE(set_refusal("inner..length_m=3"), "accepted");
-  EXPECT_NE(set_refusal("count=[1"), "accepted");
+  EXPECT_NE(set_refusal("count"), "");
+  EXPECT_NE(set_refusal("=3"), "");
+  EXPECT_NE(set_refusal("name="), "");
+  EXPECT_NE(set_refusal("inner..length_m=3"), "");
+  EXPECT_NE(set_refusal("count=[1"), "");
 }
 
 TEST(Config, ReadsAListOfGroups) {
@@ -176,20 +178,6 @@ TEST(Config, ReadsAListOfGroups) {
   EXPECT_EQ(outer.entries[1].colour, Colour::red);
   EXPECT_EQ(outer.entries[1].count, 5);
   EXPECT_TRUE(read("entries: []\n").entries.empty());
-}
-
-TEST(Config, RefusesInAListNameTheEntry) {
-  EXPECT_EQ(refusal("entries:\n  - count: 2\n  - count: 2\n    cuont: 3\n"),
-            "a.yaml:4: entries[1].cuont: expected a known key (did you mean count?)");
-  EXPECT_EQ(refusal("entries:\n  - colour: red\n    inner:\n      length_m: 11\n"),
-            "a.yaml:4: entries[0].inner.length_m: expected a number from 0 to 10, got 11");
-  EXPECT_EQ(refusal("entries:\n  - {count: 1, count: 2}\n"),
-            "a.yaml:2: entries[0].count: expected each key once, this one is given twice");
-  EXPECT_EQ(refusal("entries:\n  - 3\n"), "a.yaml:2: entries[0]: expected a group of keys, got 3");
-  EXPECT_EQ(refusal("entries: 3\n"), "a.yaml:1: entries: expected a list of groups [{...}, ...], got 3");
-  EXPECT_EQ(refusal("entries: {count: 3}\n"),
-            "a.yaml:1: entries: expected a list of groups [{...}, ...], got a group of keys");
-  EXPECT_EQ(refusal("entries:\n"), "a.yaml:1: entries: expected a list of groups [{...}, ...], got nothing");
 }
 
 TEST(Config, AnAssignmentReplacesAListOfGroups) {
@@ -236,9 +224,8 @@ TEST(Config, WritingAndReadingAgainIsExact) {
   ASSERT_EQ(again.entries.size(), 2u);
   EXPECT_EQ(again.entries[1].colour, Colour::red);
   EXPECT_EQ(again.entries[1].inner.gains, std::vector<double>{0.25});
-  EXPECT_NE(text.find("entries:\n  - colour: green\n    count: 5\n    inner:\n      length_m: 2.5\n"),
-            std::string::npos);
-  EXPECT_NE(write_config(Outer{}).find("entries: []\n"), std::string::npos);
+  expect_part(text, "entries:\n  - colour: green\n    count: 5\n    inner:\n      length_m: 2.5\n");
+  expect_part(write_config(Outer{}), "entries: []\n");
   EXPECT_EQ(write_config(again), text);
   EXPECT_EQ(text.substr(0, 10), "on: false\n");
 }

@@ -1,16 +1,92 @@
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
 
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/detect/posed_map.hpp"
+#include "scenarios/detect/rig_figures.hpp"
 #include "scenarios/report/pictures.hpp"
 #include "tests/support/temporary_folder.hpp"
 
+/// What `detect` and `rig` say and draw.
 namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Half its width is the focal length: a field of view of 90 degrees, by construction.
+StereoRig right_angle_rig() {
+  StereoRig rig;
+  rig.name = "right angle";
+  rig.width_px = 400;
+  rig.height_px = 300;
+  rig.focal_px = 200;
+  rig.baseline_m = 0.5;
+  rig.center_left_x_px = rig.center_right_x_px = 199.5;
+  rig.center_y_px = 149.5;
+  rig.detection_depth_m = 5.1;  // 19.6 px; the nearest whole disparity, 20 px, lies at 5 m
+  return rig;
+}
+
+TEST(RigFigures, AgreeWithClosedForms) {
+  const RigFigures figures = rig_figures(right_angle_rig(), PushbroomConfig());
+  EXPECT_NEAR(figures.left_field_of_view_rad, std::numbers::pi / 2, 1e-12);
+  EXPECT_NEAR(figures.right_field_of_view_rad, std::numbers::pi / 2, 1e-12);
+  EXPECT_NEAR(figures.vertical_field_of_view_rad, 2 * std::atan(150.0 / 200), 1e-12);
+  EXPECT_EQ(figures.detection_disparity_px, 20);
+  EXPECT_NEAR(figures.detection_depth_m, 5, 1e-12);
+  EXPECT_NEAR(figures.one_pixel.near_m, 100.0 / 21, 1e-12);
+  EXPECT_NEAR(figures.one_pixel.far_m, 100.0 / 19, 1e-12);
+  EXPECT_EQ(figures.window_first_px, -3);
+  EXPECT_EQ(figures.window_last_px, 3);
+  EXPECT_EQ(column_text(figures.window_first_px), "u + 3");
+  // At 5 m each eye sees 10 m; together they see what the baseline leaves of it, right of the right eye's
+  // left.
+  EXPECT_EQ(figures.compared_columns_px, 380);
+  EXPECT_NEAR(figures.surface_left_m, -4.5, 1e-12);
+  EXPECT_NEAR(figures.surface_right_m, 5, 1e-12);
+}
+
+TEST(RigFigures, HoldWhereTheDisparityIsNegative) {
+  StereoRig rig = right_angle_rig();
+  rig.center_right_x_px += 60;  // infinity at -60 px, detection at -40 px
+  const RigFigures figures = rig_figures(rig, PushbroomConfig());
+  EXPECT_EQ(figures.detection_disparity_px, -40);
+  EXPECT_EQ(figures.compared_columns_px, 360);
+  EXPECT_NEAR(figures.surface_left_m, -5, 1e-12);
+  EXPECT_NEAR(figures.surface_right_m, 4, 1e-12);
+}
+
+/// Share of clearly green pixels in a row of the picture.
+double green_share(const cv::Mat& picture, int row_px) {
+  int count = 0;
+  for (int u = 0; u < 880; ++u) {  // the view from above
+    const cv::Vec3b color = picture.at<cv::Vec3b>(row_px, u);
+    count += color[1] > color[0] + 20 && color[1] > color[2] + 20;
+  }
+  return count / 880.0;
+}
+
+/// The band is there, between white-to-gray above and below, and wider in metres where a pixel means more.
+TEST(RigPicture, ShowsTheDetectionSurface) {
+  StereoRig rig = right_angle_rig();
+  const auto band_px = [&] {
+    const cv::Mat picture = draw_rig(rig, rig_figures(rig, PushbroomConfig()));
+    EXPECT_EQ(picture.size(), cv::Size(1280, 860));
+    EXPECT_EQ(picture.type(), CV_8UC3);
+    int rows = 0;
+    for (int v = 0; v < picture.rows; ++v) rows += green_share(picture, v) > 0.4;
+    return rows;
+  };
+  const int near_px = band_px();
+  rig.detection_depth_m = 20;  // 5 px: one pixel is a fifth of the depth to either side
+  const int far_px = band_px();
+  EXPECT_GT(near_px, 20);
+  EXPECT_GT(far_px, 2 * near_px);
+}
 
 TEST(PictureFolder, AppearsWholeOrNotAtAll) {
   const support::TemporaryFolder folder;
@@ -70,6 +146,52 @@ TEST(PosedMap, CountsWhatWasFlownBetweenFrames) {
   map.insert({hit}, Eigen::Isometry3d(Eigen::Translation3d(1.5, 2, 0)), 5'000'000'000);
   ASSERT_EQ(map.points().size(), 1u);
   EXPECT_NEAR(map.points()[0].distance_flown_m, 2.5, 1e-12);
+}
+
+StereoRig rig() {
+  StereoRig rig;
+  rig.focal_px = 200;
+  rig.baseline_m = 0.35;
+  rig.center_left_x_px = 188;
+  rig.center_right_x_px = 188;
+  rig.center_y_px = 120;
+  return rig;
+}
+
+bool is_red(const cv::Vec3b& pixel) { return pixel[2] > 200 && pixel[0] < 60 && pixel[1] < 60; }
+
+TEST(Overlay, ARememberedPointIsDrawnWhereThePinholeSaysAndBoxesWhereTheHitsAre) {
+  OverlayMoment moment;
+  moment.left = cv::Mat(240, 376, CV_8UC1, cv::Scalar(128));
+  moment.T_world_camera = Eigen::Isometry3d::Identity();
+  moment.T_world_camera.translation().z() = -1;
+  ObstaclePoint point;
+  point.position_world = {1.0, -0.5, 4.0};  // 5 m ahead of the camera: u = 188 + 40, v = 120 - 20
+  moment.remembered = {point};
+  StereoHit hit;
+  hit.column_px = 300;
+  hit.row_px = 50;
+  moment.hits = {hit};
+  const cv::Mat picture = draw_overlay(moment, rig(), 2);
+  ASSERT_EQ(picture.size(), cv::Size(752, 480));
+  EXPECT_TRUE(is_red(picture.at<cv::Vec3b>(2 * 100 + 1, 2 * 228 + 1)));
+  EXPECT_FALSE(is_red(picture.at<cv::Vec3b>(2 * 100 + 1, 2 * 240 + 1)));
+  EXPECT_GT(picture.at<cv::Vec3b>(100, 605)[0], 200);  // the box's upper edge, blue
+  EXPECT_LT(picture.at<cv::Vec3b>(100, 605)[2], 60);
+}
+
+TEST(Video, CanBeReadBackFrameByFrame) {
+  const fs::path file = fs::path(testing::TempDir()) / "understory_video.mp4";
+  fs::remove(file);
+  VideoFile video(file, 30);
+  for (int i = 0; i < 12; ++i) video.add(cv::Mat(240, 320, CV_8UC3, cv::Scalar::all(20 * i)));
+  EXPECT_FALSE(fs::exists(file));  // not before it is whole
+  video.finish();
+  cv::VideoCapture capture(file.string());
+  ASSERT_TRUE(capture.isOpened());
+  int count = 0;
+  for (cv::Mat picture; capture.read(picture); ++count) EXPECT_NEAR(cv::mean(picture)[0], 20 * count, 6);
+  EXPECT_EQ(count, 12);
 }
 
 }  // namespace

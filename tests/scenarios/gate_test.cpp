@@ -12,11 +12,7 @@
 namespace understory {
 namespace {
 
-using support::expect_no_part;
-using support::expect_part;
-
-using support::failed_row;
-using support::flown_row;
+using namespace support;
 
 /// Outcomes as in a published paired table (paired_outcomes_test.cpp: 20, 12, 2, 16), shuffled over
 /// conditions.

@@ -11,8 +11,7 @@
 namespace understory {
 namespace {
 
-using support::expect_no_part;
-using support::expect_part;
+using namespace support;
 
 int count(const std::string& text, const std::string& part) {
   int found = 0;

@@ -5,24 +5,21 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-#include <string>
-
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/output_folder.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 /// How results get their names: whole, one program at a time, nothing of anybody else's lost.
 namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
-using support::content_of;
-using support::TemporaryFolder;
+using namespace support;
+using Output = FolderTest;
+using OutputFolderTest = FolderTest;
 
-TEST(Output, AFileIsReplacedWholeWithItsModeAndNothingIsLeftBeside) {
-  const TemporaryFolder folder;
+TEST_F(Output, AFileIsReplacedWholeWithItsModeAndNothingIsLeftBeside) {
   const fs::path file = folder.write("a.txt", "former");
   chmod(file.c_str(), 0640);
   write_whole_file(file, "new");
@@ -33,8 +30,7 @@ TEST(Output, AFileIsReplacedWholeWithItsModeAndNothingIsLeftBeside) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
 }
 
-TEST(Output, ALinkStaysOneAndWhatItLeadsToIsReplaced) {
-  const TemporaryFolder folder;
+TEST_F(Output, ALinkStaysOneAndWhatItLeadsToIsReplaced) {
   fs::create_directories(folder.path() / "far");
   const fs::path target = folder.write("far/target", "former");
   fs::create_symlink("far/target", folder.path() / "link");
@@ -48,8 +44,7 @@ TEST(Output, ALinkStaysOneAndWhatItLeadsToIsReplaced) {
     EXPECT_TRUE(fs::is_symlink(folder.path() / link)) << link;
 }
 
-TEST(Output, AFifoAndADeviceAreWrittenThrough) {
-  const TemporaryFolder folder;
+TEST_F(Output, AFifoAndADeviceAreWrittenThrough) {
   const fs::path fifo = folder.path() / "fifo";
   ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
   const int reader = open(fifo.c_str(), O_RDONLY | O_NONBLOCK);
@@ -70,8 +65,7 @@ TEST(Output, AFifoAndADeviceAreWrittenThrough) {
   EXPECT_TRUE(fs::is_character_file(full));
 }
 
-TEST(Output, WhatCannotBeWrittenIsKnownBefore) {
-  const TemporaryFolder folder;
+TEST_F(Output, WhatCannotBeWrittenIsKnownBefore) {
   const fs::path file = folder.write("file", "");
   require_writable("");  // no output at all
   require_writable(folder.path() / "new");
@@ -90,8 +84,7 @@ TEST(Output, WhatCannotBeWrittenIsKnownBefore) {
   }
 }
 
-TEST(Output, AnUnwritableFolderIsBadInput) {
-  const TemporaryFolder folder;
+TEST_F(Output, AnUnwritableFolderIsBadInput) {
   const fs::path file = folder.write("file", "in the way");
   EXPECT_THROW(prepare_output_folder(file / "runs"), ScenarioError);
   EXPECT_THROW(prepare_output_folder(file), ScenarioError);
@@ -116,19 +109,7 @@ void run_into(const fs::path& folder, const std::string& configuration, Replace 
   output.finish();
 }
 
-/// What the error says; empty where there is none.
-template <typename Work>
-std::string refusal_of(Work&& work) {
-  try {
-    work();
-  } catch (const ScenarioError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(OutputFolder, BearsItsNameOnlyWhenItIsWhole) {
-  const TemporaryFolder folder;
+TEST_F(OutputFolderTest, BearsItsNameOnlyWhenItIsWhole) {
   const fs::path run = folder.path() / "runs" / "a-1";
   {
     OutputFolder broken_off(run, contents("a"), Replace::same);
@@ -142,8 +123,7 @@ TEST(OutputFolder, BearsItsNameOnlyWhenItIsWhole) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path() / "runs"), {}), 1);
 }
 
-TEST(OutputFolder, TheSameAgainReplacesAllThatWasThereAndNothingElse) {
-  const TemporaryFolder folder;
+TEST_F(OutputFolderTest, TheSameAgainReplacesAllThatWasThereAndNothingElse) {
   const fs::path run = folder.path() / "a-1";
   run_into(run, "a", Replace::same, true);
   folder.write("a-1/notes.txt", "mine");
@@ -160,51 +140,45 @@ TEST(OutputFolder, TheSameAgainReplacesAllThatWasThereAndNothingElse) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
 }
 
-TEST(OutputFolder, AnotherConfigurationIsKeptUnlessForced) {
-  const TemporaryFolder folder;
+TEST_F(OutputFolderTest, AnotherConfigurationIsKeptUnlessForced) {
   const fs::path run = folder.path() / "a-1";
   run_into(run, "a");
-  EXPECT_NE(refusal_of([&] { run_into(run, "b"); }).find("another configuration (scenario.yaml): --force"),
-            std::string::npos);
-  EXPECT_NE(refusal_of([&] { run_into(run, "a", Replace::nothing); }).find("holds results already"),
-            std::string::npos);
+  expect_part(refusal_of<ScenarioError>([&] { run_into(run, "b"); }),
+              "another configuration (scenario.yaml): --force");
+  expect_part(refusal_of<ScenarioError>([&] { run_into(run, "a", Replace::nothing); }),
+              "holds results already");
   EXPECT_EQ(content_of(run / "result.json"), "a's result");
   run_into(run, "b", Replace::anything);
   EXPECT_EQ(content_of(run / "result.json"), "b's result");
   EXPECT_EQ(content_of(run / "scenario.yaml"), "b");
 }
 
-TEST(OutputFolder, WhatNobodySaysIsOursIsNeverReplaced) {
-  const TemporaryFolder folder;
+TEST_F(OutputFolderTest, WhatNobodySaysIsOursIsNeverReplaced) {
   folder.write("mine/result.json", "precious");
-  EXPECT_NE(
-      refusal_of([&] { run_into(folder.path() / "mine", "a", Replace::anything); }).find("no scenario.yaml"),
-      std::string::npos);
+  expect_part(refusal_of<ScenarioError>([&] { run_into(folder.path() / "mine", "a", Replace::anything); }),
+              "no scenario.yaml");
   EXPECT_EQ(content_of(folder.path() / "mine/result.json"), "precious");
   folder.write("new.part/thesis.tex", "precious");
-  EXPECT_NE(refusal_of([&] { run_into(folder.path() / "new", "a"); }).find("new.part"), std::string::npos);
+  expect_part(refusal_of<ScenarioError>([&] { run_into(folder.path() / "new", "a"); }), "new.part");
   EXPECT_EQ(content_of(folder.path() / "new.part/thesis.tex"), "precious");
   folder.write("notes/notes.txt", "mine");
   run_into(folder.path() / "notes", "a");
   EXPECT_EQ(content_of(folder.path() / "notes/notes.txt"), "mine");
-  EXPECT_NE(refusal_of([&] { run_into(folder.write("file", ""), "a"); }), "");
+  EXPECT_NE(refusal_of<ScenarioError>([&] { run_into(folder.write("file", ""), "a"); }), "");
 }
 
-TEST(OutputFolder, OneProgramAtATimeWritesIntoAFolder) {
-  const TemporaryFolder folder;
+TEST_F(OutputFolderTest, OneProgramAtATimeWritesIntoAFolder) {
   for (const bool exists : {false, true}) {
+    SCOPED_TRACE(exists);
     const fs::path run = folder.path() / "a-1";
     OutputFolder first(run, contents("a"), Replace::same);
-    EXPECT_NE(refusal_of([&] { run_into(run, "a"); }).find("another understory writes there"),
-              std::string::npos)
-        << exists;
+    expect_part(refusal_of<ScenarioError>([&] { run_into(run, "a"); }), "another understory writes there");
     EXPECT_TRUE(fs::exists(first.path() / "scenario.yaml"));
     first.finish();
   }
 }
 
-TEST(OutputFolder, ALockLeavesNothingBehind) {
-  const TemporaryFolder folder;
+TEST_F(OutputFolderTest, ALockLeavesNothingBehind) {
   const fs::path fresh = folder.path() / "new";
   { const FolderLock lock(fresh, fresh); }
   EXPECT_FALSE(fs::exists(fresh));
@@ -213,8 +187,7 @@ TEST(OutputFolder, ALockLeavesNothingBehind) {
   EXPECT_TRUE(fs::is_empty(fresh));
 }
 
-TEST(OutputFolder, WhatAKilledProgramLeftIsClearedAway) {
-  const TemporaryFolder folder;
+TEST_F(OutputFolderTest, WhatAKilledProgramLeftIsClearedAway) {
   const fs::path run = folder.path() / "a-1";
   if (const pid_t child = fork(); child == 0) {
     const OutputFolder broken_off(run, contents("b"), Replace::same);
@@ -229,8 +202,7 @@ TEST(OutputFolder, WhatAKilledProgramLeftIsClearedAway) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
 }
 
-TEST(OutputFolder, FollowsALinkAndKeepsIt) {
-  const TemporaryFolder folder;
+TEST_F(OutputFolderTest, FollowsALinkAndKeepsIt) {
   fs::create_directory_symlink("far", folder.path() / "link");
   run_into(folder.path() / "link", "a");
   EXPECT_TRUE(fs::is_symlink(folder.path() / "link"));

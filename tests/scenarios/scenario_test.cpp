@@ -1,17 +1,24 @@
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
+#include "perception/io/calibration_file.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 namespace understory {
 namespace {
 
-const std::filesystem::path library = std::filesystem::path(UNDERSTORY_SOURCE_DIR) / "scenarios/library";
+namespace fs = std::filesystem;
+using namespace support;
+using ScenarioRig = FolderTest;
+
+const fs::path library = fs::path(UNDERSTORY_SOURCE_DIR) / "scenarios/library";
+const fs::path models = fs::path(UNDERSTORY_SOURCE_DIR) / "models";
 
 TEST(Scenario, EveryLibraryFileLoadsAndSurvivesARoundTrip) {
   int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(library)) {
+  for (const auto& entry : fs::directory_iterator(library)) {
     const Scenario scenario = load_scenario(entry.path());
     const std::string text = scenario_to_text(scenario);
     EXPECT_EQ(scenario_to_text(scenario_from_text(text, "again.yaml")), text) << entry.path();
@@ -44,9 +51,9 @@ TEST(Scenario, EveryDefaultIsWritten) {
   const std::string text = scenario_to_text(Scenario{});
   for (const char* key : {"square_metres_per_tree", "latency_s", "lens_cap", "mass_kg", "maximum_altitude_m",
                           "invisible", "detector", "source"}) {
-    EXPECT_NE(text.find(std::string(key) + ": "), std::string::npos) << key;
+    expect_part(text, std::string(key) + ": ");
   }
-  EXPECT_EQ(text.find("obstacles_visible"), std::string::npos);  // forest.invisible stands for it
+  expect_no_part(text, "obstacles_visible");  // forest.invisible stands for it
 }
 
 TEST(Scenario, FilterAndPlannerTakeTheWingFromTheAirframe) {
@@ -98,13 +105,8 @@ TEST(Scenario, RefusesContradictions) {
 }
 
 TEST(Scenario, FullStereosNumbersAreRefusedInOneLineWhereOpenCvWouldThrow) {
-  const auto refusal = [](const std::string& text) -> std::string {
-    try {
-      scenario_from_text(text, "a.yaml");
-      return "accepted";
-    } catch (const ScenarioError& error) {
-      return error.what();
-    }
+  const auto refusal = [](const std::string& text) {
+    return refusal_of<ScenarioError>([&] { scenario_from_text(text, "a.yaml"); });
   };
   EXPECT_EQ(refusal("band: {least_altitude_m: 1}"),  // as keys were called in 0.1
             "a.yaml:1: band.least_altitude_m: expected a known key (did you mean minimum_altitude_m?)");
@@ -163,13 +165,11 @@ TEST(Scenario, FaultsAreReadWrittenAndChecked) {
   ASSERT_EQ(again.faults.size(), 2u);
   EXPECT_EQ(again.faults[1].duration_s, 0.5);
   EXPECT_TRUE(scenario_from_text(scenario_to_text(scenario), "again.yaml", {"faults=[]"}).faults.empty());
-  try {
+  const auto refused = [] {
     scenario_from_text("seed: 1\nfaults:\n  - sensor: barometer\n    kind: block\n", "a.yaml");
-    FAIL() << "accepted";
-  } catch (const ScenarioError& error) {
-    EXPECT_STREQ(error.what(),
-                 "a.yaml:4: faults[0].kind: expected, for this sensor, freeze | dropout | bias | saturate");
-  }
+  };
+  EXPECT_EQ(refusal_of<ScenarioError>(refused),
+            "a.yaml:4: faults[0].kind: expected, for this sensor, freeze | dropout | bias | saturate");
 }
 
 TEST(Scenario, TheAircraftThatFliesMayDifferFromTheStacks) {
@@ -192,6 +192,78 @@ TEST(Scenario, ProofSwitchesReachTheWorld) {
       scenario_from_text("forest: {invisible: true}\n", "a.yaml", {"forest.intangible=true"});
   EXPECT_FALSE(scenario.world_config().obstacles_visible);
   EXPECT_FALSE(scenario.world_config().obstacles_tangible);
+}
+
+CalibratedRig rig_for(const std::vector<std::string>& settings) {
+  return rig_of(scenario_from_text("name: a\n", "a.yaml", settings), models);
+}
+
+std::string refusal_for(const std::vector<std::string>& settings) {
+  return refusal_of<ScenarioError>([&] { rig_for(settings); });
+}
+
+TEST_F(ScenarioRig, IsRectifiedUnlessTheScenarioSaysRaw) {
+  EXPECT_FALSE(rig_for({"rig=long"}).calibration.has_value());
+  EXPECT_EQ(rig_for({"rig=long"}).rig.focal_px, read_rig(models / "rigs/long.yaml").focal_px);
+}
+
+TEST_F(ScenarioRig, RawCamerasStandWhereTheRigsFileMountsTheRectifiedPair) {
+  for (const auto& settings : {std::vector<std::string>{"rig=long"},
+                               std::vector<std::string>{"rig=paper", "cameras.raw_unit_m=0.01"}}) {
+    std::vector<std::string> with_raw = settings;
+    with_raw.emplace_back("cameras.raw=true");
+    const StereoRig mounted = rig_for(settings).rig;
+    const CalibratedRig raw = rig_for(with_raw);
+    ASSERT_TRUE(raw.calibration.has_value());
+    EXPECT_TRUE(raw.rig.T_body_camera.isApprox(mounted.T_body_camera, 1e-6));
+    EXPECT_NEAR(raw.rig.baseline_m, mounted.baseline_m, 1e-3);
+    EXPECT_NEAR(raw.rig.infinity_disparity_px(), mounted.infinity_disparity_px(), 0.1);
+    EXPECT_EQ(raw.rig.detection_depth_m, mounted.detection_depth_m);
+  }
+}
+
+TEST_F(ScenarioRig, APathIsLookedForBesideTheFileThatGivesIt) {
+  const auto own = [&](const char* name, double detection_depth_m) {
+    std::string text = content_of(models / "rigs/long.yaml");
+    const std::size_t value = text.find("detection_depth_m: ") + 19;
+    text.replace(value, text.find_first_of(" \n", value) - value, std::to_string(detection_depth_m));
+    folder.write(name, text);
+  };
+  own("forest/own.yaml", 7), own("changes/own.yaml", 8), own("own.yaml", 9);
+  const auto forest = folder.write("forest/forest.yaml", "rig: own.yaml\n");
+  const auto changes = folder.write("changes/changes.yaml", "rig: ./own.yaml\n");
+  const auto depth_m = [](const Scenario& scenario) {
+    return rig_of(scenario, models).rig.detection_depth_m;
+  };
+  EXPECT_EQ(depth_m(load_scenario(forest)), 7);
+  EXPECT_EQ(depth_m(load_scenario(forest, {}, {changes})), 8);
+  // On the command line a path is the working directory's.
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.path());
+  EXPECT_EQ(depth_m(load_scenario(forest, {"rig=own.yaml"})), 9);
+  fs::current_path(before);
+
+  // A run folder's scenario flies again from anywhere.
+  const auto again = folder.write("runs/1/scenario.yaml", scenario_to_text(load_scenario(forest)));
+  EXPECT_EQ(depth_m(load_scenario(again)), 7);
+
+  // A plain word is a name, whatever lies beside: here a scenario.
+  folder.write("forest/paper.yaml", "rig: long\n");
+  EXPECT_EQ(load_scenario(folder.write("forest/named.yaml", "rig: paper\n")).rig, "paper");
+}
+
+TEST_F(ScenarioRig, SaysInOneLineWhatIsWrongWithARawRig) {
+  expect_part(refusal_for({"rig=paper", "cameras.raw=true"}), "cameras.raw_unit_m");
+  expect_part(refusal_for({"rig=nowhere", "cameras.raw=true"}), "rig: expected");
+  const fs::path file = folder.path() / "own.yaml";
+  fs::copy_file(models / "rigs/long.yaml", file);
+  expect_part(refusal_for({"rig=" + file.string(), "cameras.raw=true"}), "own.xml");
+  // Another rig's calibration under this rig's name.
+  fs::create_directory(folder.path() / "raw");
+  fs::copy_file(models / "rigs/raw/paper.xml", folder.path() / "raw/own.xml");
+  const std::string other =
+      refusal_for({"rig=" + file.string(), "cameras.raw=true", "cameras.raw_unit_m=0.01"});
+  expect_part(other, "focal length 386.9 px");
 }
 
 }  // namespace

@@ -37,6 +37,17 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
+/// A test with such a folder, and what it says of it on a command line.
+struct FolderTest : testing::Test {
+  const TemporaryFolder folder;
+
+  std::string path(const std::string& name) const { return (folder.path() / name).string(); }
+  std::string to(const std::string& name) const { return " --out " + path(name); }
+  std::string file(const std::string& name, const std::string& text) const {
+    return folder.write(name, text).string();
+  }
+};
+
 /// A whole file as text.
 inline std::string content_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);

@@ -15,12 +15,12 @@ inline void expect_no_part(const std::string& text, const std::string& part) {
   EXPECT_EQ(text.find(part), std::string::npos) << "'" << part << "' is in:\n" << text;
 }
 
-/// What the one line says with which `work` is refused; empty where it is not.
-template <typename Work>
+/// What the one line says with which `work` is refused, by an Error; empty where it is not.
+template <typename Error = std::runtime_error, typename Work>
 std::string refusal_of(Work&& work) {
   try {
     work();
-  } catch (const std::runtime_error& error) {
+  } catch (const Error& error) {
     expect_no_part(error.what(), "\n");
     return error.what();
   }
