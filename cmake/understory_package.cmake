@@ -2,7 +2,7 @@
 # understory (the program, its models and scenarios) and libunderstory-dev.
 set(CPACK_PACKAGE_NAME understory)
 set(CPACK_PACKAGE_VENDOR "the Understory developers")
-set(CPACK_PACKAGE_CONTACT "The Understory developers <understory@localhost>")
+set(CPACK_PACKAGE_CONTACT "The Understory developers <understory@example.org>")
 set(CPACK_PACKAGE_HOMEPAGE_URL "")
 set(CPACK_GENERATOR DEB)
 set(CPACK_COMPONENTS_ALL program development)
@@ -17,11 +17,11 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME understory)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "${PROJECT_DESCRIPTION}
- Flies a simulated delta wing through forests on its own stereo vision,
- headless, on a CPU, the same way every time: single flights, recordings,
- campaigns with statistics, a gate for continuous integration, and the
- detector on recorded images.")
+# CPack puts the project's description, the synopsis, before these.
+set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "Flies a simulated delta wing through forests on its own stereo vision,
+headless, on a CPU, the same way every time: single flights, recordings,
+campaigns with statistics, a gate for continuous integration, and the
+detector on recorded images.")
 # What is linked, and what is opened at run time: OSMesa draws everywhere, EGL where a GPU is.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS libosmesa6)
@@ -29,10 +29,9 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "libegl1, libgl1-mesa-dri")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libunderstory-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "detector and estimator of Understory, to build with
- Static libraries, headers and CMake configuration of the pushbroom stereo
- detector with its readers, and of the error-state filter, as they run on an
- aircraft: find_package(understory COMPONENTS perception estimation).")
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "Static libraries, headers and CMake configuration of the pushbroom stereo
+detector with its readers, and of the error-state filter, as they run on an
+aircraft: find_package(understory COMPONENTS perception estimation).")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "libeigen3-dev, libopencv-dev, libyaml-cpp-dev, libpugixml-dev, libfmt-dev, libtbb-dev, libhwy-dev")
 
@@ -55,4 +54,9 @@ foreach(component program development)
   install(FILES ${pages}/copyright ${pages}/changelog.gz ${pages}/changelog.Debian.gz COMPONENT ${component}
           DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_${key}_PACKAGE_NAME})
 endforeach()
+# The module of picture codecs calls OpenCV and the C++ library, and no function of libc itself.
+file(CONFIGURE OUTPUT ${pages}/lintian-overrides
+     CONTENT "understory: library-not-linked-against-libc *understory_picture_codecs.so*\n")
+install(FILES ${pages}/lintian-overrides COMPONENT program RENAME understory
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides)
 include(CPack)
