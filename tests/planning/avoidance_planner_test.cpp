@@ -11,16 +11,17 @@ namespace understory {
 namespace {
 
 constexpr std::int64_t replan_ns = 40'000'000;
+const Mission mission;
+const FlightModel model({}, {});
 
-FlightState level_start(const Mission& mission) {
+FlightState level_start() {
   FlightState start;
   start.position_world.z() = mission.cruise_altitude_m;
   return start;
 }
 
 /// Where the model says the aircraft is after following `plan` for a while.
-FlightState follow_plan(const FlightModel& model, FlightState state, const Plan& plan,
-                        std::int64_t duration_ns) {
+FlightState follow_plan(FlightState state, const Plan& plan, std::int64_t duration_ns) {
   const double step_s = plan.points[1].t_s - plan.points[0].t_s;
   const auto steps = static_cast<std::size_t>(std::llround(1e-9 * static_cast<double>(duration_ns) / step_s));
   for (std::size_t i = 0; i < std::min(steps, plan.points.size()); ++i)
@@ -33,9 +34,8 @@ std::int64_t total(const PlannerCounts& counts) {
 }
 
 TEST(AvoidancePlanner, FliesStraightWhereNothingIsInTheWay) {
-  const Mission mission;
-  AvoidancePlanner planner({}, FlightModel({}, {}), mission, 1);
-  const Plan plan = planner.plan(level_start(mission), 5'000'000, {}, 0);
+  AvoidancePlanner planner({}, model, mission, 1);
+  const Plan plan = planner.plan(level_start(), 5'000'000, {}, 0);
   EXPECT_EQ(plan.origin, PlanOrigin::straight);
   EXPECT_EQ(plan.t_ns, 5'000'000);
   EXPECT_EQ(planner.counts().straight, 1);
@@ -45,8 +45,6 @@ TEST(AvoidancePlanner, FliesStraightWhereNothingIsInTheWay) {
 
 // The aircraft of this test is the reduced model itself, so that a touch would be the planner's own fault.
 TEST(AvoidancePlanner, PlansNeverTouchAKnownTrunk) {
-  const Mission mission;
-  const FlightModel model({}, {});
   const PlannerConfig config;
   const double around_m = config.field.wing_radius_m + config.field.sigma_zero_m + 0.5 * config.field.cell_m;
   const double limit_m =
@@ -57,14 +55,14 @@ TEST(AvoidancePlanner, PlansNeverTouchAKnownTrunk) {
     const std::vector<Trunk> trunks = random_forest(generator, 16, 7, 30);
     const std::vector<ObstaclePoint> points = points_of(trunks);
     AvoidancePlanner planner(config, model, mission, seed);
-    FlightState state = level_start(mission);
+    FlightState state = level_start();
     for (int replan = 0; replan < 40; ++replan) {
       const Plan plan = planner.plan(state, replan * replan_ns, points, 0);
       ASSERT_GE(plan.points.size(), 2u);
       if (plan.origin == PlanOrigin::fallback) break;  // a fallback is not free of collision
       EXPECT_GE(plan_distance_m(plan, trunks, config.field), limit_m - 1e-9)
           << "seed " << seed << " at " << replan;
-      state = follow_plan(model, state, plan, replan_ns);
+      state = follow_plan(state, plan, replan_ns);
     }
     sum.straight += planner.counts().straight, sum.solved += planner.counts().solved;
     sum.kept += planner.counts().kept, sum.fallback += planner.counts().fallback;
@@ -76,9 +74,8 @@ TEST(AvoidancePlanner, PlansNeverTouchAKnownTrunk) {
 }
 
 TEST(AvoidancePlanner, BoxedInItFallsBackAndSaysSo) {
-  const Mission mission;
-  AvoidancePlanner planner({}, FlightModel({}, {}), mission, 1);
-  const Plan plan = planner.plan(level_start(mission), 0, points_of(wall(6)), 0);
+  AvoidancePlanner planner({}, model, mission, 1);
+  const Plan plan = planner.plan(level_start(), 0, points_of(wall(6)), 0);
   EXPECT_EQ(plan.origin, PlanOrigin::fallback);
   EXPECT_FALSE(plan.points.empty());
   EXPECT_EQ(planner.counts().fallback, 1);
@@ -86,16 +83,14 @@ TEST(AvoidancePlanner, BoxedInItFallsBackAndSaysSo) {
 }
 
 TEST(AvoidancePlanner, KeepsItsPlanWhileThatIsGood) {
-  const Mission mission;
-  const FlightModel model({}, {});
   PlannerConfig config;
   config.kept_cost_ratio = 100;
   config.refresh_replans = 1000;
   AvoidancePlanner planner(config, model, mission, 1);
   const std::vector<ObstaclePoint> points = points_of({{{9, 0.1}}});
-  const Plan first = planner.plan(level_start(mission), 0, points, 0);
+  const Plan first = planner.plan(level_start(), 0, points, 0);
   ASSERT_EQ(first.origin, PlanOrigin::solved);
-  const FlightState state = follow_plan(model, level_start(mission), first, replan_ns);
+  const FlightState state = follow_plan(level_start(), first, replan_ns);
   const Plan second = planner.plan(state, replan_ns, points, 0);
   EXPECT_EQ(second.origin, PlanOrigin::kept);
   EXPECT_EQ(planner.counts().kept, 1);
@@ -107,16 +102,14 @@ TEST(AvoidancePlanner, KeepsItsPlanWhileThatIsGood) {
 }
 
 TEST(AvoidancePlanner, GivesUpAPlanThatIsBlockedByWhatIsNewlySeen) {
-  const Mission mission;
-  const FlightModel model({}, {});
   const PlannerConfig config;
   AvoidancePlanner planner(config, model, mission, 1);
   std::vector<Trunk> trunks{{{9, 0.1}}};
-  const Plan first = planner.plan(level_start(mission), 0, points_of(trunks), 0);
+  const Plan first = planner.plan(level_start(), 0, points_of(trunks), 0);
   ASSERT_EQ(first.origin, PlanOrigin::solved);
   const PlanPoint& there = first.points[first.points.size() * 3 / 4];
   trunks.push_back({there.position_world.head<2>()});
-  const FlightState state = follow_plan(model, level_start(mission), first, replan_ns);
+  const FlightState state = follow_plan(level_start(), first, replan_ns);
   const Plan second = planner.plan(state, replan_ns, points_of(trunks), 0);
   EXPECT_NE(second.origin, PlanOrigin::kept);
   EXPECT_NE(second.origin, PlanOrigin::straight);
@@ -126,12 +119,11 @@ TEST(AvoidancePlanner, GivesUpAPlanThatIsBlockedByWhatIsNewlySeen) {
 }
 
 TEST(AvoidancePlanner, WithoutOmplThePrimitivesAnswer) {
-  const Mission mission;
   PlannerConfig config;
   config.use_ompl = false;
-  AvoidancePlanner planner(config, FlightModel({}, {}), mission, 1);
+  AvoidancePlanner planner(config, model, mission, 1);
   const std::vector<Trunk> trunks{{{9, 0.1}}};
-  const Plan plan = planner.plan(level_start(mission), 0, points_of(trunks), 0);
+  const Plan plan = planner.plan(level_start(), 0, points_of(trunks), 0);
   EXPECT_EQ(plan.origin, PlanOrigin::fallback);
   EXPECT_EQ(planner.counts().solved, 0);
   // With one trunk alone the primitive with the maximum clearance passes it.
@@ -140,17 +132,16 @@ TEST(AvoidancePlanner, WithoutOmplThePrimitivesAnswer) {
 }
 
 TEST(AvoidancePlanner, AReplanCanBeRepeated) {
-  const Mission mission;
   std::mt19937_64 generator(5);
   const std::vector<ObstaclePoint> points = points_of(random_forest(generator, 14, 5, 14));
   const auto flown = [&] {
-    AvoidancePlanner planner({}, FlightModel({}, {}), mission, 9);
+    AvoidancePlanner planner({}, model, mission, 9);
     std::vector<Eigen::Vector3d> path;
-    FlightState state = level_start(mission);
+    FlightState state = level_start();
     for (int replan = 0; replan < 6; ++replan) {
       const Plan plan = planner.plan(state, replan * replan_ns, points, 0);
       for (const PlanPoint& point : plan.points) path.push_back(point.position_world);
-      state = follow_plan(FlightModel({}, {}), state, plan, replan_ns);
+      state = follow_plan(state, plan, replan_ns);
     }
     return path;
   };

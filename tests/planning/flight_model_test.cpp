@@ -16,9 +16,7 @@ using Eigen::Vector3d;
 constexpr double step_s = 0.02;
 
 FlightModel model_at(double cruise_speed_mps) {
-  FlightModelConfig config;
-  config.cruise_speed_mps = cruise_speed_mps;
-  return FlightModel(Airframe{}, config);
+  return FlightModel(Airframe{}, {.cruise_speed_mps = cruise_speed_mps});
 }
 
 FlightState fly_for(const FlightModel& model, FlightState state, const FlightCommand& command,

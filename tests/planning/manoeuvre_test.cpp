@@ -11,16 +11,22 @@
 namespace understory {
 namespace {
 
-/// A task whose parts live as long as it does.
+/// A task, and a search for a manoeuvre in it, whose parts live as long as it does.
 struct Flight {
-  explicit Flight(const std::vector<Trunk>& trunks = {}) : field({}, points_of(trunks), 0) {
+  explicit Flight(std::vector<Trunk> standing = {})
+      : trunks(std::move(standing)), field(field_config, points_of(trunks), 0) {
     start.position_world.z() = mission.cruise_altitude_m;
   }
   FlightTask task() const { return {model, config, mission, field, start.position_world}; }
+  std::optional<Manoeuvre> search(std::uint64_t seed) const {
+    return search_manoeuvre(task(), start, {}, ManoeuvreSearchConfig{}, seed);
+  }
 
   FlightModel model{Airframe{}, FlightModelConfig{}};
   TrajectoryConfig config;
   Mission mission;
+  ObstacleFieldConfig field_config;
+  std::vector<Trunk> trunks;
   ObstacleField field;
   FlightState start;
 };
@@ -107,35 +113,15 @@ TEST(CourseCommand, TurnsBackToTheCourse) {
   EXPECT_GT(course_command(flight.task(), flight.start).climb_mps, 0.1);
 }
 
-/// Everything that a search is asked with, in a forest of its own.
-struct Search {
-  explicit Search(std::vector<Trunk> standing)
-      : trunks(std::move(standing)), field(field_config, points_of(trunks), 0) {
-    start.position_world.z() = mission.cruise_altitude_m;
-  }
-  FlightTask task() const { return {model, trajectory, mission, field, start.position_world}; }
-  std::optional<Manoeuvre> run(std::uint64_t seed) const {
-    return search_manoeuvre(task(), start, {}, config, seed);
-  }
-
-  FlightModel model{Airframe{}, FlightModelConfig{}};
-  TrajectoryConfig trajectory;
-  Mission mission;
-  ManoeuvreSearchConfig config;
-  ObstacleFieldConfig field_config;
-  std::vector<Trunk> trunks;
-  ObstacleField field;
-  FlightState start;
-};
-
-Search random_search(std::uint64_t seed) {
+/// In a forest of its own.
+Flight random_flight(std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   std::vector<Trunk> trunks = random_forest(generator, 8, 4, 13);
   trunks.push_back({{8, 0.2}});  // one right ahead
-  Search search(std::move(trunks));
-  search.start.bank_rad = std::uniform_real_distribution<double>(-0.5, 0.5)(generator);
-  search.start.heading_rad = std::uniform_real_distribution<double>(-0.3, 0.3)(generator);
-  return search;
+  Flight flight(std::move(trunks));
+  flight.start.bank_rad = std::uniform_real_distribution<double>(-0.5, 0.5)(generator);
+  flight.start.heading_rad = std::uniform_real_distribution<double>(-0.3, 0.3)(generator);
+  return flight;
 }
 
 bool same(const std::optional<Manoeuvre>& one, const std::optional<Manoeuvre>& other) {
@@ -147,59 +133,59 @@ bool same(const std::optional<Manoeuvre>& one, const std::optional<Manoeuvre>& o
 }
 
 TEST(ManoeuvreSearch, RepeatsExactlyWhateverWasSearchedBefore) {
-  const Search search({{{9, 0.1}}, {{11, 2.5}}, {{12, -2}}}), other = random_search(2);
-  const std::optional<Manoeuvre> first = search.run(42);
+  const Flight flight({{{9, 0.1}}, {{11, 2.5}}, {{12, -2}}}), other = random_flight(2);
+  const std::optional<Manoeuvre> first = flight.search(42);
   ASSERT_TRUE(first.has_value());
-  EXPECT_TRUE(same(first, search.run(42)));
-  other.run(7);
-  search.run(43);
-  EXPECT_TRUE(same(first, search.run(42)));
-  EXPECT_TRUE(same(first, Search(search.trunks).run(42)));  // all objects new
+  EXPECT_TRUE(same(first, flight.search(42)));
+  other.search(7);
+  flight.search(43);
+  EXPECT_TRUE(same(first, flight.search(42)));
+  EXPECT_TRUE(same(first, Flight(flight.trunks).search(42)));  // all objects new
 }
 
 TEST(ManoeuvreSearch, SeedsDiffer) {
-  const Search search({{{9, 0.1}}, {{11, 2.5}}, {{12, -2}}});
+  const Flight flight({{{9, 0.1}}, {{11, 2.5}}, {{12, -2}}});
   int different = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed)
-    different += !same(search.run(seed), search.run(seed + 100));
+    different += !same(flight.search(seed), flight.search(seed + 100));
   EXPECT_GE(different, 3);
 }
 
 TEST(ManoeuvreSearch, WhatItFindsKeepsClearOfEveryKnownTrunk) {
   int found_count = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-    const Search search = random_search(seed);
-    const std::optional<Manoeuvre> found = search.run(seed);
+    const Flight flight = random_flight(seed);
+    const std::optional<Manoeuvre> found = flight.search(seed);
     if (!found) continue;
     ++found_count;
-    const double limit = search.trajectory.minimum_clearance_m;
+    const double limit = flight.config.minimum_clearance_m;
     Plan plan;
-    const Rollout rollout = fly_out(search.task(), search.start, *found, limit, true);
+    const Rollout rollout = fly_out(flight.task(), flight.start, *found, limit, true);
     EXPECT_TRUE(rollout.reached_horizon) << "seed " << seed;
     plan.points = rollout.points;
-    const ObstacleFieldConfig& field = search.field_config;
+    const ObstacleFieldConfig& field = flight.field_config;
     const double around_m = field.wing_radius_m + field.sigma_zero_m + 0.5 * field.cell_m;
-    EXPECT_GE(plan_distance_m(plan, search.trunks, field), around_m + limit - 1e-9) << "seed " << seed;
+    EXPECT_GE(plan_distance_m(plan, flight.trunks, field), around_m + limit - 1e-9) << "seed " << seed;
     for (const PlanPoint& point : plan.points) {
-      EXPECT_GT(point.position_world.z(), search.mission.minimum_altitude_m);
-      EXPECT_LT(point.position_world.z(), search.mission.maximum_altitude_m);
+      EXPECT_GT(point.position_world.z(), flight.mission.minimum_altitude_m);
+      EXPECT_LT(point.position_world.z(), flight.mission.maximum_altitude_m);
     }
   }
   EXPECT_GE(found_count, 45);
 }
 
 TEST(ManoeuvreSearch, FindsNothingThroughAWall) {
-  const Search search(wall(8));
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) EXPECT_FALSE(search.run(seed).has_value());
+  const Flight flight(wall(8));
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) EXPECT_FALSE(flight.search(seed).has_value());
 }
 
 TEST(ManoeuvreSearch, FindsTheDoorInAWall) {
   std::vector<Trunk> trunks = wall(9);
   std::erase_if(trunks,
                 [](const Trunk& trunk) { return trunk.foot_world.y() > 0.2 && trunk.foot_world.y() < 3.5; });
-  const Search search(std::move(trunks));
+  const Flight flight(std::move(trunks));
   int found = 0;
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) found += search.run(seed).has_value();
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) found += flight.search(seed).has_value();
   EXPECT_GE(found, 4);
 }
 
