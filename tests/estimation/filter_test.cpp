@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "estimation/gate.hpp"
 #include "simulated_flight.hpp"
 
 namespace understory::test {
@@ -37,23 +38,12 @@ struct Turn {
   }
 };
 
-FilterConfig already_flying(const Moment& truth) {
-  const Eigen::Matrix3d attitude = truth.T_world_body.linear();
-  FilterConfig config;
-  config.start.in_flight = true;
-  config.start.position_world_m = truth.T_world_body.translation();
-  config.start.velocity_body_mps = truth.velocity_body;
-  config.start.yaw_rad = std::atan2(attitude(1, 0), attitude(0, 0));
-  config.start.pitch_rad = std::asin(attitude(2, 0));
-  config.start.roll_rad = std::atan2(attitude(2, 1), attitude(2, 2));
-  return config;
-}
-
 TEST(Filter, FollowsACoordinatedTurnInClosedForm) {
   for (const double bank : {-1.0, 0.5, M_PI / 3}) {
     Turn turn;
     turn.bank_rad = bank;
-    FilterConfig config = already_flying(turn.at(0));
+    FilterConfig config;
+    start_at(config.start, turn.at(0));
     config.angle_of_attack.enabled = false;  // the closed form chooses its angle of attack freely,
     config.sideslip.model =
         SideslipModel::zero;  // and has no winglets: its sideslip is zero, whatever the turn rate
@@ -228,6 +218,41 @@ TEST(Filter, StateAtInterpolatesTheLastSecond) {
   EXPECT_LT((filter.state_at(a.t_ns).T_world_body.matrix() - a.T_world_body.matrix()).norm(), 1e-14);
   EXPECT_EQ(filter.state_at(recorded[last].t_ns + 2'000'000'000).t_ns, recorded[last].t_ns);
   EXPECT_EQ(filter.state_at(0).t_ns, recorded[last].t_ns - 1'000'000'000);
+}
+
+TEST(Gate, QuantilesAgreeWithTables) {
+  EXPECT_NEAR(chi_square_quantile(0.95, 1), 3.841, 1e-3);
+  EXPECT_NEAR(chi_square_quantile(0.999, 1), 10.828, 1e-3);
+  EXPECT_NEAR(chi_square_quantile(0.95, 2), 5.991, 1e-3);
+  EXPECT_NEAR(chi_square_quantile(0.99, 3), 11.345, 1e-3);
+}
+
+TEST(Gate, RefusesOutliersButNotForEver) {
+  Gate gate(10, 0.1, Distrust::believe);
+  EXPECT_TRUE(gate.admits(9, 0));
+  EXPECT_FALSE(gate.admits(11, 20'000'000));
+  EXPECT_TRUE(gate.admits(1, 40'000'000));  // it agrees again: patience starts anew
+  EXPECT_FALSE(gate.admits(11, 60'000'000));
+  EXPECT_FALSE(gate.admits(11, 160'000'000));
+  EXPECT_TRUE(gate.admits(11, 170'000'000));
+  EXPECT_FALSE(gate.admits(std::numeric_limits<double>::quiet_NaN(), 180'000'000));
+}
+
+TEST(Gate, AFaultySensorStaysOutUntilItHasAgreedAsLong) {
+  Gate gate(10, 0.1, Distrust::exclude);
+  const auto at = [&](double squared, std::int64_t t_ms) { return gate.admits(squared, t_ms * 1'000'000); };
+  EXPECT_TRUE(at(1, 0));
+  EXPECT_FALSE(at(50, 20));
+  EXPECT_FALSE(gate.faulty());  // a single outlier is no fault
+  EXPECT_FALSE(at(50, 130));
+  EXPECT_TRUE(gate.faulty());
+  EXPECT_FALSE(at(1, 140));  // one agreement does not end a fault
+  EXPECT_FALSE(at(50, 200));
+  EXPECT_FALSE(at(1, 220));
+  EXPECT_FALSE(at(1, 320));
+  EXPECT_TRUE(at(1, 330));
+  EXPECT_FALSE(gate.faulty());
+  EXPECT_EQ(gate.newest(), 1);
 }
 
 }  // namespace

@@ -20,15 +20,10 @@ std::vector<Moment> dodging() {
 
 /// Knows everything but its velocity, and has nothing but inertial sensors to keep it.
 FilterConfig wrong_about_velocity(const Moment& truth, const Eigen::Vector3d& error_body, double sigma_mps) {
-  const Eigen::Matrix3d attitude = truth.T_world_body.linear();
   FilterConfig config;
   StartConfig& start = config.start;
-  start.in_flight = true;
-  start.position_world_m = truth.T_world_body.translation();
-  start.velocity_body_mps = truth.velocity_body - error_body;
-  start.yaw_rad = std::atan2(attitude(1, 0), attitude(0, 0));
-  start.pitch_rad = std::asin(attitude(2, 0));
-  start.roll_rad = std::atan2(attitude(2, 1), attitude(2, 2));
+  start_at(start, truth);
+  start.velocity_body_mps -= error_body;
   start.velocity_sigma_mps = sigma_mps;
   start.tilt_sigma_rad = start.yaw_sigma_rad = start.gyro_bias_sigma_radps = 0;
   config.states.accelerometer_bias = false;

@@ -159,6 +159,16 @@ void Sensors::feed(StateSource& to, const Moment& moment) {
                                             draw3(errors_.field_noise)});
 }
 
+void start_at(StartConfig& start, const Moment& truth) {
+  const Eigen::Matrix3d attitude = truth.T_world_body.linear();
+  start.in_flight = true;
+  start.position_world_m = truth.T_world_body.translation();
+  start.velocity_body_mps = truth.velocity_body;
+  start.yaw_rad = std::atan2(attitude(1, 0), attitude(0, 0));
+  start.pitch_rad = std::asin(attitude(2, 0));
+  start.roll_rad = std::atan2(attitude(2, 1), attitude(2, 2));
+}
+
 Vector12d error_of(const State& estimate, const Moment& truth, const Eigen::Vector3d& gyro_bias) {
   const Eigen::AngleAxisd apart(
       Eigen::Matrix3d(estimate.T_world_body.linear().transpose() * truth.T_world_body.linear()));

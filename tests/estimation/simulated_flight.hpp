@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "estimation/filter_config.hpp"
 #include "estimation/samples.hpp"
 #include "estimation/state_source.hpp"
 
@@ -66,6 +67,9 @@ class Sensors {
   Eigen::Vector3d field_bias_;
   int count_ = 0;
 };
+
+/// A start in flight that knows the truth's attitude, velocity and position.
+void start_at(StartConfig& start, const Moment& truth);
 
 using Vector12d = Eigen::Matrix<double, 12, 1>;
 
