@@ -16,14 +16,12 @@ FaultConfig fault(FaultySensor sensor, FaultKind kind, double value = 0) {
   return {sensor, kind, 2, 1, value};
 }
 
-PitotSample reading(std::int64_t t_ns, double airspeed_mps) { return {t_ns, airspeed_mps}; }
-
 /// What arrives of the readings 10, 11, ... m/s at 0.0, 0.5, ... s; -1 where nothing does.
 std::vector<double> arrived(std::vector<FaultConfig> schedule, int count = 8) {
   Faults faults(std::move(schedule));
   std::vector<double> all;
   for (int i = 0; i < count; ++i) {
-    PitotSample sample = reading(i * second_ns / 2, 10 + i);
+    PitotSample sample{i * second_ns / 2, 10.0 + i};
     all.push_back(faults.pass(sample) ? sample.airspeed_mps : -1);
     EXPECT_EQ(sample.t_ns, i * second_ns / 2);
   }
