@@ -44,7 +44,7 @@ std::vector<double> StrictMap::numbers(const std::string& key, std::size_t count
 }
 
 std::size_t StrictMap::length(const std::string& key) const {
-  const TextNode* node = find(key);
+  const TextNode* node = find_child(map_, key);
   return node != nullptr && node->kind == TextNode::Kind::list ? node->children.size() : 0;
 }
 
@@ -57,19 +57,13 @@ void StrictMap::refuse_others() const {
 }
 
 void StrictMap::fail(const std::string& key, const std::string& expected) const {
-  const TextNode* node = find(key);
+  const TextNode* node = find_child(map_, key);
   refuse_input(node != nullptr ? node->origin : map_.origin, prefix_ + key, expected);
-}
-
-const TextNode* StrictMap::find(const std::string& key) const {
-  for (const TextNode& child : map_.children)
-    if (child.key == key) return &child;
-  return nullptr;
 }
 
 const TextNode& StrictMap::take(const std::string& key) {
   known_.push_back(key);
-  const TextNode* node = find(key);
+  const TextNode* node = find_child(map_, key);
   if (node == nullptr) fail(key, "expected this key, found none");
   return *node;
 }

@@ -14,7 +14,7 @@ class StrictMap {
   /// `prefix`: how the map itself is called in messages, "T_BS." for instance. Throws where `map` is no map.
   explicit StrictMap(TextNode map, std::string prefix = "");
 
-  bool has(const std::string& key) const { return find(key) != nullptr; }
+  bool has(const std::string& key) const { return find_child(map_, key) != nullptr; }
 
   std::string text(const std::string& key);
   double number(const std::string& key, double minimum, double maximum);
@@ -33,7 +33,6 @@ class StrictMap {
   [[noreturn]] void fail(const std::string& key, const std::string& expected) const;
 
  private:
-  const TextNode* find(const std::string& key) const;
   const TextNode& take(const std::string& key);
   double number(const TextNode& node, const std::string& key, double minimum, double maximum) const;
 

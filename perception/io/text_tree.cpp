@@ -260,6 +260,11 @@ class XmlReader {
 
 }  // namespace
 
+const TextNode* find_child(const TextNode& map, std::string_view key) {
+  const auto found = std::ranges::find(map.children, key, &TextNode::key);
+  return found == map.children.end() ? nullptr : &*found;
+}
+
 void refuse_double_keys(const TextNode& node, const std::string& path) {
   std::set<std::string_view> seen;
   for (std::size_t i = 0; i < node.children.size(); ++i) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace understory {
@@ -18,6 +19,9 @@ struct TextNode {
   bool quoted = false;  ///< a quoted scalar is a string, never a number
   std::vector<TextNode> children;
 };
+
+/// Null where the map has no such key.
+const TextNode* find_child(const TextNode& map, std::string_view key);
 
 /// Reads one YAML document whose top is a map; `file` stands for it in messages. OpenCV's own dialect
 /// ("%YAML:1.0" in the first line) is YAML enough. An alias becomes a copy of what it names. Throws

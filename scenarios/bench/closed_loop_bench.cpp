@@ -7,7 +7,6 @@
 
 #include "scenarios/bench/bench.hpp"
 #include "scenarios/config/config_tree.hpp"
-#include "scenarios/config/json_text.hpp"
 #include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/program.hpp"

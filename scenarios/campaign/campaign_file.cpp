@@ -6,7 +6,7 @@
 #include <set>
 
 #include "perception/io/text_table.hpp"
-#include "scenarios/config/config_keys.hpp"
+#include "scenarios/config/config_tree.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {

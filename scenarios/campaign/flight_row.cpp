@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "perception/io/text_table.hpp"
-#include "scenarios/config/json_text.hpp"
+#include "scenarios/config/config_tree.hpp"
 #include "scenarios/flight/flight_result.hpp"
 #include "scenarios/report/table.hpp"
 #include "scenarios/scenario/scenario.hpp"

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
@@ -86,9 +87,7 @@ class ConfigReader {
   /// To be called after the last visit.
   void finish() const {
     for (const ConfigNode& child : map_.children) {
-      bool is_known = false;
-      for (const std::string& name : known_) is_known = is_known || name == child.key;
-      if (is_known) continue;
+      if (std::ranges::find(known_, child.key) != known_.end()) continue;
       refuse_input(child.origin, full(child.key), "expected a known key" + did_you_mean(child.key, known_));
     }
   }
@@ -109,10 +108,7 @@ class ConfigReader {
 
   const ConfigNode* take(std::string_view name) {
     known_.emplace_back(name);
-    for (const ConfigNode& child : map_.children) {
-      if (child.key == name) return &child;
-    }
-    return nullptr;
+    return find_child(map_, name);
   }
 
   std::string full(std::string_view name) const {

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <utility>
+
+#include "perception/io/text_table.hpp"
 
 namespace understory {
 namespace {
@@ -14,6 +17,25 @@ std::string renamed_key(std::string key) {
   for (const auto& [before, now] : {std::pair{"least", "minimum"}, std::pair{"greatest", "maximum"}})
     if (const auto at = key.find(before); at != std::string::npos) key.replace(at, std::strlen(before), now);
   return key;
+}
+
+/// The child that a word of a path names: "launch", or "faults[2]" for an entry of a list. None: null.
+const ConfigNode* child_of(const ConfigNode& node, std::string_view word) {
+  const std::size_t bracket = word.find('[');
+  const ConfigNode* child = find_child(node, word.substr(0, bracket));
+  if (child == nullptr || bracket == std::string_view::npos) return child;
+  const std::size_t entry = std::stoul(std::string(word.substr(bracket + 1)));
+  return entry < child->children.size() ? &child->children[entry] : nullptr;
+}
+
+template <typename Number>
+Number parsed(const ConfigNode& node, const std::string& key, Number minimum, Number maximum,
+              const char* what) {
+  const bool is_plain = node.kind == ConfigNode::Kind::scalar && !node.quoted;
+  const auto value = is_plain ? number_in<Number>(node.text) : std::nullopt;
+  if (!value || *value < minimum || *value > maximum)
+    refuse_key(node, key, fmt::format("{} from {} to {}", what, minimum, maximum));
+  return *value;
 }
 
 }  // namespace
@@ -45,22 +67,6 @@ ConfigNode parse_assignment(const std::string& assignment) {
   const std::string key = assignment.substr(0, equals);
   return under_keys(parse_yaml_value(assignment.substr(equals + 1), origin, key), key);
 }
-
-namespace {
-
-/// The child that a word of a path names: "launch", or "faults[2]" for an entry of a list. None: null.
-const ConfigNode* child_of(const ConfigNode& node, std::string_view word) {
-  const std::size_t bracket = word.find('[');
-  const auto found = std::find_if(node.children.begin(), node.children.end(), [&](const ConfigNode& child) {
-    return child.key == word.substr(0, bracket);
-  });
-  if (found == node.children.end()) return nullptr;
-  if (bracket == std::string_view::npos) return &*found;
-  const std::size_t entry = std::stoul(std::string(word.substr(bracket + 1)));
-  return entry < found->children.size() ? &found->children[entry] : nullptr;
-}
-
-}  // namespace
 
 std::string origin_of(const std::vector<ConfigNode>& sources, std::string_view path) {
   for (auto source = sources.rbegin(); source != sources.rend(); ++source) {
@@ -98,6 +104,55 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
     }
   }
   return best.empty() ? "" : fmt::format(" (did you mean {}?)", best);
+}
+
+void refuse_key(const ConfigNode& node, const std::string& key, const std::string& expected) {
+  refuse_input(node.origin, key, "expected " + expected);
+}
+
+void require_known_keys(const ConfigNode& map, const std::vector<std::string>& known,
+                        const std::string& within) {
+  for (const ConfigNode& node : map.children) {
+    if (std::ranges::find(known, node.key) != known.end()) continue;
+    const std::string near = did_you_mean(node.key, known);
+    refuse_key(node, within + node.key,
+               near.empty() ? fmt::format("one of {}", fmt::join(known, ", ")) : "a known key" + near);
+  }
+}
+
+std::vector<std::string> words_of(const ConfigNode& node, const std::string& key,
+                                  const std::string& expected) {
+  std::vector<std::string> words;
+  if (node.kind == ConfigNode::Kind::scalar && !node.text.empty()) words.push_back(node.text);
+  if (node.kind == ConfigNode::Kind::list)
+    for (const ConfigNode& entry : node.children) {
+      if (entry.kind != ConfigNode::Kind::scalar) refuse_key(entry, key, expected);
+      words.push_back(entry.text);
+    }
+  if (words.empty()) refuse_key(node, key, expected);
+  return words;
+}
+
+double number_of(const ConfigNode& node, const std::string& key, double minimum, double maximum) {
+  return parsed(node, key, minimum, maximum, "a number");
+}
+
+int whole_number_of(const ConfigNode& node, const std::string& key, int minimum, int maximum) {
+  return parsed(node, key, minimum, maximum, "a whole number");
+}
+
+nlohmann::ordered_json parse_json(const std::string& text) {
+  using Json = nlohmann::ordered_json;
+  constexpr int maximum_depth = 16;
+  struct TooDeep {};
+  const auto bounded = [](int depth, Json::parse_event_t, Json&) {
+    return depth <= maximum_depth ? true : throw TooDeep();
+  };
+  try {
+    return Json::parse(text, bounded, false);
+  } catch (const TooDeep&) {
+    return Json(Json::value_t::discarded);
+  }
 }
 
 }  // namespace understory

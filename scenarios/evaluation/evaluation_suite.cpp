@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "scenarios/config/config_keys.hpp"
+#include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/program.hpp"
 #include "scenarios/output/progress_line.hpp"

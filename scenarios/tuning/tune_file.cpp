@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "scenarios/config/config_keys.hpp"
+#include "scenarios/config/config_tree.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/tuning/judge.hpp"
 

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/campaign/campaign_folder.hpp"
-#include "scenarios/config/json_text.hpp"
+#include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/program.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
