@@ -21,12 +21,6 @@ struct KeysArguments {
   bool json = false, markdown = false;
 };
 
-std::vector<Key> keys_of(Scenario scenario) {
-  KeyLister lister(typeid(Scenario));
-  visit_fields(lister, scenario);
-  return lister.keys();
-}
-
 /// The columns of a CSV file, whose struct says what they mean.
 std::vector<Key> columns_of(const char* owner, const std::string& csv) {
   std::vector<Key> columns;

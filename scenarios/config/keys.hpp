@@ -31,6 +31,10 @@ struct Key {
   std::string range;
   std::string meaning = {};
   std::string source = {};  ///< where the meaning names one: a page, a paper
+  /// What a search may vary: a number's value, a list's entries; no seed, nothing optional.
+  std::vector<double> numbers = {};
+  double minimum = 0, maximum = 0;  ///< of each of `numbers`
+  bool whole = false;               ///< whole numbers only
 };
 
 /// The key with unit, meaning and source of the field `name` of the struct `owner`, or of a struct within it.
@@ -60,12 +64,14 @@ class KeyLister {
     const std::string range = fmt::format("{} .. {}", minimum, maximum);
     if constexpr (std::is_arithmetic_v<T>) {
       add(name, fmt::format("{}", field), range);
+      if constexpr (!std::is_same_v<T, std::uint64_t>) add_number(field, minimum, maximum);
     } else if constexpr (requires { field.reset(); }) {  // std::optional
       add(name, field ? fmt::format("{}", *field) : "~", range);
     } else {
       std::string values;
       for (const auto value : field) values += fmt::format("{}{}", values.empty() ? "" : ", ", value);
       add(name, "[" + values + "]", range);
+      for (const auto value : field) add_number(value, minimum, maximum);
     }
   }
 
@@ -90,6 +96,13 @@ class KeyLister {
     keys_.insert(keys_.end(), within.keys_.begin(), within.keys_.end());
   }
   void add(std::string_view name, std::string value, std::string range);
+  void add_number(auto value, auto minimum, auto maximum) {
+    Key& key = keys_.back();
+    key.numbers.push_back(static_cast<double>(value));
+    key.minimum = static_cast<double>(minimum);
+    key.maximum = static_cast<double>(maximum);
+    key.whole = std::is_integral_v<decltype(value)>;
+  }
 
   std::string owner_, prefix_;
   std::vector<Key> keys_;

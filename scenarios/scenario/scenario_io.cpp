@@ -10,6 +10,7 @@
 
 #include "scenarios/config/config_reader.hpp"
 #include "scenarios/config/config_writer.hpp"
+#include "scenarios/config/keys.hpp"
 #include "sim/scene/world_config.hpp"
 
 namespace understory {
@@ -180,6 +181,12 @@ std::string where_given(const std::filesystem::path& file, const std::vector<std
                         std::string_view key, const std::vector<std::filesystem::path>& with) {
   const std::string origin = origin_of(sources_of(parse_config_file(file), settings, with), key);
   return origin.empty() ? file.string() : origin;
+}
+
+std::vector<Key> keys_of(Scenario scenario) {
+  KeyLister lister(typeid(Scenario));
+  visit_fields(lister, scenario);
+  return lister.keys();
 }
 
 std::string scenario_to_text(const Scenario& scenario) { return write_config(scenario); }

@@ -11,6 +11,8 @@
 
 namespace understory {
 
+struct Key;
+
 /// Reads a scenario: defaults, then the presets, then the file's keys, then those of each file of `with` in
 /// turn, then each "key=value" of `settings` in turn. So a preset never overwrites a key somebody wrote.
 /// Throws ScenarioError in one line "file:line: key: expected ...": missing file, broken YAML, unknown or
@@ -28,6 +30,9 @@ Scenario scenario_from_text(const std::string& text, const std::string& name,
 /// "file:line" or "--set ..." where a key was given; the file for a key at its default.
 std::string where_given(const std::filesystem::path& file, const std::vector<std::string>& settings,
                         std::string_view key, const std::vector<std::filesystem::path>& with = {});
+
+/// Every key of a scenario with its value.
+std::vector<Key> keys_of(Scenario scenario);
 
 /// The effective scenario, every default written, as YAML that reads back to the same scenario.
 std::string scenario_to_text(const Scenario& scenario);

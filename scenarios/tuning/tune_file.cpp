@@ -7,6 +7,7 @@
 #include <set>
 
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/config/keys.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/tuning/judge.hpp"
 
@@ -217,6 +218,17 @@ void read_data(const ConfigNode& top, const fs::path& file, TuneFile& tune) {
 }
 
 }  // namespace
+
+std::vector<NumericKey> numeric_keys(const Scenario& scenario) {
+  std::vector<NumericKey> numeric;
+  for (const Key& key : keys_of(scenario)) {
+    if (key.name.find("[]") != std::string::npos) continue;  // of a list's entries in general
+    for (std::size_t i = 0; i < key.numbers.size(); ++i)
+      numeric.push_back({key.value.starts_with('[') ? fmt::format("{}[{}]", key.name, i) : key.name,
+                         key.whole, key.minimum, key.maximum, key.numbers[i]});
+  }
+  return numeric;
+}
 
 TuneFile load_tune_file(const fs::path& file, const FindScenario& find_scenario) {
   TuneFile tune;

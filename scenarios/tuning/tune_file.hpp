@@ -21,7 +21,7 @@ struct NumericKey {
 
 /// Every number of a scenario in the order of its keys, seeds apart: a seed is nothing to be good at. Entries
 /// of lists are there as far as the scenario has them.
-std::vector<NumericKey> numeric_keys(Scenario scenario);
+std::vector<NumericKey> numeric_keys(const Scenario& scenario);
 
 enum class TuningData { recordings, flights };
 
