@@ -3,14 +3,21 @@
 #include <algorithm>
 #include <memory>
 
+#include "perception/io/calibration_file.hpp"
+#include "perception/io/picture_codecs.hpp"
 #include "perception/perception_config.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
+#include "scenarios/config/bad_input.hpp"
 #include "scenarios/detect/detection_run.hpp"
+#include "scenarios/detect/rig_figures.hpp"
+#include "scenarios/output/file_output.hpp"
 #include "scenarios/output/progress_line.hpp"
 
 namespace understory {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr std::array<std::pair<std::string_view, Interpolation>, 2> interpolation_names{
     {{"nearest", Interpolation::nearest}, {"bilinear", Interpolation::bilinear}}};
@@ -42,6 +49,31 @@ int run_detect(const DetectArguments& arguments) {
   return exit_goal;
 }
 
+struct RigArguments : CalibrationArguments {
+  std::string rig;
+  std::string out;  // empty: no picture
+};
+
+void write_picture(const fs::path& file, const cv::Mat& picture) {
+  const std::vector<unsigned char> bytes = picture_codecs().encode(file.extension().string(), picture);
+  write_whole_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+int run_rig(const RigArguments& arguments) {
+  const fs::path out = arguments.out;
+  if (!out.empty() && out.extension() != ".png" && out.extension() != ".jpg")
+    throw ScenarioError(fmt::format("--out {}: expected a .png or .jpg", arguments.out));
+  require_writable(out);
+  const CalibrationOptions options = calibration_options(arguments);
+  const fs::path path = rig_path(arguments.rig);
+  const CalibratedRig calibrated = bad_input_if_refused([&] { return read_calibrated_rig(path, options); });
+  const RigFigures figures = rig_figures(calibrated.rig, PushbroomConfig());
+  if (!arguments.out.empty()) write_picture(arguments.out, draw_rig(calibrated.rig, figures));
+  fmt::print("{}", to_report(calibrated, figures));
+  if (!arguments.out.empty()) fmt::print("  {:<20}{}\n", "picture", arguments.out);
+  return 0;
+}
+
 }  // namespace
 
 void add_detect_command(CommandLine& line) {
@@ -65,6 +97,19 @@ void add_detect_command(CommandLine& line) {
   command.text("--out", "FOLDER", arguments->out, "for what is found");
   command.flag("--video", arguments->options.video, "one film instead of a picture per frame");
   command.runs([arguments] { return run_detect(*arguments); });
+}
+
+void add_rig_command(CommandLine& line) {
+  const auto arguments = std::make_shared<RigArguments>();
+  Command& command = line.add({"rig", "show what a calibration means: disparities, depths, views",
+                               "understory rig long --out rig.png"});
+  command
+      .text("FILE", "RIG", arguments->rig,
+            "a rig file, OpenCV XML or YAML, a folder of them, a EuRoC folder, or a name in models/rigs")
+      .required();
+  add_calibration_options(command, *arguments);
+  command.text("--out", "FILE", arguments->out, "draw the rig from above into this .png or .jpg");
+  command.runs([arguments] { return run_rig(*arguments); });
 }
 
 }  // namespace understory
