@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "perception/io/calibration_file.hpp"
-#include "perception/io/picture_codecs.hpp"
 #include "perception/perception_config.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
@@ -13,6 +12,7 @@
 #include "scenarios/detect/rig_figures.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/progress_line.hpp"
+#include "scenarios/report/pictures.hpp"
 
 namespace understory {
 namespace {
@@ -53,11 +53,6 @@ struct RigArguments : CalibrationArguments {
   std::string rig;
   std::string out;  // empty: no picture
 };
-
-void write_picture(const fs::path& file, const cv::Mat& picture) {
-  const std::vector<unsigned char> bytes = picture_codecs().encode(file.extension().string(), picture);
-  write_whole_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-}
 
 int run_rig(const RigArguments& arguments) {
   const fs::path out = arguments.out;

@@ -76,34 +76,43 @@ bool Evaluation::has_poses() const {
   return std::ranges::any_of(recordings, &RecordingEvaluation::has_poses);
 }
 
+void in_parallel(std::size_t count, int threads, const std::function<void(std::size_t)>& work) {
+  std::atomic<std::size_t> next = 0;
+  std::exception_ptr failure;
+  std::mutex mutex;  // of the failure
+  const auto take_turns = [&] {
+    for (std::size_t i = next++; i < count; i = next++) try {
+        work(i);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!failure) failure = std::current_exception();
+        next = count;
+      }
+  };
+  std::vector<std::jthread> others;
+  for (std::size_t i = 1; i < std::min(count, static_cast<std::size_t>(threads)); ++i)
+    others.emplace_back(take_turns);
+  take_turns();
+  others.clear();  // joins
+  if (failure) std::rethrow_exception(failure);
+}
+
 Evaluation evaluate(const EvaluationOptions& options) {
   const std::int64_t expected = check(options);
   cv::setNumThreads(1);  // costs are those of one thread
   Evaluation evaluation;
   evaluation.settings = options.settings;
   evaluation.recordings.resize(options.folders.size());
-  std::atomic<std::size_t> next = 0;
-  std::exception_ptr failure;
   std::int64_t frames = 0;
-  std::mutex mutex;                // of the last two
+  std::mutex mutex;                // of the number of frames
   const QuietStandardError quiet;  // for all workers: image libraries complain there on their own
   const auto count_frame = [&] {
     const std::lock_guard lock(mutex);
     options.on_progress(++frames, expected);
   };
-  const auto work = [&] {
-    for (std::size_t i = next++; i < options.folders.size(); i = next++) try {
-        evaluation.recordings[i] = evaluate_recording(options.folders[i], options.settings, count_frame);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        if (!failure) failure = std::current_exception();
-        next = options.folders.size();
-      }
-  };
-  std::vector<std::thread> workers;
-  for (int i = 0; i < options.jobs; ++i) workers.emplace_back(work);
-  for (std::thread& worker : workers) worker.join();
-  if (failure) std::rethrow_exception(failure);
+  in_parallel(options.folders.size(), options.jobs, [&](std::size_t i) {
+    evaluation.recordings[i] = evaluate_recording(options.folders[i], options.settings, count_frame);
+  });
 
   evaluation.all.name = "all";
   for (const RecordingEvaluation& recording : evaluation.recordings) {

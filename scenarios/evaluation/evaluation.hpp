@@ -106,6 +106,10 @@ struct Evaluation {
   bool has_poses() const;
 };
 
+/// Calls work(0) .. work(count - 1), up to `threads` (>= 1) at once. Throws what the first failure threw;
+/// nothing begins after it.
+void in_parallel(std::size_t count, int threads, const std::function<void(std::size_t)>& work);
+
 /// Throws ScenarioError, one line, where a folder cannot be read or recordings are of different rigs.
 Evaluation evaluate(const EvaluationOptions& options);
 

@@ -124,9 +124,9 @@ void write_evaluation(const Evaluation& evaluation, const fs::path& folder) {
   if (evaluation.has_depth()) {
     write_whole_file(folder / "precision_recall.svg", precision_recall_plot(evaluation));
     write_whole_file(folder / "response.svg", response_plot(evaluation));
-    write_png(folder / "heat_map.png", heat_maps(evaluation.all.tallies[our_rule], "our rule"));
-    write_png(folder / "heat_map_paper.png",
-              heat_maps(evaluation.all.tallies[the_papers_rule], "the paper's rule"));
+    write_picture(folder / "heat_map.png", heat_maps(evaluation.all.tallies[our_rule], "our rule"));
+    write_picture(folder / "heat_map_paper.png",
+                  heat_maps(evaluation.all.tallies[the_papers_rule], "the paper's rule"));
     remove_pictures(folder / "worst");
     write_worst_frames(evaluation, folder / "worst");
   }

@@ -42,7 +42,7 @@ void FlightFilm::on_frame(const Flight& flight) {
 
 void FlightFilm::finish() {
   video_.finish();
-  if (!still_.empty()) write_png(folder_ / "still.png", still_);
+  if (!still_.empty()) write_picture(folder_ / "still.png", still_);
 }
 
 }  // namespace understory

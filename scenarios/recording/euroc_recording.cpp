@@ -157,11 +157,11 @@ void EurocRecording::add(const StereoFrame& frame, const StereoCameras& cameras)
   const Truth truth = truth_at(frame.t_ns);
   add_true_state(truth);
   const std::string name = fmt::format("{}.png", recorded_ns(frame.t_ns));
-  write_png(folder_ / "cam0/data" / name, frame.left);
-  write_png(folder_ / "cam1/data" / name, frame.right);
+  write_picture(folder_ / "cam0/data" / name, frame.left);
+  write_picture(folder_ / "cam1/data" / name, frame.right);
   const TrueView view = cameras.true_view(truth.T_world_body);
-  write_png(folder_ / "depth0/data" / name, depth_in_millimetres(view.depth_m));
-  write_png(folder_ / "objects0/data" / name, view.objects);
+  write_picture(folder_ / "depth0/data" / name, depth_in_millimetres(view.depth_m));
+  write_picture(folder_ / "objects0/data" / name, view.objects);
   image_lines_ += fmt::format("{},{}\n", recorded_ns(frame.t_ns), name);
   ++frames_;
 }

@@ -42,8 +42,8 @@ void write_at_side(cv::Mat& picture, const std::string& text, bool at_right) {
 
 }  // namespace
 
-void write_png(const fs::path& file, const cv::Mat& picture) {
-  const std::vector<unsigned char> bytes = picture_codecs().encode(".png", picture);
+void write_picture(const fs::path& file, const cv::Mat& picture) {
+  const std::vector<unsigned char> bytes = picture_codecs().encode(file.extension().string(), picture);
   write_whole_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
@@ -54,7 +54,7 @@ PictureFolder::PictureFolder(fs::path folder)
 }
 
 void PictureFolder::add(const cv::Mat& picture) {
-  write_png(part_.path() / fmt::format("{:06}.png", count_++), picture);
+  write_picture(part_.path() / fmt::format("{:06}.png", count_++), picture);
 }
 
 void PictureFolder::finish() {

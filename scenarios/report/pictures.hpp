@@ -20,8 +20,8 @@ class VideoWriter;
 
 namespace understory {
 
-/// A picture as PNG, whole or not at all.
-void write_png(const std::filesystem::path& file, const cv::Mat& picture);
+/// A picture of the kind that the name ends in (.png, .jpg), whole or not at all.
+void write_picture(const std::filesystem::path& file, const cv::Mat& picture);
 
 /// Pictures numbered 000000.png, 000001.png ... in a folder that bears its name only when all of them are
 /// there ("<folder>.part" until then).

@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <atomic>
-#include <thread>
 
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "scenarios/campaign/campaign_folder.hpp"
 #include "scenarios/campaign/engines.hpp"
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/evaluation/evaluation.hpp"
 #include "scenarios/evaluation/evaluation_recording.hpp"
 #include "scenarios/evaluation/obstacle_sightings.hpp"
 #include "scenarios/evaluation/vision_tally.hpp"
@@ -109,15 +108,8 @@ class VisionJudge : public Judge {
     }
     Measured measured;
     measured.units.resize(recordings_.size());
-    std::atomic<std::size_t> next = 0;
-    const auto work = [&] {
-      for (std::size_t i; (i = next++) < recordings_.size();) measured.units[i] = count(recordings_[i], rule);
-    };
-    std::vector<std::jthread> others;
-    const auto threads = std::min(static_cast<std::size_t>(threads_), recordings_.size());
-    for (std::size_t i = 1; i < threads; ++i) others.emplace_back(work);
-    work();
-    others.clear();  // joins
+    in_parallel(recordings_.size(), threads_,
+                [&](std::size_t i) { measured.units[i] = count(recordings_[i], rule); });
     return measured;
   }
 
