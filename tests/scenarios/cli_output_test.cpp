@@ -18,15 +18,6 @@ using understory::support::Outcome;
 using understory::support::TemporaryFolder;
 using understory::support::understory;
 
-/// Every name below a folder, sorted.
-std::vector<std::string> names_in(const fs::path& folder) {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    names.push_back(entry.path().lexically_relative(folder).string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 TEST(CliOutput, AnOutputThatCannotBeWrittenIsRefusedBeforeTheWork) {
   const TemporaryFolder folder;
   const std::string nowhere = (folder.path() / "none" / "file").string();
@@ -59,6 +50,14 @@ TEST(CliOutput, APictureGoesThroughALinkToAFullDevice) {
 }
 
 #ifdef UNDERSTORY_HAS_SIM
+/// Every name below a folder, sorted.
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    names.push_back(entry.path().lexically_relative(folder).string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
 
 const std::string short_flight = "fly clear --set forest.length_m=1 --quiet ";
 /// Goes on for minutes.
