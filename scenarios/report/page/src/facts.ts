@@ -1,0 +1,81 @@
+// The facts of a flight, as the C++ writes them. Names end in their units.
+
+export interface ArrayFact {
+  name: string;
+  type: "f32" | "u32" | "u16" | "u8";
+  components: number;
+  count: number; // tuples
+  offset: number; // bytes into the decoded buffer
+}
+
+export type SeriesColor = "truth" | "estimate" | "command" | "alert" | "other";
+
+export interface SeriesFact {
+  name: string;
+  array: string;
+  component?: number;
+  color: SeriesColor;
+  time?: string; // an array of seconds; "t" where absent
+}
+
+export interface ChartFact {
+  title: string;
+  unit: string;
+  series: SeriesFact[];
+  bands?: { name: string; lower: string; upper: string }[];
+  limits?: { name: string; value: number }[];
+  words?: string[] | null; // a step chart: values are indices into these
+}
+
+export interface EventFact {
+  t_s: number;
+  kind: "launch" | "in_view" | "detected" | "fallback" | "fault" | "ending";
+  text: string;
+}
+
+export interface CameraFact {
+  width_px: number;
+  height_px: number;
+  fx: number;
+  fy: number;
+  cx: number;
+  cy: number;
+  T_body_camera: number[]; // 4 x 4, row major
+  depths_m: number[];
+  baseline_m: number;
+}
+
+export interface CourseFact {
+  goal_x_m: number;
+  half_width_m: number;
+  minimum_altitude_m: number;
+  maximum_altitude_m: number;
+  cruise_altitude_m: number;
+}
+
+export interface FlightFacts {
+  kind: "flight";
+  title: string;
+  program: string;
+  ending: "goal" | "collision" | "ground" | "out_of_bounds" | "time" | "aborted";
+  sentence: string;
+  warning?: string;
+  story?: string[];
+  command?: string;
+  scenario?: string;
+  digest?: string;
+  result?: [string, string][];
+  keys?: [string, string, string][];
+  t_end_s: number;
+  t_launch_s?: number;
+  course?: CourseFact | null;
+  obstacles?: { names: string[]; kinds: string[] };
+  touched?: number | null;
+  impact?: { position: [number, number, number]; part: string } | null;
+  camera?: CameraFact | null;
+  charts?: ChartFact[];
+  events?: EventFact[];
+  decimation?: string[];
+  film?: { times: string } | null;
+  arrays?: ArrayFact[];
+}

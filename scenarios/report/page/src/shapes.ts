@@ -1,0 +1,155 @@
+// Shapes as typed arrays for the graphics card. Built once, before the first picture.
+
+import { make_pose, pose_at, transform, type Vector } from "./pose";
+import type { CameraFact, CourseFact } from "./facts";
+
+export interface Bounds {
+  low: Vector;
+  high: Vector;
+}
+
+/// Lines that are wider than a pixel: two triangles to a segment, widened by the vertex shader.
+export interface ThickLines {
+  position: Float32Array;
+  other: Float32Array;
+  side: Float32Array;
+  time_s: Float32Array;
+  index: Uint32Array;
+}
+
+/// pairs: indices of points, two to a segment. times_s: one to a point, or none.
+export function thick_lines(points: ArrayLike<number>, pairs: ArrayLike<number>, times_s?: ArrayLike<number>): ThickLines {
+  const segments = pairs.length / 2;
+  const lines = {
+    position: new Float32Array(segments * 12),
+    other: new Float32Array(segments * 12),
+    side: new Float32Array(segments * 4),
+    time_s: new Float32Array(segments * 4),
+    index: new Uint32Array(segments * 6),
+  };
+  const sides = [-1, 1, 1, -1]; // the direction turns round at the far end, and with it the side
+  const triangles = [0, 1, 2, 2, 1, 3];
+  for (let segment = 0; segment < segments; ++segment) {
+    for (let corner = 0; corner < 4; ++corner) {
+      const vertex = segment * 4 + corner;
+      const here = pairs[segment * 2 + (corner < 2 ? 0 : 1)];
+      const there = pairs[segment * 2 + (corner < 2 ? 1 : 0)];
+      for (let axis = 0; axis < 3; ++axis) {
+        lines.position[vertex * 3 + axis] = points[here * 3 + axis];
+        lines.other[vertex * 3 + axis] = points[there * 3 + axis];
+      }
+      lines.side[vertex] = sides[corner];
+      lines.time_s[vertex] = times_s ? times_s[here] : -1e9;
+    }
+    for (let i = 0; i < 6; ++i) lines.index[segment * 6 + i] = segment * 4 + triangles[i];
+  }
+  return lines;
+}
+
+/// Pairs that join every `stride`-th of `count` points, the last one included.
+export function chain(count: number, stride: number): number[] {
+  const pairs: number[] = [];
+  for (let i = 0; i + 1 < count; i += stride) pairs.push(i, Math.min(i + stride, count - 1));
+  return pairs;
+}
+
+/// Where the two wing tips were at each moment: vertices of a triangle strip.
+export function swept_wing(times: Float32Array, poses: Float32Array, tips: Float32Array) {
+  const position = new Float32Array(times.length * 6);
+  const time_s = new Float32Array(times.length * 2);
+  const pose = make_pose();
+  for (let i = 0; i < times.length; ++i) {
+    pose_at(times, poses, times[i], pose);
+    position.set(transform(pose, [tips[0], tips[1], tips[2]]), i * 6);
+    position.set(transform(pose, [tips[3], tips[4], tips[5]]), i * 6 + 3);
+    time_s[i * 2] = time_s[i * 2 + 1] = times[i];
+  }
+  return { position, time_s };
+}
+
+/// One trunk from z = 0 to z = 1 with radius 1 and a lid at the top. 3 * sides - 2 triangles.
+export function unit_trunk(sides: number) {
+  const position: number[] = [];
+  const index: number[] = [];
+  for (let i = 0; i < sides; ++i) {
+    const angle = (2 * Math.PI * i) / sides;
+    position.push(Math.cos(angle), Math.sin(angle), 0, Math.cos(angle), Math.sin(angle), 1);
+    const next = (i + 1) % sides;
+    index.push(2 * i, 2 * next, 2 * i + 1, 2 * i + 1, 2 * next, 2 * next + 1);
+    if (i > 0 && next > 0) index.push(1, 2 * i + 1, 2 * next + 1);
+  }
+  return { position: new Float32Array(position), index: new Uint16Array(index) };
+}
+
+/// Lines on the ground, spacing_m apart.
+export function ground_grid(bounds: Bounds, spacing_m: number): Float32Array {
+  const points: number[] = [];
+  const [x0, y0] = [bounds.low[0], bounds.low[1]];
+  const [x1, y1] = [bounds.high[0], bounds.high[1]];
+  for (let x = x0; x <= x1 + 0.01; x += spacing_m) points.push(x, y0, 0, x, y1, 0);
+  for (let y = y0; y <= y1 + 0.01; y += spacing_m) points.push(x0, y, 0, x1, y, 0);
+  return new Float32Array(points);
+}
+
+/// The sides on the ground, the goal plane as a frame, and the altitude band across it.
+export function course_limits(course: CourseFact, start_x_m: number): ThickLines {
+  const goal = course.goal_x_m;
+  const half = course.half_width_m;
+  const points: number[] = [];
+  const line = (a: Vector, b: Vector) => points.push(...a, ...b);
+  for (const y of [-half, half]) {
+    line([start_x_m, y, 0], [goal, y, 0]);
+    line([goal, y, 0], [goal, y, course.maximum_altitude_m]);
+  }
+  for (const z of [0, course.minimum_altitude_m, course.maximum_altitude_m]) line([goal, -half, z], [goal, half, z]);
+  return thick_lines(points, [...Array(points.length / 3).keys()]);
+}
+
+/// What both cameras see, in the body frame: edges from where their views meet, rectangles at depths_m.
+export function camera_frusta(camera: CameraFact): ThickLines {
+  const matrix = camera.T_body_camera;
+  const points: number[] = [];
+  const corners = (depth_m: number): void => {
+    const left = camera.baseline_m - (camera.cx / camera.fx) * depth_m; // the right camera's left edge
+    const right = ((camera.width_px - camera.cx) / camera.fx) * depth_m;
+    const top = (-camera.cy / camera.fy) * depth_m;
+    const bottom = ((camera.height_px - camera.cy) / camera.fy) * depth_m;
+    for (const [x, y] of [[left, top], [right, top], [right, bottom], [left, bottom]]) {
+      for (let row = 0; row < 3; ++row) {
+        const m = row * 4;
+        points.push(matrix[m] * x + matrix[m + 1] * y + matrix[m + 2] * depth_m + matrix[m + 3]);
+      }
+    }
+  };
+  corners((camera.baseline_m * camera.fx) / camera.width_px); // here the common view begins, one line high
+  const pairs: number[] = [];
+  for (const depth_m of [...camera.depths_m].sort((a, b) => a - b)) {
+    const first = points.length / 3;
+    corners(depth_m);
+    for (let i = 0; i < 4; ++i) pairs.push(first + i, first + ((i + 1) % 4));
+    for (let i = 0; i < 4; ++i) pairs.push(first - 4 + i, first + i);
+  }
+  return thick_lines(points, pairs);
+}
+
+/// Three small circles and a cross: a mark that is seen from every side.
+export function impact_mark(radius_m: number): ThickLines {
+  const points: number[] = [];
+  const pairs: number[] = [];
+  for (let axis = 0; axis < 3; ++axis) {
+    const first = points.length / 3;
+    for (let i = 0; i < 20; ++i) {
+      const point: Vector = [0, 0, 0];
+      point[axis] = radius_m * Math.cos((i * Math.PI) / 10);
+      point[(axis + 1) % 3] = radius_m * Math.sin((i * Math.PI) / 10);
+      points.push(...point);
+      pairs.push(first + i, first + ((i + 1) % 20));
+    }
+    const end = points.length / 3;
+    const arm: Vector = [0, 0, 0];
+    arm[axis] = radius_m * 1.5;
+    points.push(...arm, -arm[0], -arm[1], -arm[2]);
+    pairs.push(end, end + 1);
+  }
+  return thick_lines(points, pairs);
+}
