@@ -1,5 +1,6 @@
 // A made-up flight in the page: what the C++ writes, without the C++. Used by browser_test.mjs, and by hand:
-// `node sample.mjs /tmp/page.html` writes one to look at.
+// `node sample.mjs /tmp/page.html [film]` writes one to look at.
+import { spawnSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 
 const page = new URL("../../../scenarios/report/page/built/page.html", import.meta.url);
@@ -61,8 +62,8 @@ export function sample_flight({ trunks = 150, end_s = 7.31 } = {}) {
   for (let i = 0; i < trunks; ++i) {
     const [x, radius, height] = [8 + 85 * random(), 0.06 + 0.16 * random(), 6 + 5 * random()];
     const side = random() < 0.5 ? -1 : 1;
-    obstacles.push(x, side * (1.8 + 12 * random()), 0, x + 0.3 * (random() - 0.5), side * (1.8 + 12 * random()) * 0 + 0, height, radius);
-    obstacles[i * 7 + 4] = obstacles[i * 7 + 1] + 0.4 * (random() - 0.5);
+    const y = side * (1.8 + 12 * random());
+    obstacles.push(x, y, 0, x + 0.3 * (random() - 0.5), y + 0.4 * (random() - 0.5), height, radius);
   }
   const touched = Math.min(17, trunks - 1);
   if (touched >= 0) obstacles.splice(touched * 7, 7, x1 + 0.1, y1 + 0.42, 0, x1 + 0.1, y1 + 0.42, 8, 0.14);
@@ -135,7 +136,21 @@ export function sample_flight({ trunks = 150, end_s = 7.31 } = {}) {
   return { facts, arrays };
 }
 
+/// A film of the flight, 20 pictures a second, and a still; false where ffmpeg is missing.
+export function add_film({ facts, arrays }, blocks) {
+  const encode = (...options) => spawnSync("ffmpeg", ["-v", "error", "-f", "lavfi", "-i", "testsrc=size=376x240:rate=20", ...options, "-"], { maxBuffer: 1e8 });
+  const film = encode("-t", String(facts.t_end_s), "-pix_fmt", "yuv420p", "-g", "10", "-f", "mp4", "-movflags", "frag_keyframe+empty_moov");
+  if (film.error || film.status !== 0) return false;
+  blocks.film = film.stdout.toString("base64");
+  blocks.still = encode("-frames:v", "1", "-vf", "negate", "-f", "mjpeg").stdout.toString("base64");
+  const values = Array.from({ length: Math.ceil(facts.t_end_s * 20) }, (_, i) => i / 20);
+  arrays.push({ name: "film_t", type: "f32", components: 1, values });
+  facts.film = { times: "film_t" };
+  return true;
+}
+
 if (process.argv[1] === import.meta.filename) {
-  const { facts, arrays } = sample_flight();
-  writeFileSync(process.argv[2], fill_page(facts, arrays));
+  const [flight, blocks] = [sample_flight(), {}];
+  if (process.argv[3] === "film") add_film(flight, blocks);
+  writeFileSync(process.argv[2], fill_page(flight.facts, flight.arrays, blocks));
 }

@@ -196,7 +196,9 @@ export function show_flight(facts: FlightFacts): void {
     if (!label || !replay) return;
     const at = replay.project(...facts.impact!.position);
     label.hidden = at === null || at[0] < 0 || at[1] < 0 || at[0] > replay.canvas.clientWidth || at[1] > replay.canvas.clientHeight;
-    if (at) label.style.transform = `translate(${at[0].toFixed(1)}px, ${at[1].toFixed(1)}px)`;
+    if (!at) return;
+    const left = Math.min(at[0] + 14, replay.canvas.clientWidth - label.offsetWidth - 4); // within the picture
+    label.style.transform = `translate(${left.toFixed(1)}px, ${at[1].toFixed(1)}px)`;
   }
 
   show_events(events, clock);
@@ -290,6 +292,8 @@ export function show_flight(facts: FlightFacts): void {
       play: () => clock.play(),
       pause: () => clock.pause(),
       view: (name: string) => actions[name](),
+      position: () => replay?.position() ?? null, // of the aircraft's centre of mass, at the moment drawn
+      impact: () => facts.impact?.position ?? null,
       project: (x: number, y: number, z: number) => (replay?.draw(clock.time_s), replay?.project(x, y, z) ?? null),
       pixel: (x: number, y: number) => replay?.pixel(x, y) ?? null,
       triangles: () => replay?.triangles() ?? 0,

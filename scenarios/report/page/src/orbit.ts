@@ -26,12 +26,18 @@ const wide_view_deg = 50;
 const narrow_view_deg = 8; // from above: hardly any perspective, so that trunks stand upright
 const follow_distance_m = 4.5;
 
+function slope_of(view: ViewName): number {
+  return Math.tan(((view === "top" ? narrow_view_deg : wide_view_deg) / 2) * (Math.PI / 180));
+}
+
 export function make_orbit(): Orbit {
   return { view: "follow", target: [0, 0, 0], azimuth_rad: Math.PI, elevation_rad: 0.3, distance_m: follow_distance_m };
 }
 
 /// Enters a view. Orbit begins where the eye already is; top shows the whole course.
 export function enter_view(orbit: Orbit, view: ViewName, aircraft: Pose, heading_rad: number, bounds: Bounds, aspect: number): void {
+  if (view === orbit.view && view !== "top" && view !== "follow") return;
+  leave_top(orbit);
   if (view === "orbit" && orbit.view === "follow") {
     orbit.target = [...aircraft.position];
     orbit.azimuth_rad += heading_rad;
@@ -43,6 +49,7 @@ export function enter_view(orbit: Orbit, view: ViewName, aircraft: Pose, heading
     fit(orbit, bounds, aspect);
     orbit.azimuth_rad = -Math.PI / 2; // the course runs to the right
     orbit.elevation_rad = Math.PI / 2;
+    orbit.distance_m *= slope_of("orbit") / slope_of("top");
   }
   orbit.view = view;
 }
@@ -51,7 +58,7 @@ export function enter_view(orbit: Orbit, view: ViewName, aircraft: Pose, heading
 export function fit(orbit: Orbit, bounds: Bounds, aspect: number): void {
   const half_length_m = (bounds.high[0] - bounds.low[0]) / 2;
   const half_width_m = (bounds.high[1] - bounds.low[1]) / 2;
-  const slope = Math.tan((wide_view_deg / 2) * (Math.PI / 180));
+  const slope = slope_of("orbit");
   orbit.target = [0, 1, 2].map((axis) => (bounds.low[axis] + bounds.high[axis]) / 2) as Vector;
   orbit.target[2] = 0;
   orbit.distance_m = 1.08 * Math.max(half_length_m / (slope * aspect), half_width_m / slope) + bounds.high[2];
@@ -72,7 +79,7 @@ export function eye_of(orbit: Orbit, aircraft: Pose, heading_rad: number, camera
     position: [target[0] + far_m * flat * x, target[1] + far_m * flat * y, Math.max(target[2] + far_m * high, 0.1)],
     target: [...target],
     up: [-high * x, -high * y, flat], // never along the view, not even straight down
-    field_of_view_deg: wide_view_deg,
+    field_of_view_deg: orbit.view === "top" ? narrow_view_deg : wide_view_deg,
   };
 }
 
@@ -91,15 +98,22 @@ function onboard_eye(aircraft: Pose, camera: CameraFact | null | undefined): Eye
   };
 }
 
+/// From the top view to the orbit view: as near as needed to see the same.
+function leave_top(orbit: Orbit): void {
+  if (orbit.view !== "top") return;
+  orbit.distance_m *= slope_of("top") / slope_of("orbit");
+  orbit.view = "orbit";
+}
+
 function turn(orbit: Orbit, right_px: number, down_px: number): void {
-  if (orbit.view === "top") orbit.view = "orbit";
+  leave_top(orbit);
   orbit.azimuth_rad -= right_px * 0.006;
   orbit.elevation_rad = Math.min(Math.max(orbit.elevation_rad + down_px * 0.006, -0.05), Math.PI / 2);
 }
 
 /// Moves the target in the picture's plane, so that what lies under the pointer stays there.
 function pan(orbit: Orbit, eye: Eye, right_px: number, down_px: number, height_px: number): void {
-  const metres_per_px = (2 * orbit.distance_m * Math.tan((wide_view_deg / 2) * (Math.PI / 180))) / height_px;
+  const metres_per_px = (2 * orbit.distance_m * slope_of(orbit.view)) / height_px;
   const [x, y] = [Math.sin(orbit.azimuth_rad), -Math.cos(orbit.azimuth_rad)]; // the picture's left
   for (let axis = 0; axis < 3; ++axis) {
     const left = axis === 0 ? x : axis === 1 ? y : 0;
@@ -108,7 +122,7 @@ function pan(orbit: Orbit, eye: Eye, right_px: number, down_px: number, height_p
 }
 
 function zoom(orbit: Orbit, factor: number): void {
-  orbit.distance_m = Math.min(Math.max(orbit.distance_m * factor, 0.8), 2000);
+  orbit.distance_m = Math.min(Math.max(orbit.distance_m * factor, 0.8), 20000);
 }
 
 /// Drag turns, right or shift drag and two fingers pan, wheel and pinch zoom. begin_pan may leave the follow view.

@@ -72,9 +72,9 @@ export class Replay {
 
   /// Throws where there is no WebGL2.
   constructor(readonly canvas: HTMLCanvasElement, private readonly facts: FlightFacts, private readonly arrays: Arrays, changed: () => void) {
-    // A context is asked for on a canvas of its own first: ogl writes to the console where it gets none.
-    if (!document.createElement("canvas").getContext("webgl2")) throw new Error("no WebGL2");
-    this.renderer = new Renderer({ canvas, antialias: true, alpha: false, webgl: 2 });
+    // Asked for before ogl does, which writes to the console where it gets none. ogl is given the same one.
+    if (!canvas.getContext("webgl2", { antialias: true, alpha: false })) throw new Error("no WebGL2");
+    this.renderer = new Renderer({ canvas, width: canvas.clientWidth, height: canvas.clientHeight });
     this.gl = this.renderer.gl;
     this.renderer.dpr = this.draws_in_software() ? 1 : Math.min(window.devicePixelRatio, 2);
     this.camera = new Camera(this.gl, { near: 0.05, far: 4000, fov: 50 });
@@ -254,7 +254,7 @@ export class Replay {
     if (tips.length === 6 && truth.length === times.length * 7) {
       const swept = shapes.swept_wing(times, truth, tips);
       this.parts.trail = this.add({ position: { size: 3, data: swept.position }, time_s: { size: 1, data: swept.time_s } },
-        this.program(shaders.trail, { length_s: { value: trail_length_s }, opacity: { value: 0.45 } }, "truth",
+        this.program(shaders.trail, { length_s: { value: trail_length_s }, opacity: { value: 0.35 } }, "truth",
           { transparent: true, depthWrite: false }), this.gl.TRIANGLE_STRIP);
     }
     this.parts.estimate = this.add(wing, this.program(shaders.surface, { ...lit, opacity: { value: 0.5 } }, "estimate",
@@ -277,7 +277,7 @@ export class Replay {
   }
 
   resize(width_px: number, height_px: number): void {
-    if (width_px < 1 || height_px < 1) return;
+    if (width_px < 1 || height_px < 1 || (width_px === this.renderer.width && height_px === this.renderer.height)) return;
     this.renderer.setSize(width_px, height_px);
     this.canvas.style.width = this.canvas.style.height = ""; // the layout decides, not ogl
   }
@@ -368,17 +368,23 @@ export class Replay {
   private place_camera(): void {
     this.eye = eye_of(this.orbit, this.pose, this.heading_rad(), this.facts.camera);
     const { position, target, up, field_of_view_deg } = this.eye;
-    this.camera.perspective({ fov: field_of_view_deg, aspect: this.aspect() });
     this.camera.up.set(...up);
     this.camera.position.set(...position);
     this.camera.lookAt(new Vec3(...target));
     const onboard = this.orbit.view === "onboard";
     const reach_m = onboard ? 0 : this.orbit.distance_m;
+    const [near, far] = [Math.max(0.05, reach_m * 0.01), Math.max(1000, reach_m * 4)];
+    this.camera.perspective({ fov: field_of_view_deg, aspect: this.aspect(), near, far });
     this.shared.fade_m.value = [Math.max(25, reach_m * 1.5), Math.max(110, reach_m * 4)];
     this.shared.see_through_m.value = this.orbit.view === "follow" ? reach_m * 0.9 : 0;
     this.shared.viewport_px.value = [this.renderer.width, this.renderer.height];
     const slope = Math.tan((field_of_view_deg / 2) * (Math.PI / 180));
     this.shared.pixels_per_radian.value = (this.renderer.height * this.renderer.dpr) / (2 * slope);
+  }
+
+  /// Where the aircraft is in the last picture.
+  position(): Vector {
+    return [...this.pose.position];
   }
 
   /// Where a point of the world is on the canvas, in CSS pixels; null behind the eye.

@@ -1,0 +1,291 @@
+// The page of a flight in a real browser that draws in software. Arguments: pages made by `understory`; they go
+// through the same checks as the made-up flight. Exit status 77 where the browser or a library is missing.
+import { existsSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { add_film, fill_page, sample_flight } from "./sample.mjs";
+
+const browser_file = process.env.CHROMIUM || "/usr/bin/chromium";
+const libraries = new URL("node_modules/puppeteer-core", import.meta.url);
+if (!existsSync(browser_file) || !existsSync(libraries)) {
+  console.log(`skipped: ${existsSync(libraries) ? browser_file : "node_modules (npm ci)"} is missing`);
+  process.exit(77);
+}
+const { launch } = (await import("puppeteer-core")).default;
+const folder = mkdtempSync(join(tmpdir(), "understory_page_"));
+const flags = ["--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+const browser = await launch({ executablePath: browser_file, args: flags });
+let failures = 0;
+
+function check(name, good, details = "") {
+  if (!good) ++failures;
+  console.log(`${good ? "ok    " : "FAILED"} ${name}${details === "" ? "" : `: ${details}`}`);
+}
+
+/// Opens a file, and notes all that a page must not do: ask for anything outside itself, write to the console.
+async function open(file, { width = 1280, height = 720, theme = "dark", before = undefined } = {}) {
+  const page = await browser.newPage();
+  const said = [];
+  await page.setViewport({ width, height });
+  await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: theme }]);
+  await page.setRequestInterception(true);
+  page.on("request", (request) => {
+    const inside = /^(file|data|blob):/.test(request.url());
+    if (!inside) said.push(`asked for ${request.url().slice(0, 80)}`);
+    if (inside) request.continue();
+    else request.abort();
+  });
+  page.on("console", (message) => said.push(`console: ${message.text()}`));
+  page.on("pageerror", (error) => said.push(`error: ${error.message}`));
+  if (before) await page.evaluateOnNewDocument(before);
+  const begin_ms = Date.now();
+  await page.goto(`file://${file}`);
+  await page.waitForFunction("window.understory?.ready || document.querySelector('.alone')", { timeout: 20000 });
+  const open_s = (Date.now() - begin_ms) / 1000;
+  const settle = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await settle();
+  return { page, said, open_s, settle };
+}
+
+async function close({ page, said }, name) {
+  check(`${name}: silent, asks for nothing`, said.length === 0, said.slice(0, 3).join("; "));
+  await page.close();
+}
+
+function write(name, facts, arrays, blocks) {
+  const file = join(folder, `${name}.html`);
+  writeFileSync(file, fill_page(facts, arrays, blocks));
+  return file;
+}
+
+/// What the page holds, decoded here once more: the reference of the checks.
+function reference(page) {
+  return page.evaluate(() => JSON.parse(document.getElementById("facts").textContent));
+}
+
+const far_apart = (a, b) => Math.max(...[0, 1, 2].map((i) => Math.abs(a[i] - b[i])));
+
+async function check_speed(file, name) {
+  const opens_s = [];
+  for (let i = 0; i < 3; ++i) {
+    const opened = await open(file);
+    opens_s.push(opened.open_s);
+    await opened.page.close();
+  }
+  check(`${name}: opens in 2 s`, Math.min(...opens_s) < 2, opens_s.map((s) => `${s.toFixed(2)} s`).join(", "));
+  const opened = await open(file, { width: 1300, height: 800 });
+  const { page } = opened;
+  await page.addStyleTag({ content: ".replay { position: fixed !important; inset: 0 auto auto 0; width: 1280px; height: 720px; z-index: 9; }" });
+  await opened.settle();
+  await page.evaluate(() => understory.seek(1e9));
+  for (const view of ["follow", "fit"]) {
+    await page.evaluate((view) => understory.view(view), view);
+    await opened.settle();
+    const [seconds, triangles] = await page.evaluate(() => [understory.draw_seconds(10), understory.triangles()]);
+    check(`${name}: 10 pictures/s at 1280x720, ${view}`, seconds <= 0.1, `${(1 / seconds).toFixed(0)}/s`);
+    check(`${name}: at most 50,000 triangles, ${view}`, triangles > 0 && triangles <= 50000, triangles);
+  }
+  await close(opened, `${name}, large`);
+}
+
+async function check_flight(file, name) {
+  const opened = await open(file);
+  const { page, settle } = opened;
+  const facts = await reference(page);
+  const at_s = () => page.evaluate(() => understory.time());
+  const start_s = await at_s();
+  const end_s = await page.evaluate(() => Number(document.querySelector(".scrub input").max));
+  const expected_s = facts.ending === "goal" ? null : Math.max(end_s - 1, 0);
+  check(`${name}: paused, a lost flight 1 s before its end`, !(await page.evaluate(() => understory.playing())) && (expected_s === null || Math.abs(start_s - expected_s) < 0.01), start_s);
+  check(`${name}: says how it ended`, (await page.evaluate(() => document.body.innerText)).includes(facts.sentence));
+
+  // The aircraft is where project() says, in a colour that is not the background's, and it flies.
+  for (const part of [0.3, 1]) {
+    await page.evaluate((time_s) => understory.seek(time_s), part * end_s);
+    await settle();
+    const seen = await page.evaluate(() => {
+      for (const layer of ["estimate", "map", "hits", "plan", "frusta"]) document.querySelector(`[data-action="${layer}"][aria-pressed="true"]`)?.click();
+      understory.view("orbit");
+      understory.view("follow");
+      const at = understory.project(...understory.position());
+      return { at, color: understory.pixel(...at), beside: understory.pixel(at[0], at[1] + 60) };
+    });
+    check(`${name}: the aircraft is drawn at ${part} of the flight`, far_apart(seen.color, seen.beside) > 24, JSON.stringify(seen));
+  }
+  if (facts.touched != null) {
+    const colors = await page.evaluate(() => {
+      understory.view("orbit");
+      const [x, y, z] = understory.impact();
+      const hex = getComputedStyle(document.documentElement).getPropertyValue("--alert").trim();
+      const alert = [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
+      let alike = 0;
+      for (let dy = -1.5; dy <= 1.5; dy += 0.05) {
+        const at = understory.project(x, y + dy, z + 1);
+        if (!at) continue;
+        const color = understory.pixel(...at);
+        const scale = color[0] / alert[0];
+        if (scale > 0.5 && scale < 1.1 && Math.max(...[1, 2].map((i) => Math.abs(color[i] - scale * alert[i]))) < 12) ++alike;
+      }
+      return alike;
+    });
+    check(`${name}: what it touched has the alert colour`, colors > 0, `${colors} of 61 places`);
+  }
+  await check_hands(opened, name, end_s);
+  await close(opened, name);
+}
+
+async function check_hands({ page, settle }, name, end_s) {
+  await page.evaluate(() => { // no clipboard and no download folder in a test
+    document.execCommand = () => true;
+    HTMLAnchorElement.prototype.click = function () { window.downloaded = this.download; };
+  });
+  const buttons = await page.$$("button:not(dialog button)");
+  let unnamed = 0;
+  for (const button of buttons) {
+    if (!(await button.isVisible())) continue;
+    if (!(await button.evaluate((b) => b.ariaLabel || b.textContent.trim()))) ++unnamed;
+    await button.click();
+    await page.evaluate(() => document.querySelector("dialog").close());
+  }
+  await settle();
+  check(`${name}: all ${buttons.length} buttons work and have names`, unnamed === 0, unnamed || "");
+  const at_s = () => page.evaluate(() => understory.time());
+  await page.evaluate(() => (understory.pause(), document.activeElement.blur()));
+  const press = async (...keys) => {
+    for (const key of keys) await page.keyboard.press(key);
+    await settle();
+  };
+  const near = (a, b) => Math.abs(a - b) < 1e-3;
+  await press("End");
+  check(`${name}: End`, near(await at_s(), end_s));
+  if (end_s > 1) {
+    await press("ArrowLeft");
+    check(`${name}: arrow goes one moment back`, near(await at_s(), end_s - 1 / 120));
+    await page.keyboard.down("Shift");
+    await press("ArrowLeft");
+    await page.keyboard.up("Shift");
+    check(`${name}: shift arrow goes 0.1 s back`, near(await at_s(), end_s - 1 / 120 - 0.1));
+    await press("Home", " ");
+    await new Promise((done) => setTimeout(done, 400));
+    await press(" ");
+    const stopped_s = await at_s();
+    await new Promise((done) => setTimeout(done, 100));
+    check(`${name}: space plays and pauses`, stopped_s > 0 && near(stopped_s, await at_s()), stopped_s);
+    const chart = await page.$(".chart .u-over");
+    if (chart) {
+      await page.click('[data-action="whole"]');
+      await chart.scrollIntoView();
+      const box = await chart.boundingBox();
+      await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+      await settle();
+      check(`${name}: a click on a chart seeks`, Math.abs((await at_s()) - end_s / 2) < 0.05 * end_s, await at_s());
+    }
+  }
+  const theme = () => page.evaluate(() => document.documentElement.dataset.theme);
+  const before = await theme();
+  await press("t");
+  check(`${name}: both themes`, (await theme()) !== before);
+  await press("1", "2", "3", "4", "0", "e", "m", "h", "p", "f", "+", "-", "?", "?");
+  const canvas = await (await page.$("canvas"))?.boundingBox();
+  if (!canvas) return;
+  await press("2");
+  const [x, y] = [canvas.x + canvas.width / 2, canvas.y + canvas.height / 2];
+  const corner = () => page.evaluate(() => JSON.stringify(understory.project(5, 0, 0)));
+  const still = await corner();
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 60, y + 20);
+  await page.mouse.up();
+  await settle();
+  const turned = await corner();
+  await page.mouse.wheel({ deltaY: 200 });
+  await settle();
+  check(`${name}: drag turns, wheel zooms`, still !== turned && turned !== (await corner()));
+}
+
+async function check_phone(file, name) {
+  for (const [width, height, theme] of [[390, 844, "light"], [1280, 720, "light"], [1920, 1080, "dark"]]) {
+    const opened = await open(file, { width, height, theme });
+    const wide = await opened.page.evaluate(() => document.documentElement.scrollWidth);
+    check(`${name}: no sideways scrolling at ${width} px`, wide <= width, wide);
+    check(`${name}: begins ${theme}`, (await opened.page.evaluate(() => document.documentElement.dataset.theme)) === theme);
+    await close(opened, `${name} at ${width} px`);
+  }
+}
+
+async function check_film(flight) {
+  const blocks = {};
+  if (!add_film(flight, blocks)) return console.log("no film checked: ffmpeg is missing");
+  const opened = await open(write("film", flight.facts, flight.arrays, blocks));
+  const { page, settle } = opened;
+  await page.waitForFunction(() => document.querySelector("video").readyState >= 2);
+  for (const time_s of [5, 2.02]) {
+    await page.evaluate((time_s) => understory.seek(time_s), time_s);
+    await settle();
+    await page.waitForFunction(() => !document.querySelector("video").seeking);
+    const film_s = await page.evaluate(() => document.querySelector("video").currentTime);
+    check(`film: in step at ${time_s} s`, Math.abs(film_s - time_s - 0.025) < 0.05, film_s);
+  }
+  await page.evaluate(() => understory.seek(1e9));
+  await settle();
+  check("film: the still stands at the end", await page.evaluate(() => document.querySelector("video").hidden && document.querySelector(".film img").naturalWidth === 376));
+  await close(opened, "film");
+}
+
+/// Flights that lack what others have.
+function variants() {
+  const list = {};
+  const add = (name, change) => {
+    const flight = sample_flight();
+    change(flight);
+    list[name] = flight;
+  };
+  const drop = (flight, ...names) => (flight.arrays = flight.arrays.filter((array) => !names.includes(array.name)));
+  add("no map, hits, plans", (f) => drop(f, "map_points", "map_from", "map_to", "hits", "hits_t", "plan_t", "plan_start", "plan_points", "plan_origin", "plan_clearance"));
+  add("no obstacles", (f) => { drop(f, "obstacles"); Object.assign(f.facts, { touched: null, impact: null, obstacles: { names: [], kinds: [] } }); });
+  add("no estimate, no camera, no wing", (f) => { drop(f, "estimate", "wing_vertices", "wing_triangles", "wing_tips"); f.facts.camera = null; });
+  add("empty charts", (f) => { for (const array of f.arrays) if (/speed|error|clearance/.test(array.name)) array.values = array.values.map(() => NaN); });
+  add("one moment", (f) => {
+    for (const array of f.arrays) if (array.values.length % f.arrays[0].values.length === 0 && !/hits|map|plan|wing|obstacles/.test(array.name)) array.values = array.values.slice(0, array.components);
+    f.arrays[0].values = [0];
+    f.facts.t_end_s = 0;
+  });
+  add("nothing but facts", (f) => { f.arrays = []; Object.assign(f.facts, { charts: [], events: [], course: null, camera: null, impact: null, touched: null, story: [], result: [], keys: [], decimation: [], ending: "aborted", t_end_s: 0, warning: "The flight was broken off." }); });
+  add("unknown estimate", (f) => { const estimate = f.arrays.find((array) => array.name === "estimate"); estimate.values = estimate.values.map((v, i) => (i < 700 ? NaN : v)); });
+  add("goal", (f) => { f.facts.ending = "goal"; });
+  return list;
+}
+
+try {
+  const sample = sample_flight();
+  const file = write("sample", sample.facts, sample.arrays);
+  const dense = sample_flight({ trunks: 1000, end_s: 20 });
+  await check_speed(file, "sample");
+  await check_speed(write("dense", dense.facts, dense.arrays), "1000 trunks, 20 s");
+  await check_flight(file, "sample");
+  await check_phone(file, "sample");
+  await check_film(sample_flight());
+  for (const [name, flight] of Object.entries(variants())) {
+    const opened = await open(write(name.replaceAll(/\W/g, "_"), flight.facts, flight.arrays));
+    check(`${name}: ready`, await opened.page.evaluate(() => window.understory?.ready === true));
+    await check_hands(opened, name, await opened.page.evaluate(() => Number(document.querySelector(".scrub input").max)));
+    await close(opened, name);
+  }
+  const blind = await open(file, { before: () => (HTMLCanvasElement.prototype.getContext = ((get) => function (kind, ...more) { return kind.startsWith("webgl") ? null : get.call(this, kind, ...more); })(HTMLCanvasElement.prototype.getContext)) });
+  check("without WebGL2: one line, and charts", await blind.page.evaluate(() => understory.ready && document.body.innerText.includes("no WebGL2") && document.querySelectorAll(".u-over").length === 6));
+  await check_hands(blind, "without WebGL2", 7.31);
+  await close(blind, "without WebGL2");
+  const empty = await open(new URL("../../../scenarios/report/page/built/page.html", import.meta.url).pathname);
+  check("without data: one line", (await empty.page.evaluate(() => document.querySelector(".alone").textContent)).length > 10);
+  await close(empty, "without data");
+  for (const given of process.argv.slice(2)) {
+    await check_speed(resolve(given), given);
+    await check_flight(resolve(given), given);
+    await check_phone(resolve(given), given);
+  }
+} finally {
+  await browser.close();
+  rmSync(folder, { recursive: true });
+}
+console.log(failures === 0 ? "all good" : `${failures} failed`);
+process.exit(failures === 0 ? 0 : 1);
