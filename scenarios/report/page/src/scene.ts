@@ -40,6 +40,16 @@ interface Parts {
   limits?: Mesh;
 }
 
+/// There, smooth edges would cost two thirds of the speed.
+function draws_in_software(gl: WebGL2RenderingContext): boolean {
+  let name = String(gl.getParameter(gl.RENDERER));
+  if (name.includes("WebKit")) { // Chromium says the true name only here, and Firefox warns when asked here
+    const details = gl.getExtension("WEBGL_debug_renderer_info");
+    if (details) name = String(gl.getParameter(details.UNMASKED_RENDERER_WEBGL));
+  }
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
+
 export class Replay {
   readonly layers: Layers = { estimate: true, map: true, hits: true, plan: true, frusta: true };
   readonly orbit: Orbit = make_orbit();
@@ -71,12 +81,20 @@ export class Replay {
   private eye: Eye;
 
   /// Throws where there is no WebGL2.
-  constructor(readonly canvas: HTMLCanvasElement, private readonly facts: FlightFacts, private readonly arrays: Arrays, changed: () => void) {
-    // Asked for before ogl does, which writes to the console where it gets none. ogl is given the same one.
-    if (!canvas.getContext("webgl2", { antialias: true, alpha: false })) throw new Error("no WebGL2");
-    this.renderer = new Renderer({ canvas, width: canvas.clientWidth, height: canvas.clientHeight });
+  constructor(public canvas: HTMLCanvasElement, private readonly facts: FlightFacts, private readonly arrays: Arrays, changed: () => void) {
+    // ogl takes the context that is there.
+    const context = canvas.getContext("webgl2", { alpha: false, antialias: false });
+    if (!context) throw new Error("no WebGL2");
+    let dpr = 1;
+    if (!draws_in_software(context)) { // a context cannot change its mind: take a fresh canvas
+      const fresh = canvas.cloneNode() as HTMLCanvasElement;
+      canvas.replaceWith(fresh);
+      canvas = this.canvas = fresh;
+      canvas.getContext("webgl2", { alpha: false, antialias: true });
+      dpr = Math.min(window.devicePixelRatio, 2);
+    }
+    this.renderer = new Renderer({ canvas, dpr, width: canvas.clientWidth, height: canvas.clientHeight });
     this.gl = this.renderer.gl;
-    this.renderer.dpr = this.draws_in_software() ? 1 : Math.min(window.devicePixelRatio, 2);
     this.camera = new Camera(this.gl, { near: 0.05, far: 4000, fov: 50 });
     this.times = floats_of(arrays, "t");
     this.truth = floats_of(arrays, "truth");
@@ -91,15 +109,6 @@ export class Replay {
     attach_hands(canvas, this.orbit, () => this.eye, () => {
       if (this.orbit.view === "follow") this.set_view("orbit");
     }, changed);
-  }
-
-  private draws_in_software(): boolean {
-    let name = String(this.gl.getParameter(this.gl.RENDERER));
-    if (name.includes("WebKit")) { // Chromium says the true name only here, and Firefox warns when asked here
-      const details = this.gl.getExtension("WEBGL_debug_renderer_info");
-      if (details) name = String(this.gl.getParameter(details.UNMASKED_RENDERER_WEBGL));
-    }
-    return /swiftshader|llvmpipe|software|basic render/i.test(name);
   }
 
   private find_bounds(): shapes.Bounds {
