@@ -34,23 +34,16 @@ export interface EventFact {
 }
 
 export interface CameraFact {
-  width_px: number;
-  height_px: number;
-  fx: number;
-  fy: number;
-  cx: number;
-  cy: number;
+  width_px: number; height_px: number;
+  fx: number; fy: number; cx: number; cy: number;
   T_body_camera: number[]; // 4 x 4, row major
   depths_m: number[];
   baseline_m: number;
 }
 
 export interface CourseFact {
-  goal_x_m: number;
-  half_width_m: number;
-  minimum_altitude_m: number;
-  maximum_altitude_m: number;
-  cruise_altitude_m: number;
+  goal_x_m: number; half_width_m: number;
+  minimum_altitude_m: number; maximum_altitude_m: number; cruise_altitude_m: number;
 }
 
 export interface FlightFacts {

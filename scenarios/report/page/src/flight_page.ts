@@ -150,14 +150,12 @@ function copy(button: HTMLElement, text: string): void {
     button.textContent = word;
     setTimeout(() => (button.textContent = said), 1200);
   };
-  const by_selection = () => { // pages opened from a file may not use the clipboard
-    const area = document.body.appendChild(Object.assign(document.createElement("textarea"), { value: text }));
-    area.select();
-    tell(document.execCommand("copy") ? "Copied" : "Not copied");
-    area.remove();
+  const refused = () => { // some browsers keep the clipboard from files: select the command to copy by hand
+    getSelection()?.selectAllChildren(find('[data-show="command"]'));
+    tell("Selected");
   };
-  if (navigator.clipboard) navigator.clipboard.writeText(text).then(() => tell("Copied"), by_selection);
-  else by_selection();
+  if (navigator.clipboard) navigator.clipboard.writeText(text).then(() => tell("Copied"), refused);
+  else refused();
 }
 
 function download(name: string, text: string): void {
@@ -292,8 +290,6 @@ export function show_flight(facts: FlightFacts): void {
       play: () => clock.play(),
       pause: () => clock.pause(),
       view: (name: string) => actions[name](),
-      position: () => replay?.position() ?? null, // of the aircraft's centre of mass, at the moment drawn
-      impact: () => facts.impact?.position ?? null,
       project: (x: number, y: number, z: number) => (replay?.draw(clock.time_s), replay?.project(x, y, z) ?? null),
       pixel: (x: number, y: number) => replay?.pixel(x, y) ?? null,
       triangles: () => replay?.triangles() ?? 0,

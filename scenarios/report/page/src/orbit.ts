@@ -1,22 +1,23 @@
 // Where the viewer's eye is: follow, orbit, onboard and top views, and the hands on mouse and screen.
 
-import { rotate, transform, type Pose, type Vector } from "./pose";
+import { Vec3 } from "ogl";
+import { rotate, type Pose } from "./pose";
 import type { Bounds } from "./shapes";
 import type { CameraFact } from "./facts";
 
 export type ViewName = "follow" | "orbit" | "onboard" | "top";
 
 export interface Eye {
-  position: Vector;
-  target: Vector;
-  up: Vector;
+  position: Vec3;
+  target: Vec3;
+  up: Vec3;
   field_of_view_deg: number; // vertical
 }
 
 /// azimuth_rad: from the target to the eye; in the follow view it counts from the aircraft's heading.
 export interface Orbit {
   view: ViewName;
-  target: Vector;
+  target: Vec3;
   azimuth_rad: number;
   elevation_rad: number;
   distance_m: number;
@@ -31,7 +32,7 @@ function slope_of(view: ViewName): number {
 }
 
 export function make_orbit(): Orbit {
-  return { view: "follow", target: [0, 0, 0], azimuth_rad: Math.PI, elevation_rad: 0.3, distance_m: follow_distance_m };
+  return { view: "follow", target: new Vec3(), azimuth_rad: Math.PI, elevation_rad: 0.3, distance_m: follow_distance_m };
 }
 
 /// Enters a view. Orbit begins where the eye already is; top shows the whole course.
@@ -39,7 +40,7 @@ export function enter_view(orbit: Orbit, view: ViewName, aircraft: Pose, heading
   if (view === orbit.view && view !== "top" && view !== "follow") return;
   leave_top(orbit);
   if (view === "orbit" && orbit.view === "follow") {
-    orbit.target = [...aircraft.position];
+    orbit.target = aircraft.position.clone();
     orbit.azimuth_rad += heading_rad;
   } else if (view === "orbit" && orbit.view === "onboard") {
     fit(orbit, bounds, aspect);
@@ -59,9 +60,8 @@ export function fit(orbit: Orbit, bounds: Bounds, aspect: number): void {
   const half_length_m = (bounds.high[0] - bounds.low[0]) / 2;
   const half_width_m = (bounds.high[1] - bounds.low[1]) / 2;
   const slope = slope_of("orbit");
-  orbit.target = [0, 1, 2].map((axis) => (bounds.low[axis] + bounds.high[axis]) / 2) as Vector;
-  orbit.target[2] = 0;
-  orbit.distance_m = 1.08 * Math.max(half_length_m / (slope * aspect), half_width_m / slope) + bounds.high[2];
+  orbit.target.set((bounds.low[0] + bounds.high[0]) / 2, (bounds.low[1] + bounds.high[1]) / 2, 0);
+  orbit.distance_m = 1.15 * Math.max(half_length_m / (slope * aspect), half_width_m / slope) + bounds.high[2];
   orbit.azimuth_rad = -Math.PI / 2 - 0.35;
   orbit.elevation_rad = 0.75;
   orbit.view = "orbit";
@@ -76,9 +76,9 @@ export function eye_of(orbit: Orbit, aircraft: Pose, heading_rad: number, camera
   const [x, y] = [Math.cos(azimuth_rad), Math.sin(azimuth_rad)];
   const far_m = orbit.distance_m;
   return {
-    position: [target[0] + far_m * flat * x, target[1] + far_m * flat * y, Math.max(target[2] + far_m * high, 0.1)],
-    target: [...target],
-    up: [-high * x, -high * y, flat], // never along the view, not even straight down
+    position: new Vec3(target[0] + far_m * flat * x, target[1] + far_m * flat * y, Math.max(target[2] + far_m * high, 0.1)),
+    target,
+    up: new Vec3(-high * x, -high * y, flat), // never along the view, not even straight down
     field_of_view_deg: orbit.view === "top" ? narrow_view_deg : wide_view_deg,
   };
 }
@@ -86,14 +86,12 @@ export function eye_of(orbit: Orbit, aircraft: Pose, heading_rad: number, camera
 /// Through the left camera; where none is known, along the nose.
 function onboard_eye(aircraft: Pose, camera: CameraFact | null | undefined): Eye {
   const matrix = camera?.T_body_camera ?? [0, 0, 1, 0.1, -1, 0, 0, 0, 0, -1, 0, 0.03, 0, 0, 0, 1];
-  const column = (i: number): Vector => [matrix[i], matrix[i + 4], matrix[i + 8]];
-  const forward = rotate(aircraft.quaternion, column(2));
-  const down = rotate(aircraft.quaternion, column(1));
-  const position = transform(aircraft, column(3));
+  const column = (i: number) => rotate(aircraft, matrix[i], matrix[i + 4], matrix[i + 8]);
+  const position = column(3).add(aircraft.position);
   return {
     position,
-    target: [position[0] + forward[0], position[1] + forward[1], position[2] + forward[2]],
-    up: [-down[0], -down[1], -down[2]],
+    target: column(2).add(position),
+    up: column(1).negate(),
     field_of_view_deg: camera ? (2 * Math.atan(camera.height_px / 2 / camera.fy) * 180) / Math.PI : wide_view_deg,
   };
 }

@@ -5,7 +5,7 @@ import { Camera, Geometry, Mesh, Program, Renderer, Transform, Vec3, type OGLRen
 import { array_of, count_until, floats_of, type Arrays } from "./data";
 import type { FlightFacts } from "./facts";
 import { attach_hands, enter_view, eye_of, fit, make_orbit, type Eye, type Orbit, type ViewName } from "./orbit";
-import { make_pose, pose_at, type Pose, type Vector } from "./pose";
+import { make_pose, pose_at, type Pose } from "./pose";
 import * as shaders from "./shaders";
 import * as shapes from "./shapes";
 
@@ -20,25 +20,6 @@ const path_segments = 3000;
 
 type Uniforms = Record<string, { value: unknown }>;
 type Shader = { vertex: string; fragment: string };
-type Attributes = Record<string, { size?: number; data: Float32Array | Uint16Array | Uint32Array; instanced?: number }>;
-
-interface Parts {
-  trunks?: Mesh;
-  map?: Mesh;
-  hits?: Mesh;
-  plan?: Mesh;
-  path?: Mesh;
-  trail?: Mesh;
-  aircraft?: Mesh;
-  shadow?: Mesh;
-  estimate?: Mesh;
-  frusta?: Mesh;
-  drop?: Mesh;
-  impact?: Mesh;
-  ground?: Mesh;
-  grid?: Mesh;
-  limits?: Mesh;
-}
 
 /// There, smooth edges would cost two thirds of the speed.
 function draws_in_software(gl: WebGL2RenderingContext): boolean {
@@ -55,9 +36,9 @@ export class Replay {
   readonly orbit: Orbit = make_orbit();
   private readonly renderer: Renderer;
   private readonly gl: OGLRenderingContext;
-  private readonly camera = {} as Camera;
+  private readonly camera: Camera;
   private readonly scene = new Transform();
-  private readonly parts: Parts = {};
+  private readonly parts: Record<string, Mesh | undefined> = {};
   private readonly bounds: shapes.Bounds;
   private readonly times: Float32Array;
   private readonly truth: Float32Array;
@@ -112,8 +93,8 @@ export class Replay {
   }
 
   private find_bounds(): shapes.Bounds {
-    const low: Vector = [-2, -5, 0];
-    const high: Vector = [10, 5, 5];
+    const low = [-2, -5, 0];
+    const high = [10, 5, 5];
     const add = (numbers: ArrayLike<number>, stride: number, used: number) => {
       for (let i = 0; i + used <= numbers.length; i += stride) {
         for (let k = 0; k < used; ++k) {
@@ -136,23 +117,17 @@ export class Replay {
   }
 
   /// Meshes are drawn in the order in which they are added. No mesh where there is nothing to draw.
-  private add(attributes: Attributes, program: Program, mode: number = this.gl.TRIANGLES, parent: Transform = this.scene): Mesh | undefined {
+  private add(attributes: shapes.Attributes, program: Program, mode: number = this.gl.TRIANGLES, parent: Transform = this.scene): Mesh | undefined {
     if (Object.values(attributes).some((attribute) => attribute.data.length === 0)) return undefined;
     const mesh = new Mesh(this.gl, { geometry: new Geometry(this.gl, attributes as never), program, mode });
     mesh.setParent(parent);
     return mesh;
   }
 
-  private add_lines(lines: shapes.ThickLines, color: string, width_px: number, opacity = 1): Mesh | undefined {
+  private add_lines(lines: shapes.Attributes, color: string, width_px: number, opacity = 1): Mesh | undefined {
     const own = { width_px: { value: width_px }, opacity: { value: opacity } };
     const program = this.program(shaders.line, own, color, { transparent: opacity < 1, depthWrite: opacity === 1 });
-    return this.add({
-      position: { size: 3, data: lines.position },
-      other: { size: 3, data: lines.other },
-      side: { size: 1, data: lines.side },
-      time_s: { size: 1, data: lines.time_s },
-      index: { data: lines.index },
-    }, program);
+    return this.add(lines, program);
   }
 
   private add_ground(): void {
@@ -167,10 +142,9 @@ export class Replay {
     const corners = new Float32Array([x0, y0, 0, x1, y0, 0, x0, y1, 0, x1, y1, 0]);
     const flat = { shading: { value: 0 } };
     const behind_all = { depthTest: false, depthWrite: false };
-    this.parts.ground = this.add({ position: { size: 3, data: corners } },
-      this.program(shaders.surface, flat, "ground", behind_all), this.gl.TRIANGLE_STRIP);
-    this.parts.grid = this.add({ position: { size: 3, data: shapes.ground_grid(ground, spacing_m) } },
-      this.program(shaders.surface, flat, "grid", behind_all), this.gl.LINES);
+    const colored = (color: string) => this.program(shaders.surface, flat, color, behind_all);
+    this.parts.ground = this.add({ position: { size: 3, data: corners } }, colored("ground"), this.gl.TRIANGLE_STRIP);
+    this.parts.grid = this.add(shapes.ground_grid(ground, spacing_m), colored("grid"), this.gl.LINES);
     if (this.facts.course) {
       this.parts.limits = this.add_lines(shapes.course_limits(this.facts.course, Math.min(this.bounds.low[0], 0)), "limit", 1.5);
     }
@@ -188,14 +162,12 @@ export class Replay {
       touched[i] = this.facts.touched === i ? 1 : 0;
     }
     const sides = Math.min(Math.max(Math.floor((trunk_triangles / Math.max(count, 1) + 2) / 3), 3), 16);
-    const shape = shapes.unit_trunk(sides);
     this.parts.trunks = this.add({
-      position: { size: 3, data: shape.position },
-      index: { data: shape.index },
+      ...shapes.unit_trunk(sides),
       from: { size: 3, data: from, instanced: 1 },
       to: { size: 3, data: to, instanced: 1 },
-      radius_m: { size: 1, data: radius_m, instanced: 1 },
-      touched: { size: 1, data: touched, instanced: 1 },
+      radius_m: { data: radius_m, instanced: 1 },
+      touched: { data: touched, instanced: 1 },
     }, this.program(shaders.trunk, {}, "trunk"));
   }
 
@@ -224,15 +196,15 @@ export class Replay {
     const map = floats_of(this.arrays, "map_points");
     this.parts.map = this.add({
       position: { size: 3, data: map },
-      from_s: { size: 1, data: floats_of(this.arrays, "map_from") },
-      to_s: { size: 1, data: floats_of(this.arrays, "map_to") },
+      from_s: { data: floats_of(this.arrays, "map_from") },
+      to_s: { data: floats_of(this.arrays, "map_to") },
     }, this.program(shaders.points, { size_m: { value: 0.07 } }, "map"), this.gl.POINTS);
 
     const hits_s = floats_of(this.arrays, "hits_t");
     this.parts.hits = this.add({
       position: { size: 3, data: floats_of(this.arrays, "hits") },
-      from_s: { size: 1, data: hits_s },
-      to_s: { size: 1, data: hits_s.map((seen_s) => seen_s + hits_shown_s) },
+      from_s: { data: hits_s },
+      to_s: { data: hits_s.map((seen_s) => seen_s + hits_shown_s) },
     }, this.program(shaders.points, { size_m: { value: 0.1 } }, "hit"), this.gl.POINTS);
   }
 
@@ -261,8 +233,7 @@ export class Replay {
     }
     const tips = floats_of(this.arrays, "wing_tips");
     if (tips.length === 6 && truth.length === times.length * 7) {
-      const swept = shapes.swept_wing(times, truth, tips);
-      this.parts.trail = this.add({ position: { size: 3, data: swept.position }, time_s: { size: 1, data: swept.time_s } },
+      this.parts.trail = this.add(shapes.swept_wing(times, truth, tips),
         this.program(shaders.trail, { length_s: { value: trail_length_s }, opacity: { value: 0.35 } }, "truth",
           { transparent: true, depthWrite: false }), this.gl.TRIANGLE_STRIP);
     }
@@ -329,8 +300,8 @@ export class Replay {
     const place = (mesh: Mesh | undefined, visible: boolean, pose: Pose) => {
       if (!mesh) return;
       mesh.visible = visible;
-      mesh.position.set(...pose.position);
-      mesh.quaternion.set(...pose.quaternion);
+      mesh.position.copy(pose.position);
+      mesh.quaternion.copy(pose.quaternion);
     };
     place(this.parts.aircraft, flown && outside, this.pose);
     place(this.parts.shadow, flown && outside, this.pose);
@@ -377,9 +348,9 @@ export class Replay {
   private place_camera(): void {
     this.eye = eye_of(this.orbit, this.pose, this.heading_rad(), this.facts.camera);
     const { position, target, up, field_of_view_deg } = this.eye;
-    this.camera.up.set(...up);
-    this.camera.position.set(...position);
-    this.camera.lookAt(new Vec3(...target));
+    this.camera.up.copy(up);
+    this.camera.position.copy(position);
+    this.camera.lookAt(target);
     const onboard = this.orbit.view === "onboard";
     const reach_m = onboard ? 0 : this.orbit.distance_m;
     const [near, far] = [Math.max(0.05, reach_m * 0.01), Math.max(1000, reach_m * 4)];
@@ -389,11 +360,6 @@ export class Replay {
     this.shared.viewport_px.value = [this.renderer.width, this.renderer.height];
     const slope = Math.tan((field_of_view_deg / 2) * (Math.PI / 180));
     this.shared.pixels_per_radian.value = (this.renderer.height * this.renderer.dpr) / (2 * slope);
-  }
-
-  /// Where the aircraft is in the last picture.
-  position(): Vector {
-    return [...this.pose.position];
   }
 
   /// Where a point of the world is on the canvas, in CSS pixels; null behind the eye.
@@ -417,7 +383,7 @@ export class Replay {
   /// Triangles of the last picture.
   triangles(): number {
     let total = 0;
-    for (const mesh of Object.values(this.parts) as (Mesh | undefined)[]) {
+    for (const mesh of Object.values(this.parts)) {
       if (!mesh?.visible) continue;
       const { drawRange, instancedCount, isInstanced } = mesh.geometry;
       const times = isInstanced ? instancedCount : 1;

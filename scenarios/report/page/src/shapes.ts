@@ -1,32 +1,24 @@
 // Shapes as typed arrays for the graphics card. Built once, before the first picture.
 
-import { make_pose, pose_at, transform, type Vector } from "./pose";
+import { make_pose, pose_at, rotate } from "./pose";
 import type { CameraFact, CourseFact } from "./facts";
 
+export type Attributes = Record<string, { size?: number; data: Float32Array | Uint16Array | Uint32Array; instanced?: number }>;
+
 export interface Bounds {
-  low: Vector;
-  high: Vector;
+  low: number[];
+  high: number[];
 }
 
 /// Lines that are wider than a pixel: two triangles to a segment, widened by the vertex shader.
-export interface ThickLines {
-  position: Float32Array;
-  other: Float32Array;
-  side: Float32Array;
-  time_s: Float32Array;
-  index: Uint32Array;
-}
-
 /// pairs: indices of points, two to a segment. times_s: one to a point, or none.
-export function thick_lines(points: ArrayLike<number>, pairs: ArrayLike<number>, times_s?: ArrayLike<number>): ThickLines {
+export function thick_lines(points: ArrayLike<number>, pairs: ArrayLike<number>, times_s?: ArrayLike<number>): Attributes {
   const segments = pairs.length / 2;
-  const lines = {
-    position: new Float32Array(segments * 12),
-    other: new Float32Array(segments * 12),
-    side: new Float32Array(segments * 4),
-    time_s: new Float32Array(segments * 4),
-    index: new Uint32Array(segments * 6),
-  };
+  const position = new Float32Array(segments * 12);
+  const other = new Float32Array(segments * 12);
+  const side = new Float32Array(segments * 4);
+  const time_s = new Float32Array(segments * 4);
+  const index = new Uint32Array(segments * 6);
   const sides = [-1, 1, 1, -1]; // the direction turns round at the far end, and with it the side
   const triangles = [0, 1, 2, 2, 1, 3];
   for (let segment = 0; segment < segments; ++segment) {
@@ -35,15 +27,17 @@ export function thick_lines(points: ArrayLike<number>, pairs: ArrayLike<number>,
       const here = pairs[segment * 2 + (corner < 2 ? 0 : 1)];
       const there = pairs[segment * 2 + (corner < 2 ? 1 : 0)];
       for (let axis = 0; axis < 3; ++axis) {
-        lines.position[vertex * 3 + axis] = points[here * 3 + axis];
-        lines.other[vertex * 3 + axis] = points[there * 3 + axis];
+        position[vertex * 3 + axis] = points[here * 3 + axis];
+        other[vertex * 3 + axis] = points[there * 3 + axis];
       }
-      lines.side[vertex] = sides[corner];
-      lines.time_s[vertex] = times_s ? times_s[here] : -1e9;
+      side[vertex] = sides[corner];
+      time_s[vertex] = times_s ? times_s[here] : -1e9;
     }
-    for (let i = 0; i < 6; ++i) lines.index[segment * 6 + i] = segment * 4 + triangles[i];
+    for (let i = 0; i < 6; ++i) index[segment * 6 + i] = segment * 4 + triangles[i];
   }
-  return lines;
+  return {
+    position: { size: 3, data: position }, other: { size: 3, data: other }, side: { data: side }, time_s: { data: time_s }, index: { data: index },
+  };
 }
 
 /// Pairs that join every `stride`-th of `count` points, the last one included.
@@ -54,21 +48,20 @@ export function chain(count: number, stride: number): number[] {
 }
 
 /// Where the two wing tips were at each moment: vertices of a triangle strip.
-export function swept_wing(times: Float32Array, poses: Float32Array, tips: Float32Array) {
+export function swept_wing(times: Float32Array, poses: Float32Array, tips: Float32Array): Attributes {
   const position = new Float32Array(times.length * 6);
   const time_s = new Float32Array(times.length * 2);
   const pose = make_pose();
   for (let i = 0; i < times.length; ++i) {
     pose_at(times, poses, times[i], pose);
-    position.set(transform(pose, [tips[0], tips[1], tips[2]]), i * 6);
-    position.set(transform(pose, [tips[3], tips[4], tips[5]]), i * 6 + 3);
+    for (const k of [0, 3]) position.set(rotate(pose, tips[k], tips[k + 1], tips[k + 2]).add(pose.position), i * 6 + k);
     time_s[i * 2] = time_s[i * 2 + 1] = times[i];
   }
-  return { position, time_s };
+  return { position: { size: 3, data: position }, time_s: { data: time_s } };
 }
 
 /// One trunk from z = 0 to z = 1 with radius 1 and a lid at the top. 3 * sides - 2 triangles.
-export function unit_trunk(sides: number) {
+export function unit_trunk(sides: number): Attributes {
   const position: number[] = [];
   const index: number[] = [];
   for (let i = 0; i < sides; ++i) {
@@ -78,25 +71,25 @@ export function unit_trunk(sides: number) {
     index.push(2 * i, 2 * next, 2 * i + 1, 2 * i + 1, 2 * next, 2 * next + 1);
     if (i > 0 && next > 0) index.push(1, 2 * i + 1, 2 * next + 1);
   }
-  return { position: new Float32Array(position), index: new Uint16Array(index) };
+  return { position: { size: 3, data: new Float32Array(position) }, index: { data: new Uint16Array(index) } };
 }
 
 /// Lines on the ground, spacing_m apart.
-export function ground_grid(bounds: Bounds, spacing_m: number): Float32Array {
+export function ground_grid(bounds: Bounds, spacing_m: number): Attributes {
   const points: number[] = [];
   const [x0, y0] = [bounds.low[0], bounds.low[1]];
   const [x1, y1] = [bounds.high[0], bounds.high[1]];
   for (let x = x0; x <= x1 + 0.01; x += spacing_m) points.push(x, y0, 0, x, y1, 0);
   for (let y = y0; y <= y1 + 0.01; y += spacing_m) points.push(x0, y, 0, x1, y, 0);
-  return new Float32Array(points);
+  return { position: { size: 3, data: new Float32Array(points) } };
 }
 
 /// The sides on the ground, the goal plane as a frame, and the altitude band across it.
-export function course_limits(course: CourseFact, start_x_m: number): ThickLines {
+export function course_limits(course: CourseFact, start_x_m: number): Attributes {
   const goal = course.goal_x_m;
   const half = course.half_width_m;
   const points: number[] = [];
-  const line = (a: Vector, b: Vector) => points.push(...a, ...b);
+  const line = (a: number[], b: number[]) => points.push(...a, ...b);
   for (const y of [-half, half]) {
     line([start_x_m, y, 0], [goal, y, 0]);
     line([goal, y, 0], [goal, y, course.maximum_altitude_m]);
@@ -106,7 +99,7 @@ export function course_limits(course: CourseFact, start_x_m: number): ThickLines
 }
 
 /// What both cameras see, in the body frame: edges from where their views meet, rectangles at depths_m.
-export function camera_frusta(camera: CameraFact): ThickLines {
+export function camera_frusta(camera: CameraFact): Attributes {
   const matrix = camera.T_body_camera;
   const points: number[] = [];
   const corners = (depth_m: number): void => {
@@ -132,24 +125,17 @@ export function camera_frusta(camera: CameraFact): ThickLines {
   return thick_lines(points, pairs);
 }
 
-/// Three small circles and a cross: a mark that is seen from every side.
-export function impact_mark(radius_m: number): ThickLines {
+/// Three circles: a mark that is seen from every side.
+export function impact_mark(radius_m: number): Attributes {
   const points: number[] = [];
   const pairs: number[] = [];
-  for (let axis = 0; axis < 3; ++axis) {
-    const first = points.length / 3;
-    for (let i = 0; i < 20; ++i) {
-      const point: Vector = [0, 0, 0];
-      point[axis] = radius_m * Math.cos((i * Math.PI) / 10);
-      point[(axis + 1) % 3] = radius_m * Math.sin((i * Math.PI) / 10);
-      points.push(...point);
-      pairs.push(first + i, first + ((i + 1) % 20));
-    }
-    const end = points.length / 3;
-    const arm: Vector = [0, 0, 0];
-    arm[axis] = radius_m * 1.5;
-    points.push(...arm, -arm[0], -arm[1], -arm[2]);
-    pairs.push(end, end + 1);
+  for (let i = 0; i < 60; ++i) {
+    const circle = Math.floor(i / 20);
+    const point = [0, 0, 0];
+    point[circle] = radius_m * Math.cos((i * Math.PI) / 10);
+    point[(circle + 1) % 3] = radius_m * Math.sin((i * Math.PI) / 10);
+    points.push(...point);
+    pairs.push(i, circle * 20 + ((i + 1) % 20));
   }
   return thick_lines(points, pairs);
 }
