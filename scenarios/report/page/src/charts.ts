@@ -42,7 +42,7 @@ function lines_of(chart: ChartFact, arrays: Arrays, components: Map<string, numb
   const words = chart.words;
   const say = (_: uPlot, value: number | null) => (words ? words[value ?? -1] ?? "–" : read_number(value, chart.unit));
   const line = (name: string, array: string, component: number, time: string, options: Partial<uPlot.Series>): Line => ({
-    options: { label: name, value: say, points: { show: false }, width: 1.5, ...options },
+    options: { label: name, value: say, points: { show: false }, width: 1.5, pxAlign: 0, ...options },
     time,
     values: column_of(arrays, array, component, components.get(array) ?? 1),
   });
@@ -130,7 +130,7 @@ function axes_of(chart: ChartFact): uPlot.Axis[] {
   };
   const words = chart.words;
   const worded = words && { splits: () => words.map((_, i) => i), values: () => words };
-  return [{ ...common, size: 20 }, { ...common, size: 56, ...(worded || {}) }];
+  return [{ ...common, size: 20 }, { ...common, size: 56, space: 24, ...(worded || {}) }];
 }
 
 export interface Charts {

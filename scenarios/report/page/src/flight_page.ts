@@ -1,47 +1,19 @@
 // The page of one flight: puts the facts into the layout and joins replay, film and charts by one clock.
 
-import { add_charts, type Charts } from "./charts";
+import { add_charts } from "./charts";
 import { Clock } from "./clock";
+import { add_controls } from "./controls";
 import { array_of, floats_of, read_arrays, type Arrays } from "./data";
 import type { EventFact, FlightFacts } from "./facts";
+import { find, make, show_rows } from "./elements";
 import { add_film } from "./film";
-import type { ViewName } from "./orbit";
-import { Replay, type Layer } from "./scene";
+import { Replay } from "./scene";
 
-const moment_s = 1 / 120;
 const lost_start_s = 1; // before the end: there a lost flight is interesting
 
 const endings = {
   goal: "goal", collision: "collision", ground: "ground", out_of_bounds: "out of bounds", time: "time over", aborted: "aborted",
 };
-
-const help: [string, string][] = [
-  ["space", "play or pause"],
-  ["← →", "one moment (1/120 s) back or forward"],
-  ["shift ← →", "0.1 s back or forward"],
-  ["Home End", "to the start, to the end"],
-  ["+ −", "faster, slower"],
-  ["1 2 3 4", "follow, orbit, onboard, top view"],
-  ["0", "the whole course"],
-  ["e m h p f", "estimate, map, hits, plan, cameras' common view"],
-  ["t", "dark or light"],
-  ["?", "this help"],
-  ["mouse", "drag: turn; right or shift drag: move; wheel: zoom; on a chart: seek"],
-];
-
-const keys: Record<string, string> = {
-  " ": "play", ArrowLeft: "back", ArrowRight: "forward", "shift ArrowLeft": "far_back", "shift ArrowRight": "far_forward",
-  Home: "begin", End: "end", "+": "faster", "=": "faster", "-": "slower", "1": "follow", "2": "orbit", "3": "onboard",
-  "4": "top", "0": "fit", e: "estimate", m: "map", h: "hits", p: "plan", f: "frusta", t: "theme", "?": "help",
-};
-
-function find<T extends HTMLElement>(selector: string): T {
-  return document.querySelector<T>(selector)!;
-}
-
-function make(tag: string, text: string, class_name = ""): HTMLElement {
-  return Object.assign(document.createElement(tag), { textContent: text, className: class_name });
-}
 
 /// Puts text where the layout says data-show="name"; hides the place where there is none.
 function show_text(name: string, text: string | undefined): void {
@@ -58,16 +30,6 @@ function show_list(name: string, sentences: string[] | undefined): void {
   if (place.hidden && heading?.tagName === "H2") (heading as HTMLElement).hidden = true;
 }
 
-function show_rows(selector: string, heading: string[], rows: string[][] | undefined, empty: string): void {
-  const table = find(selector);
-  for (const [cells, tag] of [[heading, "th"], ...(rows ?? []).map((row) => [row, "td"])] as [string[], string][]) {
-    if (cells.length === 0 || !rows?.length) continue;
-    const row = table.appendChild(make("tr", ""));
-    for (const cell of cells) row.append(make(tag, cell));
-  }
-  if (!rows?.length) table.append(make("caption", empty));
-}
-
 function show_words(facts: FlightFacts): void {
   const lost = facts.ending !== "goal";
   document.title = `Understory: ${facts.title}`;
@@ -82,7 +44,6 @@ function show_words(facts: FlightFacts): void {
   show_text("command", facts.command);
   show_text("origin", [facts.program, facts.digest && `digest ${facts.digest}`].filter(Boolean).join(" · "));
   show_list("decimation", facts.decimation);
-  show_rows(".help", [], help, "");
 }
 
 /// From the first moment to the last: of the arrays, or of the facts where the arrays are empty.
@@ -144,31 +105,49 @@ function make_painter(draw: () => void): () => void {
   };
 }
 
-function copy(button: HTMLElement, text: string): void {
-  const said = button.textContent;
-  const tell = (word: string) => {
-    button.textContent = word;
-    setTimeout(() => (button.textContent = said), 1200);
+/// The label at the impact follows it over the picture. Returns what moves it.
+function add_label(facts: FlightFacts, replay: Replay | null): () => void {
+  if (!replay || !facts.impact) return () => {};
+  const { part, position } = facts.impact;
+  const touched = facts.touched != null ? facts.obstacles?.names[facts.touched] : undefined;
+  const label = find(".label");
+  label.textContent = [part.replaceAll("_", " "), touched].filter(Boolean).join(" · ");
+  return () => {
+    const at = replay.project(...position);
+    const [width_px, height_px] = [replay.canvas.clientWidth, replay.canvas.clientHeight];
+    label.hidden = at === null || at[0] < 0 || at[1] < 0 || at[0] > width_px || at[1] > height_px;
+    if (!at) return;
+    const left = Math.min(at[0] + 14, width_px - label.offsetWidth - 4); // within the picture
+    label.style.transform = `translate(${left.toFixed(1)}px, ${at[1].toFixed(1)}px)`;
   };
-  const refused = () => { // some browsers keep the clipboard from files: select the command to copy by hand
-    getSelection()?.selectAllChildren(find('[data-show="command"]'));
-    tell("Selected");
-  };
-  if (navigator.clipboard) navigator.clipboard.writeText(text).then(() => tell("Copied"), refused);
-  else refused();
 }
 
-function download(name: string, text: string): void {
-  const address = URL.createObjectURL(new Blob([text], { type: "text/yaml" }));
-  Object.assign(document.createElement("a"), { href: address, download: name }).click();
-  setTimeout(() => URL.revokeObjectURL(address), 1000);
+/// Draws the replay in the size that the layout gives it. A resized canvas is empty: it is drawn at once.
+function keep_size(replay: Replay, draw: () => void): void {
+  const resize = () => {
+    replay.resize(replay.canvas.clientWidth, replay.canvas.clientHeight);
+    draw();
+  };
+  new ResizeObserver(resize).observe(find(".replay"));
+  resize();
 }
 
-function set_theme(theme: string, replay: Replay | null, charts: Charts, paint: () => void): void {
-  document.documentElement.dataset.theme = theme;
-  replay?.set_theme();
-  charts.redraw();
-  paint();
+/// For tests.
+function offer_handles(clock: Clock, replay: Replay | null, actions: Record<string, () => void>): void {
+  const handles = {
+    ready: true,
+    time: () => clock.time_s,
+    playing: () => clock.playing,
+    seek: (time_s: number) => clock.seek(time_s),
+    play: () => clock.play(),
+    pause: () => clock.pause(),
+    view: (name: string) => actions[name](),
+    project: (x: number, y: number, z: number) => (replay?.draw(clock.time_s), replay?.project(x, y, z) ?? null),
+    pixel: (x: number, y: number) => replay?.pixel(x, y) ?? null,
+    triangles: () => replay?.triangles() ?? 0,
+    draw_seconds: (count: number) => replay?.draw_seconds(count) ?? null,
+  };
+  Object.assign(window, { understory: handles });
 }
 
 export function show_flight(facts: FlightFacts): void {
@@ -182,118 +161,25 @@ export function show_flight(facts: FlightFacts): void {
   const events = facts.events ?? [];
 
   show_words(facts);
-  const paint = make_painter(() => {
-    replay?.draw(clock.time_s);
-    place_label();
-  });
-  const replay = add_replay(facts, arrays, paint);
-  const label = replay && facts.impact ? find(".label") : null;
-  const touched_name = facts.touched != null ? facts.obstacles?.names[facts.touched] : undefined;
-  if (facts.impact) label?.append([facts.impact.part.replaceAll("_", " "), touched_name].filter(Boolean).join(" · "));
-  function place_label(): void {
-    if (!label || !replay) return;
-    const at = replay.project(...facts.impact!.position);
-    label.hidden = at === null || at[0] < 0 || at[1] < 0 || at[0] > replay.canvas.clientWidth || at[1] > replay.canvas.clientHeight;
-    if (!at) return;
-    const left = Math.min(at[0] + 14, replay.canvas.clientWidth - label.offsetWidth - 4); // within the picture
-    label.style.transform = `translate(${left.toFixed(1)}px, ${at[1].toFixed(1)}px)`;
-  }
-
   show_events(events, clock);
   show_transport(clock);
+  const draw = () => {
+    replay?.draw(clock.time_s);
+    place_label();
+  };
+  const paint = make_painter(draw);
+  const replay = add_replay(facts, arrays, paint);
+  const place_label = add_label(facts, replay);
   const charts = add_charts(find(".charts"), find(".tip"), facts.charts ?? [], events, arrays, components, clock);
   add_film(find(".film"), facts.film ? array_of(arrays, facts.film.times) : new Float32Array(0), clock);
   clock.subscribe(() => {
     paint();
     charts.update();
   });
-
-  const show_state = () => {
-    for (const view of ["follow", "orbit", "onboard", "top"]) press(view, replay?.orbit.view === view);
-    for (const [layer, shown] of Object.entries(replay?.layers ?? {})) press(layer, shown);
-  };
-  const press = (action: string, pressed: boolean) => document.querySelector(`[data-action="${action}"]`)?.setAttribute("aria-pressed", String(pressed));
-  const view = (name: ViewName) => () => {
-    replay?.set_view(name);
-    show_state();
-    paint();
-  };
-  const toggle = (layer: Layer) => () => {
-    if (replay) replay.layers[layer] = !replay.layers[layer];
-    show_state();
-    paint();
-  };
-  const step = (seconds: number) => () => {
-    clock.pause();
-    clock.seek(clock.time_s + seconds);
-  };
-  const span = (begin_s: number, name: string) => () => {
-    charts.show(Math.max(begin_s, clock.begin_s), clock.end_s);
-    for (const each of ["whole", "last2", "last05"]) press(each, each === name);
-  };
-  const actions: Record<string, () => void> = {
-    play: () => (clock.playing ? clock.pause() : clock.play()),
-    back: step(-moment_s), forward: step(moment_s), far_back: step(-0.1), far_forward: step(0.1),
-    begin: () => clock.seek(clock.begin_s), end: () => clock.seek(clock.end_s),
-    slower: () => clock.change_rate(-1), faster: () => clock.change_rate(1),
-    follow: view("follow"), orbit: view("orbit"), onboard: view("onboard"), top: view("top"),
-    fit: () => {
-      replay?.fit();
-      show_state();
-      paint();
-    },
-    estimate: toggle("estimate"), map: toggle("map"), hits: toggle("hits"), plan: toggle("plan"), frusta: toggle("frusta"),
-    whole: span(-Infinity, "whole"), last2: span(clock.end_s - 2, "last2"), last05: span(clock.end_s - 0.5, "last05"),
-    copy: () => copy(find('[data-action="copy"]'), facts.command ?? ""),
-    download: () => download("scenario.yaml", facts.scenario ?? ""),
-    theme: () => set_theme(document.documentElement.dataset.theme === "dark" ? "light" : "dark", replay, charts, paint),
-    help: () => {
-      const dialog = find<HTMLDialogElement>("dialog");
-      if (dialog.open) dialog.close();
-      else dialog.showModal();
-    },
-  };
-  find('[data-action="copy"]').hidden = !facts.command;
-  find('[data-action="download"]').hidden = !facts.scenario;
-  for (const button of document.querySelectorAll<HTMLElement>("[data-action]")) {
-    button.addEventListener("click", () => actions[button.dataset.action!]());
-  }
-  document.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (event.key === " " && event.target instanceof HTMLButtonElement) return; // the button is pressed instead
-    const shift = event.shiftKey && event.key.startsWith("Arrow") ? "shift " : "";
-    const action = actions[keys[shift + (event.key.length === 1 ? event.key.toLowerCase() : event.key)]];
-    if (!action) return;
-    event.preventDefault();
-    action();
-  });
-  replay?.canvas.addEventListener("pointermove", show_state);
-  find(".replay").addEventListener("dblclick", () => actions.play());
-  new ResizeObserver(() => {
-    if (!replay) return;
-    replay.resize(replay.canvas.clientWidth, replay.canvas.clientHeight);
-    replay.draw(clock.time_s); // at once: a resized canvas is empty
-    place_label();
-  }).observe(find(".replay"));
-  if (replay) replay.resize(replay.canvas.clientWidth, replay.canvas.clientHeight);
+  const actions = add_controls(facts, clock, replay, charts, paint);
   replay?.set_theme();
-  replay?.draw(clock.time_s);
+  if (replay) keep_size(replay, draw);
   actions.follow();
   actions.whole();
-
-  Object.assign(window, {
-    understory: {
-      ready: true,
-      time: () => clock.time_s,
-      playing: () => clock.playing,
-      seek: (time_s: number) => clock.seek(time_s),
-      play: () => clock.play(),
-      pause: () => clock.pause(),
-      view: (name: string) => actions[name](),
-      project: (x: number, y: number, z: number) => (replay?.draw(clock.time_s), replay?.project(x, y, z) ?? null),
-      pixel: (x: number, y: number) => replay?.pixel(x, y) ?? null,
-      triangles: () => replay?.triangles() ?? 0,
-      draw_seconds: (count: number) => replay?.draw_seconds(count) ?? null,
-    },
-  });
+  offer_handles(clock, replay, actions);
 }
