@@ -37,6 +37,10 @@ if(UNDERSTORY_SIM)
   find_package(pagmo REQUIRED)
   add_library(pagmo_only INTERFACE)
   target_link_libraries(pagmo_only INTERFACE Pagmo::pagmo)
+
+  # Logs for viewers (MCAP).
+  find_package(Protobuf REQUIRED)
+  find_library(ZSTD_LIBRARY zstd REQUIRED)
 endif()
 if(UNDERSTORY_TESTS)
   find_package(GTest REQUIRED)

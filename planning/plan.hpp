@@ -2,7 +2,9 @@
 
 #include <Eigen/Core>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -41,6 +43,11 @@ enum class PlanOrigin {
   kept,      ///< an earlier plan, still valid and good
   fallback   ///< nothing free of collision found: the primitive with the maximum clearance
 };
+
+constexpr std::string_view word_for(PlanOrigin origin) {
+  constexpr std::string_view words[] = {"straight", "solved", "kept", "fallback"};
+  return words[static_cast<std::size_t>(origin)];
+}
 
 struct Plan {
   std::int64_t t_ns = 0;  ///< the moment its first point stands for

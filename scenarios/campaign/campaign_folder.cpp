@@ -100,7 +100,7 @@ void prepare_campaign_folder(const CampaignFolder& folder, const Campaign& campa
                       folder.path.string()));
     require_same(folder, campaign);
   }
-  for (const char* part : {"conditions", "flights", "logs"}) prepare_output_folder(folder.path / part);
+  for (const char* part : {"conditions", "flights", "tracks", "logs"}) prepare_output_folder(folder.path / part);
   for (const Condition& condition : campaign.conditions)
     write_lasting_file(folder.condition_file(condition), condition.scenario_text);
   write_lasting_file(folder.path / manifest_name, manifest_of(campaign));  // last: now it is a campaign
@@ -144,19 +144,28 @@ void write_flight(const CampaignFolder& folder, const Campaign& campaign, const 
   write_lasting_file(folder.flight_file(task), to_json(file));
 }
 
-Collected collect(const CampaignFolder& folder, const Campaign& campaign) {
+Collected gather(const CampaignFolder& folder, const Campaign& campaign) {
   Collected collected;
-  std::string lines;
-  Table costs{{"id", "wall_s", "peak_memory_mb"}};
   for (const CampaignTask& task : tasks_of(campaign)) {
     const auto file = read_flight(folder, task);
     if (!file) {
       collected.missing += 1;
       continue;
     }
-    lines += to_json_line(file->row) + "\n";
-    costs.add(task.id, number_text(file->cost.wall_s, 3), number_text(file->cost.peak_memory_mb, 1));
     collected.rows.push_back(file->row);
+    collected.costs.push_back(file->cost);
+  }
+  return collected;
+}
+
+Collected collect(const CampaignFolder& folder, const Campaign& campaign) {
+  const Collected collected = gather(folder, campaign);
+  std::string lines;
+  Table costs{{"id", "wall_s", "peak_memory_mb"}};
+  for (std::size_t i = 0; i < collected.rows.size(); ++i) {
+    const FlightCost& cost = collected.costs[i];
+    lines += to_json_line(collected.rows[i]) + "\n";
+    costs.add(collected.rows[i].id, number_text(cost.wall_s, 3), number_text(cost.peak_memory_mb, 1));
   }
   write_whole_file(folder.path / "flights.csv", to_csv(collected.rows));
   write_whole_file(folder.path / "flights.jsonl", lines);

@@ -43,6 +43,7 @@ std::vector<CampaignTask> in_flying_order(const Campaign& campaign);
 ///     campaign.json          what is flown, by which program
 ///     conditions/NAME.yaml   each condition's effective scenario
 ///     flights/ID.json        a flight's file, there once it is over; written whole or not at all
+///     tracks/ID.track        a lost flight for the page: compact_flight() of scenarios/flight/flight_page.hpp
 ///     logs/ID.txt            what a flight that was not flown said on standard error
 ///     flights.csv .jsonl     every row, in the campaign's order; costs.csv: wall time and memory
 ///
@@ -56,6 +57,7 @@ struct CampaignFolder {
   std::filesystem::path flight_file(const CampaignTask& task) const {
     return path / "flights" / (task.id + ".json");
   }
+  std::filesystem::path track_file(const std::string& id) const { return path / "tracks" / (id + ".track"); }
   std::filesystem::path log_file(const CampaignTask& task) const {
     return path / "logs" / (task.id + ".txt");
   }
@@ -80,10 +82,13 @@ void write_flight(const CampaignFolder& folder, const Campaign& campaign, const 
 
 /// What is there.
 struct Collected {
-  std::vector<FlightRow> rows;  ///< in the campaign's order
-  std::size_t missing = 0;      ///< flights without a file
+  std::vector<FlightRow> rows;    ///< in the campaign's order
+  std::vector<FlightCost> costs;  ///< of the rows
+  std::size_t missing = 0;        ///< flights without a file
 };
-/// Gathers the flights' files and writes flights.csv, flights.jsonl and costs.csv.
+/// Gathers the flights' files.
+Collected gather(const CampaignFolder& folder, const Campaign& campaign);
+/// The same, and writes flights.csv, flights.jsonl and costs.csv.
 Collected collect(const CampaignFolder& folder, const Campaign& campaign);
 
 /// The rows of a folder's flights.csv, wherever they were flown. Throws ScenarioError where there is none, or

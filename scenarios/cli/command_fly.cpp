@@ -17,6 +17,7 @@
 #include "scenarios/output/progress_line.hpp"
 #include "scenarios/recording/carried_path.hpp"
 #include "scenarios/recording/euroc_recording.hpp"
+#include "scenarios/recording/flight_mcap.hpp"
 #include "scenarios/recording/record.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "sim/render/offscreen_context.hpp"
@@ -33,6 +34,7 @@ struct FlightArguments {
   std::string seed;                   // over all; empty: theirs
   std::string out;                    // of fly, empty: runs/<name>-<seed>, or with a row no run folder at all
   RendererKind renderer = RendererKind::osmesa;
+  bool mcap = false;
   bool quiet = false;
   bool force = false;
 };
@@ -79,6 +81,7 @@ Command::Added add_flight_options(Command& command, FlightArguments& arguments, 
   add_settings_option(command, arguments.settings);
   const Command::Added folder = command.text("--out", "FOLDER", arguments.out, out);
   add_renderer_option(command, arguments.renderer);
+  command.flag("--mcap", arguments.mcap, "also make flight.mcap, a log for Foxglove and Rerun");
   command.flag("--force", arguments.force, "replace " + force + " in the folder already");
   command.flag("--quiet", arguments.quiet, "print nothing");
   return folder;
@@ -86,8 +89,10 @@ Command::Added add_flight_options(Command& command, FlightArguments& arguments, 
 
 struct FlyArguments : FlightArguments {
   std::string row;  // empty: none, as the next
+  std::string track;
   std::string junit;
   bool video = false;
+  bool report = false;
 };
 
 FlightCost cost_of(const FlightResult& result) {
@@ -110,6 +115,14 @@ void require_writable_beside(const fs::path& folder, const std::string& file) {
   if (folder.empty() || above != fs::weakly_canonical(fs::absolute(folder), ignored)) require_writable(file);
 }
 
+/// The log that --mcap asks for, as one of the flight's observers.
+std::unique_ptr<FlightMcap> log_of(const FlightArguments& arguments, FlyOptions& options) {
+  if (!arguments.mcap) return nullptr;
+  auto log = std::make_unique<FlightMcap>(options.output_folder / "flight.mcap", false);
+  options.observers.push_back(log.get());
+  return log;
+}
+
 FlightResult flown(const Scenario& scenario, const FlyOptions& options, std::optional<OutputFolder>& output) {
   try {
     FlightResult result = fly(scenario, options);
@@ -124,15 +137,22 @@ FlightResult flown(const Scenario& scenario, const FlyOptions& options, std::opt
 int run_fly(const FlyArguments& arguments) {
   const Scenario scenario = scenario_of(arguments);
   FlyOptions options = options_of(arguments);
-  options.video = arguments.video;
+  options.report = arguments.report;
+  options.track = arguments.track;
+  options.video = arguments.video || arguments.report;
   const fs::path folder = folder_of(arguments, scenario);
-  if (options.video && folder.empty()) throw ScenarioError("--video: expected --out beside --row");
-  for (const std::string& file : {arguments.row, arguments.junit}) require_writable_beside(folder, file);
+  if (folder.empty() && (options.video || arguments.mcap))
+    throw ScenarioError(fmt::format("--{}: expected --out beside --row", options.report  ? "report"
+                                                                       : options.video ? "video"
+                                                                                       : "mcap"));
+  for (const std::string& file : {arguments.row, arguments.track, arguments.junit})
+    require_writable_beside(folder, file);
   std::optional<OutputFolder> output;
   if (!folder.empty()) {
     output.emplace(folder, run_contents(scenario), arguments.force ? Replace::anything : Replace::same);
     options.output_folder = output->path();
   }
+  const std::unique_ptr<FlightMcap> log = log_of(arguments, options);
   ProgressLine line(!arguments.quiet);
   options.on_progress = [&](const FlightProgress& progress) { show(line, progress); };
   const FlightResult result = flown(scenario, options, output);
@@ -145,6 +165,7 @@ int run_fly(const FlyArguments& arguments) {
     fmt::print("{}", to_report(result));
     if (output) fmt::print("  {:<18}{}\n", "files", folder.string());
     if (options.video) fmt::print("  {:<18}{}\n", "video", (folder / "flight.mp4").string());
+    if (options.report) fmt::print("  {:<18}{}\n", "report", (folder / "report.html").string());
   }
   return result.ending == Ending::goal ? exit_goal : exit_not_goal;
 }
@@ -184,6 +205,7 @@ std::string record(const RecordArguments& arguments, const Scenario& scenario, F
       arguments.path.empty() ? std::vector<TimedPose>{} : read_path(path_file(arguments.path));
   ProgressLine line(!arguments.quiet);
   options.on_progress = [&](const FlightProgress& progress) { show(line, progress); };
+  const std::unique_ptr<FlightMcap> log = log_of(arguments, options);
   if (!path.empty()) return report_of(follow_recorded(scenario, path, options));
   if (!arguments.walk_mps) return report_of(fly_recorded(scenario, options));
   return report_of(walk_recorded(
@@ -193,6 +215,8 @@ std::string record(const RecordArguments& arguments, const Scenario& scenario, F
 int run_record(const RecordArguments& arguments) {
   if (arguments.height_m && !arguments.walk_mps) throw ScenarioError("--height: expected beside --walk");
   if (!arguments.path.empty() && arguments.walk_mps) throw ScenarioError("--path: expected without --walk");
+  if (arguments.mcap && (arguments.walk_mps || !arguments.path.empty()))
+    throw ScenarioError("--mcap: expected without --walk and --path: it is a log of a flight");
   const Scenario scenario = scenario_of(arguments);
   FlyOptions options = options_of(arguments);
   OutputFolder output(arguments.out, recording_contents(scenario),
@@ -224,8 +248,11 @@ void add_fly_command(CommandLine& line) {
                      "a run of another configuration that is");
   command.text("--row", "FILE", arguments->row,
                "write the flight's row there, as campaign and collect read it; no run folder");
+  command.text("--track", "FILE", arguments->track,
+               "where the flight is lost, write what a campaign's page replays of it");
   command.text("--junit", "FILE", arguments->junit, "write the flight as a JUnit test case");
   command.flag("--video", arguments->video, "also make flight.mp4 and still.png");
+  command.flag("--report", arguments->report, "also make report.html, a page to look at, and the video");
   command.runs([arguments] { return run_fly(*arguments); });
 }
 

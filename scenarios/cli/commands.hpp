@@ -15,6 +15,8 @@ struct Collected;
 /// Each adds one command with its options.
 void add_fly_command(CommandLine& line);
 void add_record_command(CommandLine& line);
+void add_report_command(CommandLine& line);
+void add_mcap_command(CommandLine& line);
 void add_campaign_command(CommandLine& line);
 void add_shard_command(CommandLine& line);
 void add_collect_command(CommandLine& line);

@@ -59,6 +59,8 @@ int run(int argc, char** argv) {
   CommandLine line(version);
   add_fly_command(line);
   add_record_command(line);
+  add_report_command(line);
+  add_mcap_command(line);
   add_detect_command(line);
   add_evaluate_command(line);
   add_campaign_command(line);

@@ -26,6 +26,8 @@ std::vector<std::filesystem::path> record_suite(const std::filesystem::path& fil
 
 void add_fly_command(CommandLine& line) { add_refusal(line, "fly"); }
 void add_record_command(CommandLine& line) { add_refusal(line, "record"); }
+void add_report_command(CommandLine& line) { add_refusal(line, "report"); }
+void add_mcap_command(CommandLine& line) { add_refusal(line, "mcap"); }
 void add_campaign_command(CommandLine& line) { add_refusal(line, "campaign"); }
 void add_tune_command(CommandLine& line) { add_refusal(line, "tune"); }
 void add_shard_command(CommandLine& line) { add_refusal(line, "shard"); }

@@ -28,6 +28,23 @@ const ConfigNode* child_of(const ConfigNode& node, std::string_view word) {
   return entry < child->children.size() ? &child->children[entry] : nullptr;
 }
 
+void flatten(const ConfigNode& node, const std::string& path, FlatKeys& keys) {
+  const bool is_list = node.kind == ConfigNode::Kind::list;
+  if (node.kind == ConfigNode::Kind::map) {
+    for (const ConfigNode& child : node.children)
+      flatten(child, path.empty() ? child.key : path + "." + child.key, keys);
+  } else if (is_list && !node.children.empty() && node.children[0].kind == ConfigNode::Kind::map) {
+    for (std::size_t i = 0; i < node.children.size(); ++i)
+      flatten(node.children[i], fmt::format("{}[{}]", path, i), keys);
+  } else if (is_list) {
+    std::string values;
+    for (const ConfigNode& child : node.children) values += (values.empty() ? "" : ", ") + child.text;
+    keys.emplace_back(path, "[" + values + "]");
+  } else {
+    keys.emplace_back(path, node.kind == ConfigNode::Kind::nothing ? "~" : node.text);
+  }
+}
+
 template <typename Number>
 Number parsed(const ConfigNode& node, const std::string& key, Number minimum, Number maximum,
               const char* what) {
@@ -66,6 +83,17 @@ ConfigNode parse_assignment(const std::string& assignment) {
   }
   const std::string key = assignment.substr(0, equals);
   return under_keys(parse_yaml_value(assignment.substr(equals + 1), origin, key), key);
+}
+
+FlatKeys flat_keys(const std::string& text, const std::string& name) {
+  FlatKeys keys;
+  flatten(parse_yaml(text, name), "", keys);
+  return keys;
+}
+
+std::string value_in(const FlatKeys& keys, std::string_view key) {
+  const auto found = std::ranges::find(keys, key, [](const auto& entry) { return entry.first; });
+  return found == keys.end() ? "-" : found->second;
 }
 
 std::string origin_of(const std::vector<ConfigNode>& sources, std::string_view path) {

@@ -4,6 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "perception/io/text_tree.hpp"
@@ -22,6 +23,14 @@ ConfigNode parse_assignment(const std::string& assignment);
 
 /// `value` under the dotted key "a.b.c", as a tree holding that one key.
 ConfigNode under_keys(ConfigNode value, std::string keys);
+
+/// Keys with their values as text, in order: "a.b.c", entries of lists of maps "faults[0].at_s".
+using FlatKeys = std::vector<std::pair<std::string, std::string>>;
+
+/// Those of a YAML text whose top is a map; `name` stands for its file in messages.
+FlatKeys flat_keys(const std::string& text, const std::string& name);
+/// "-" where there is no such key.
+std::string value_in(const FlatKeys& keys, std::string_view key);
 
 /// Where the key "a.b.c" (or "a.list[2].c") was given: in the last of `sources` that holds it; empty where
 /// none does.

@@ -87,4 +87,16 @@ double clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airfra
   return minimum;
 }
 
+std::optional<std::size_t> nearest_obstacle(const Eigen::Isometry3d& T_world_body, const Airframe& airframe,
+                                            const std::vector<Obstacle>& obstacles) {
+  std::optional<std::size_t> nearest;
+  double minimum_m = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    const double here_m = clearance_m(T_world_body, airframe, {obstacles[i]});
+    if (here_m < minimum_m) nearest = i;
+    minimum_m = std::min(minimum_m, here_m);
+  }
+  return nearest;
+}
+
 }  // namespace understory

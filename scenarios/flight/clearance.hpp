@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "planning/airframe.hpp"
@@ -25,5 +27,9 @@ double obstacle_distance_m(const Segment& segment, const Obstacle& obstacle);
 /// as one from nose to tail (the root chord of a delta is about twice the mean chord).
 double clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airframe,
                    const std::vector<Obstacle>& obstacles);
+
+/// The obstacle that this clearance is smallest to; nothing without obstacles.
+std::optional<std::size_t> nearest_obstacle(const Eigen::Isometry3d& T_world_body, const Airframe& airframe,
+                                            const std::vector<Obstacle>& obstacles);
 
 }  // namespace understory

@@ -50,7 +50,10 @@ void Flight::step() {
   act();
   tell(&FlightObserver::on_step);
   ending_ = referee_.judge(truth(), aircraft_.contact(), launched());
-  if (!ending_) advance();
+  if (ending_)
+    tell(&FlightObserver::on_end);
+  else
+    advance();
 }
 
 void Flight::sense() {
@@ -107,10 +110,6 @@ void Flight::advance() {
   const auto timed = stopwatch_.time("physics");
   aircraft_.step(controls_);
   clock_.advance();
-}
-
-cv::Mat Flight::chase_view(int width_px, int height_px) const {
-  return cameras_->chase_view(aircraft_.data(), width_px, height_px);
 }
 
 }  // namespace understory

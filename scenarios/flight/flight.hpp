@@ -41,6 +41,8 @@ class FlightObserver {
   virtual void on_frame(const Flight&) {}
   /// Everything of this step is done except the physics.
   virtual void on_step(const Flight&) {}
+  /// The flight has ended at truth(). Once.
+  virtual void on_end(const Flight&) {}
 };
 
 /// What a flight takes from the machine and not from the scenario.
@@ -74,6 +76,8 @@ class Flight {
   const std::optional<Ending>& ending() const { return ending_; }
 
   const Truth& truth() const { return aircraft_.truth(); }
+  Touch touch() const { return aircraft_.touch(); }  ///< what the aircraft touches at truth()
+  AircraftShape aircraft_shape() const { return aircraft_.shape(); }
   /// The newest truth not later than t_ns, for 0.6 s back.
   const Truth& truth_at(std::int64_t t_ns) const { return history_.at(t_ns); }
 
@@ -95,9 +99,6 @@ class Flight {
 
   /// To draw the truth beside the images; null where neither detector nor observer needs images.
   const StereoCameras* cameras() const { return cameras_.get(); }
-  /// What a camera following the aircraft sees now, BGR 8-bit. Needs cameras().
-  cv::Mat chase_view(int width_px, int height_px) const;
-
   /// Wall time of each stage until now, and since the flight was made.
   const Stopwatch& stopwatch() const { return stopwatch_; }
 

@@ -1,46 +1,113 @@
 #include "scenarios/flight/flight_film.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <opencv2/core.hpp>
 
-#include "scenarios/flight/flight.hpp"
-#include "scenarios/report/pictures.hpp"
+#include "scenarios/flight/flight_track.hpp"
 
 namespace understory {
+namespace {
+
+constexpr std::int64_t slow_end_ns = 500'000'000;
+constexpr double film_rate_hz = 30;
+
+double seconds(std::int64_t t_ns) { return static_cast<double>(t_ns) * 1e-9; }
+
+std::string caption_of(const Flight& flight, const Truth& truth, std::optional<double> planned_m) {
+  const std::string planned = planned_m ? fmt::format("{:.2f} m clear", *planned_m) : "nothing near";
+  return fmt::format("{:.3f} s   {:.1f} m/s   {:.1f} m high   plan {}, {}", seconds(truth.t_ns),
+                     truth.velocity_world_mps.norm(), truth.T_world_body.translation().z(),
+                     word_for(flight.plan().origin), planned);
+}
+
+void mark(cv::Mat picture, const Eye& eye, const Eigen::Vector3d& place_world, int scale) {
+  const Eigen::Vector3d seen = eye.T_world_camera.inverse() * place_world;
+  if (seen.z() < near_m) return;
+  mark_place(picture, scale * (eye.focal_px * seen.x() / seen.z() + eye.center_x_px),
+             scale * (eye.focal_px * seen.y() / seen.z() + eye.center_y_px));
+}
+
+constexpr int scale = 2;
+
+}  // namespace
 
 FlightFilm::FlightFilm(const std::filesystem::path& folder, double frame_rate_hz)
     : folder_(folder),
-      every_(std::max(1, static_cast<int>(frame_rate_hz / 30))),
+      every_(std::max(1, static_cast<int>(frame_rate_hz / film_rate_hz))),
       video_(folder / "flight.mp4", frame_rate_hz / every_) {}
 
-void FlightFilm::on_frame(const Flight& flight) {
-  if (frames_++ % every_ != 0) return;
-  const CalibratedRig& rig = flight.rig();
-  StereoFrame frame = flight.frame();
-  if (rig.calibration) {
-    if (!rectifier_) rectifier_.emplace(*rig.calibration, Interpolation::nearest);
-    frame = rectifier_->rectify(frame);
+FlightFilm::Moment FlightFilm::moment_of(const Flight& flight) {
+  if (flight.plan().t_ns != plan_t_ns_) {
+    plan_t_ns_ = flight.plan().t_ns;
+    planned_clearance_m_ = planned_clearance_m(flight);
   }
+  const StereoFrame& frame = flight.frame();
   const State seen = flight.state_at(frame.t_ns);
-  const OverlayMoment moment{frame.left,
-                             flight.hits(),
-                             flight.map().points(),
-                             seen.T_world_body * rig.rig.T_body_camera,
-                             seen.velocity_body_mps.x(),
-                             seen.T_world_body.translation().z(),
-                             ""};
-  constexpr int scale = 2;
-  const cv::Mat eye = draw_overlay(moment, rig.rig, scale);
+  const Truth& truth = flight.truth_at(frame.t_ns);
+  OverlayMoment overlay{{},
+                        flight.hits(),
+                        flight.map().points(),
+                        planned_way_world(flight),
+                        seen.T_world_body * flight.rig().rig.T_body_camera,
+                        seen.velocity_body_mps.x(),
+                        seen.T_world_body.translation().z(),
+                        caption_of(flight, truth, planned_clearance_m_)};
+  return {frames_++, frame, std::move(overlay), truth};
+}
+
+cv::Mat FlightFilm::draw(const Flight& flight, Moment& moment) {
+  const CalibratedRig& rig = flight.rig();
+  if (rig.calibration && !rectifier_) rectifier_.emplace(*rig.calibration, Interpolation::nearest);
+  moment.overlay.left = rectifier_ ? rectifier_->rectify(moment.frame).left : moment.frame.left;
+  const cv::Mat eye = draw_overlay(moment.overlay, rig.rig, scale);
   cv::Mat picture;
-  cv::hconcat(eye, flight.chase_view(eye.cols, eye.rows), picture);
-  video_.add(picture);
-  if (still_.empty() || moment.hits.size() > maximum_hits_) {
-    still_ = picture.clone();
-    maximum_hits_ = moment.hits.size();
+  cv::hconcat(eye, flight.cameras()->chase_view(moment.truth, eye.cols, eye.rows), picture);
+  return picture;
+}
+
+void FlightFilm::add(const Flight& flight, Moment& moment) {
+  last_ = draw(flight, moment);
+  video_.add(last_);
+  times_s_.push_back(static_cast<float>(seconds(moment.frame.t_ns)));
+  if (still_.empty() || moment.overlay.hits.size() > maximum_hits_) {
+    still_ = last_;
+    maximum_hits_ = moment.overlay.hits.size();
   }
 }
 
-void FlightFilm::finish() {
+void FlightFilm::on_frame(const Flight& flight) {
+  recent_.push_back(moment_of(flight));
+  while (recent_.back().frame.t_ns - recent_.front().frame.t_ns > slow_end_ns) {
+    if (recent_.front().number % every_ == 0) add(flight, recent_.front());
+    recent_.pop_front();
+  }
+}
+
+void FlightFilm::finish(const Flight& flight) {
+  const bool is_lost = flight.ending() != Ending::goal;
+  for (Moment& moment : recent_)
+    if (is_lost || moment.number % every_ == 0) add(flight, moment);
+  if (is_lost && !recent_.empty()) {
+    Moment& end = recent_.back();
+    end.truth = flight.truth();  // a little after the last frame
+    end.overlay.caption = fmt::format("{:.3f} s   {}", flight.clock().t_s(), word_for(*flight.ending()));
+    last_ = draw(flight, end);
+    const Touch touch = flight.touch();
+    if (touch.with != Contact::none) {
+      const int width_px = last_.cols / 2;
+      const Eye left = eyes_of(flight.rig().rig, end.truth.T_world_body)[0];
+      mark(last_.colRange(0, width_px), left, touch.position_world, scale);
+      mark(last_.colRange(width_px, last_.cols),
+           chase_eye(end.truth.T_world_body, width_px, last_.rows), touch.position_world, 1);
+    }
+    for (int i = 0; i < film_rate_hz; ++i) {
+      video_.add(last_);
+      times_s_.push_back(static_cast<float>(flight.clock().t_s()));
+    }
+  }
+  recent_.clear();
   video_.finish();
   if (!still_.empty()) write_picture(folder_ / "still.png", still_);
 }

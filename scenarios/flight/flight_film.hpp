@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "perception/rectification/rectify.hpp"
 #include "scenarios/flight/flight.hpp"
@@ -11,8 +14,9 @@
 
 namespace understory {
 
-/// flight.mp4: the left camera's image with the paper's overlay beside a chase view, in real time, 30
-/// pictures a second. still.png: the picture with the most detections.
+/// flight.mp4: the left camera's image with the paper's overlay and the plan beside a chase view, in real
+/// time, 30 pictures a second. The last half second of a lost flight shows every frame, four times slower, and
+/// the last picture stands for a second, the impact marked. still.png: the picture with the most detections.
 class FlightFilm : public FlightObserver {
  public:
   /// Files go into `folder`. `frame_rate_hz`: of the frames that reach the autopilot.
@@ -21,16 +25,34 @@ class FlightFilm : public FlightObserver {
   bool needs_images() const override { return true; }
   const char* stage() const override { return "film"; }
   void on_frame(const Flight& flight) override;
-  void finish();
+  void finish(const Flight& flight);
+
+  const std::vector<float>& times_s() const { return times_s_; }  ///< of each picture, simulated
+  const cv::Mat& last() const { return last_; }                   ///< picture; empty without any
 
  private:
+  /// What a picture needs, kept until it is known whether the flight ends soon after.
+  struct Moment {
+    std::int64_t number = 0;  ///< of the frame
+    StereoFrame frame;
+    OverlayMoment overlay;
+    Truth truth;
+  };
+  Moment moment_of(const Flight& flight);
+  cv::Mat draw(const Flight& flight, Moment& moment);
+  void add(const Flight& flight, Moment& moment);
+
   std::filesystem::path folder_;
   int every_;  ///< frames per picture
   VideoFile video_;
   std::optional<Rectifier> rectifier_;  ///< for raw pairs, since the detector rectifies only part of an image
+  std::deque<Moment> recent_;
   std::int64_t frames_ = 0;
+  std::int64_t plan_t_ns_ = -1;
+  std::optional<double> planned_clearance_m_;
+  std::vector<float> times_s_;
   std::size_t maximum_hits_ = 0;
-  cv::Mat still_;
+  cv::Mat still_, last_;
 };
 
 }  // namespace understory

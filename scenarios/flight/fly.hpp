@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "scenarios/flight/flight_result.hpp"
@@ -27,6 +28,9 @@ struct FlyOptions {
   std::filesystem::path models_folder;
   std::filesystem::path output_folder;           ///< gets the run's files (OutputFolder); empty: no files
   bool video = false;                            ///< also flight.mp4 and still.png
+  bool report = false;                           ///< also report.html, with the film where there is one
+  std::filesystem::path track;                   ///< compact_flight() of a lost flight; empty: none
+  std::string expected_digest;                   ///< another one is a warning in the report; empty: any
   RendererKind renderer = RendererKind::osmesa;  ///< the machine's: not part of the scenario
   std::vector<FlightObserver*> observers;        ///< beside the run's own record
   std::function<void(const FlightProgress&)> on_progress;  ///< ten times per simulated second; may be empty
@@ -37,7 +41,7 @@ struct LostFilm : MachineError {
   using MachineError::MachineError;
 };
 
-/// Flies a scenario once and leaves its files: trajectory.csv, map.ply, result.json. Throws
+/// Flies a scenario once and leaves its files: trajectory.csv, map.ply, obstacles.csv, result.json. Throws
 /// ScenarioError at bad input (rig, folder), MachineError where the machine fails (GL library, disk),
 /// LostFilm where only the film does.
 FlightResult fly(const Scenario& scenario, const FlyOptions& options);

@@ -11,6 +11,7 @@
 #include "scenarios/flight/clearance.hpp"
 #include "scenarios/flight/flight.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/report/table.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
@@ -31,6 +32,25 @@ void append(std::string& text, const Eigen::Isometry3d& pose, const Eigen::Vecto
                  w.x(), w.y(), w.z());
 }
 
+/// A line of the TUM format: time, position, quaternion with its real part last.
+void append_tum(std::string& text, double t_s, const Eigen::Isometry3d& pose) {
+  const Eigen::Vector3d& p = pose.translation();
+  const Eigen::Quaterniond q(pose.linear());
+  fmt::format_to(std::back_inserter(text), "{:.6f} {:.4f} {:.4f} {:.4f} {:.6f} {:.6f} {:.6f} {:.6f}\n", t_s, p.x(),
+                 p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+}
+
+std::string obstacles_csv(const std::vector<Obstacle>& obstacles) {
+  Table table{{"name", "kind", "from_x_m", "from_y_m", "from_z_m", "to_x_m", "to_y_m", "to_z_m", "radius_m"}};
+  for (const Obstacle& obstacle : obstacles) {
+    table.rows.push_back({obstacle.name, std::string(word_for(obstacle.kind))});
+    for (const Eigen::Vector3d& end : {obstacle.from_world, obstacle.to_world})
+      for (const double coordinate : end) table.rows.back().push_back(number_text(coordinate, 3));
+    table.rows.back().push_back(number_text(obstacle.radius_m, 3));
+  }
+  return to_csv(table);
+}
+
 std::span<const std::byte> bytes_of(const cv::Mat& image) {
   return std::as_bytes(std::span(image.data, image.total() * image.elemSize()));
 }
@@ -40,7 +60,8 @@ std::span<const std::byte> bytes_of(const cv::Mat& image) {
 FolderContents run_contents(const Scenario& scenario) {
   return {"scenario.yaml",
           scenario_to_text(scenario),
-          {"result.json", "scenario.yaml", "trajectory.csv", "map.ply", "flight.mp4", "still.png"}};
+          {"result.json", "scenario.yaml", "trajectory.csv", "map.ply", "obstacles.csv", "truth.tum", "estimate.tum",
+           "flight.mp4", "still.png", "flight.mcap", "report.html"}};
 }
 
 void RunRecord::on_frame(const Flight& flight) {
@@ -104,6 +125,8 @@ void RunRecord::add_row(const Flight& flight) {
   fmt::format_to(std::back_inserter(trajectory_), ",{:.5f},{:.5f},{:.4f},{:.5f},{:.5f},{:.4f},{:.4f}\n",
                  controls.left_elevon_rad, controls.right_elevon_rad, controls.thrust_n,
                  truth.left_elevon_rad, truth.right_elevon_rad, truth.thrust_n, clearance_now_m);
+  append_tum(true_path_, flight.clock().t_s(), truth.T_world_body);
+  append_tum(estimated_path_, flight.clock().t_s(), state.T_world_body);
   if (flight.launched()) add_errors(flight);
 }
 
@@ -140,23 +163,19 @@ FlightResult RunRecord::finish(const Flight& flight) {
   const double clearance_now_m =
       clearance_m(flight.truth().T_world_body, scenario.airframe, flight.obstacles());
   result_.min_clearance_m = std::min(result_.min_clearance_m, clearance_now_m);
-  if (result_.ending == Ending::collision) say_what_was_touched(flight);
+  if (result_.ending == Ending::collision) {
+    const auto touched =
+        nearest_obstacle(flight.truth().T_world_body, scenario.airframe, flight.obstacles());
+    if (touched) result_.touched = flight.obstacles()[*touched].name;
+  }
   if (flight.obstacles().size() <= 8) count_points_on_obstacles(flight.obstacles());
   result_.planner = flight.planner_counts();
   if (flight.cameras() != nullptr) result_.renderer = flight.cameras()->renderer();
   result_.timings = flight.stopwatch().timings();
   result_.wall_s = flight.stopwatch().elapsed_s();
   result_.digest = digest_.hex();
+  obstacles_ = obstacles_csv(flight.obstacles());
   return result_;
-}
-
-void RunRecord::say_what_was_touched(const Flight& flight) {
-  double minimum_m = std::numeric_limits<double>::infinity();
-  for (const Obstacle& obstacle : flight.obstacles()) {
-    const double here_m = clearance_m(flight.truth().T_world_body, flight.scenario().airframe, {obstacle});
-    if (here_m < minimum_m) result_.touched = obstacle.name;
-    minimum_m = std::min(minimum_m, here_m);
-  }
 }
 
 /// On a course of few named bars: the points seen on each.
@@ -172,6 +191,9 @@ void RunRecord::count_points_on_obstacles(const std::vector<Obstacle>& obstacles
 void RunRecord::write(const std::filesystem::path& folder) const {
   write_whole_file(folder / "trajectory.csv", std::string(trajectory_columns) + trajectory_);
   write_whole_file(folder / "map.ply", points_to_ply(points_));
+  write_whole_file(folder / "obstacles.csv", obstacles_);
+  write_whole_file(folder / "truth.tum", true_path_);
+  write_whole_file(folder / "estimate.tum", estimated_path_);
   write_whole_file(folder / "result.json", to_json(result_));
 }
 

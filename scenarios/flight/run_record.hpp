@@ -28,7 +28,7 @@ class RunRecord : public FlightObserver {
   /// Closes the sums and the digest. Once, when the flight has ended.
   FlightResult finish(const Flight& flight);
 
-  /// trajectory.csv, map.ply and result.json into `folder`.
+  /// trajectory.csv, truth.tum, estimate.tum, map.ply, obstacles.csv and result.json into `folder`.
   void write(const std::filesystem::path& folder) const;
 
  private:
@@ -36,12 +36,11 @@ class RunRecord : public FlightObserver {
   void add_row(const Flight& flight);
   void add_errors(const Flight& flight);
   void add_points(const Flight& flight);
-  void say_what_was_touched(const Flight& flight);
   void count_points_on_obstacles(const std::vector<Obstacle>& obstacles);
 
   FlightResult result_;
   RunDigest digest_;
-  std::string trajectory_;
+  std::string trajectory_, true_path_, estimated_path_, obstacles_;
   std::vector<ObstaclePoint> points_;
   /// Of points_, seen from where the aircraft really was.
   std::vector<Eigen::Vector3d> true_positions_world_;

@@ -23,6 +23,8 @@ bool is_numbered_picture(const fs::path& file) {
 
 const cv::Scalar blue(255, 64, 0);
 const cv::Scalar red(0, 0, 255);
+const cv::Scalar green(80, 220, 80);
+const cv::Scalar yellow(0, 230, 255);
 constexpr double mph_per_mps = 2.2369362920544;
 constexpr double feet_per_m = 3.2808398950131;
 constexpr double nearest_drawn_m = 0.5;
@@ -106,19 +108,35 @@ void VideoFile::finish() {
   part_.become(file_);
 }
 
+void mark_place(cv::Mat& picture, double u_px, double v_px) {
+  const cv::Point place(static_cast<int>(u_px), static_cast<int>(v_px));
+  cv::drawMarker(picture, place, yellow, cv::MARKER_TILTED_CROSS, 22, 2, cv::LINE_AA);
+  cv::circle(picture, place, 18, yellow, 2, cv::LINE_AA);
+}
+
 cv::Mat draw_overlay(const OverlayMoment& moment, const StereoRig& rig, int scale) {
   cv::Mat picture;
   cv::resize(moment.left, picture, cv::Size(), scale, scale, cv::INTER_NEAREST);
   cv::cvtColor(picture, picture, cv::COLOR_GRAY2BGR);
   const Eigen::Isometry3d T_camera_world = moment.T_world_camera.inverse();
-  for (const ObstaclePoint& point : moment.remembered) {
-    const Eigen::Vector3d seen = T_camera_world * point.position_world;
-    if (seen.z() < nearest_drawn_m) continue;
+  // Nothing where the point is too near, or behind.
+  const auto pixel_of = [&](const Eigen::Vector3d& position_world) -> std::optional<cv::Point> {
+    const Eigen::Vector3d seen = T_camera_world * position_world;
+    if (seen.z() < nearest_drawn_m) return std::nullopt;
     const double u = rig.focal_px * seen.x() / seen.z() + rig.center_left_x_px;
     const double v = rig.focal_px * seen.y() / seen.z() + rig.center_y_px;
-    if (u < 0 || v < 0 || u >= rig.width_px || v >= rig.height_px) continue;
-    cv::circle(picture, cv::Point(static_cast<int>((u + 0.5) * scale), static_cast<int>((v + 0.5) * scale)),
-               scale + 1, red, cv::FILLED, cv::LINE_AA);
+    return cv::Point(static_cast<int>((u + 0.5) * scale), static_cast<int>((v + 0.5) * scale));
+  };
+  for (const ObstaclePoint& point : moment.remembered) {
+    const auto place = pixel_of(point.position_world);
+    if (place && place->inside(cv::Rect(0, 0, picture.cols, picture.rows)))
+      cv::circle(picture, *place, scale + 1, red, cv::FILLED, cv::LINE_AA);
+  }
+  std::optional<cv::Point> before;
+  for (const Eigen::Vector3d& position_world : moment.way_world) {
+    const auto place = pixel_of(position_world);
+    if (before && place) cv::line(picture, *before, *place, green, 2, cv::LINE_AA);
+    before = place;
   }
   for (const StereoHit& hit : moment.hits) {
     const cv::Rect box(hit.column_px * scale, hit.row_px * scale, 5 * scale, 5 * scale);

@@ -67,6 +67,7 @@ struct OverlayMoment {
   cv::Mat left;                 ///< CV_8UC1, the rig's size
   std::vector<StereoHit> hits;  ///< of this very frame
   std::vector<ObstaclePoint> remembered;
+  std::vector<Eigen::Vector3d> way_world;  ///< of the plan in force
   /// By the estimate, at the image's moment.
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   std::optional<double> airspeed_mps;  ///< written where known
@@ -76,7 +77,10 @@ struct OverlayMoment {
 
 /// The paper's overlay (Barry & Tedrake 2015), `scale` times as large: blue boxes for this frame's
 /// detections, red dots for remembered points reprojected by the estimate, airspeed in mph at the left,
-/// altitude in feet at the right. BGR 8-bit.
+/// altitude in feet at the right; the plan is a green line. BGR 8-bit.
 cv::Mat draw_overlay(const OverlayMoment& moment, const StereoRig& rig, int scale);
+
+/// A cross in a ring, for what went wrong there.
+void mark_place(cv::Mat& picture, double u_px, double v_px);
 
 }  // namespace understory

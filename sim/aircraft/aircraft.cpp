@@ -103,6 +103,29 @@ void Aircraft::read_outline() {
   }
 }
 
+AircraftShape Aircraft::shape() const {
+  AircraftShape shape;
+  for (int geom = 0; geom < model_.ngeom; ++geom) {
+    if (model_.geom_bodyid[geom] != body_) continue;
+    const Eigen::Vector3d centre(model_.geom_pos + 3 * geom);
+    if (model_.geom_contype[geom] != 0)
+      shape.parts.push_back({model_.names + model_.name_geomadr[geom], centre,
+                             Eigen::Vector3d(model_.geom_size + 3 * geom)});
+    if (model_.geom_type[geom] != mjGEOM_MESH) continue;
+    const mjtNum* turn = model_.geom_quat + 4 * geom;
+    const Eigen::Quaterniond attitude(turn[0], turn[1], turn[2], turn[3]);
+    const int mesh = model_.geom_dataid[geom], first = static_cast<int>(shape.vertices_body.size());
+    const float* vertices = model_.mesh_vert + 3 * model_.mesh_vertadr[mesh];
+    for (int i = 0; i < model_.mesh_vertnum[mesh]; ++i)
+      shape.vertices_body.push_back(centre +
+                                    attitude * Eigen::Vector3f(vertices + 3 * i).cast<double>());
+    const int* faces = model_.mesh_face + 3 * model_.mesh_faceadr[mesh];
+    for (int i = 0; i < model_.mesh_facenum[mesh]; ++i)
+      shape.faces.emplace_back(Eigen::Vector3i(faces + 3 * i).array() + first);
+  }
+  return shape;
+}
+
 bool Aircraft::anything_near() const {
   const Eigen::Map<const Eigen::Vector3d> centre(data_->qpos);
   if (centre.z() < reach_m_) return true;
@@ -222,13 +245,18 @@ void Aircraft::read_truth(const Eigen::Vector3d& rail_acceleration_world_mps2) {
   truth_.thrust_n = felt.thrust_n;
 }
 
-Contact Aircraft::contact() const {
-  if (!launched()) return Contact::none;  // the rail holds it
-  Contact found = Contact::none;
+Touch Aircraft::touch() const {
+  Touch found;
+  if (!launched()) return found;  // the rail holds it
   for (int i = 0; i < data_->ncon; ++i) {
-    const mjContact& touch = data_->contact[i];
-    if (touch.geom1 != ground_geom_ && touch.geom2 != ground_geom_) return Contact::obstacle;
-    found = Contact::ground;
+    const mjContact& contact = data_->contact[i];
+    const bool is_ground = contact.geom1 == ground_geom_ || contact.geom2 == ground_geom_;
+    if (is_ground && found.with != Contact::none) continue;
+    const bool first_is_ours = model_.body_rootid[model_.geom_bodyid[contact.geom1]] == body_;
+    const int part = first_is_ours ? contact.geom1 : contact.geom2;
+    found = {is_ground ? Contact::ground : Contact::obstacle, model_.names + model_.name_geomadr[part],
+             Eigen::Vector3d(contact.pos)};
+    if (!is_ground) return found;
   }
   return found;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "planning/airframe.hpp"
@@ -14,6 +15,27 @@
 namespace understory {
 
 enum class Contact { none, ground, obstacle };
+
+/// What the aircraft touches, by MuJoCo's own contacts at one step.
+struct Touch {
+  Contact with = Contact::none;  ///< an obstacle goes before the ground
+  std::string part = {};         ///< of the aircraft, as its model names it: "left_wing_outer"
+  Eigen::Vector3d position_world = Eigen::Vector3d::Zero();
+};
+
+/// A box that collides. Its axes are the body's.
+struct AircraftPart {
+  std::string name;
+  Eigen::Vector3d centre_body = Eigen::Vector3d::Zero();
+  Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
+};
+
+/// What the aircraft looks like, elevons apart, and what of it collides, in its body frame, m.
+struct AircraftShape {
+  std::vector<Eigen::Vector3d> vertices_body;
+  std::vector<Eigen::Vector3i> faces;
+  std::vector<AircraftPart> parts;
+};
 
 /// The delta wing in the world: MuJoCo integrates its body at 1200 Hz under the identified flat-plate
 /// aerodynamics, in the air that `wind` makes.
@@ -42,7 +64,9 @@ class Aircraft {
   /// The acceleration in truth() is the mean over the step just taken.
   const Truth& truth() const { return truth_; }
   bool launched() const { return step_ >= release_step_; }  ///< has left the rail
-  Contact contact() const;  ///< by MuJoCo's own contacts at this step, aircraft against anything
+  Touch touch() const;
+  Contact contact() const { return touch().with; }
+  AircraftShape shape() const;
   const mjData_& data() const { return *data_; }
 
   /// Places the body in flight, with surfaces and delayed commands at `controls`, for tests and experiments

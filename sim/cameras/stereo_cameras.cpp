@@ -9,6 +9,7 @@
 #include <deque>
 #include <opencv2/core.hpp>
 #include <stdexcept>
+#include <string>
 
 #include "sim/cameras/image_sensor.hpp"
 #include "sim/cameras/stereo_optics.hpp"
@@ -62,14 +63,23 @@ Eigen::Isometry3d PoseHistory::at(std::int64_t t_ns) const {
   return pose;
 }
 
-Eigen::Isometry3d aircraft_pose(const mjModel& model, const mjData& data) {
-  const int joint = mj_name2id(&model, mjOBJ_JOINT, "aircraft_free");
-  if (joint < 0) throw std::runtime_error("the model has no joint \"aircraft_free\" to carry the cameras");
-  const mjtNum* q = data.qpos + model.jnt_qposadr[joint];  // newer than data.xpos, which lags one step
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translation() = Eigen::Vector3d(q[0], q[1], q[2]);
-  pose.linear() = Eigen::Quaterniond(q[3], q[4], q[5], q[6]).normalized().toRotationMatrix();
-  return pose;
+mjtNum* joint_angle(const mjModel& model, mjData& data, const char* name) {
+  const int joint = mj_name2id(&model, mjOBJ_JOINT, name);
+  if (joint < 0) throw std::runtime_error(std::string("the model has no joint ") + name);
+  return data.qpos + model.jnt_qposadr[joint];
+}
+
+/// The model's aircraft, placed as `truth` has it.
+DataPointer placed_aircraft(const mjModel& model, const Truth& truth) {
+  DataPointer data(mj_makeData(&model));
+  const Eigen::Vector3d& place = truth.T_world_body.translation();
+  const Eigen::Quaterniond turn(truth.T_world_body.linear());
+  const double pose[] = {place.x(), place.y(), place.z(), turn.w(), turn.x(), turn.y(), turn.z()};
+  std::ranges::copy(pose, joint_angle(model, *data, "aircraft_free"));
+  *joint_angle(model, *data, "left_elevon") = truth.left_elevon_rad;
+  *joint_angle(model, *data, "right_elevon") = truth.right_elevon_rad;
+  mj_kinematics(&model, data.get());
+  return data;
 }
 
 std::array<cv::Mat, 2> falloff_of(const StereoOptics& optics, const CameraConfig& config) {
@@ -78,6 +88,21 @@ std::array<cv::Mat, 2> falloff_of(const StereoOptics& optics, const CameraConfig
 }
 
 }  // namespace
+
+Eye chase_eye(const Eigen::Isometry3d& T_world_body, int width_px, int height_px) {
+  const Eigen::Vector3d forward = T_world_body.linear().col(0);
+  const double yaw_rad = std::atan2(forward.y(), forward.x());
+  constexpr double behind_m = 3.2, above_m = 1.1, down_rad = 0.20;
+  Eye eye{Eigen::Isometry3d::Identity(), 0.8 * width_px, 0.5 * (width_px - 1),
+          0.5 * (height_px - 1),         width_px,       height_px};
+  const Eigen::Vector3d ahead(std::cos(yaw_rad), std::sin(yaw_rad), 0);
+  eye.T_world_camera.translation() =
+      T_world_body.translation() - behind_m * ahead + above_m * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d gaze = std::cos(down_rad) * ahead - std::sin(down_rad) * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d right = gaze.cross(Eigen::Vector3d::UnitZ()).normalized();
+  eye.T_world_camera.linear() << right, gaze.cross(right), gaze;
+  return eye;
+}
 
 struct StereoCameras::Implementation {
   const mjModel& model;
@@ -167,20 +192,9 @@ TrueView StereoCameras::true_view(const Eigen::Isometry3d& T_world_body) const {
   return implementation_->scene.true_left_view(eyes_of(implementation_->rig, T_world_body));
 }
 
-cv::Mat StereoCameras::chase_view(const mjData& data, int width_px, int height_px) const {
-  const Eigen::Isometry3d aircraft = aircraft_pose(implementation_->model, data);
-  const Eigen::Vector3d forward = aircraft.linear().col(0);
-  const double yaw_rad = std::atan2(forward.y(), forward.x());
-  constexpr double behind_m = 3.2, above_m = 1.1, down_rad = 0.20;
-  Eye eye{Eigen::Isometry3d::Identity(), 0.8 * width_px, 0.5 * (width_px - 1),
-          0.5 * (height_px - 1),         width_px,       height_px};
-  const Eigen::Vector3d ahead(std::cos(yaw_rad), std::sin(yaw_rad), 0);
-  eye.T_world_camera.translation() =
-      aircraft.translation() - behind_m * ahead + above_m * Eigen::Vector3d::UnitZ();
-  const Eigen::Vector3d gaze = std::cos(down_rad) * ahead - std::sin(down_rad) * Eigen::Vector3d::UnitZ();
-  const Eigen::Vector3d right = gaze.cross(Eigen::Vector3d::UnitZ()).normalized();
-  eye.T_world_camera.linear() << right, gaze.cross(right), gaze;
-  return implementation_->scene.colour_with_aircraft(data, eye);
+cv::Mat StereoCameras::chase_view(const Truth& truth, int width_px, int height_px) const {
+  return implementation_->scene.colour_with_aircraft(*placed_aircraft(implementation_->model, truth),
+                                                     chase_eye(truth.T_world_body, width_px, height_px));
 }
 
 std::string StereoCameras::renderer() const { return implementation_->scene.name(); }

@@ -9,6 +9,7 @@
 #include "perception/stereo_calibration.hpp"
 #include "perception/stereo_frame.hpp"
 #include "perception/stereo_rig.hpp"
+#include "sim/aircraft/truth.hpp"
 #include "sim/cameras/camera_config.hpp"
 #include "sim/render/eye.hpp"
 #include "sim/render/renderer_kind.hpp"
@@ -21,6 +22,9 @@ struct CameraSeeds {
   std::uint64_t noise = 0;
   std::uint64_t shot = 0;
 };
+
+/// A camera that follows the aircraft a little behind and above, level, for people.
+Eye chase_eye(const Eigen::Isometry3d& T_world_body, int width_px, int height_px);
 
 /// Renders both eyes of a rig offscreen (OSMesa or EGL, loaded at run time; in software bit-reproducible on
 /// one machine).
@@ -43,8 +47,8 @@ class StereoCameras {
   cv::Mat depth(const Eigen::Isometry3d& T_world_body) const;
   /// What is where in the left image, rectified, with the body there: the same depth, and the objects.
   TrueView true_view(const Eigen::Isometry3d& T_world_body) const;
-  /// What a camera following the aircraft of `data` (Aircraft::data()) sees, BGR 8-bit, for people.
-  cv::Mat chase_view(const mjData_& data, int width_px, int height_px) const;
+  /// What chase_eye() sees, BGR 8-bit. Of `truth` it takes the pose and the elevons.
+  cv::Mat chase_view(const Truth& truth, int width_px, int height_px) const;
   /// The renderer's own name and version, for records.
   std::string renderer() const;
 

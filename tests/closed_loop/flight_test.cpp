@@ -79,7 +79,7 @@ struct Asking : FlightObserver {
     EXPECT_LE(flight.frame().t_ns, flight.clock().t_ns());
     EXPECT_LE(flight.truth_at(flight.frame().t_ns).t_ns, flight.frame().t_ns);
     flight.cameras()->depth(flight.truth_at(flight.frame().t_ns).T_world_body);
-    flight.chase_view(64, 48);
+    flight.cameras()->chase_view(flight.truth(), 64, 48);
     hits += static_cast<std::int64_t>(flight.hits().size());
   }
   void on_step(const Flight& flight) override {

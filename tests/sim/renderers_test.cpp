@@ -37,7 +37,7 @@ void draw(RendererKind renderer, const fs::path& to) {
     append(file, frame.right);
     append(file, cameras.depth(body));
     append(file, cameras.true_view(Eigen::Translation3d(1.7 * i, 0.4 * i - 1, 3) * attitude).objects);
-    append(file, cameras.chase_view(*data_at(world, body), 320, 200));
+    append(file, cameras.chase_view({.T_world_body = body}, 320, 200));
   }
 }
 

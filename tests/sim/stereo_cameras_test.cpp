@@ -123,7 +123,7 @@ TEST(StereoCameras, ChaseViewLeavesTheStereoPairAsItWas) {
   const Eigen::Isometry3d body = body_at({0, 0, 3}, level);
   StereoCameras cameras(world, paper_rig(), noiseless(), {1, 1});
   const StereoFrame before = cameras.capture(body, 0);
-  const cv::Mat view = cameras.chase_view(*data_at(world, body), 500, 300);
+  const cv::Mat view = cameras.chase_view({.T_world_body = body}, 500, 300);
   EXPECT_EQ(view.size(), cv::Size(500, 300));
   EXPECT_EQ(view.type(), CV_8UC3);
   const StereoFrame after = cameras.capture(body, 1);

@@ -1,0 +1,460 @@
+#include "scenarios/flight/flight_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "perception/io/picture_codecs.hpp"
+#include "perception/io/text_file.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/output/errors.hpp"
+#include "scenarios/output/program.hpp"
+#include "scenarios/report/page.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// What a page holds at most.
+struct Detail {
+  std::size_t moments, plans, plan_points, hits, map_points;
+  double from_end_s;  ///< plans and hits before are left out
+};
+constexpr Detail everything{4800, 3600, 11, 20'000, 20'000, 1e9};  // below 3 MB in base64
+constexpr Detail compact{160, 40, 8, 300, 300, 2};                 // below 30 kB
+
+constexpr double farthest_shown_m = 5;  // of clearances: beyond it nothing is near
+constexpr double degrees = 57.29577951308232;
+constexpr std::size_t maximum_film_bytes = std::size_t{1} << 30;
+
+// ---- decimation ----
+
+/// One of how many is kept so that at most `maximum` are.
+std::size_t one_of(std::size_t count, std::size_t maximum) { return std::max<std::size_t>(1, (count + maximum - 1) / maximum); }
+
+/// Every `every`-th, and the last.
+template <typename T>
+std::vector<T> decimated(const std::vector<T>& all, std::size_t every) {
+  std::vector<T> kept;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (i % every == 0 || i + 1 == all.size()) kept.push_back(all[i]);
+  return kept;
+}
+
+double distance_m(const Eigen::Vector3d& point, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  const Eigen::Vector3d along = to - from;
+  const double length2 = along.squaredNorm();
+  const double share = length2 > 0 ? std::clamp((point - from).dot(along) / length2, 0.0, 1.0) : 0;
+  return (from + share * along - point).norm();
+}
+
+/// Farthest that a point of `way` lies from the line through every `every`-th, m.
+double decimation_error_m(const std::vector<Eigen::Vector3d>& way, std::size_t every) {
+  double maximum_m = 0;
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    const std::size_t from = i / every * every, to = std::min(from + every, way.size() - 1);
+    maximum_m = std::max(maximum_m, distance_m(way[i], way[from], way[to]));
+  }
+  return maximum_m;
+}
+
+// ---- arrays ----
+
+void append(std::vector<float>& values, const Eigen::Vector3d& position) {
+  for (const double coordinate : position) values.push_back(static_cast<float>(coordinate));
+}
+
+void append(std::vector<float>& values, const Eigen::Isometry3d& pose) {
+  append(values, Eigen::Vector3d(pose.translation()));
+  const Eigen::Quaterniond turn(pose.linear());
+  for (const double part : {turn.x(), turn.y(), turn.z(), turn.w()}) values.push_back(static_cast<float>(part));
+}
+
+float shown_m(double clearance_m) {
+  return static_cast<float>(std::min(clearance_m, farthest_shown_m));
+}
+
+void add_moments(const FlightTrack& track, const Detail& detail, PageArrays& arrays, Json& decimation) {
+  const std::size_t every = one_of(track.moments.size(), detail.moments);
+  if (every > 1) {
+    std::vector<Eigen::Vector3d> way;
+    for (const TrackMoment& moment : track.moments) way.push_back(moment.T_world_true.translation());
+    decimation.push_back(fmt::format("moments: one of {}; the path is at most {:.3f} m from the full one", every,
+                                     decimation_error_m(way, every)));
+  }
+  const std::vector<TrackMoment> moments = decimated(track.moments, every);
+  std::vector<float> truth, estimate;
+  for (const TrackMoment& moment : moments) {
+    append(truth, moment.T_world_true);
+    append(estimate, moment.T_world_estimated);
+  }
+  arrays.add("truth", 7, truth);
+  arrays.add("estimate", 7, estimate);
+  const auto add = [&](const char* name, auto value_of) {
+    std::vector<float> values;
+    for (const TrackMoment& moment : moments) values.push_back(static_cast<float>(value_of(moment)));
+    arrays.add(name, 1, values);
+  };
+  using Moment = const TrackMoment&;
+  add("t", [](Moment m) { return m.t_s; });
+  add("speed", [](Moment m) { return m.speed_mps; });
+  add("estimated_speed", [](Moment m) { return m.estimated_speed_mps; });
+  add("height", [](Moment m) { return m.T_world_true.translation().z(); });
+  add("estimated_height", [](Moment m) { return m.estimated_altitude_m; });
+  add("bank", [](Moment m) { return degrees * m.bank_rad; });
+  add("commanded_bank", [](Moment m) { return degrees * m.commanded_bank_rad; });
+  add("left_elevon", [](Moment m) { return degrees * m.left_elevon_rad; });
+  add("right_elevon", [](Moment m) { return degrees * m.right_elevon_rad; });
+  add("clearance", [](Moment m) { return shown_m(m.clearance_m); });
+  for (const auto& [axis, letter] : {std::pair(0, 'x'), {1, 'y'}, {2, 'z'}}) {
+    add(fmt::format("error_{}", letter).c_str(), [&](Moment m) { return m.position_error_world[axis]; });
+    add(fmt::format("sigma3_{}", letter).c_str(), [&](Moment m) { return 3 * m.position_sigma_world[axis]; });
+    add(fmt::format("minus_sigma3_{}", letter).c_str(),
+        [&](Moment m) { return -3 * m.position_sigma_world[axis]; });
+  }
+}
+
+void add_hits(const FlightTrack& track, const Detail& detail, PageArrays& arrays, Json& decimation) {
+  const double from_s = track.moments.back().t_s - detail.from_end_s;
+  const auto recent = std::ranges::partition_point(
+      track.frames, [&](const TrackFrame& frame) { return static_cast<double>(frame.t_ns) * 1e-9 < from_s; });
+  const std::size_t first = recent == track.frames.end() ? track.hits.size() : recent->first_hit;
+  const std::size_t every = one_of(track.hits.size() - first, detail.hits);
+  if (every > 1) decimation.push_back(fmt::format("hits: one of {}", every));
+  std::vector<float> hits, hits_t, frame_t, frame_hits;
+  for (const TrackFrame& frame : track.frames) {
+    const auto t_s = static_cast<float>(static_cast<double>(frame.t_ns) * 1e-9);
+    frame_t.push_back(t_s);
+    frame_hits.push_back(static_cast<float>(frame.hits));
+    for (std::size_t i = std::max(first, frame.first_hit); i < frame.first_hit + frame.hits; ++i) {
+      if (i % every != 0) continue;
+      append(hits, track.hits[i].true_world);
+      hits_t.push_back(t_s);
+    }
+  }
+  const std::size_t every_frame = one_of(frame_t.size(), detail.moments);
+  if (every_frame > 1)
+    decimation.push_back(fmt::format("detections in the chart: one frame of {}", every_frame));
+  arrays.add("hits", 3, hits);
+  arrays.add("hits_t", 1, hits_t);
+  arrays.add("frame_t", 1, decimated(frame_t, every_frame));
+  arrays.add("frame_hits", 1, decimated(frame_hits, every_frame));
+}
+
+void add_map(const FlightTrack& track, const Detail& detail, PageArrays& arrays, Json& decimation) {
+  const double from_s = track.moments.back().t_s - detail.from_end_s;
+  std::vector<TrackPoint> shown;
+  std::ranges::copy_if(track.points, std::back_inserter(shown),
+                       [&](const TrackPoint& point) { return point.to_s >= from_s; });
+  const std::size_t every = one_of(shown.size(), detail.map_points);
+  if (every > 1) decimation.push_back(fmt::format("points of the map: one of {}", every));
+  std::vector<float> positions, from, to;
+  for (const TrackPoint& point : decimated(shown, every)) {
+    append(positions, point.position_world);
+    from.push_back(static_cast<float>(point.from_s));
+    to.push_back(static_cast<float>(point.to_s));
+  }
+  arrays.add("map_points", 3, positions);
+  arrays.add("map_from", 1, from);
+  arrays.add("map_to", 1, to);
+}
+
+void add_plans(const FlightTrack& track, const Detail& detail, PageArrays& arrays, Json& decimation) {
+  const double from_s = track.moments.back().t_s - detail.from_end_s;
+  std::vector<TrackPlan> shown;
+  std::ranges::copy_if(track.plans, std::back_inserter(shown),
+                       [&](const TrackPlan& plan) { return plan.from_s >= from_s; });
+  const std::size_t every = one_of(shown.size(), detail.plans);
+  if (every > 1) decimation.push_back(fmt::format("plans: one of {}", every));
+  std::vector<float> t, points, clearance, origin_number;
+  std::vector<std::uint32_t> start;
+  std::vector<std::uint8_t> origin;
+  double error_m = 0;
+  for (const TrackPlan& plan : decimated(shown, every)) {
+    const std::size_t every_point = one_of(plan.way_world.size(), detail.plan_points - 1);
+    error_m = std::max(error_m, decimation_error_m(plan.way_world, every_point));
+    t.push_back(static_cast<float>(plan.from_s));
+    start.push_back(static_cast<std::uint32_t>(points.size() / 3));
+    for (const Eigen::Vector3d& point : decimated(plan.way_world, every_point)) append(points, point);
+    origin.push_back(static_cast<std::uint8_t>(plan.origin));
+    origin_number.push_back(origin.back());
+    clearance.push_back(plan.clearance_m ? shown_m(*plan.clearance_m) : std::numeric_limits<float>::quiet_NaN());
+  }
+  if (!shown.empty())
+    decimation.push_back(fmt::format("plans: {} points at most; the drawn line is at most {:.3f} m from the plan",
+                                     detail.plan_points, error_m));
+  arrays.add("plan_t", 1, t);
+  arrays.add("plan_start", 1, start);
+  arrays.add("plan_points", 3, points);
+  arrays.add("plan_origin", 1, origin);
+  arrays.add("plan_origin_number", 1, origin_number);
+  arrays.add("plan_clearance", 1, clearance);
+}
+
+void add_obstacles(const std::vector<Obstacle>& obstacles, PageArrays& arrays, Json& facts) {
+  std::vector<float> values;
+  Json names = Json::array(), kinds = Json::array();
+  for (const Obstacle& obstacle : obstacles) {
+    append(values, obstacle.from_world);
+    append(values, obstacle.to_world);
+    values.push_back(static_cast<float>(obstacle.radius_m));
+    names.push_back(obstacle.name);
+    kinds.push_back(word_for(obstacle.kind));
+  }
+  arrays.add("obstacles", 7, values);
+  facts["obstacles"] = {{"names", names}, {"kinds", kinds}};
+}
+
+void add_aircraft(const AircraftShape& shape, const std::string& touched_part, PageArrays& arrays) {
+  std::vector<float> vertices, box;
+  std::vector<std::uint16_t> triangles;
+  for (const Eigen::Vector3d& vertex : shape.vertices_body) append(vertices, vertex);
+  for (const Eigen::Vector3i& face : shape.faces)
+    for (const int corner : face) triangles.push_back(static_cast<std::uint16_t>(corner));
+  for (const AircraftPart& part : shape.parts) {
+    if (part.name != touched_part) continue;
+    append(box, part.centre_body);
+    append(box, part.half_size_m);
+  }
+  arrays.add("wing_vertices", 3, vertices);
+  arrays.add("wing_triangles", 3, triangles);
+  if (!box.empty()) arrays.add("touched_box", 3, box);
+  // The swept trail hangs on the two tips.
+  if (shape.vertices_body.empty()) return;
+  std::vector<float> tips;
+  const auto [right, left] = std::ranges::minmax_element(
+      shape.vertices_body, {}, [](const Eigen::Vector3d& vertex) { return vertex.y(); });
+  append(tips, *left);
+  append(tips, *right);
+  arrays.add("wing_tips", 3, tips);
+}
+
+// ---- facts ----
+
+Json series(const char* name, const char* array, const char* color, const char* time = nullptr) {
+  Json json{{"name", name}, {"array", array}, {"color", color}};
+  if (time != nullptr) json["time"] = time;
+  return json;
+}
+
+Json chart(const char* title, const char* unit, Json lines) {
+  return {{"title", title}, {"unit", unit}, {"series", std::move(lines)}, {"bands", Json::array()},
+          {"limits", Json::array()}};
+}
+
+Json charts_of(const Scenario& scenario) {
+  Json charts = Json::array();
+  charts.push_back(chart("Speed over ground", "m/s",
+                         {series("true", "speed", "truth"), series("estimated", "estimated_speed", "estimate")}));
+  Json height = chart("Height", "m",
+                      {series("true", "height", "truth"), series("estimated", "estimated_height", "estimate")});
+  height["limits"] = {{{"name", "lower bound"}, {"value", scenario.band.minimum_altitude_m}},
+                      {{"name", "upper bound"}, {"value", scenario.band.maximum_altitude_m}}};
+  charts.push_back(height);
+  Json clearance = chart("Clearance", "m", {series("true", "clearance", "truth"),
+                                            series("of the plan", "plan_clearance", "command", "plan_t")});
+  clearance["limits"] = {{{"name", "touch"}, {"value", 0}}};
+  charts.push_back(clearance);
+  Json plans = chart("Plan in force", "", {series("plan", "plan_origin_number", "command", "plan_t")});
+  for (const PlanOrigin origin :
+       {PlanOrigin::straight, PlanOrigin::solved, PlanOrigin::kept, PlanOrigin::fallback})
+    plans["words"].push_back(word_for(origin));
+  charts.push_back(plans);
+  charts.push_back(chart("Detections", "per frame", {series("hits", "frame_hits", "other", "frame_t")}));
+  charts.push_back(chart("Bank", "deg", {series("true", "bank", "truth"),
+                                         series("commanded", "commanded_bank", "command")}));
+  charts.push_back(chart("Elevons", "deg", {series("left", "left_elevon", "truth"),
+                                            series("right", "right_elevon", "other")}));
+  for (const char* const axis : {"x", "y", "z"}) {
+    const std::string words = fmt::format("Estimate's error, {}", *axis == 'x'   ? "along the course"
+                                                                  : *axis == 'y' ? "to the left"
+                                                                                 : "upwards");
+    const std::string name = fmt::format("error_{}", axis);
+    Json error = chart(words.c_str(), "m", {series("estimate less truth", name.c_str(), "estimate")});
+    error["bands"] = {{{"name", "3 sigma"},
+                       {"lower", fmt::format("minus_sigma3_{}", axis)},
+                       {"upper", fmt::format("sigma3_{}", axis)}}};
+    charts.push_back(error);
+  }
+  return charts;
+}
+
+Json camera_of(const Flight& flight) {
+  const StereoRig& rig = flight.rig().rig;
+  Json T_body_camera = Json::array();
+  const Eigen::Matrix4d matrix = rig.T_body_camera.matrix();
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) T_body_camera.push_back(matrix(row, column));
+  Json depths = Json::array();
+  for (const double depth_m : flight.scenario().perception.pushbroom.depths_m) depths.push_back(depth_m);
+  if (depths.empty()) depths.push_back(rig.detection_depth_m);
+  return {{"width_px", rig.width_px},     {"height_px", rig.height_px}, {"fx", rig.focal_px},
+          {"fy", rig.focal_px},           {"cx", rig.center_left_x_px}, {"cy", rig.center_y_px},
+          {"T_body_camera", T_body_camera}, {"depths_m", depths},       {"baseline_m", rig.baseline_m}};
+}
+
+Json result_of(const FlightResult& result) {
+  Json rows = Json::array();
+  const auto add = [&](const char* name, const std::string& text) { rows.push_back({name, text}); };
+  add("ending", std::string(word_for(result.ending)));
+  add("flown", fmt::format("{:.1f} m in {:.2f} s, {:.1f} m/s on average", result.distance_m, result.simulated_s,
+                           result.mean_speed_mps));
+  add("minimum clearance",
+      std::isfinite(result.min_clearance_m) ? fmt::format("{:.2f} m", result.min_clearance_m) : "no obstacles");
+  add("estimate's error", fmt::format("{:.2f} m on average, {:.2f} m at most", result.position_error_mean_m,
+                                      result.position_error_max_m));
+  add("detections", fmt::format("{} in {} frames", result.detections, result.frames));
+  add("points remembered", fmt::format("{}", result.remembered_points));
+  const PlannerCounts& planner = result.planner;
+  add("plans", fmt::format("{}: {} straight, {} solved, {} kept, {} fallback", planner.replans, planner.straight,
+                           planner.solved, planner.kept, planner.fallback));
+  add("detector", result.detector);
+  add("state", result.state_source);
+  add("renderer", result.renderer.empty() ? "none: no images" : result.renderer);
+  return rows;
+}
+
+/// Keys that say which numbers others start from.
+const std::vector<std::string> preset_keys{"name",  "rig", "sensors.grade", "perception.rule", "estimation.preset",
+                                           "autopilot.preset", "launch.", "airframe."};
+
+bool is_preset(const std::string& key) {
+  return std::ranges::any_of(preset_keys, [&](const std::string& preset) {
+    return preset.back() == '.' ? key.starts_with(preset) : key == preset;
+  });
+}
+
+FlatKeys keys_in(const Scenario& scenario) { return flat_keys(scenario_to_text(scenario), scenario.name); }
+
+/// [key, default, value] where the scenario has another value than its presets and defaults give.
+Json changed_keys(const Scenario& scenario) {
+  const FlatKeys given = keys_in(scenario);
+  std::vector<std::string> presets;
+  for (const auto& [key, value] : given)
+    if (is_preset(key)) presets.push_back(key + "=" + value);
+  const FlatKeys plain = keys_in(scenario_from_text("{}", "defaults")),
+                 preset = keys_in(scenario_from_text("{}", "presets", presets));
+  Json rows = Json::array();
+  for (const auto& [key, value] : given) {
+    const std::string standard = value_in(is_preset(key) ? plain : preset, key);
+    if (value != standard && key != "name") rows.push_back({key, standard, value});
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::string arguments_that_fly(const Scenario& scenario, const fs::path& data_root) {
+  constexpr std::size_t maximum_settings = 12;  // more than a person would paste
+  const fs::path library = data_root / "scenarios" / "library" / (scenario.name + ".yaml");
+  std::error_code ignored;
+  if (!fs::exists(library, ignored)) return "scenario.yaml";
+  const FlatKeys wanted = keys_in(scenario);
+  std::vector<std::string> settings{fmt::format("seed={}", scenario.seed)};
+  for (const bool presets : {true, false}) {
+    const FlatKeys now = keys_in(load_scenario(library, settings));
+    for (const auto& [key, value] : wanted)
+      if (is_preset(key) == presets && value_in(now, key) != value) settings.push_back(key + "=" + value);
+    if (settings.size() > maximum_settings) return "scenario.yaml";
+  }
+  try {
+    if (scenario_to_text(load_scenario(library, settings)) != scenario_to_text(scenario)) return "scenario.yaml";
+  } catch (const ScenarioError&) {  // a list's entry cannot be set by itself
+    return "scenario.yaml";
+  }
+  std::string arguments = fmt::format("{} --seed {}", scenario.name, scenario.seed);
+  for (std::size_t i = 1; i < settings.size(); ++i)
+    arguments += settings[i].find_first_of(" [\"") == std::string::npos ? fmt::format(" --set {}", settings[i])
+                                                                         : fmt::format(" --set '{}'", settings[i]);
+  return arguments;
+}
+
+namespace {
+
+/// What page and track share.
+Json facts_of(const Flight& flight, const FlightResult& result, const FlightTrack& track,
+              const FlightStory& story, const fs::path& data_root) {
+  const Scenario& scenario = flight.scenario();
+  Json facts{{"kind", "flight"},
+             {"title", fmt::format("{}, seed {}", scenario.name, scenario.seed)},
+             {"program", fmt::format("understory {} ({})", understory_version, understory_commit)},
+             {"ending", word_for(result.ending)},
+             {"sentence", story.ending},
+             {"story", story.before},
+             {"command", "understory fly " + arguments_that_fly(scenario, data_root)},
+             {"digest", result.digest},
+             {"t_end_s", flight.clock().t_s()},
+             {"t_launch_s", track.launch_s}};
+  facts["course"] = {{"goal_x_m", scenario.goal_x_m()},
+                     {"half_width_m", scenario.forest.half_width_m},
+                     {"minimum_altitude_m", scenario.band.minimum_altitude_m},
+                     {"maximum_altitude_m", scenario.band.maximum_altitude_m},
+                     {"cruise_altitude_m", scenario.band.cruise_altitude_m}};
+  facts["touched"] = story.touched ? Json(*story.touched) : Json();
+  facts["impact"] = Json();
+  if (story.impact_world) {
+    const Eigen::Vector3d& place = *story.impact_world;
+    facts["impact"] = {{"position", {place.x(), place.y(), place.z()}}, {"part", story.part}};
+  }
+  facts["camera"] = looks(scenario.perception.detector) ? camera_of(flight) : Json();
+  facts["charts"] = charts_of(scenario);
+  facts["events"] = Json::array();
+  for (const FlightEvent& event : story.events)
+    facts["events"].push_back({{"t_s", event.t_s}, {"kind", event.kind}, {"text", event.text}});
+  facts["film"] = Json();
+  return facts;
+}
+
+void add_track(const Flight& flight, const FlightTrack& track, const FlightStory& story, const Detail& detail,
+               PageArrays& arrays, Json& facts) {
+  Json decimation = Json::array();
+  add_moments(track, detail, arrays, decimation);
+  add_hits(track, detail, arrays, decimation);
+  add_map(track, detail, arrays, decimation);
+  add_plans(track, detail, arrays, decimation);
+  add_obstacles(flight.obstacles(), arrays, facts);
+  add_aircraft(flight.aircraft_shape(), story.part, arrays);
+  facts["decimation"] = std::move(decimation);
+}
+
+}  // namespace
+
+std::string flight_page(const Flight& flight, const FlightResult& result, const FlightTrack& track,
+                        const FlightStory& story, const FlightPageExtras& extras) {
+  const Scenario& scenario = flight.scenario();
+  PageContent page;
+  page.title = fmt::format("{}, seed {}: {}", scenario.name, scenario.seed, word_for(result.ending));
+  Json facts = facts_of(flight, result, track, story, extras.data_root);
+  facts["warning"] = extras.warning;
+  facts["scenario"] = scenario_to_text(scenario);
+  facts["result"] = result_of(result);
+  facts["keys"] = changed_keys(scenario);
+  if (!extras.film.empty()) {
+    facts["film"] = {{"times", "film_t"}};
+    page.arrays.add("film_t", 1, extras.film_times_s);
+    page.film = read_file(extras.film, maximum_film_bytes);
+    if (!extras.last_picture.empty()) {
+      const auto still = picture_codecs().encode(".jpg", extras.last_picture);
+      page.still.assign(still.begin(), still.end());
+    }
+  }
+  add_track(flight, track, story, everything, page.arrays, facts);
+  page.facts = facts.dump();
+  return page_html(extras.data_root, page);
+}
+
+std::string compact_flight(const Flight& flight, const FlightResult& result, const FlightTrack& track,
+                           const FlightStory& story, const fs::path& data_root) {
+  Json facts = facts_of(flight, result, track, story, data_root);
+  PageArrays arrays(true);
+  add_track(flight, track, story, compact, arrays, facts);
+  return packed_part(facts.dump(), arrays);
+}
+
+}  // namespace understory

@@ -1,0 +1,201 @@
+#include "scenarios/flight/flight_story.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <opencv2/core.hpp>
+
+#include "scenarios/flight/clearance.hpp"
+
+namespace understory {
+namespace {
+
+/// A hit or a remembered point this near to an obstacle's surface stands for it, m: what stereo at 10 m and
+/// the estimate's drift leave open.
+constexpr double belongs_within_m = 0.5;
+/// What a person, too, would see as the obstacle: pixels of the left image.
+constexpr int in_view_px = 25;
+
+double seconds(std::int64_t t_ns) { return static_cast<double>(t_ns) * 1e-9; }
+
+/// "left_wing_outer": "the outer left wing".
+std::string words_of_part(const std::string& part) {
+  if (part == "pod") return "the fuselage";
+  std::vector<std::string> words{""};
+  for (const char c : part) {
+    if (c == '_')
+      words.emplace_back();
+    else
+      words.back() += c;
+  }
+  if (words.size() == 3) std::rotate(words.begin(), words.begin() + 2, words.end());
+  return fmt::format("the {}", fmt::join(words, " "));
+}
+
+double distance_m(const Eigen::Vector3d& point_world, const Obstacle& obstacle) {
+  return obstacle_distance_m({point_world, point_world}, obstacle);
+}
+
+std::string ending_sentence(const Flight& flight, const FlightStory& story) {
+  const Eigen::Vector3d& place = flight.truth().T_world_body.translation();
+  const Scenario& scenario = flight.scenario();
+  const std::string when = fmt::format("at {:.2f} s, {:.1f} m from the launch", flight.clock().t_s(), place.x());
+  switch (flight.ending().value()) {
+    case Ending::goal:
+      return fmt::format("It passed the goal plane at {:.0f} m after {:.2f} s.", scenario.goal_x_m(),
+                         flight.clock().t_s());
+    case Ending::collision:
+      return fmt::format("{} touched {} {}, {:.1f} m above the ground.", words_of_part(story.part),
+                         story.touched ? flight.obstacles()[*story.touched].name : "an obstacle", when,
+                         place.z());
+    case Ending::ground:
+      return fmt::format("{} touched the ground {}.", words_of_part(story.part), when);
+    case Ending::time:
+      return fmt::format("Its {:.1f} s were over, {:.1f} m before the goal plane.", scenario.time_limit_s,
+                         scenario.goal_x_m() - place.x());
+    case Ending::out_of_bounds:
+      break;
+  }
+  const auto beyond = [&](const char* bound, double limit_m, double at_m) {
+    return fmt::format("It left the course through {} of {:.1f} m: it was at {:.2f} m {}.", bound, limit_m,
+                       at_m, when);
+  };
+  const BandConfig& band = scenario.band;
+  if (place.z() > band.maximum_altitude_m)
+    return beyond("the upper bound", band.maximum_altitude_m, place.z());
+  if (std::abs(place.y()) > scenario.forest.half_width_m)
+    return beyond(place.y() > 0 ? "the left side" : "the right side", scenario.forest.half_width_m,
+                  std::abs(place.y()));
+  if (place.x() < -scenario.forest.half_width_m)
+    return fmt::format("It left the course backwards: {:.1f} m behind the launch after {:.2f} s.", -place.x(),
+                       flight.clock().t_s());
+  return beyond("the lower bound", band.minimum_altitude_m, place.z());
+}
+
+std::optional<double> first_in_view_s(const Flight& flight, const FlightTrack& track, std::size_t obstacle) {
+  if (flight.cameras() == nullptr || flight.scenario().forest.invisible) return std::nullopt;
+  const auto object = static_cast<double>(object_first_obstacle + obstacle);
+  for (const TrackFrame& frame : track.frames) {
+    const TrueView view = flight.cameras()->true_view(frame.truth.T_world_body);
+    if (cv::countNonZero(view.objects == object) >= in_view_px) return seconds(frame.t_ns);
+  }
+  return std::nullopt;
+}
+
+double ahead_m(const FlightTrack& track, double t_s, const Obstacle& obstacle) {
+  const auto moment = std::ranges::lower_bound(track.moments, t_s, {}, &TrackMoment::t_s);
+  const TrackMoment& there = moment == track.moments.end() ? track.moments.back() : *moment;
+  return distance_m(there.T_world_true.translation(), obstacle);
+}
+
+void tell_of_obstacle(const Flight& flight, const FlightTrack& track, FlightStory& story) {
+  const Obstacle& obstacle = flight.obstacles()[story.touched.value()];
+  const double end_s = flight.clock().t_s();
+  // The map belongs to the estimate, which drifts; what counts is where it has things beside the aircraft.
+  const Eigen::Isometry3d T_true_estimated =
+      track.moments.back().T_world_true * track.moments.back().T_world_estimated.inverse();
+  const auto first_s = first_in_view_s(flight, track, *story.touched);
+  if (first_s) {
+    const std::string text = fmt::format("{} came into view {:.2f} s before, {:.1f} m away", obstacle.name,
+                                         end_s - *first_s, ahead_m(track, *first_s, obstacle));
+    story.events.push_back({*first_s, "in_view", text});
+    story.before.push_back(text + ".");
+  } else if (flight.cameras() != nullptr) {
+    story.before.push_back(obstacle.name + " never came into view.");
+  }
+
+  int frames = 0;
+  std::int64_t hits = 0;
+  double first_hit_s = 0;
+  for (const TrackFrame& frame : track.frames) {
+    const auto begin = track.hits.begin() + static_cast<std::ptrdiff_t>(frame.first_hit);
+    const auto on_it = std::count_if(begin, begin + static_cast<std::ptrdiff_t>(frame.hits), [&](const TrackHit& hit) {
+      return distance_m(hit.true_world, obstacle) < belongs_within_m;
+    });
+    if (on_it > 0 && frames++ == 0) first_hit_s = seconds(frame.t_ns);
+    hits += on_it;
+  }
+  if (frames > 0) {
+    const std::string text =
+        fmt::format("{} was first detected {:.2f} s before, {:.1f} m away", obstacle.name, end_s - first_hit_s,
+                    ahead_m(track, first_hit_s, obstacle));
+    story.events.push_back({first_hit_s, "detected", text});
+    story.before.push_back(fmt::format("{}; {} hits in {} frames.", text, hits, frames));
+  } else {
+    story.before.push_back(obstacle.name + " was never detected.");
+  }
+
+  int points = 0;
+  double nearest_m = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d sum_world = Eigen::Vector3d::Zero();
+  for (const TrackPoint& point : track.points) {
+    const Eigen::Vector3d place_world = T_true_estimated * point.position_world;
+    const double away_m = distance_m(place_world, obstacle);
+    if (point.to_s < end_s || away_m > 2 * belongs_within_m) continue;
+    ++points;
+    nearest_m = std::min(nearest_m, away_m);
+    sum_world += place_world;
+  }
+  if (points == 0) {
+    story.before.push_back(fmt::format("At the end the map held no point within {:.0f} m of it.", 2 * belongs_within_m));
+    return;
+  }
+  const Eigen::Vector3d off_world = sum_world / points - obstacle.from_world;
+  story.before.push_back(
+      fmt::format("At the end the map held {} points for it, the nearest {:.2f} m from its surface; their middle "
+                  "lay {:.2f} m {} and {:.2f} m {} its axis.",
+                  points, std::max(0.0, nearest_m), std::abs(off_world.y()),
+                  off_world.y() > 0 ? "to the left" : "to the right", std::abs(off_world.x()),
+                  off_world.x() > 0 ? "behind" : "before"));
+}
+
+void tell_of_plans(const FlightTrack& track, FlightStory& story) {
+  bool falls_back = false;
+  for (const TrackPlan& plan : track.plans) {
+    const bool now = plan.origin == PlanOrigin::fallback;
+    if (now && !falls_back)
+      story.events.push_back({plan.from_s, "fallback", "the planner found no free way and fell back"});
+    falls_back = now;
+  }
+  if (track.plans.empty()) return;
+  const TrackPlan& last = track.plans.back();
+  if (last.clearance_m)
+    story.before.push_back(
+        fmt::format("The plan in force ({}) left {:.2f} m to what the planner believed was there.",
+                    word_for(last.origin), *last.clearance_m));
+  else
+    story.before.push_back(
+        fmt::format("The plan in force ({}) knew of nothing within 3 m.", word_for(last.origin)));
+}
+
+}  // namespace
+
+FlightStory story_of(const Flight& flight, const FlightTrack& track) {
+  FlightStory story;
+  const double end_s = flight.clock().t_s();
+  const Touch touch = flight.touch();
+  if (touch.with != Contact::none) {
+    story.part = touch.part;
+    story.impact_world = touch.position_world;
+  }
+  if (flight.ending() == Ending::collision) 
+    story.touched = nearest_obstacle(flight.truth().T_world_body, flight.scenario().airframe, flight.obstacles());
+  story.ending = ending_sentence(flight, story);
+  if (!story.ending.empty()) story.ending.front() = static_cast<char>(std::toupper(story.ending.front()));
+  if (track.launch_s > 0) story.events.push_back({track.launch_s, "launch", "left the catapult"});
+  for (const FaultConfig& fault : flight.scenario().faults)
+    if (fault.at_s <= end_s)
+      story.events.push_back({fault.at_s, "fault", 
+                              fmt::format("fault: {} {}", faulty_sensor_names[static_cast<std::size_t>(fault.sensor)].first,
+                                          fault_kind_names[static_cast<std::size_t>(fault.kind)].first)});
+  if (story.touched) tell_of_obstacle(flight, track, story);
+  if (flight.ending() != Ending::goal)
+    tell_of_plans(track, story);
+  story.events.push_back({end_s, "ending", std::string(word_for(flight.ending().value()))});
+  std::ranges::stable_sort(story.events, {}, &FlightEvent::t_s);
+  return story;
+}
+
+}  // namespace understory

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+#include "scenarios/flight/flight.hpp"
+
+namespace understory {
+
+/// A flight as an MCAP file with Foxglove's protobuf schemas, in simulated time, as docs/viewers.md lists its
+/// topics: images, calibrations, clouds of hits, map and obstacles, transforms, plan, poses, numbers, log.
+class FlightMcap : public FlightObserver {
+ public:
+  /// `compress`: in zstd. Throws ScenarioError where the file cannot be made.
+  FlightMcap(const std::filesystem::path& file, bool compress);
+  ~FlightMcap() override;
+
+  bool needs_images() const override { return true; }
+  const char* stage() const override { return "mcap"; }
+  void on_frame(const Flight& flight) override;
+  void on_step(const Flight& flight) override;
+  void on_end(const Flight& flight) override;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace understory
