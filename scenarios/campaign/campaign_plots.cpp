@@ -73,9 +73,29 @@ void add_point(Series& series, double x, const Count& count) {
   series.high.push_back(100 * interval.maximum);
 }
 
-LinePlot success_plot(const std::string& over, const std::string& x_label) {
+/// "forest" of "forest-blind": what a campaign's file puts first.
+std::string scenario_of(const std::string& condition) { return condition.substr(0, condition.find('-')); }
+
+/// What all conditions begin with; empty where they differ.
+std::string scenario_of_all(const std::vector<ConditionSummary>& all) {
+  const std::string first = all.empty() ? "" : scenario_of(all[0].condition);
+  const auto has_it = [&](const ConditionSummary& one) { return scenario_of(one.condition) == first; };
+  return std::ranges::all_of(all, has_it) ? first : "";
+}
+
+std::string titled(const std::string& scenario, const std::string& title) {
+  return (scenario.empty() ? "" : scenario + ": ") + title;
+}
+
+/// "blind" of "forest-blind" in a plot that bears the scenario's name.
+std::string name_within(const std::string& condition, const std::string& scenario) {
+  const std::string before = scenario + "-";
+  return condition.starts_with(before) ? condition.substr(before.size()) : condition;
+}
+
+LinePlot success_plot(const std::string& title, const std::string& x_label) {
   LinePlot plot;
-  plot.title = "Success over " + over;
+  plot.title = title;
   plot.x_label = x_label;
   plot.y_label = "goal reached (%), 95 % Wilson";
   plot.y_range = percent_range;
@@ -95,8 +115,9 @@ bool is_scanned(const std::vector<FlightRow>& rows, const PlotAxis& axis) {
 }
 
 LinePlot success_over(const std::vector<FlightRow>& all_rows, const PlotAxis& axis) {
-  LinePlot plot = success_plot(axis.name, axis.label);
   const std::vector<FlightRow> rows = flown_ones(all_rows);
+  LinePlot plot =
+      success_plot(titled(scenario_of_all(summarise(rows)), fmt::format("success over {}", axis.name)), axis.label);
   const std::vector<CountedSeries> all = counted(rows, axis);
   const double apart = 0.008 * span_of(rows, axis);
   double aside = -0.5 * apart * (static_cast<double>(all.size()) - 1);
@@ -110,9 +131,6 @@ LinePlot success_over(const std::vector<FlightRow>& all_rows, const PlotAxis& ax
   }
   return plot;
 }
-
-/// "forest" of "forest-blind": what a campaign's file puts first.
-std::string scenario_of(const std::string& condition) { return condition.substr(0, condition.find('-')); }
 
 /// A curve's corners: along each step, then down to the next.
 Series steps_of(const ConditionSummary& summary) {
@@ -139,17 +157,18 @@ LinePlot success_over_speed(const std::vector<FlightRow>& rows) { return success
 LinePlot success_over_density(const std::vector<FlightRow>& rows) { return success_over(rows, density_axis); }
 
 LinePlot success_by_condition(const std::vector<FlightRow>& rows) {
-  LinePlot plot = success_plot("conditions", "condition, by its number below");
-  for (const ConditionSummary& summary : summarise(flown_ones(rows))) {
-    const std::size_t place = plot.series.size() + 1;
+  const std::vector<ConditionSummary> all = summarise(flown_ones(rows));
+  const std::string scenario = scenario_of_all(all);
+  LinePlot plot = success_plot(titled(scenario, "success by condition"), "");
+  for (const ConditionSummary& summary : all) {
+    const auto place = static_cast<double>(plot.series.size() + 1);
+    plot.x_names.emplace_back(place, name_within(summary.condition, scenario));
     Series series;
-    series.name = fmt::format("{} {}", place, summary.condition);
     series.mark = Mark::dots;
-    add_point(series, static_cast<double>(place), {summary.flown, summary.goals});
+    add_point(series, place, {summary.flown, summary.goals});
     plot.series.push_back(std::move(series));
   }
-  // Seven places or more: ticks fall on whole numbers.
-  plot.x_range = AxisRange{0, std::max(static_cast<double>(plot.series.size()) + 1, 7.0)};
+  plot.x_range = AxisRange{0.3, static_cast<double>(plot.series.size()) + 0.5};
   return plot;
 }
 
@@ -158,22 +177,21 @@ std::vector<LinePlot> survival_curves(const std::vector<FlightRow>& rows) {
   const std::vector<ConditionSummary> all = summarise(flown_ones(rows));
   std::vector<LinePlot> panels;
   double furthest_m = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    // A scenario's conditions stay together where they fit.
-    const std::string scenario = scenario_of(all[i].condition);
-    const bool begins = i == 0 || scenario_of(all[i - 1].condition) != scenario;
-    const auto size = static_cast<std::size_t>(std::ranges::count_if(
-        all, [&](const ConditionSummary& one) { return scenario_of(one.condition) == scenario; }));
-    const std::size_t room = panels.empty() ? 0 : to_a_panel - panels.back().series.size();
-    if (room == 0 || (begins && size > room)) {
+  const bool fits_one = all.size() <= to_a_panel;
+  std::string scenario;
+  for (const ConditionSummary& one : all) {
+    const bool begins = panels.empty() || (!fits_one && scenario_of(one.condition) != scenario);
+    if (begins || panels.back().series.size() == to_a_panel) {
+      scenario = fits_one ? scenario_of_all(all) : scenario_of(one.condition);
       panels.emplace_back();
-      panels.back().title = "Survival over distance";
+      panels.back().title = titled(scenario, begins ? "survival over distance" : "survival, continued");
       panels.back().x_label = "progress (m)";
       panels.back().y_label = "still flying (%), 95 %";
       panels.back().y_range = percent_range;
     }
-    panels.back().series.push_back(steps_of(all[i]));
-    furthest_m = std::max(furthest_m, all[i].survival.last_at);
+    panels.back().series.push_back(steps_of(one));
+    panels.back().series.back().name = name_within(one.condition, scenario);
+    furthest_m = std::max(furthest_m, one.survival.last_at);
   }
   for (LinePlot& panel : panels) panel.x_range = AxisRange{0, std::max(furthest_m, 1.0)};
   return panels;

@@ -48,11 +48,11 @@ LinePlot success_over_speed(const std::vector<FlightRow>& rows);
 /// The same over trees per 100 m^2, names without "square_metres_per_tree=...".
 LinePlot success_over_density(const std::vector<FlightRow>& rows);
 
-/// The same side by side: a place per condition.
+/// The same side by side: a place per condition, which bears its name.
 LinePlot success_by_condition(const std::vector<FlightRow>& rows);
 
-/// Share of flights that get beyond each distance (m of progress): Kaplan and Meier's steps with 95 % bands,
-/// at most six conditions to a panel, those of a scenario together where they fit.
+/// Share of flights that get beyond each distance (m of progress): Kaplan and Meier's steps with 95 % bands, at
+/// most six conditions to a panel; of more than six, those of one scenario, which the title names.
 std::vector<LinePlot> survival_curves(const std::vector<FlightRow>& rows);
 
 /// One SVG: success over speed and over density, each where conditions differ in nothing else, or else by

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "perception/io/picture_codecs.hpp"
 #include "perception/io/text_file.hpp"
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/flight/clearance.hpp"
 #include "scenarios/output/errors.hpp"
 #include "scenarios/output/program.hpp"
 #include "scenarios/report/page.hpp"
@@ -24,10 +26,12 @@ using Json = nlohmann::ordered_json;
 /// What a page holds at most.
 struct Detail {
   std::size_t moments, plans, plan_points, hits, map_points;
-  double from_end_s;  ///< plans and hits before are left out
+  std::size_t obstacles;  ///< those nearest to where the flight ended
+  double from_end_s;      ///< plans, hits and points of the map before are left out
+  bool has_all_charts;
 };
-constexpr Detail everything{4800, 3600, 11, 20'000, 20'000, 1e9};  // below 3 MB in base64
-constexpr Detail compact{160, 40, 8, 300, 300, 2};                 // below 30 kB
+constexpr Detail everything{4800, 3600, 11, 20'000, 20'000, 4000, 1e9, true};  // below 3 MB in base64
+constexpr Detail compact{150, 40, 8, 150, 240, 200, 2, false};                 // below 30 kB in base64
 
 constexpr double farthest_shown_m = 5;  // of clearances: beyond it nothing is near
 constexpr double degrees = 57.29577951308232;
@@ -107,11 +111,12 @@ void add_moments(const FlightTrack& track, const Detail& detail, PageArrays& arr
   add("estimated_speed", [](Moment m) { return m.estimated_speed_mps; });
   add("height", [](Moment m) { return m.T_world_true.translation().z(); });
   add("estimated_height", [](Moment m) { return m.estimated_altitude_m; });
+  add("clearance", [](Moment m) { return shown_m(m.clearance_m); });
   add("bank", [](Moment m) { return degrees * m.bank_rad; });
   add("commanded_bank", [](Moment m) { return degrees * m.commanded_bank_rad; });
+  if (!detail.has_all_charts) return;
   add("left_elevon", [](Moment m) { return degrees * m.left_elevon_rad; });
   add("right_elevon", [](Moment m) { return degrees * m.right_elevon_rad; });
-  add("clearance", [](Moment m) { return shown_m(m.clearance_m); });
   for (const auto& [axis, letter] : {std::pair(0, 'x'), {1, 'y'}, {2, 'z'}}) {
     add(fmt::format("error_{}", letter).c_str(), [&](Moment m) { return m.position_error_world[axis]; });
     add(fmt::format("sigma3_{}", letter).c_str(), [&](Moment m) { return 3 * m.position_sigma_world[axis]; });
@@ -197,18 +202,29 @@ void add_plans(const FlightTrack& track, const Detail& detail, PageArrays& array
   arrays.add("plan_clearance", 1, clearance);
 }
 
-void add_obstacles(const std::vector<Obstacle>& obstacles, PageArrays& arrays, Json& facts) {
+void add_obstacles(const Flight& flight, std::optional<std::size_t> touched, const Detail& detail,
+                   PageArrays& arrays, Json& facts, Json& decimation) {
+  const std::vector<Obstacle>& obstacles = flight.obstacles();
+  std::vector<std::size_t> shown(obstacles.size());
+  std::iota(shown.begin(), shown.end(), std::size_t{0});
+  if (shown.size() > detail.obstacles) {
+    const Eigen::Vector3d& end_world = flight.truth().T_world_body.translation();
+    std::ranges::sort(shown, {}, [&](std::size_t i) { return obstacle_distance_m({end_world, end_world}, obstacles[i]); });
+    shown.resize(detail.obstacles);
+    decimation.push_back(fmt::format("obstacles: the {} nearest to the end, of {}", shown.size(), obstacles.size()));
+  }
   std::vector<float> values;
-  Json names = Json::array(), kinds = Json::array();
-  for (const Obstacle& obstacle : obstacles) {
-    append(values, obstacle.from_world);
-    append(values, obstacle.to_world);
-    values.push_back(static_cast<float>(obstacle.radius_m));
-    names.push_back(obstacle.name);
-    kinds.push_back(word_for(obstacle.kind));
+  facts["touched"] = Json();
+  for (const std::size_t i : shown) {
+    if (i == touched) {
+      facts["touched"] = values.size() / 7;
+      facts["touched_name"] = obstacles[i].name;
+    }
+    append(values, obstacles[i].from_world);
+    append(values, obstacles[i].to_world);
+    values.push_back(static_cast<float>(obstacles[i].radius_m));
   }
   arrays.add("obstacles", 7, values);
-  facts["obstacles"] = {{"names", names}, {"kinds", kinds}};
 }
 
 void add_aircraft(const AircraftShape& shape, const std::string& touched_part, PageArrays& arrays) {
@@ -248,7 +264,7 @@ Json chart(const char* title, const char* unit, Json lines) {
           {"limits", Json::array()}};
 }
 
-Json charts_of(const Scenario& scenario) {
+Json charts_of(const Scenario& scenario, const Detail& detail) {
   Json charts = Json::array();
   charts.push_back(chart("Speed over ground", "m/s",
                          {series("true", "speed", "truth"), series("estimated", "estimated_speed", "estimate")}));
@@ -269,6 +285,7 @@ Json charts_of(const Scenario& scenario) {
   charts.push_back(chart("Detections", "per frame", {series("hits", "frame_hits", "other", "frame_t")}));
   charts.push_back(chart("Bank", "deg", {series("true", "bank", "truth"),
                                          series("commanded", "commanded_bank", "command")}));
+  if (!detail.has_all_charts) return charts;
   charts.push_back(chart("Elevons", "deg", {series("left", "left_elevon", "truth"),
                                             series("right", "right_elevon", "other")}));
   for (const char* const axis : {"x", "y", "z"}) {
@@ -396,14 +413,12 @@ Json facts_of(const Flight& flight, const FlightResult& result, const FlightTrac
                      {"minimum_altitude_m", scenario.band.minimum_altitude_m},
                      {"maximum_altitude_m", scenario.band.maximum_altitude_m},
                      {"cruise_altitude_m", scenario.band.cruise_altitude_m}};
-  facts["touched"] = story.touched ? Json(*story.touched) : Json();
   facts["impact"] = Json();
   if (story.impact_world) {
     const Eigen::Vector3d& place = *story.impact_world;
     facts["impact"] = {{"position", {place.x(), place.y(), place.z()}}, {"part", story.part}};
   }
   facts["camera"] = looks(scenario.perception.detector) ? camera_of(flight) : Json();
-  facts["charts"] = charts_of(scenario);
   facts["events"] = Json::array();
   for (const FlightEvent& event : story.events)
     facts["events"].push_back({{"t_s", event.t_s}, {"kind", event.kind}, {"text", event.text}});
@@ -414,11 +429,12 @@ Json facts_of(const Flight& flight, const FlightResult& result, const FlightTrac
 void add_track(const Flight& flight, const FlightTrack& track, const FlightStory& story, const Detail& detail,
                PageArrays& arrays, Json& facts) {
   Json decimation = Json::array();
+  facts["charts"] = charts_of(flight.scenario(), detail);
   add_moments(track, detail, arrays, decimation);
   add_hits(track, detail, arrays, decimation);
   add_map(track, detail, arrays, decimation);
   add_plans(track, detail, arrays, decimation);
-  add_obstacles(flight.obstacles(), arrays, facts);
+  add_obstacles(flight, story.touched, detail, arrays, facts, decimation);
   add_aircraft(flight.aircraft_shape(), story.part, arrays);
   facts["decimation"] = std::move(decimation);
 }

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace understory {
@@ -43,6 +44,8 @@ struct LinePlot {
   std::string y_label = {};
   std::vector<Series> series = {};
   std::vector<ReferenceLine> references = {};
+  /// Names of places along x, in the place of numbers: written upwards inside the frame.
+  std::vector<std::pair<double, std::string>> x_names = {};
   std::optional<AxisRange> x_range = {};
   std::optional<AxisRange> y_range = {};
   bool equal_scale = false;  ///< a metre is as long upwards as sideways: for paths

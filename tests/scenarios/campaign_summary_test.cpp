@@ -77,7 +77,7 @@ TEST(CampaignPlots, JoinsConditionsThatDifferInSpeedOnly) {
   EXPECT_NEAR(plot.series[0].high[1], 94.3, 0.05);
   EXPECT_EQ(plot.series[2].mark, Mark::dots);
   expect_no_part(campaign_svg(rows), "density");
-  expect_part(campaign_svg(rows), "Success over speed");
+  expect_part(campaign_svg(rows), "success over speed");
 }
 
 TEST(CampaignPlots, DensityIsTreesPerHundredSquareMetres) {
@@ -94,20 +94,22 @@ TEST(CampaignPlots, DensityIsTreesPerHundredSquareMetres) {
 
 TEST(CampaignPlots, WithoutAnAxisConditionsStandSideBySide) {
   std::vector<FlightRow> rows;
-  add_ten(rows, "ours", 10, 25, 9);
-  add_ten(rows, "blind", 10, 25, 2);
+  add_ten(rows, "forest-ours", 10, 25, 9);
+  add_ten(rows, "forest-blind", 10, 25, 2);
   const LinePlot plot = success_by_condition(rows);
   ASSERT_EQ(plot.series.size(), 2u);
-  EXPECT_EQ(plot.series[1].name, "2 blind");
+  EXPECT_EQ(plot.title, "forest: success by condition");
   EXPECT_EQ(plot.series[1].x, std::vector<double>{2});
-  expect_part(campaign_svg(rows), "1 ours");
+  EXPECT_EQ(plot.x_names[1], std::pair(2.0, std::string("blind")));
+  expect_part(campaign_svg(rows), "rotate(-90)\" class=\"note\">blind<");
 }
 
 TEST(CampaignPlots, SurvivalGoesDownInSteps) {
   std::vector<FlightRow> rows;
-  add_ten(rows, "ours", 10, 25, 8);
+  add_ten(rows, "forest-ours", 10, 25, 8);
   const std::vector<LinePlot> panels = survival_curves(rows);
   ASSERT_EQ(panels.size(), 1u);
+  EXPECT_EQ(panels[0].title, "forest: survival over distance");
   const Series& series = panels[0].series[0];
   EXPECT_EQ(series.x, (std::vector<double>{0, 10, 10, 20, 20, 75}));
   EXPECT_EQ(series.y.size(), 6u);
@@ -115,8 +117,11 @@ TEST(CampaignPlots, SurvivalGoesDownInSteps) {
   EXPECT_NEAR(series.y[2], 90, 1e-9);
   EXPECT_NEAR(series.y[5], 80, 1e-9);
   EXPECT_TRUE(series.band);
-  for (int more = 0; more < 6; ++more) add_ten(rows, fmt::format("other{}", more), 10, 25, more);
-  EXPECT_EQ(survival_curves(rows).size(), 2u);
+  for (int more = 0; more < 6; ++more) add_ten(rows, fmt::format("dense-other{}", more), 10, 25, more);
+  const std::vector<LinePlot> more_panels = survival_curves(rows);  // each shows one scenario
+  ASSERT_EQ(more_panels.size(), 2u);
+  EXPECT_EQ(more_panels[1].title, "dense: survival over distance");
+  EXPECT_EQ(more_panels[1].series[0].name, "other0");
 }
 
 TEST(CampaignPlots, NothingFlownIsNothingDrawn) {
