@@ -50,7 +50,7 @@ int run_evaluate(const EvaluateArguments& arguments) {
   };
   const Evaluation evaluation = evaluate(options);
   line.clear();
-  write_evaluation(evaluation, out);
+  write_evaluation(evaluation, out, data_root());
   fmt::print("{}\nfiles: {}\n", evaluation_report(evaluation), out.string());
   return exit_goal;
 }

@@ -64,7 +64,7 @@ int run_tune(const TuneArguments& arguments) {
   options.on_progress = [&](const TuneProgress& progress) { show(line, file, progress); };
   try {
     const Tuned tuned = tune(file, *judges.training, *judges.validation, options);
-    write_tune_report(folder, file, tuned);
+    write_tune_report(folder, file, tuned, data_root());
     line.clear();
     fmt::print("{}{}", to_text(comparison_table(file, tuned)),
                tuned.keeps_limits ? "" : "no trial keeps the limits\n");

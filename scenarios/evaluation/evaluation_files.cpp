@@ -6,8 +6,10 @@
 #include <string_view>
 #include <vector>
 
+#include "perception/io/picture_codecs.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/report/pictures.hpp"
+#include "scenarios/report/sheet_page.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
 namespace understory {
@@ -102,6 +104,20 @@ std::string evaluation_json(const Evaluation& evaluation) {
   return json.dump(1) + "\n";
 }
 
+/// Into the folder, and as a part of the page.
+SheetSection write_worst_frames(const Evaluation& evaluation, const fs::path& folder) {
+  SheetSection section{"The frames with the most false hits"};
+  remove_pictures(folder);
+  PictureFolder pictures(folder);
+  for (const WorstPicture& worst : worst_pictures(evaluation)) {
+    pictures.add(worst.picture);
+    const auto jpeg = picture_codecs().encode(".jpg", worst.picture);
+    section.pictures.push_back({worst.caption, {jpeg.begin(), jpeg.end()}});
+  }
+  pictures.finish();
+  return section;
+}
+
 }  // namespace
 
 std::string evaluation_report(const Evaluation& evaluation) {
@@ -111,30 +127,37 @@ std::string evaluation_report(const Evaluation& evaluation) {
   return text;
 }
 
-void write_evaluation(const Evaluation& evaluation, const fs::path& folder) {
+void write_evaluation(const Evaluation& evaluation, const fs::path& folder, const fs::path& data_root) {
   prepare_output_folder(folder);
   prepare_output_folder(folder / "tables");
   std::string summary = "# Evaluation\n\n" + heading(evaluation);
+  std::vector<SheetSection> page;
+  const auto write_plots = [&](const char* file, const std::vector<LinePlot>& plots) {
+    write_whole_file(folder / file, to_svg(plots));
+    page.front().plots.insert(page.front().plots.end(), plots.begin(), plots.end());
+  };
+  page.push_back({"Curves"});
   for (const EvaluationTable& table : evaluation_tables(evaluation)) {
     summary += "\n## " + table.title + "\n\n" + to_markdown(table.table);
     write_whole_file(folder / "tables" / (table.file + ".csv"), to_csv(table.table));
+    page.push_back({.title = table.title, .table = table.table});
   }
   write_whole_file(folder / "evaluation.json", evaluation_json(evaluation));
-  write_whole_file(folder / "distances.svg", distances_plot(evaluation));
   if (evaluation.has_depth()) {
-    write_whole_file(folder / "precision_recall.svg", precision_recall_plot(evaluation));
-    write_whole_file(folder / "response.svg", response_plot(evaluation));
+    write_plots("precision_recall.svg", {precision_recall_plot(evaluation)});
+    write_plots("response.svg", {response_plot(evaluation)});
     write_picture(folder / "heat_map.png", heat_maps(evaluation.all.tallies[our_rule], "our rule"));
     write_picture(folder / "heat_map_paper.png",
                   heat_maps(evaluation.all.tallies[the_papers_rule], "the paper's rule"));
-    remove_pictures(folder / "worst");
-    write_worst_frames(evaluation, folder / "worst");
+    page.insert(page.begin() + 1, write_worst_frames(evaluation, folder / "worst"));
   }
   if (evaluation.has_objects()) {
-    write_whole_file(folder / "first_hits.svg", first_hits_plot(evaluation));
+    write_plots("first_hits.svg", {first_hits_plot(evaluation)});
     write_whole_file(folder / "obstacles.csv", to_csv(obstacles_table(evaluation)));
   }
+  write_plots("distances.svg", distances_plots(evaluation));
   write_whole_file(folder / "summary.md", summary);
+  write_whole_file(folder / "report.html", sheet_page(data_root, "Evaluation", heading(evaluation), page));
 }
 
 }  // namespace understory

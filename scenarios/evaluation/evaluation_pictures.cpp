@@ -16,7 +16,8 @@
 namespace understory {
 namespace {
 
-constexpr int scale = 3, heat_scale = 6, worst_pictures = 12, title_px = 22;
+constexpr int scale = 3, heat_scale = 6, title_px = 22;
+constexpr std::size_t maximum_worst = 12;
 const cv::Scalar true_positive_colour(80, 200, 60), false_positive_colour(40, 40, 235),
     missed_colour(60, 220, 240), text_colour(240, 240, 240);
 
@@ -123,25 +124,25 @@ cv::Mat annotated_frame(const EvaluationFrame& frame, const StereoRig& rig, cons
   return picture;
 }
 
-void write_worst_frames(const Evaluation& evaluation, const std::filesystem::path& folder) {
+std::vector<WorstPicture> worst_pictures(const Evaluation& evaluation) {
   std::vector<std::pair<WorstFrame, const RecordingEvaluation*>> all;
   for (const RecordingEvaluation& recording : evaluation.recordings)
     for (const WorstFrame& frame : recording.worst) all.emplace_back(frame, &recording);
   std::ranges::stable_sort(all, std::ranges::greater{}, [](const auto& one) { return one.first.false_hits; });
-  all.resize(std::min<std::size_t>(all.size(), worst_pictures));
-  PictureFolder pictures(folder);
+  all.resize(std::min(all.size(), maximum_worst));
+  std::vector<WorstPicture> pictures;
   for (const auto& [worst, recording] : all) {
     EvaluationRecording source(recording->folder);
     cv::Mat picture =
         annotated_frame(source.frame(worst.index), recording->rig, evaluation.settings.pushbroom);
-    write_line(picture, fmt::format("{}, frame {}", recording->folder.filename().string(), worst.index),
-               {8, 18});
-    pictures.add(picture);
+    const std::string caption = fmt::format("{}, frame {}", recording->folder.filename().string(), worst.index);
+    write_line(picture, caption, {8, 18});
+    pictures.push_back({fmt::format("{}: {} false hits", caption, worst.false_hits), picture});
   }
-  pictures.finish();
+  return pictures;
 }
 
-std::string precision_recall_plot(const Evaluation& evaluation) {
+LinePlot precision_recall_plot(const Evaluation& evaluation) {
   LinePlot plot;
   const LookedAtDepth& depth = evaluation.recordings.front().looked_at;
   plot.title =
@@ -158,10 +159,10 @@ std::string precision_recall_plot(const Evaluation& evaluation) {
     }
     plot.series.push_back(series);
   }
-  return to_svg({plot});
+  return plot;
 }
 
-std::string distances_plot(const Evaluation& evaluation) {
+std::vector<LinePlot> distances_plots(const Evaluation& evaluation) {
   std::vector<LinePlot> panels{histogram_panel("1: single frames, to StereoBM near the depth", evaluation,
                                                &PublishedScores::single_frame)};
   if (evaluation.has_poses()) {
@@ -170,10 +171,10 @@ std::string distances_plot(const Evaluation& evaluation) {
     panels.push_back(histogram_panel("3: from StereoBM to remembered points", evaluation,
                                      &PublishedScores::false_negatives));
   }
-  return to_svg(panels);
+  return panels;
 }
 
-std::string response_plot(const Evaluation& evaluation) {
+LinePlot response_plot(const Evaluation& evaluation) {
   constexpr double bin_m = 0.5;
   LinePlot plot;
   plot.title = "Obstacle blocks with a hit, over their true distance";
@@ -190,10 +191,10 @@ std::string response_plot(const Evaluation& evaluation) {
     plot.series.push_back(series);
   }
   plot.references.push_back({evaluation.recordings.front().looked_at.depth_m, "detection depth", true});
-  return to_svg({plot});
+  return plot;
 }
 
-std::string first_hits_plot(const Evaluation& evaluation) {
+LinePlot first_hits_plot(const Evaluation& evaluation) {
   LinePlot plot;
   plot.title = "Obstacles within 3 m of the path: found by then";
   plot.x_label = "true distance, m";
@@ -215,7 +216,7 @@ std::string first_hits_plot(const Evaluation& evaluation) {
     plot.series.back().colour = plot.series[plot.series.size() - 2].colour =
         static_cast<int>(plot.series.size()) / 2 - 1;
   }
-  return to_svg({plot});
+  return plot;
 }
 
 }  // namespace understory

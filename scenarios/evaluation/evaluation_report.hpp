@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenarios/evaluation/evaluation.hpp"
+#include "scenarios/report/line_plot.hpp"
 #include "scenarios/report/table.hpp"
 
 namespace understory {
@@ -15,9 +16,11 @@ std::string evaluation_report(const Evaluation& evaluation);
 
 /// Into `folder`: summary.md, evaluation.json (every figure), tables/*.csv, obstacles.csv,
 /// precision_recall.svg, distances.svg, response.svg, first_hits.svg, heat_map.png (ours),
-/// heat_map_paper.png, worst/; what needs a truth that no recording has is left out. Throws ScenarioError or
-/// MachineError where it cannot be written.
-void write_evaluation(const Evaluation& evaluation, const std::filesystem::path& folder);
+/// heat_map_paper.png, worst/, and report.html, a page of all that; what needs a truth that no recording has is
+/// left out. `data_root` holds scenarios/report/page. Throws ScenarioError or MachineError where it cannot be
+/// written.
+void write_evaluation(const Evaluation& evaluation, const std::filesystem::path& folder,
+                      const std::filesystem::path& data_root);
 
 /// A table with its name, as a file's name and as a title.
 struct EvaluationTable {
@@ -41,19 +44,23 @@ cv::Mat heat_maps(const VisionTally& tally, const char* title);
 /// yellow. BGR.
 cv::Mat annotated_frame(const EvaluationFrame& frame, const StereoRig& rig, const PushbroomConfig& rule);
 
-/// The worst of all recordings, annotated, as FOLDER/00.png ... Throws as EvaluationRecording does.
-void write_worst_frames(const Evaluation& evaluation, const std::filesystem::path& folder);
+/// The worst of all recordings, annotated, with a caption each. Throws as EvaluationRecording does.
+struct WorstPicture {
+  std::string caption;
+  cv::Mat picture;  ///< BGR
+};
+std::vector<WorstPicture> worst_pictures(const Evaluation& evaluation);
 
-/// Precision over recall of every algorithm as its threshold varies, SVG. Needs true depth.
-std::string precision_recall_plot(const Evaluation& evaluation);
+/// Precision over recall of every algorithm as its threshold varies. Needs true depth.
+LinePlot precision_recall_plot(const Evaluation& evaluation);
 
-/// The paper's three histograms of distance, ours and random's, SVG.
-std::string distances_plot(const Evaluation& evaluation);
+/// The paper's three histograms of distance, ours and random's.
+std::vector<LinePlot> distances_plots(const Evaluation& evaluation);
 
-/// How often an obstacle's block has a hit, over its true distance: every algorithm's response, SVG.
-std::string response_plot(const Evaluation& evaluation);
+/// How often an obstacle's block has a hit, over its true distance: every algorithm's response.
+LinePlot response_plot(const Evaluation& evaluation);
 
-/// The depth at which obstacles within 3 m of the path had their first and their third hit, SVG.
-std::string first_hits_plot(const Evaluation& evaluation);
+/// The depth at which obstacles within 3 m of the path had their first and their third hit.
+LinePlot first_hits_plot(const Evaluation& evaluation);
 
 }  // namespace understory

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/report/sheet_page.hpp"
 
 namespace understory {
 namespace {
@@ -208,18 +209,27 @@ std::string tune_summary(const TuneFile& file, const Tuned& tuned) {
   return text;
 }
 
-void write_tune_report(const std::filesystem::path& folder, const TuneFile& file, const Tuned& tuned) {
+void write_tune_report(const std::filesystem::path& folder, const TuneFile& file, const Tuned& tuned,
+                       const std::filesystem::path& data_root) {
   using Sides = std::vector<const Trial*>;
-  write_whole_file(
-      folder / "trials.csv",
-      to_csv(trials_table(file, tuned.trials, {""}, [](const Trial& trial) { return Sides{&trial}; })));
-  write_whole_file(
-      folder / "pareto.csv",
-      to_csv(trials_table(file, tuned.front, {"training_", "validation_"}, [](const JudgedTrial& member) {
-        return Sides{&member.training, &member.validation};
-      })));
+  const Table trials =
+      trials_table(file, tuned.trials, {""}, [](const Trial& trial) { return Sides{&trial}; });
+  const Table front =
+      trials_table(file, tuned.front, {"training_", "validation_"},
+                   [](const JudgedTrial& member) { return Sides{&member.training, &member.validation}; });
+  write_whole_file(folder / "trials.csv", to_csv(trials));
+  write_whole_file(folder / "pareto.csv", to_csv(front));
   write_whole_file(folder / "summary.md", tune_summary(file, tuned));
   write_whole_file(folder / "tune.svg", tune_svg(file, tuned));
+  write_whole_file(
+      folder / "report.html",
+      sheet_page(data_root, "Tuning " + file.name,
+                 gains(file, tuned) ? "The search found better than the scenario as it is."
+                                    : "No trial is better than the scenario as it is.",
+                 {{.title = "The scenario as it is, and tuned", .table = comparison_table(file, tuned)},
+                  {.title = "Front", .plots = {pareto_plot(file, tuned)}, .table = front},
+                  {.title = "Each parameter alone", .plots = sensitivity_plots(file, tuned)},
+                  {.title = "Trials", .table = trials}}));
   if (gains(file, tuned))
     write_whole_file(folder / "best.yaml", tuned_config(file, tuned.best));
   else

@@ -20,9 +20,11 @@ Table comparison_table(const TuneFile& file, const Tuned& tuned);
 /// summary.md: what was tuned, comparison, front, sensitivities, the keys.
 std::string tune_summary(const TuneFile& file, const Tuned& tuned);
 
-/// Writes trials.csv, pareto.csv, summary.md, tune.svg, front/trial-N.yaml and, where the search gains
-/// anything, best.yaml: the tuned keys as `fly --with` reads them, with figures as comments.
-void write_tune_report(const std::filesystem::path& folder, const TuneFile& file, const Tuned& tuned);
+/// Writes trials.csv, pareto.csv, summary.md, tune.svg, front/trial-N.yaml, report.html, a page of all that,
+/// and, where the search gains anything, best.yaml: the tuned keys as `fly --with` reads them, with figures as
+/// comments. `data_root` holds scenarios/report/page.
+void write_tune_report(const std::filesystem::path& folder, const TuneFile& file, const Tuned& tuned,
+                       const std::filesystem::path& data_root);
 
 /// The first goal's figure over the figure it is traded against (the next goal's, else a limit's): every
 /// trial, the front, the scenario as it is, the tuned one; on both sides. Where there is nothing to trade,
