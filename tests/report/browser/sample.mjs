@@ -1,10 +1,10 @@
-// A made-up flight in the page: what the C++ writes, without the C++. Used by browser_test.mjs, and by hand:
-// `node sample.mjs /tmp/page.html [film]` writes one to look at.
+// Made-up flights, campaigns and sheets in the page: what the C++ writes, without the C++. Used by browser_test.mjs, and by hand:
+// `node sample.mjs /tmp/page.html [film|campaign|sheet]` writes one to look at.
 import { spawnSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 
 const page = new URL("../../../scenarios/report/page/built/page.html", import.meta.url);
-const types = { f32: Float32Array, u32: Uint32Array, u16: Uint16Array, u8: Uint8Array };
+const types = { f32: Float32Array, u32: Uint32Array, i16: Int16Array, u16: Uint16Array, u8: Uint8Array };
 
 /// The same numbers on every run.
 function make_random(seed) {
@@ -14,27 +14,39 @@ function make_random(seed) {
   };
 }
 
-/// Puts facts, arrays [{name, type, components, values}] and other blocks {id: base64} into the page.
-export function fill_page(facts, arrays, blocks = {}) {
+function pad(bytes) {
+  return Buffer.concat([bytes, Buffer.alloc(-bytes.length & 3)]);
+}
+
+/// One buffer of the arrays [{name, type, components, values, scale}]; the facts get their table.
+function pack_arrays(facts, arrays) {
   const parts = [];
   let offset = 0;
-  facts.arrays = arrays.map(({ name, type, components, values }) => {
-    const typed = types[type].from(values);
-    const bytes = Buffer.alloc(Math.ceil(typed.byteLength / 4) * 4);
-    Buffer.from(typed.buffer).copy(bytes);
+  facts.arrays = arrays.map(({ name, type, components, values, scale }) => {
+    const stored = scale ? values.map((value) => (Number.isNaN(value) ? -32768 : Math.round(value / scale))) : values;
+    const typed = types[type].from(stored);
+    const bytes = pad(Buffer.from(typed.buffer));
     parts.push(bytes);
-    const fact = { name, type, components, count: typed.length / components, offset };
+    const fact = { name, type, components, count: typed.length / components, offset, scale };
     offset += bytes.length;
     return fact;
   });
+  return Buffer.concat(parts);
+}
+
+/// Puts facts, arrays and other blocks {id: base64} into the page.
+export function fill_page(facts, arrays, blocks = {}) {
+  const bytes = pack_arrays(facts, arrays);
   const json = JSON.stringify(facts).replaceAll("<", "\\u003c");
   const text = [
     `<script type="application/json" id="facts">${json}</script>`,
-    `<script type="text/plain" id="arrays">${Buffer.concat(parts).toString("base64")}</script>`,
+    `<script type="text/plain" id="arrays">${bytes.toString("base64")}</script>`,
     ...Object.entries(blocks).map(([id, base64]) => `<script type="text/plain" id="${id}">${base64}</script>`),
   ].join("\n");
   return readFileSync(page, "utf8").replace("<!--DATA-->", () => text).replace("<title>Understory</title>", `<title>${facts.title}</title>`);
 }
+
+const array = (name, type, components, values, scale) => ({ name, type, components, values, scale });
 
 /// Position and quaternion at a moment: a weave that ends at the trunk, banked into its turns.
 function flown(t) {
@@ -84,11 +96,10 @@ export function sample_flight({ trunks = 150, end_s = 7.31 } = {}) {
     plan_origin.push(t > end_s - 0.45 ? 3 : Math.floor(random() * 3));
     plan_clearance.push(t < 2 ? NaN : 0.3 + random());
   }
-  const array = (name, type, components, values) => ({ name, type, components, values });
   const per_moment = (f) => times.map(f);
   const arrays = [
     array("t", "f32", 1, times), array("truth", "f32", 7, truth), array("estimate", "f32", 7, estimate),
-    array("obstacles", "f32", 7, obstacles), array("elevons", "f32", 2, times.flatMap((t) => [0.2 * Math.sin(3 * t), -0.15 * Math.sin(3 * t)])),
+    array("obstacles", "f32", 7, obstacles), array("elevons", "i16", 2, times.flatMap((t) => (t < 0.6 ? [NaN, NaN] : [0.2 * Math.sin(3 * t), -0.15 * Math.sin(3 * t)])), 1e-4),
     array("map_points", "f32", 3, map.flatMap((p) => p.slice(0, 3))), array("map_from", "f32", 1, map.map((p) => p[3])), array("map_to", "f32", 1, map.map((p) => p[4])),
     array("hits", "f32", 3, map.flatMap((p) => p.slice(0, 3))), array("hits_t", "f32", 1, map.map((p) => p[3])),
     array("plan_t", "f32", 1, plan_t), array("plan_start", "u32", 1, plan_start), array("plan_points", "f32", 3, plan_points),
@@ -96,6 +107,7 @@ export function sample_flight({ trunks = 150, end_s = 7.31 } = {}) {
     array("wing_vertices", "f32", 3, [0.135, 0, 0, -0.165, 0, 0, -0.045, 0.432, 0, -0.165, 0.432, 0, -0.045, -0.432, 0, -0.165, -0.432, 0, -0.17, 0.432, 0.16, -0.17, -0.432, 0.16, 0.02, 0, 0.035]),
     array("wing_triangles", "u16", 3, [0, 1, 2, 1, 3, 2, 0, 4, 1, 1, 4, 5, 2, 3, 6, 4, 7, 5, 0, 2, 8, 0, 8, 4, 2, 1, 8, 8, 1, 4]),
     array("wing_tips", "f32", 3, [-0.1, 0.432, 0, -0.1, -0.432, 0]),
+    array("touched_box", "f32", 3, [-0.1, 0.33, 0, 0.07, 0.1, 0.02]),
     array("speed", "f32", 1, per_moment((t) => 12 + Math.sin(t))), array("speed_estimate", "f32", 1, per_moment((t) => 12.1 + Math.sin(t + 0.1))),
     array("altitude", "f32", 1, per_moment((t) => flown(t)[2])), array("altitude_estimate", "f32", 1, per_moment((t) => flown(t)[2] - 0.5 * drift(t))),
     array("clearance", "f32", 1, per_moment((t) => Math.max(0.02, 2.4 - 0.33 * t + 0.4 * Math.sin(4 * t)))),
@@ -127,8 +139,8 @@ export function sample_flight({ trunks = 150, end_s = 7.31 } = {}) {
       { title: "Elevons", unit: "rad", series: [series("left", "elevons", "truth"), series("right", "elevons", "other", { component: 1 })], bands: [], limits: [], words: null },
     ],
     events: [
-      { t_s: 0.6, kind: "launch", text: "The catapult let go." }, { t_s: 6.1, kind: "in_view", text: "tree_17 came into view." },
-      { t_s: 6.62, kind: "detected", text: "First hit on tree_17, at 6.2 m." }, { t_s: 6.86, kind: "fallback", text: "No free manoeuvre found: fallback." },
+      { t_s: 0.6, kind: "launch", text: "The catapult let go." }, { t_s: end_s - 1.21, kind: "in_view", text: "tree_17 came into view." },
+      { t_s: end_s - 0.69, kind: "detected", text: "First hit on tree_17, at 6.2 m." }, { t_s: end_s - 0.45, kind: "fallback", text: "No free manoeuvre found: fallback." },
       { t_s: end_s, kind: "ending", text: "The outer left wing touched tree_17." },
     ],
     decimation: ["moments: all of them"], film: null,
@@ -149,8 +161,109 @@ export function add_film({ facts, arrays }, blocks) {
   return true;
 }
 
+/// The share of `goals` of `flown` and its 95 % interval (Wilson).
+function share_of(goals, flown) {
+  if (flown === 0) return { share: null, lower: null, upper: null };
+  const [p, z2] = [goals / flown, 1.96 ** 2];
+  const half = Math.sqrt((p * (1 - p)) / flown + z2 / (4 * flown * flown)) * 1.96;
+  return { share: p, lower: (p + z2 / (2 * flown) - half) / (1 + z2 / flown), upper: (p + z2 / (2 * flown) + half) / (1 + z2 / flown) };
+}
+
+/// Packs a flight into a block as the C++ does.
+function pack_track({ facts, arrays }) {
+  const { scenario, result, keys, decimation, ...kept } = facts;
+  kept.charts = kept.charts.slice(0, 3);
+  const bytes = pack_arrays(kept, arrays);
+  const json = Buffer.from(JSON.stringify(kept));
+  const length = Buffer.alloc(4);
+  length.writeUInt32LE(json.length);
+  return Buffer.concat([pad(Buffer.concat([length, json])), bytes]).toString("base64");
+}
+
+/// A campaign of 2 x 2 conditions. seeds: flights of each; tracks: how many lost ones can be replayed.
+export function sample_campaign({ seeds = 50, tracks = 20, gate = true } = {}) {
+  const random = make_random(11);
+  const [speed_key, trees_key] = ["autopilot.flight_model.cruise_speed_mps", "forest.square_metres_per_tree"];
+  const endings = ["goal", "collision", "ground", "out_of_bounds", "time", "not_flown"];
+  const conditions = [], flights = [], arrays = [], survival = [];
+  for (const [speed, trees, chance] of [["8", "49", 0.97], ["8", "20", 0.85], ["12", "49", 0.9], ["12", "20", 0.55]]) {
+    const own = [];
+    for (let seed = 1; seed <= seeds; ++seed) {
+      const ending = random() < 0.01 ? 5 : random() < chance ? 0 : [1, 1, 1, 2, 3, 4][Math.floor(random() * 6)];
+      const progress = ending === 5 ? NaN : ending === 0 ? 75 : 5 + 68 * random();
+      own.push({ condition: conditions.length, seed, ending, progress, time: progress / Number(speed), clearance: ending === 1 ? 0 : 0.1 + random() });
+    }
+    flights.push(...own);
+    const flown = own.filter((each) => each.ending !== 5);
+    const goals = own.filter((each) => each.ending === 0).length;
+    const steps = [[0, 0]];
+    for (const { progress } of flown.filter((each) => each.ending !== 0).sort((a, b) => a.progress - b.progress)) steps.push([progress, steps.length]);
+    steps.push([75, steps.length - 1]);
+    arrays.push(array(`survival_${conditions.length}`, "f32", 4, steps.flatMap(([distance, lost]) => {
+      const { share, lower, upper } = share_of(flown.length - lost, flown.length);
+      return [distance, share, lower, upper];
+    })));
+    survival.push({ condition: conditions.length, array: `survival_${conditions.length}` });
+    conditions.push({ name: `v${speed}_t${trees}`, label: `${speed} m/s, ${trees} m² per tree`, keys: { [speed_key]: speed, [trees_key]: trees }, flights: seeds, flown: flown.length, goals, ...share_of(goals, flown.length) });
+  }
+  const column = (name, values) => array(`column_${name}`, "f32", 1, values);
+  arrays.push(array("row_condition", "u16", 1, flights.map((each) => each.condition)), array("row_ending", "u8", 1, flights.map((each) => each.ending)),
+    column("progress_m", flights.map((each) => each.progress)), column("time_s", flights.map((each) => each.time)), column("clearance_m", flights.map((each) => each.clearance)));
+  const id = ({ condition, seed }) => `${conditions[condition].name}/seed-${seed}`;
+  const lost = [...flights.keys()].filter((row) => flights[row].ending === 1).slice(0, tracks);
+  const blocks = {};
+  for (const row of lost) {
+    const flight = sample_flight({ trunks: 60, end_s: 3 + (row % 5) });
+    flight.facts.title = id(flights[row]);
+    flight.facts.command = "";
+    blocks[`track-${row}`] = pack_track(flight);
+  }
+  const [goals, flown] = ["goals", "flown"].map((name) => conditions.reduce((sum, each) => sum + each[name], 0));
+  const reasons = ["", "touched a tree", "flew into the ground", "left the course", "the time was over", "no room for the launch"];
+  const facts = {
+    kind: "campaign", title: "gate", program: "understory 0.0.0 (sample)", warning: "", sentence: `${goals} of ${flown} flights reached the goal.`,
+    conditions, grid_keys: [speed_key, trees_key], endings, survival,
+    columns: [{ name: "progress_m", label: "progress", unit: "m" }, { name: "time_s", label: "time", unit: "s" }, { name: "clearance_m", label: "smallest clearance", unit: "m" }],
+    rows: {
+      ids: flights.map(id), seeds: flights.map((each) => String(each.seed)), reasons: flights.map((each) => reasons[each.ending]),
+      touched: flights.map((each, row) => (each.ending === 1 ? `tree_${String((row * 37) % 150).padStart(4, "0")}` : "")),
+      commands: flights.map((each) => `understory fly forest --seed ${each.seed} --set ${speed_key}=${conditions[each.condition].keys[speed_key]}`),
+    },
+    tracks: Object.fromEntries(lost.map((row) => [row, `track-${row}`])),
+    gate: gate ? {
+      verdict: "fails", baseline: "version 0.1", candidate: "this version", lines: ["7 seeds became worse, 3 became better: p = 0.17.", "Goals fell from 84 % to 80 %; allowed: 2 %."],
+      pairs: flights.map((each) => [conditions[each.condition].label, each.seed, endings[random() < 0.95 ? each.ending : 0], endings[each.ending]]),
+    } : null,
+  };
+  return { facts, arrays, blocks };
+}
+
+/// A sheet with every kind of section.
+export function sample_sheet() {
+  const random = make_random(5);
+  const x = Array.from({ length: 40 }, (_, i) => i * 2.5);
+  const rows = ["rms_m", "bias_m"].map((_, k) => x.map((value) => (0.002 + 0.001 * k) * value * value * (0.9 + 0.2 * random())));
+  const arrays = [array("x", "f32", 1, x), array("rms_m", "f32", 1, rows[0]), array("bias_m", "f32", 1, rows[1].map((y, i) => (i === 7 ? NaN : y))),
+    array("low", "f32", 1, rows[0].map((y) => 0.8 * y)), array("high", "f32", 1, rows[0].map((y) => 1.2 * y)),
+    array("trial", "f32", 1, [1, 2, 3, 4, 5, 6]), array("score", "f32", 1, [0.5, 0.61, 0.58, 0.72, 0.71, 0.8]), array("score_low", "f32", 1, [0.4, 0.5, 0.5, 0.6, 0.6, 0.7]), array("score_high", "f32", 1, [0.6, 0.7, 0.68, 0.8, 0.8, 0.9])];
+  const facts = {
+    kind: "sheet", title: "stereo accuracy", program: "understory 0.0.0 (sample)", warning: "Made-up numbers.", sentence: "The depth is wrong by 4 % at 20 m.",
+    sections: [
+      { title: "Error over distance", text: "Over all pixels of the left image that have a match.", table: null, pictures: [],
+        plot: { x_label: "distance, m", y_label: "error, m", series: [{ name: "root mean square", x: "x", y: "rms_m", lower: "low", upper: "high", mark: "line" }, { name: "bias", x: "x", y: "bias_m", mark: "steps" }] } },
+      { title: "Trials", text: "", pictures: [],
+        plot: { x_label: "trial", y_label: "share of goals", series: [{ name: "trials", x: "trial", y: "score", lower: "score_low", upper: "score_high", mark: "points", labels: [1, 2, 3, 4, 5, 6].map((i) => `horizon ${i} s`) }] },
+        table: { columns: [{ label: "trial", unit: "" }, { label: "horizon", unit: "s" }, { label: "share", unit: "" }, { label: "verdict" }], rows: [[1, 1, 0.5, "worse"], [2, 2, 0.61, "same"], [10, 3, null, "broken off"]] } },
+      { title: "Pictures", text: "", plot: null, table: null, pictures: [{ caption: "One grey pixel", block: "picture-0", type: "image/png" }, { caption: "Lost", block: "picture-9", type: "image/png" }] },
+    ],
+  };
+  const pixel = "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCBd81ytgAAAABJRU5ErkJggg==";
+  return { facts, arrays, blocks: { "picture-0": pixel } };
+}
+
 if (process.argv[1] === import.meta.filename) {
-  const [flight, blocks] = [sample_flight(), {}];
-  if (process.argv[3] === "film") add_film(flight, blocks);
-  writeFileSync(process.argv[2], fill_page(flight.facts, flight.arrays, blocks));
+  const [file, kind] = process.argv.slice(2);
+  const page = kind === "campaign" ? sample_campaign() : kind === "sheet" ? sample_sheet() : { ...sample_flight(), blocks: {} };
+  if (kind === "film") add_film(page, page.blocks);
+  writeFileSync(file, fill_page(page.facts, page.arrays, page.blocks));
 }

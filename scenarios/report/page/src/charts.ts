@@ -2,6 +2,7 @@
 
 import uPlot from "uplot";
 import type { Clock } from "./clock";
+import { make, say_number, show_tip } from "./elements";
 import { array_of, count_until, type Arrays } from "./data";
 import type { ChartFact, EventFact, SeriesFact } from "./facts";
 
@@ -32,15 +33,9 @@ interface Line {
   values: Column;
 }
 
-function read_number(value: number | null | undefined, unit: string): string {
-  if (value == null) return "–";
-  const size = Math.abs(value);
-  return `${value.toFixed(size >= 100 ? 0 : size >= 10 ? 1 : 2)}${unit && unit !== "1" ? ` ${unit}` : ""}`;
-}
-
 function lines_of(chart: ChartFact, arrays: Arrays, components: Map<string, number>): Line[] {
   const words = chart.words;
-  const say = (_: uPlot, value: number | null) => (words ? words[value ?? -1] ?? "–" : read_number(value, chart.unit));
+  const say = (_: uPlot, value: number | null) => (words ? words[value ?? -1] ?? "–" : say_number(value, chart.unit));
   const line = (name: string, array: string, component: number, time: string, options: Partial<uPlot.Series>): Line => ({
     options: { label: name, value: say, points: { show: false }, width: 1.5, pxAlign: 0, ...options },
     time,
@@ -56,7 +51,7 @@ function lines_of(chart: ChartFact, arrays: Arrays, components: Map<string, numb
     lines.push(line(`${band.name}, lower`, band.lower, 0, "t", { ...edge, class: "edge" }));
     const lower = lines[lines.length - 1].values;
     const both = (_: uPlot, value: number | null, __: number, row: number | null) =>
-      `${read_number(lower[row ?? -1], "")} … ${read_number(value, chart.unit)}`;
+      `${say_number(lower[row ?? -1], "")} … ${say_number(value, chart.unit)}`;
     lines.push(line(band.name, band.upper, 0, "t", { ...edge, value: both, class: "band" }));
   }
   return lines.filter((each) => each.values.some((value) => value !== null) && array_of(arrays, each.time).length > 0);
@@ -137,6 +132,7 @@ export interface Charts {
   update(): void; // the clock moved
   redraw(): void; // the colours changed
   show(begin_s: number, end_s: number): void;
+  close(): void;
 }
 
 /// Draws all charts into `place`. `tip` shows the event under the pointer.
@@ -166,10 +162,8 @@ export function add_charts(place: HTMLElement, tip: HTMLElement, facts: ChartFac
   function tell_event(plot: uPlot, pointer: PointerEvent): void {
     const x = pointer.clientX - plot.over.getBoundingClientRect().left;
     const near = events.filter((event) => Math.abs(plot.valToPos(event.t_s, "x") - x) < 5);
-    tip.hidden = near.length === 0;
-    tip.textContent = near.map((event) => `${event.t_s.toFixed(2)} s  ${event.text}`).join("\n");
-    const left = Math.min(pointer.clientX + 12, window.innerWidth - tip.offsetWidth - 8);
-    tip.style.transform = `translate(${Math.max(left, 4)}px, ${pointer.clientY + 14}px)`;
+    const text = near.map((event) => `${event.t_s.toFixed(2)} s  ${event.text}`).join("\n");
+    show_tip(tip, text, pointer.clientX, pointer.clientY);
   }
 
   function tell_values(): void {
@@ -180,14 +174,12 @@ export function add_charts(place: HTMLElement, tip: HTMLElement, facts: ChartFac
   }
 
   for (const fact of facts) {
-    const box = place.appendChild(document.createElement("figure"));
-    box.className = "chart";
-    const heading = box.appendChild(document.createElement("figcaption"));
-    heading.textContent = fact.title;
-    if (fact.unit && fact.unit !== "1") heading.append(Object.assign(document.createElement("span"), { textContent: fact.unit }));
+    const box = place.appendChild(make("figure", "", "chart"));
+    const heading = box.appendChild(make("figcaption", fact.title));
+    if (fact.unit && fact.unit !== "1") heading.append(make("span", fact.unit));
     const lines = lines_of(fact, arrays, components);
     if (lines.length === 0) {
-      box.append(Object.assign(document.createElement("p"), { className: "quiet", textContent: "No values in this flight." }));
+      box.append(make("p", "No values in this flight.", "quiet"));
       continue;
     }
     const data = join_lines(lines, arrays);
@@ -212,17 +204,17 @@ export function add_charts(place: HTMLElement, tip: HTMLElement, facts: ChartFac
       hooks: { drawAxes: [(drawn) => draw_marks(drawn, fact, events)] },
     }, data, box);
     plot.over.style.touchAction = "pan-y";
-    const now = plot.over.appendChild(document.createElement("div"));
-    now.className = "now";
+    const now = plot.over.appendChild(make("div", "", "now"));
     plots.push({ plot, now });
     seek_by_pointer(plot);
   }
 
-  new ResizeObserver(() => {
+  const sizes = new ResizeObserver(() => {
     const width = Math.max(place.clientWidth - 4, 200);
     for (const { plot } of plots) if (plot.width !== width) plot.setSize({ width, height: plot_height_px });
     place_now();
-  }).observe(place);
+  });
+  sizes.observe(place);
 
   function place_now(): void {
     for (const { plot, now } of plots) {
@@ -240,6 +232,10 @@ export function add_charts(place: HTMLElement, tip: HTMLElement, facts: ChartFac
       if (in_charts() || (clock.playing && now_ms - told_ms < legend_interval_ms)) return;
       told_ms = now_ms;
       tell_values();
+    },
+    close() {
+      sizes.disconnect();
+      for (const { plot } of plots) plot.destroy();
     },
     redraw() {
       for (const { plot } of plots) plot.redraw(false, true);

@@ -37,6 +37,12 @@ export class Clock {
     this.request();
   }
 
+  /// Nobody is told any more.
+  close(): void {
+    this.playing = false;
+    this.listeners = [];
+  }
+
   /// The next faster (+1) or slower (-1) rate.
   change_rate(step: number): void {
     const index = rates.indexOf(this.rate) + step;

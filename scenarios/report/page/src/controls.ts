@@ -2,7 +2,7 @@
 
 import type { Charts } from "./charts";
 import type { Clock } from "./clock";
-import { find, show_rows } from "./elements";
+import { change_theme, copy_text, find, show_rows } from "./elements";
 import type { FlightFacts } from "./facts";
 import type { ViewName } from "./orbit";
 import type { Layer, Replay } from "./scene";
@@ -28,23 +28,12 @@ const help: [string, string][] = [
   ["1 2 3 4", "follow, orbit, onboard, top view"],
   ["0", "the whole course"],
   ["e m h p f", "estimate, map, hits, plan, cameras' common view"],
+  ["map, plan", "Drawn as the aircraft believes they lie relative to itself: what it remembers of a trunk lies at that trunk, unless it was detected wrongly."],
   ["t", "dark or light"],
+  ["Escape", "close this help, or the replay of a campaign"],
   ["?", "this help"],
   ["mouse", "drag: turn; right or shift drag: move; wheel: zoom; on a chart: seek"],
 ];
-
-function copy(button: HTMLElement, text: string): void {
-  const tell = (word: string) => {
-    button.textContent = word;
-    setTimeout(() => (button.textContent = "Copy command"), 1200);
-  };
-  const refused = () => { // some browsers keep the clipboard from files: select the command to copy by hand
-    getSelection()?.selectAllChildren(find('[data-show="command"]'));
-    tell("Selected");
-  };
-  if (navigator.clipboard) navigator.clipboard.writeText(text).then(() => tell("Copied"), refused);
-  else refused();
-}
 
 function download(name: string, text: string): void {
   const address = URL.createObjectURL(new Blob([text], { type: "text/yaml" }));
@@ -52,8 +41,8 @@ function download(name: string, text: string): void {
   setTimeout(() => URL.revokeObjectURL(address), 1000);
 }
 
-function press(action: string, pressed: boolean): void {
-  document.querySelector(`[data-action="${action}"]`)?.setAttribute("aria-pressed", String(pressed));
+function press(root: HTMLElement, action: string, pressed: boolean): void {
+  root.querySelector(`[data-action="${action}"]`)?.setAttribute("aria-pressed", String(pressed));
 }
 
 function clock_actions(clock: Clock): Actions {
@@ -69,11 +58,11 @@ function clock_actions(clock: Clock): Actions {
   };
 }
 
-function replay_actions(replay: Replay | null, paint: () => void): Actions {
+function replay_actions(root: HTMLElement, replay: Replay | null, paint: () => void): Actions {
   const actions: Actions = {};
   const show_state = () => {
-    for (const view of views) press(view, replay?.orbit.view === view);
-    for (const layer of layers) press(layer, replay?.layers[layer] ?? false);
+    for (const view of views) press(root, view, replay?.orbit.view === view);
+    for (const layer of layers) press(root, layer, replay?.layers[layer] ?? false);
     paint();
   };
   const add = (name: string, change: (replay: Replay) => void) => {
@@ -89,41 +78,40 @@ function replay_actions(replay: Replay | null, paint: () => void): Actions {
   return actions;
 }
 
-function page_actions(facts: FlightFacts, clock: Clock, replay: Replay | null, charts: Charts, paint: () => void): Actions {
+function page_actions(root: HTMLElement, facts: FlightFacts, clock: Clock, replay: Replay | null, charts: Charts, paint: () => void): Actions {
   const spans: Record<string, number> = { whole: Infinity, last2: 2, last05: 0.5 };
   const span = (name: string) => () => {
     charts.show(Math.max(clock.end_s - spans[name], clock.begin_s), clock.end_s);
-    for (const each of Object.keys(spans)) press(each, each === name);
+    for (const each of Object.keys(spans)) press(root, each, each === name);
   };
   return {
     whole: span("whole"), last2: span("last2"), last05: span("last05"),
-    copy: () => copy(find('[data-action="copy"]'), facts.command ?? ""),
+    copy: () => copy_text(find(root, '[data-action="copy"]'), facts.command ?? "", find(root, '[data-show="command"]')),
     download: () => download("scenario.yaml", facts.scenario ?? ""),
     theme: () => {
-      const page = document.documentElement.dataset;
-      page.theme = page.theme === "dark" ? "light" : "dark";
+      change_theme();
       replay?.set_theme();
       charts.redraw();
       paint();
     },
     help: () => {
-      const dialog = find<HTMLDialogElement>("dialog");
+      const dialog = find<HTMLDialogElement>(root, "dialog");
       if (dialog.open) dialog.close();
       else dialog.showModal();
     },
   };
 }
 
-/// Joins buttons and keys to what they do.
-export function add_controls(facts: FlightFacts, clock: Clock, replay: Replay | null, charts: Charts, paint: () => void): Actions {
-  const actions = { ...clock_actions(clock), ...replay_actions(replay, paint), ...page_actions(facts, clock, replay, charts, paint) };
-  show_rows(".help", [], help, "");
-  find('[data-action="copy"]').hidden = !facts.command;
-  find('[data-action="download"]').hidden = !facts.scenario;
-  for (const button of document.querySelectorAll<HTMLElement>("[data-action]")) {
+/// Joins the buttons and keys of `root` and keys to what they do.
+export function add_controls(root: HTMLElement, facts: FlightFacts, clock: Clock, replay: Replay | null, charts: Charts, paint: () => void): Actions {
+  const actions = { ...clock_actions(clock), ...replay_actions(root, replay, paint), ...page_actions(root, facts, clock, replay, charts, paint) };
+  show_rows(root, ".help", [], help, "");
+  find(root, '[data-action="copy"]').hidden = !facts.command;
+  find(root, '[data-action="download"]').hidden = !facts.scenario;
+  for (const button of root.querySelectorAll<HTMLElement>("[data-action]")) {
     button.addEventListener("click", () => actions[button.dataset.action!]());
   }
-  document.addEventListener("keydown", (event) => {
+  root.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     if (event.key === " " && event.target instanceof HTMLButtonElement) return; // the button is pressed instead
     const shift = event.shiftKey && event.key.startsWith("Arrow") ? "shift " : "";

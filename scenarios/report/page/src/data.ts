@@ -1,6 +1,6 @@
 // Reads what the C++ put into the page: facts (JSON), arrays, film and still (base64).
 
-import type { ArrayFact } from "./facts";
+import type { ArrayFact, FlightFacts } from "./facts";
 
 export type Numbers = Float32Array | Uint32Array | Uint16Array | Uint8Array;
 export type Arrays = Map<string, Numbers>;
@@ -17,10 +17,16 @@ export function read_facts(): { kind?: string } | null {
   return text ? JSON.parse(text) : null;
 }
 
-/// The decoded block, or null where there is none. Its text leaves the page: it would cost memory twice.
+/// The decoded block; its text leaves the page: it would cost memory twice.
 export function take_bytes(id: string): Uint8Array<ArrayBuffer> | null {
-  const text = block_text(id);
+  const bytes = block_bytes(id);
   document.getElementById(id)?.remove();
+  return bytes;
+}
+
+/// The decoded block, or null where there is none.
+export function block_bytes(id: string): Uint8Array<ArrayBuffer> | null {
+  const text = block_text(id);
   if (!text) return null;
   const decoder = Uint8Array as unknown as { fromBase64?: (text: string) => Uint8Array<ArrayBuffer> };
   if (decoder.fromBase64) return decoder.fromBase64(text);
@@ -30,16 +36,26 @@ export function take_bytes(id: string): Uint8Array<ArrayBuffer> | null {
   return bytes;
 }
 
-/// Views into one buffer: nothing is copied. Throws RangeError where an array leaves the buffer.
-export function read_arrays(facts: ArrayFact[]): Arrays {
-  const bytes = take_bytes("arrays") ?? new Uint8Array(0);
+/// Views into one buffer that begins at `start`: only i16 is copied, because its numbers are scaled. Throws RangeError
+/// where an array leaves the buffer.
+export function read_arrays(facts: ArrayFact[] | undefined, bytes: Uint8Array<ArrayBuffer> | null, start = 0): Arrays {
   const arrays: Arrays = new Map();
-  for (const fact of facts) {
-    if (fact.count > 0) {
-      arrays.set(fact.name, new types[fact.type](bytes.buffer, fact.offset, fact.count * fact.components));
-    }
+  for (const { name, type, offset, count, components, scale = 1 } of facts ?? []) {
+    if (count === 0) continue;
+    const place = [bytes?.buffer ?? new ArrayBuffer(0), start + offset, count * components] as const;
+    arrays.set(name, type !== "i16" ? new types[type](...place)
+      : Float32Array.from(new Int16Array(...place), (stored) => (stored === -32768 ? NaN : stored * scale)));
   }
   return arrays;
+}
+
+/// A flight packed into one block: the length of its facts, the facts, and from the next multiple of 4 its arrays.
+export function read_track(id: string): { facts: FlightFacts; arrays: Arrays } {
+  const bytes = block_bytes(id);
+  if (!bytes) throw new Error(`the page holds no ${id}`);
+  const length = new DataView(bytes.buffer).getUint32(0, true);
+  const facts = JSON.parse(new TextDecoder().decode(bytes.subarray(4, 4 + length))) as FlightFacts;
+  return { facts, arrays: read_arrays(facts.arrays, bytes, Math.ceil((4 + length) / 4) * 4) };
 }
 
 const no_numbers = new Float32Array(0);

@@ -1,8 +1,9 @@
-// The facts of a flight, as the C++ writes them. Names end in their units.
+// The facts of the pages, as the C++ writes them. Names end in their units.
 
 export interface ArrayFact {
   name: string;
-  type: "f32" | "u32" | "u16" | "u8";
+  type: "f32" | "u32" | "i16" | "u16" | "u8";
+  scale?: number; // of an i16: the value is stored * scale, and -32768 is NaN
   components: number;
   count: number; // tuples
   offset: number; // bytes into the decoded buffer

@@ -3,47 +3,37 @@
 import { add_charts } from "./charts";
 import { Clock } from "./clock";
 import { add_controls } from "./controls";
-import { array_of, floats_of, read_arrays, type Arrays } from "./data";
+import { array_of, floats_of, type Arrays } from "./data";
 import type { EventFact, FlightFacts } from "./facts";
-import { find, make, show_rows } from "./elements";
+import { find, hide_section, lay_out, make, show_rows, show_text } from "./elements";
 import { add_film } from "./film";
 import { Replay } from "./scene";
 
 const lost_start_s = 1; // before the end: there a lost flight is interesting
 
-const endings = {
-  goal: "goal", collision: "collision", ground: "ground", out_of_bounds: "out of bounds", time: "time over", aborted: "aborted",
+export const endings: Record<string, string> = {
+  goal: "goal", collision: "collision", ground: "ground", out_of_bounds: "out of bounds", time: "time over", aborted: "aborted", not_flown: "not flown",
 };
 
-/// Puts text where the layout says data-show="name"; hides the place where there is none.
-function show_text(name: string, text: string | undefined): void {
-  const place = find(`[data-show="${name}"]`);
-  place.textContent = text ?? "";
-  place.hidden = !text;
-}
-
-function show_list(name: string, sentences: string[] | undefined): void {
-  const place = find(`[data-show="${name}"]`);
+function show_list(root: HTMLElement, name: string, sentences: string[] | undefined): void {
+  const place = find(root, `[data-show="${name}"]`);
   for (const sentence of sentences ?? []) place.append(make("li", sentence));
-  place.hidden = !sentences?.length;
-  const heading = place.previousElementSibling;
-  if (place.hidden && heading?.tagName === "H2") (heading as HTMLElement).hidden = true;
+  if (!sentences?.length) hide_section(place);
 }
 
-function show_words(facts: FlightFacts): void {
+function show_words(root: HTMLElement, facts: FlightFacts): void {
   const lost = facts.ending !== "goal";
-  document.title = `Understory: ${facts.title}`;
-  show_text("title", facts.title);
-  show_text("ending", endings[facts.ending] ?? facts.ending);
-  find(".ending").classList.toggle("lost", lost);
-  show_text("sentence", facts.sentence);
-  show_text("warning", facts.warning);
-  show_list("story", facts.story);
-  show_rows(".result", [], facts.result, "No result.");
-  show_rows(".keys", ["key", "default", "here"], facts.keys, "All keys have their defaults.");
-  show_text("command", facts.command);
-  show_text("origin", [facts.program, facts.digest && `digest ${facts.digest}`].filter(Boolean).join(" · "));
-  show_list("decimation", facts.decimation);
+  show_text(root, "title", facts.title);
+  show_text(root, "ending", endings[facts.ending] ?? facts.ending);
+  find(root, ".ending").classList.toggle("lost", lost);
+  show_text(root, "sentence", facts.sentence);
+  show_text(root, "warning", facts.warning);
+  show_list(root, "story", facts.story);
+  show_rows(root, ".result", [], facts.result, "No result.");
+  show_rows(root, ".keys", ["key", "default", "here"], facts.keys, "All keys have their defaults.");
+  show_text(root, "command", facts.command);
+  show_text(root, "origin", [facts.program, facts.digest && `digest ${facts.digest}`].filter(Boolean).join(" · "));
+  show_list(root, "decimation", facts.decimation);
 }
 
 /// From the first moment to the last: of the arrays, or of the facts where the arrays are empty.
@@ -53,9 +43,9 @@ function time_span(facts: FlightFacts, times: Float32Array): [number, number] {
   return [begin_s, Math.max(begin_s, last_s, facts.t_end_s || 0)];
 }
 
-function show_events(events: EventFact[], clock: Clock): void {
-  const list = find(".events");
-  const marks = find(".marks");
+function show_events(root: HTMLElement, events: EventFact[], clock: Clock): void {
+  const list = find(root, ".events");
+  const marks = find(root, ".marks");
   const rows: HTMLElement[] = [];
   for (const event of events) {
     const row = make("button", "", `event k-event-${event.kind}`);
@@ -70,24 +60,24 @@ function show_events(events: EventFact[], clock: Clock): void {
   clock.subscribe(() => rows.forEach((row, i) => row.classList.toggle("past", events[i].t_s <= clock.time_s + 1e-4)));
 }
 
-function show_transport(clock: Clock): void {
-  const scrub = find<HTMLInputElement>(".scrub input");
+function show_transport(root: HTMLElement, clock: Clock): void {
+  const scrub = find<HTMLInputElement>(root, ".scrub input");
   Object.assign(scrub, { min: clock.begin_s, max: clock.end_s, step: "any" });
   scrub.addEventListener("input", () => clock.seek(Number(scrub.value)));
   clock.subscribe(() => {
     scrub.value = String(clock.time_s);
-    find(".time").textContent = `${clock.time_s.toFixed(2)} / ${clock.end_s.toFixed(2)} s`;
-    find(".rate").textContent = `${clock.rate}×`;
-    find('[data-action="play"]').textContent = clock.playing ? "⏸" : "▶";
+    find(root, ".time").textContent = `${clock.time_s.toFixed(2)} / ${clock.end_s.toFixed(2)} s`;
+    find(root, ".rate").textContent = `${clock.rate}×`;
+    find(root, '[data-action="play"]').textContent = clock.playing ? "⏸" : "▶";
   });
 }
 
 /// null, and a line in its place, where the browser has no WebGL2.
-function add_replay(facts: FlightFacts, arrays: Arrays, changed: () => void): Replay | null {
+function add_replay(root: HTMLElement, facts: FlightFacts, arrays: Arrays, changed: () => void): Replay | null {
   try {
-    return new Replay(find<HTMLCanvasElement>(".replay canvas"), facts, arrays, changed);
+    return new Replay(find<HTMLCanvasElement>(root, ".replay canvas"), facts, arrays, changed);
   } catch {
-    find(".replay").replaceChildren(make("p", "This browser has no WebGL2: no replay in three dimensions.", "alone"));
+    find(root, ".replay").replaceChildren(make("p", "This browser has no WebGL2: no replay in three dimensions.", "alone"));
     return null;
   }
 }
@@ -106,11 +96,11 @@ function make_painter(draw: () => void): () => void {
 }
 
 /// The label at the impact follows it over the picture. Returns what moves it.
-function add_label(facts: FlightFacts, replay: Replay | null): () => void {
+function add_label(root: HTMLElement, facts: FlightFacts, replay: Replay | null): () => void {
   if (!replay || !facts.impact) return () => {};
   const { part, position } = facts.impact;
   const touched = facts.touched != null ? facts.obstacles?.names[facts.touched] : undefined;
-  const label = find(".label");
+  const label = find(root, ".label");
   label.textContent = [part.replaceAll("_", " "), touched].filter(Boolean).join(" · ");
   return () => {
     const at = replay.project(...position);
@@ -123,13 +113,15 @@ function add_label(facts: FlightFacts, replay: Replay | null): () => void {
 }
 
 /// Draws the replay in the size that the layout gives it. A resized canvas is empty: it is drawn at once.
-function keep_size(replay: Replay, draw: () => void): void {
+function keep_size(place: HTMLElement, replay: Replay, draw: () => void): ResizeObserver {
   const resize = () => {
     replay.resize(replay.canvas.clientWidth, replay.canvas.clientHeight);
     draw();
   };
-  new ResizeObserver(resize).observe(find(".replay"));
+  const sizes = new ResizeObserver(resize);
+  sizes.observe(place);
   resize();
+  return sizes;
 }
 
 /// For tests.
@@ -150,36 +142,40 @@ function offer_handles(clock: Clock, replay: Replay | null, actions: Record<stri
   Object.assign(window, { understory: handles });
 }
 
-export function show_flight(facts: FlightFacts): void {
-  const dark = window.matchMedia("(prefers-color-scheme: dark)").matches;
-  document.documentElement.dataset.theme = dark ? "dark" : "light";
-  document.body.append(find<HTMLTemplateElement>("template#flight").content.cloneNode(true));
-  const arrays = read_arrays(facts.arrays ?? []);
+/// Shows a flight in `root`. Returns what ends it and gives back what it holds.
+export function show_flight(root: HTMLElement, facts: FlightFacts, arrays: Arrays): () => void {
+  lay_out(root, "flight");
   const components = new Map((facts.arrays ?? []).map((array) => [array.name, array.components]));
   const clock = new Clock(...time_span(facts, floats_of(arrays, "t")));
   if (facts.ending !== "goal") clock.seek(clock.end_s - lost_start_s);
   const events = facts.events ?? [];
 
-  show_words(facts);
-  show_events(events, clock);
-  show_transport(clock);
+  show_words(root, facts);
+  show_events(root, events, clock);
+  show_transport(root, clock);
   const draw = () => {
     replay?.draw(clock.time_s);
     place_label();
   };
   const paint = make_painter(draw);
-  const replay = add_replay(facts, arrays, paint);
-  const place_label = add_label(facts, replay);
-  const charts = add_charts(find(".charts"), find(".tip"), facts.charts ?? [], events, arrays, components, clock);
-  add_film(find(".film"), facts.film ? array_of(arrays, facts.film.times) : new Float32Array(0), clock);
+  const replay = add_replay(root, facts, arrays, paint);
+  const place_label = add_label(root, facts, replay);
+  const charts = add_charts(find(root, ".charts"), find(root, ".tip"), facts.charts ?? [], events, arrays, components, clock);
+  add_film(find(root, ".film"), facts.film ? array_of(arrays, facts.film.times) : new Float32Array(0), clock);
   clock.subscribe(() => {
     paint();
     charts.update();
   });
-  const actions = add_controls(facts, clock, replay, charts, paint);
+  const actions = add_controls(root, facts, clock, replay, charts, paint);
   replay?.set_theme();
-  if (replay) keep_size(replay, draw);
+  const sizes = replay && keep_size(find(root, ".replay"), replay, draw);
   actions.follow();
   actions.whole();
   offer_handles(clock, replay, actions);
+  return () => {
+    clock.close();
+    sizes?.disconnect();
+    charts.close();
+    replay?.close();
+  };
 }

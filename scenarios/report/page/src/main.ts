@@ -1,20 +1,26 @@
 // The program of the page: reads the facts and shows the page of their kind.
 
-import { read_facts } from "./data";
+import { read_arrays, read_facts, take_bytes } from "./data";
+import { make } from "./elements";
 import type { FlightFacts } from "./facts";
 import { show_flight } from "./flight_page";
 
 function say(sentence: string): void {
-  const line = document.body.appendChild(document.createElement("p"));
-  line.className = "alone";
-  line.textContent = sentence;
+  document.body.append(make("p", sentence, "alone"));
 }
 
+function show_page(): void {
+  const facts = read_facts() as FlightFacts | null;
+  if (facts === null) return say("This page holds no flight. `understory fly` writes one that does.");
+  document.title = `Understory: ${facts.title}`;
+  const arrays = read_arrays(facts.arrays, take_bytes("arrays"));
+  if (facts.kind === "flight") show_flight(document.body, facts, arrays);
+  else say(`This page cannot show what it holds: "${(facts as { kind: unknown }).kind}".`);
+}
+
+document.documentElement.dataset.theme = window.matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
 try {
-  const facts = read_facts();
-  if (facts === null) say("This page holds no flight. `understory fly` writes one that does.");
-  else if (facts.kind === "flight") show_flight(facts as FlightFacts);
-  else say(`This page cannot show what it holds: "${facts.kind}".`);
+  show_page();
 } catch (error) {
   say(`This page is damaged: ${error instanceof Error ? error.message : error}`);
 }

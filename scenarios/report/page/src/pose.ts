@@ -30,6 +30,13 @@ export function pose_at(times: Float32Array, poses: Float32Array, time_s: number
   return true;
 }
 
+/// Writes into `out` the rigid motion that carries what lies at `from` to the same place at `to`.
+export function motion_between(from: Pose, to: Pose, out: Pose): void {
+  out.quaternion.copy(from.quaternion).inverse();
+  out.quaternion.multiply(to.quaternion, out.quaternion);
+  out.position.copy(from.position).applyQuaternion(out.quaternion).negate().add(to.position);
+}
+
 /// A vector of the body in the world's axes.
 export function rotate(pose: Pose, x: number, y: number, z: number): Vec3 {
   return new Vec3(x, y, z).applyQuaternion(pose.quaternion);

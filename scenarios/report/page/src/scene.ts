@@ -5,7 +5,7 @@ import { Camera, Geometry, Mesh, Program, Renderer, Transform, Vec3, type OGLRen
 import { array_of, count_until, floats_of, type Arrays } from "./data";
 import type { FlightFacts } from "./facts";
 import { attach_hands, enter_view, eye_of, fit, make_orbit, type Eye, type Orbit, type ViewName } from "./orbit";
-import { make_pose, pose_at, type Pose } from "./pose";
+import { make_pose, motion_between, pose_at, type Pose } from "./pose";
 import * as shaders from "./shaders";
 import * as shapes from "./shapes";
 
@@ -21,18 +21,22 @@ const path_segments = 3000;
 type Uniforms = Record<string, { value: unknown }>;
 type Shader = { vertex: string; fragment: string };
 
-/// There, smooth edges would cost two thirds of the speed.
-function draws_in_software(gl: WebGL2RenderingContext): boolean {
+/// There, smooth edges would cost two thirds of the speed. Throws where there is no WebGL2. A context cannot change
+/// its mind about smooth edges: so this asks one of its own, and gives it back.
+function draws_in_software(): boolean {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (!gl) throw new Error("no WebGL2");
   let name = String(gl.getParameter(gl.RENDERER));
   if (name.includes("WebKit")) { // Chromium says the true name only here, and Firefox warns when asked here
     const details = gl.getExtension("WEBGL_debug_renderer_info");
     if (details) name = String(gl.getParameter(details.UNMASKED_RENDERER_WEBGL));
   }
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
   return /swiftshader|llvmpipe|software|basic render/i.test(name);
 }
 
 export class Replay {
-  readonly layers: Layers = { estimate: true, map: true, hits: true, plan: true, frusta: true };
+  readonly layers: Layers = { estimate: false, map: true, hits: true, plan: true, frusta: true };
   readonly orbit: Orbit = make_orbit();
   private readonly renderer: Renderer;
   private readonly gl: OGLRenderingContext;
@@ -46,6 +50,7 @@ export class Replay {
   private readonly pose = make_pose();
   private readonly estimate_pose = make_pose();
   private readonly earlier = make_pose();
+  private readonly remembered = make_pose(); // carries the estimate's world to where the aircraft truly is
   private readonly plan_segments: Uint32Array; // first segment of each plan; one more for the end
   private readonly plan_colors: number[][] = [];
   private readonly shared: Uniforms = {
@@ -62,19 +67,11 @@ export class Replay {
   private eye: Eye;
 
   /// Throws where there is no WebGL2.
-  constructor(public canvas: HTMLCanvasElement, private readonly facts: FlightFacts, private readonly arrays: Arrays, changed: () => void) {
-    // ogl takes the context that is there.
-    const context = canvas.getContext("webgl2", { alpha: false, antialias: false });
-    if (!context) throw new Error("no WebGL2");
-    let dpr = 1;
-    if (!draws_in_software(context)) { // a context cannot change its mind: take a fresh canvas
-      const fresh = canvas.cloneNode() as HTMLCanvasElement;
-      canvas.replaceWith(fresh);
-      canvas = this.canvas = fresh;
-      canvas.getContext("webgl2", { alpha: false, antialias: true });
-      dpr = Math.min(window.devicePixelRatio, 2);
-    }
-    this.renderer = new Renderer({ canvas, dpr, width: canvas.clientWidth, height: canvas.clientHeight });
+  constructor(readonly canvas: HTMLCanvasElement, private readonly facts: FlightFacts, private readonly arrays: Arrays, changed: () => void) {
+    const smooth = !draws_in_software();
+    const dpr = smooth ? Math.min(window.devicePixelRatio, 2) : 1;
+    this.renderer = new Renderer({ canvas, dpr, antialias: smooth, width: canvas.clientWidth, height: canvas.clientHeight });
+    canvas.style.width = canvas.style.height = ""; // the layout decides, not ogl
     this.gl = this.renderer.gl;
     this.camera = new Camera(this.gl, { near: 0.05, far: 4000, fov: 50 });
     this.times = floats_of(arrays, "t");
@@ -194,10 +191,11 @@ export class Replay {
     this.parts.plan = this.add_lines(shapes.thick_lines(points, pairs), "plan", 3);
 
     const map = floats_of(this.arrays, "map_points");
+    const end_s = this.times[this.times.length - 1]; // what is remembered until then is remembered in the last picture, too
     this.parts.map = this.add({
       position: { size: 3, data: map },
       from_s: { data: floats_of(this.arrays, "map_from") },
-      to_s: { data: floats_of(this.arrays, "map_to") },
+      to_s: { data: floats_of(this.arrays, "map_to").map((to_s) => (to_s >= end_s ? 1e9 : to_s)) },
     }, this.program(shaders.points, { size_m: { value: 0.07 } }, "map"), this.gl.POINTS);
 
     const hits_s = floats_of(this.arrays, "hits_t");
@@ -231,6 +229,11 @@ export class Replay {
       this.parts.impact = this.add_lines(shapes.impact_mark(0.25), "alert", 2);
       this.parts.impact?.position.set(...facts.impact.position);
     }
+    const touched_box = floats_of(this.arrays, "touched_box");
+    if (touched_box.length === 6) {
+      const corners = shapes.box(touched_box.subarray(0, 3), touched_box.subarray(3));
+      this.parts.touched = this.add(corners, this.program(shaders.surface, lit, "alert"));
+    }
     const tips = floats_of(this.arrays, "wing_tips");
     if (tips.length === 6 && truth.length === times.length * 7) {
       this.parts.trail = this.add(shapes.swept_wing(times, truth, tips),
@@ -256,10 +259,15 @@ export class Replay {
     this.plan_colors.splice(0, Infinity, color("plan"), color("alert"));
   }
 
+  /// Gives everything on the graphics card back: a browser allows few contexts, and forgets them late.
+  close(): void {
+    this.gl.getExtension("WEBGL_lose_context")?.loseContext();
+  }
+
   resize(width_px: number, height_px: number): void {
     if (width_px < 1 || height_px < 1 || (width_px === this.renderer.width && height_px === this.renderer.height)) return;
     this.renderer.setSize(width_px, height_px);
-    this.canvas.style.width = this.canvas.style.height = ""; // the layout decides, not ogl
+    this.canvas.style.width = this.canvas.style.height = ""; // as above
   }
 
   private aspect(): number {
@@ -306,7 +314,14 @@ export class Replay {
     place(this.parts.aircraft, flown && outside, this.pose);
     place(this.parts.shadow, flown && outside, this.pose);
     place(this.parts.frusta, flown && outside && this.layers.frusta, this.pose);
+    const ended = this.time_s >= this.times[this.times.length - 1] - 1e-3;
+    place(this.parts.touched, flown && outside && ended, this.pose);
     place(this.parts.estimate, estimated && outside && this.layers.estimate, this.estimate_pose);
+    // The map and the plan lie in the world of the estimate, which drifts. They are drawn as the aircraft believes
+    // they lie relative to itself: so what it remembers of a trunk lies at that trunk, unless it was detected wrongly.
+    if (estimated) motion_between(this.estimate_pose, this.pose, this.remembered);
+    place(this.parts.map, this.layers.map, this.remembered);
+    place(this.parts.plan, this.layers.plan, this.remembered);
     const { drop, trail, path } = this.parts;
     if (drop) {
       drop.visible = flown && outside;
@@ -325,7 +340,6 @@ export class Replay {
       mesh.geometry.setDrawRange(start, Math.max(count, 0));
     };
     const { map, hits, plan, trail } = this.parts;
-    if (map) map.visible = this.layers.map;
     show(map, 0, count_until(array_of(this.arrays, "map_from"), time_s));
     const hits_s = array_of(this.arrays, "hits_t");
     const first_hit = count_until(hits_s, time_s - hits_shown_s);
@@ -337,7 +351,7 @@ export class Replay {
 
     const index = count_until(array_of(this.arrays, "plan_t"), time_s) - 1;
     if (!plan) return;
-    plan.visible = this.layers.plan && index >= 0;
+    plan.visible &&= index >= 0;
     if (index < 0) return;
     const first = this.plan_segments[index];
     show(plan, first * 6, (this.plan_segments[index + 1] - first) * 6);

@@ -149,7 +149,7 @@ in float to_s;
 uniform float now_s, size_m, pixels_per_radian;
 out float depth_m;
 void main() {
-  vec4 seen = viewMatrix * vec4(position, 1.0);
+  vec4 seen = viewMatrix * modelMatrix * vec4(position, 1.0);
   depth_m = -seen.z;
   gl_Position = projectionMatrix * seen;
   gl_PointSize = clamp(size_m * pixels_per_radian / max(depth_m, 0.1), 2.0, 7.0);

@@ -125,6 +125,16 @@ export function camera_frusta(camera: CameraFact): Attributes {
   return thick_lines(points, pairs);
 }
 
+/// A box around `center`, half_size from there.
+export function box(center: ArrayLike<number>, half_size: ArrayLike<number>): Attributes {
+  const position: number[] = [];
+  for (let corner = 0; corner < 8; ++corner) {
+    for (let axis = 0; axis < 3; ++axis) position.push(center[axis] + ((corner >> axis) & 1 ? 1 : -1) * half_size[axis]);
+  }
+  const index = [0, 1, 2, 2, 1, 3, 4, 5, 6, 6, 5, 7, 0, 1, 4, 4, 1, 5, 2, 3, 6, 6, 3, 7, 0, 2, 4, 4, 2, 6, 1, 3, 5, 5, 3, 7];
+  return { position: { size: 3, data: new Float32Array(position) }, index: { data: new Uint16Array(index) } };
+}
+
 /// Three circles: a mark that is seen from every side.
 export function impact_mark(radius_m: number): Attributes {
   const points: number[] = [];
