@@ -73,3 +73,64 @@ export interface FlightFacts {
   film?: { times: string } | null;
   arrays?: ArrayFact[];
 }
+
+export interface Condition {
+  name: string;
+  label: string;
+  keys: Record<string, string>; // grid keys and the values of this condition
+  flights: number;
+  flown: number;
+  goals: number;
+  share: number | null; // goals of the flown ones, and its 95 % interval; null where none was flown
+  lower: number | null;
+  upper: number | null;
+}
+
+export interface GateFact {
+  verdict: "passes" | "fails";
+  baseline: string;
+  candidate: string;
+  lines?: string[];
+  pairs?: [string, string | number, string, string][]; // condition, seed, ending of the baseline, of the candidate
+}
+
+export interface CampaignFacts {
+  kind: "campaign";
+  title: string;
+  program?: string;
+  warning?: string;
+  sentence?: string;
+  conditions: Condition[];
+  grid_keys?: string[];
+  endings: string[];
+  columns?: { name: string; label: string; unit: string }[];
+  survival?: { condition: number; array: string }[];
+  rows: { ids: string[]; seeds: string[]; reasons: string[]; touched: string[]; commands: string[] };
+  tracks?: Record<string, string>;
+  gate?: GateFact | null;
+  arrays?: ArrayFact[];
+}
+
+export interface PlotFact {
+  x_label: string;
+  y_label: string;
+  series: { name: string; x: string; y: string; lower?: string; upper?: string; mark: Mark; labels?: string[] }[];
+}
+
+export type Mark = "line" | "points" | "steps";
+
+export interface SheetFacts {
+  kind: "sheet";
+  title: string;
+  program?: string;
+  warning?: string;
+  sentence?: string;
+  sections?: {
+    title: string;
+    text?: string;
+    plot?: PlotFact | null;
+    table?: { columns: { label: string; unit?: string }[]; rows: (string | number | null)[][] } | null;
+    pictures?: { caption: string; block: string; type: string }[];
+  }[];
+  arrays?: ArrayFact[];
+}
