@@ -210,7 +210,7 @@ export function sample_campaign({ seeds = 50, tracks = 20, gate = true } = {}) {
   arrays.push(array("row_condition", "u16", 1, flights.map((each) => each.condition)), array("row_ending", "u8", 1, flights.map((each) => each.ending)),
     column("progress_m", flights.map((each) => each.progress)), column("time_s", flights.map((each) => each.time)), column("clearance_m", flights.map((each) => each.clearance)));
   const id = ({ condition, seed }) => `${conditions[condition].name}/seed-${seed}`;
-  const lost = [...flights.keys()].filter((row) => flights[row].ending === 1).slice(0, tracks);
+  const lost = [...flights.keys()].filter((row) => flights[row].ending >= 1 && flights[row].ending <= 4).slice(0, tracks);
   const blocks = {};
   for (const row of lost) {
     const flight = sample_flight({ trunks: 60, end_s: 3 + (row % 5) });

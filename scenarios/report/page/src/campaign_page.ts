@@ -112,13 +112,13 @@ function show_flights(root: HTMLElement, facts: CampaignFacts, arrays: Arrays): 
     { label: "condition", value: (row) => conditions[row_condition[row]]?.label ?? null },
     { label: "seed", value: (row) => rows.seeds[row] },
     { label: "ending", value: (row) => endings[ending_of(row)] ?? ending_of(row), show: (row) => make_ending(ending_of(row)) },
+    { label: "again", value: (row) => (tracks[row] ? "replay" : "without"), show: make_buttons }, // sorts those with a replay first
     ...(facts.columns ?? []).map(({ name, label, unit }): Column => {
       const numbers = array_of(arrays, `column_${name}`);
       return { label, unit, value: (row) => numbers[row] ?? null };
     }),
     { label: "touched", value: (row) => rows.touched[row] || null },
     { label: "reason", value: (row) => rows.reasons[row] || null },
-    { label: "again", value: (row) => (tracks[row] ? "replay" : "without"), show: make_buttons }, // sorts those with a replay first
   ]);
 
   const searched = rows.ids.map((id, row) => [id, rows.seeds[row], rows.touched[row], rows.reasons[row]].join("\n").toLowerCase());

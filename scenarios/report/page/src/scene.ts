@@ -21,9 +21,12 @@ const path_segments = 3000;
 type Uniforms = Record<string, { value: unknown }>;
 type Shader = { vertex: string; fragment: string };
 
+let in_software: boolean | undefined; // asked once: the graphics card stays
+
 /// There, smooth edges would cost two thirds of the speed. Throws where there is no WebGL2. A context cannot change
 /// its mind about smooth edges: so this asks one of its own, and gives it back.
 function draws_in_software(): boolean {
+  if (in_software !== undefined) return in_software;
   const gl = document.createElement("canvas").getContext("webgl2");
   if (!gl) throw new Error("no WebGL2");
   let name = String(gl.getParameter(gl.RENDERER));
@@ -32,7 +35,7 @@ function draws_in_software(): boolean {
     if (details) name = String(gl.getParameter(details.UNMASKED_RENDERER_WEBGL));
   }
   gl.getExtension("WEBGL_lose_context")?.loseContext();
-  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+  return in_software = /swiftshader|llvmpipe|software|basic render/i.test(name);
 }
 
 export class Replay {
