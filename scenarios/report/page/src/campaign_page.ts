@@ -51,6 +51,11 @@ function show_survival(root: HTMLElement, facts: CampaignFacts, arrays: Arrays):
   else add_plot(place, find(root, ".tip"), { title: "Survival", x_label: "distance, m", y_label: "share still flying" }, series);
 }
 
+/// For tests.
+function offer_handles(): void {
+  Object.assign(window, { understory: { ready: true } });
+}
+
 /// Shows the flight of one block over the page until it is closed.
 function open_replay(root: HTMLElement, block: string, command: string): void {
   const panel = root.appendChild(document.createElement("dialog"));
@@ -62,6 +67,7 @@ function open_replay(root: HTMLElement, block: string, command: string): void {
     if (event.target !== panel) return; // its help was closed
     end_flight();
     panel.remove();
+    offer_handles(); // the flight's would keep all of it in memory
   });
   panel.showModal(); // before the flight, whose replay needs its size
   try {
@@ -146,5 +152,5 @@ export function show_campaign(root: HTMLElement, facts: CampaignFacts, arrays: A
   add_shares(find(root, ".shares"), find(root, ".tip"), facts.conditions, choose_condition);
   show_survival(root, facts, arrays);
   add_map(find(root, ".map"), facts.conditions, facts.grid_keys ?? []);
-  Object.assign(window, { understory: { ready: true } });
+  offer_handles();
 }

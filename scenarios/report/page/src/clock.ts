@@ -1,6 +1,6 @@
 // One time for the replay, the film and the charts.
 
-export const rates = [0.05, 0.1, 0.25, 0.5, 1, 2];
+const rates = [0.05, 0.1, 0.25, 0.5, 1, 2];
 
 export class Clock {
   time_s: number;

@@ -7,7 +7,7 @@ import type { FlightFacts } from "./facts";
 import type { ViewName } from "./orbit";
 import type { Layer, Replay } from "./scene";
 
-export type Actions = Record<string, () => void>;
+type Actions = Record<string, () => void>;
 
 const moment_s = 1 / 120;
 const views: ViewName[] = ["follow", "orbit", "onboard", "top"];

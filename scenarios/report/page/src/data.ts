@@ -25,7 +25,7 @@ export function take_bytes(id: string): Uint8Array<ArrayBuffer> | null {
 }
 
 /// The decoded block, or null where there is none.
-export function block_bytes(id: string): Uint8Array<ArrayBuffer> | null {
+function block_bytes(id: string): Uint8Array<ArrayBuffer> | null {
   const text = block_text(id);
   if (!text) return null;
   const decoder = Uint8Array as unknown as { fromBase64?: (text: string) => Uint8Array<ArrayBuffer> };

@@ -9,7 +9,7 @@ export interface ArrayFact {
   offset: number; // bytes into the decoded buffer
 }
 
-export type SeriesColor = "truth" | "estimate" | "command" | "alert" | "other";
+type SeriesColor = "truth" | "estimate" | "command" | "alert" | "other";
 
 export interface SeriesFact {
   name: string;

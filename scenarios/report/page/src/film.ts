@@ -5,7 +5,7 @@ import type { Clock } from "./clock";
 import { count_until, take_bytes, type Numbers } from "./data";
 
 /// The index of the nearest of the sorted times; the first of equal ones.
-export function nearest_picture(times: Numbers, time_s: number): number {
+function nearest_picture(times: Numbers, time_s: number): number {
   const after = Math.min(count_until(times, time_s), times.length - 1);
   const before = Math.max(after - 1, 0);
   let nearest = time_s - times[before] <= times[after] - time_s ? before : after;

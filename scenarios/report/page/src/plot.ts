@@ -13,7 +13,7 @@ export interface Series {
   labels?: string[];
 }
 
-export interface PlotWords {
+interface PlotWords {
   title: string;
   x_label: string;
   y_label: string;

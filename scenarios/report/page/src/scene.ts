@@ -10,12 +10,12 @@ import * as shaders from "./shaders";
 import * as shapes from "./shapes";
 
 export type Layer = "estimate" | "map" | "hits" | "plan" | "frusta";
-export type Layers = Record<Layer, boolean>;
+type Layers = Record<Layer, boolean>;
 
 const trail_length_s = 2;
 const hits_shown_s = 0.1;
 const fallback_origin = 3;
-const trunk_triangles = 36000; // of the 50,000 a picture may have
+const trunk_triangles = 24000; // of the 50,000 a picture may have
 const path_segments = 3000;
 
 type Uniforms = Record<string, { value: unknown }>;
