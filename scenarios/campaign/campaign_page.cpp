@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -57,6 +58,16 @@ std::vector<std::string> grid_keys(const std::vector<ShownCondition>& conditions
   return keys;
 }
 
+/// "blind" of "forest-blind" where every condition is one of that scenario.
+std::string label_of(const std::string& name, const Campaign& campaign) {
+  const std::string scenario = name.substr(0, name.find('-') + 1);
+  const bool is_everywhere =
+      !scenario.empty() && std::ranges::all_of(campaign.conditions, [&](const Condition& other) {
+        return other.name.starts_with(scenario) && other.name.size() > scenario.size();
+      });
+  return is_everywhere ? name.substr(scenario.size()) : name;
+}
+
 Json conditions_of(const Campaign& campaign, const std::vector<ShownCondition>& conditions,
                    const std::vector<std::string>& keys, const std::vector<ConditionSummary>& summaries) {
   Json list = Json::array();
@@ -64,7 +75,7 @@ Json conditions_of(const Campaign& campaign, const std::vector<ShownCondition>& 
     const std::string& name = campaign.conditions[i].name;
     Json values = Json::object();
     for (const std::string& key : keys) values[key] = value_in(conditions[i].keys, key);
-    Json condition{{"name", name}, {"label", name}, {"keys", values}};
+    Json condition{{"name", name}, {"label", label_of(name, campaign)}, {"keys", values}};
     const auto summary = std::ranges::find(summaries, name, &ConditionSummary::condition);
     const ConditionSummary none;
     const ConditionSummary& of = summary == summaries.end() ? none : *summary;
@@ -116,13 +127,22 @@ constexpr Column columns[] = {
      [](const FlightRow& row) { return static_cast<double>(row.planner.fallback); }},
     {"simulated_s", "time", "s", [](const FlightRow& row) { return row.simulated_s; }}};
 
+/// The facts of a packed_part().
+Json facts_in(const std::string& part) {
+  std::uint32_t length = 0;
+  if (part.size() < sizeof length) return Json();
+  std::memcpy(&length, part.data(), sizeof length);
+  return parse_json(part.substr(sizeof length, length));
+}
+
 void add_rows(const CampaignFolder& folder, const Campaign& campaign, const std::vector<FlightRow>& rows,
               const std::vector<ShownCondition>& conditions, PageContent& page, Json& facts) {
   std::map<std::string, std::size_t> number;
   for (std::size_t i = 0; i < campaign.conditions.size(); ++i) number[campaign.conditions[i].name] = i;
   std::vector<std::uint16_t> condition_of_row;
   std::vector<std::uint8_t> ending_of_row;
-  Json texts{{"ids", Json::array()}, {"seeds", Json::array()}, {"reasons", Json::array()}, {"commands", Json::array()}};
+  Json texts;
+  for (const char* const name : {"ids", "seeds", "reasons", "touched", "commands"}) texts[name] = Json::array();
   facts["tracks"] = Json::object();
   std::size_t tracks = 0, left_out = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -134,6 +154,7 @@ void add_rows(const CampaignFolder& folder, const Campaign& campaign, const std:
     texts["ids"].push_back(row.id);
     texts["seeds"].push_back(fmt::format("{}", row.seed));
     texts["reasons"].push_back(row.reason);
+    texts["touched"].push_back("");
     texts["commands"].push_back(command(conditions[condition], row.seed));
     const fs::path track = folder.track_file(row.id);
     std::error_code ignored;
@@ -144,6 +165,10 @@ void add_rows(const CampaignFolder& folder, const Campaign& campaign, const std:
     }
     const std::string name = fmt::format("track-{}", i);
     page.parts.emplace_back(name, read_file(track, maximum_json_bytes));
+    const Json told = facts_in(page.parts.back().second);
+    if (!told.is_object()) throw ScenarioError(fmt::format("{}: expected a flight's track, whole", track.string()));
+    texts["reasons"].back() = told.value("sentence", "");
+    texts["touched"].back() = told.value("touched_name", "");
     facts["tracks"][fmt::format("{}", i)] = name;
   }
   page.arrays.add("row_condition", 1, condition_of_row);

@@ -1,9 +1,9 @@
 // The page of a flight in a real browser that draws in software. Arguments: pages made by `understory`; they go
 // through the same checks as the made-up flight. Exit status 77 where the browser or a library is missing.
 import { readFileSync } from "node:fs";
-import { resolve } from "node:path";
+import { basename, dirname, resolve } from "node:path";
 import { check, close, end, failures, open, write } from "./browser.mjs";
-import { check_campaign, check_sheet } from "./campaign_checks.mjs";
+import { check_campaign, check_given_campaign, check_sheet } from "./campaign_checks.mjs";
 import { add_film, sample_flight } from "./sample.mjs";
 
 /// What a page holds, decoded here once more: the reference of the checks.
@@ -267,9 +267,15 @@ try {
   await check_campaign();
   await check_sheet();
   for (const given of process.argv.slice(2)) {
-    await check_speed(resolve(given), given);
-    await check_flight(resolve(given), given);
-    await check_phone(resolve(given), given);
+    const { facts } = read_page(given);
+    const name = basename(dirname(resolve(given)));
+    if (facts.kind === "campaign") {
+      await check_given_campaign(resolve(given), facts, name);
+      continue;
+    }
+    await check_speed(resolve(given), name);
+    await check_flight(resolve(given), name);
+    await check_phone(resolve(given), name);
   }
 } finally {
   await end();

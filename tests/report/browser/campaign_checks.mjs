@@ -86,7 +86,7 @@ async function check_table(page, facts, endings, progress) {
   check("campaign: the greatest first, the unknown last", (await column(page, table, "progress"))[0] === finite.at(-1).toFixed(1));
   await page.keyboard.press("Enter");
   check("campaign: Enter on the heading sorts", (await column(page, table, "progress"))[0] === finite[0].toFixed(1));
-  for (const heading of ["condition", "seed", "ending", "time", "touched", "reason", "again"]) await sort_by(page, table, heading);
+  for (const heading of ["condition", "seed", "ending", "time", "touched", "how it ended", "again"]) await sort_by(page, table, heading);
   check("campaign: flights with a replay first", (await column(page, table, "again")).slice(0, 20).every((each) => each.startsWith("replay")));
 
   const lost = endings.filter((ending) => ending === 1).length;
@@ -210,6 +210,22 @@ export async function check_campaign() {
   await slow.page.evaluate((row) => document.querySelector(`[aria-label="Replay ${row}"]`).click(), large.facts.rows.ids[Number(Object.keys(large.facts.tracks)[0])]);
   check("a damaged replay: says so", (await text(slow.page, ".panel")).includes("damaged"));
   await close(slow, "1,000 flights");
+}
+
+/// A page that `understory` made.
+export async function check_given_campaign(file, facts, name) {
+  const opened = await open(file);
+  const text = await opened.page.evaluate(() => document.body.innerText);
+  check(`${name}: says what it found`, text.includes(facts.sentence));
+  check(`${name}: has all conditions`, facts.conditions.every((each) => text.includes(each.label)));
+  await click_replay(opened.page, 0);
+  await opened.settle();
+  const title = await opened.page.evaluate(() => document.querySelector(".panel h1").textContent);
+  const row = facts.rows.ids.indexOf(title);
+  check(`${name}: a replay of a lost flight`, String(row) in facts.tracks && (await opened.page.evaluate(() => understory.triangles())) > 100, title);
+  check(`${name}: with its command`, (await opened.page.evaluate(() => document.querySelector('.panel [data-show="command"]').textContent)) === facts.rows.commands[row]);
+  await opened.page.keyboard.press("Escape");
+  await close(opened, name);
 }
 
 export async function check_sheet() {

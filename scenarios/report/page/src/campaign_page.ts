@@ -119,18 +119,20 @@ function show_flights(root: HTMLElement, facts: CampaignFacts, arrays: Arrays): 
     { label: "seed", value: (row) => rows.seeds[row] },
     { label: "ending", value: (row) => endings[ending_of(row)] ?? ending_of(row), show: (row) => make_ending(ending_of(row)) },
     { label: "again", value: (row) => (tracks[row] ? "replay" : "without"), show: make_buttons }, // sorts those with a replay first
+    { label: "how it ended", value: (row) => rows.reasons[row] || null },
     ...(facts.columns ?? []).map(({ name, label, unit }): Column => {
       const numbers = array_of(arrays, `column_${name}`);
       return { label, unit, value: (row) => numbers[row] ?? null };
     }),
     { label: "touched", value: (row) => rows.touched[row] || null },
-    { label: "reason", value: (row) => rows.reasons[row] || null },
   ]);
+  // People come for the lost ones.
+  const in_order = [...rows.ids.keys()].sort((a, b) => Number(b in tracks) - Number(a in tracks) || a - b);
 
   const searched = rows.ids.map((id, row) => [id, rows.seeds[row], rows.touched[row], rows.reasons[row]].join("\n").toLowerCase());
   function filter(): void {
     const wanted = text.value.trim().toLowerCase();
-    show([...rows.ids.keys()].filter((row) =>
+    show(in_order.filter((row) =>
       (condition.value === "" || row_condition[row] === Number(condition.value)) &&
       (ending.value === "" || row_ending[row] === Number(ending.value)) &&
       searched[row].includes(wanted)));
