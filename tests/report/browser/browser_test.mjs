@@ -16,7 +16,7 @@ function read_page(file) {
     const array = facts.arrays.find((each) => each.name === name);
     return Array.from({ length: array.components }, (_, i) => bytes.readFloatLE(array.offset + 4 * (array.components * tuple + i)));
   };
-  return { facts, floats, moments: facts.arrays.find((each) => each.name === "t").count };
+  return { facts, floats, moments: facts.arrays.find((each) => each.name === "t")?.count };
 }
 
 const far_apart = (a, b) => Math.max(...[0, 1, 2].map((i) => Math.abs(a[i] - b[i])));
