@@ -396,7 +396,7 @@ namespace {
 
 /// What page and track share.
 Json facts_of(const Flight& flight, const FlightResult& result, const FlightTrack& track,
-              const FlightStory& story, const fs::path& data_root) {
+              const FlightStory& story) {
   const Scenario& scenario = flight.scenario();
   Json facts{{"kind", "flight"},
              {"title", fmt::format("{}, seed {}", scenario.name, scenario.seed)},
@@ -404,7 +404,6 @@ Json facts_of(const Flight& flight, const FlightResult& result, const FlightTrac
              {"ending", word_for(result.ending)},
              {"sentence", story.ending},
              {"story", story.before},
-             {"command", "understory fly " + arguments_that_fly(scenario, data_root)},
              {"digest", result.digest},
              {"t_end_s", flight.clock().t_s()},
              {"t_launch_s", track.launch_s}};
@@ -446,7 +445,8 @@ std::string flight_page(const Flight& flight, const FlightResult& result, const 
   const Scenario& scenario = flight.scenario();
   PageContent page;
   page.title = fmt::format("{}, seed {}: {}", scenario.name, scenario.seed, word_for(result.ending));
-  Json facts = facts_of(flight, result, track, story, extras.data_root);
+  Json facts = facts_of(flight, result, track, story);
+  facts["command"] = "understory fly " + arguments_that_fly(scenario, extras.data_root);
   facts["warning"] = extras.warning;
   facts["scenario"] = scenario_to_text(scenario);
   facts["result"] = result_of(result);
@@ -466,8 +466,8 @@ std::string flight_page(const Flight& flight, const FlightResult& result, const 
 }
 
 std::string compact_flight(const Flight& flight, const FlightResult& result, const FlightTrack& track,
-                           const FlightStory& story, const fs::path& data_root) {
-  Json facts = facts_of(flight, result, track, story, data_root);
+                           const FlightStory& story) {
+  Json facts = facts_of(flight, result, track, story);
   PageArrays arrays(true);
   add_track(flight, track, story, compact, arrays, facts);
   return packed_part(facts.dump(), arrays);

@@ -29,7 +29,7 @@ std::string flight_page(const Flight& flight, const FlightResult& result, const 
 /// The same in at most 30 kB, for a campaign's page: packed_part() of the last two seconds in detail and of the
 /// rest in outline.
 std::string compact_flight(const Flight& flight, const FlightResult& result, const FlightTrack& track,
-                           const FlightStory& story, const std::filesystem::path& data_root);
+                           const FlightStory& story);
 
 /// The arguments of `understory fly` that fly a scenario: a library's name, seed and settings, or, where those
 /// do not make the same scenario, a file scenario.yaml.

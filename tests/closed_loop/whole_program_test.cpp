@@ -34,8 +34,10 @@ class WholeProgram : public testing::Test {
 const std::string brief = " --set time_limit_s=2.2";
 
 TEST_F(WholeProgram, FliesAndFilms) {
-  run("fly dense --seed 1001 --video --out flight" + brief,
-      {"flight/result.json", "flight/scenario.yaml", "flight/trajectory.csv", "flight/flight.mp4"}, 1);
+  run("fly dense --seed 1001 --report --mcap --out flight" + brief,
+      {"flight/result.json", "flight/scenario.yaml", "flight/trajectory.csv", "flight/flight.mp4",
+       "flight/report.html", "flight/flight.mcap"},
+      1);
   run("fly rough_sensors --renderer egl --out egl --set time_limit_s=0.8", {"egl/result.json"}, 1);
 }
 
@@ -55,6 +57,7 @@ overrides: [{name: brief, set: {time_limit_s: 0.8}}]
 )");
   run("campaign two.yaml --jobs 2 --out two --junit two.xml", {"two/flights.csv", "two/summary.md", "two.xml"});
   run("gate --baseline two --candidate two", {});
+  run("report two --baseline two", {"two/report.html"});
 }
 
 TEST_F(WholeProgram, Tunes) {
