@@ -162,7 +162,8 @@ std::vector<std::string> flight_arguments(const CampaignFolder& folder, const Ca
   const std::string condition = whole.condition_file(campaign.conditions[task.condition]).string();
   std::vector<std::string> arguments{"fly", condition, "--seed", fmt::format("{}", task.seed), "--quiet"};
   arguments.insert(arguments.end(), {"--row", whole.flight_file(task).string()});
-  arguments.insert(arguments.end(), {"--track", whole.track_file(task.id).string()});
+  const fs::path track = whole.track_file(task.id);
+  if (fs::exists(track.parent_path())) arguments.insert(arguments.end(), {"--track", track.string()});  // not in a tuning
   arguments.insert(arguments.end(), {"--renderer", campaign.renderer});
   if (keeps_run) arguments.insert(arguments.end(), {"--out", (whole.path / "runs" / task.id).string()});
   return arguments;

@@ -200,7 +200,7 @@ TEST(CliOutput, AFullDiskIsOneLineAndAFilmThatDoesNotFitLosesNoResult) {
   const Outcome film = on_small_disk("fly clear --set forest.length_m=10 --quiet --video --out run",
                                      folder.path(), "300k", "ls -A . run");
   EXPECT_NE(film.text.find("No space left on device\nstatus 3\n"), std::string::npos) << film.text;
-  EXPECT_NE(film.text.find("run:\nmap.ply\nresult.json\nscenario.yaml\n"), std::string::npos) << film.text;
+  EXPECT_NE(film.text.find("run:\nestimate.tum\nmap.ply\nobstacles.csv\nresult.json\nscenario.yaml\n"), std::string::npos) << film.text;
   EXPECT_EQ(film.text.find("run.part", film.text.find("status 3")), std::string::npos) << film.text;
 }
 
@@ -208,7 +208,7 @@ TEST(CliOutput, AFolderThatIsADiskOfItsOwnIsWrittenWithin) {
   if (!mounts_disks()) GTEST_SKIP() << "only root may mount a small disk";
   const TemporaryFolder folder;
   const Outcome flown = on_small_disk(short_flight + "--out .", folder.path(), "1m", "ls -A");
-  EXPECT_EQ(flown.text, "status 0\nmap.ply\nresult.json\nscenario.yaml\ntrajectory.csv\n");
+  EXPECT_EQ(flown.text, "status 0\nestimate.tum\nmap.ply\nobstacles.csv\nresult.json\nscenario.yaml\ntrajectory.csv\ntruth.tum\n");
 }
 
 #endif

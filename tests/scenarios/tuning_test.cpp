@@ -101,7 +101,7 @@ TEST_F(TuningTest, RecommendsNothingWhereTheScenarioIsAsGoodAsItsBestTrial) {
   TuneFile file = load(tuning_text());
   const auto summary = [&](const fs::path& where) {
     ClosedForm training(0.2), validation(0.2);
-    write_tune_report(where, file, tune(file, training, validation, {.folder = where}));
+    write_tune_report(where, file, tune(file, training, validation, {.folder = where}), UNDERSTORY_SOURCE_DIR);
     return content_of(where / "summary.md");
   };
   expect_no_part(summary(results("r")), "leave it so");
@@ -172,7 +172,7 @@ TEST_F(TuningTest, LeavesTablesPlotsAndAConfigThatGoesOverTheScenario) {
   ClosedForm training(0.2), validation(0.1);
   const fs::path where = results("r");
   const Tuned tuned = tune(file, training, validation, {.folder = where});
-  write_tune_report(where, file, tuned);
+  write_tune_report(where, file, tuned, UNDERSTORY_SOURCE_DIR);
   const Scenario scenario = load_scenario(in_library("forest"), {}, {where / "best.yaml"});
   EXPECT_EQ(scenario.perception.pushbroom.minimum_edge_sum, tuned.best.training.point[0]);
   EXPECT_EQ(scenario.perception.pushbroom.score_limit, tuned.best.training.point[1]);
