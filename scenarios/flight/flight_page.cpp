@@ -28,7 +28,7 @@ struct Detail {
   std::size_t moments, plans, plan_points, hits, map_points;
   std::size_t obstacles;  ///< those nearest to where the flight ended
   double from_end_s;      ///< plans, hits and points of the map before are left out
-  bool has_all_charts;
+  bool is_whole;  ///< has all charts, and all of the map evenly
 };
 constexpr Detail everything{4800, 3600, 11, 20'000, 20'000, 4000, 1e9, true};  // below 3 MB in base64
 constexpr Detail compact{150, 40, 8, 150, 240, 200, 2, false};                 // below 30 kB in base64
@@ -113,8 +113,9 @@ void add_moments(const FlightTrack& track, const Detail& detail, PageArrays& arr
   add("estimated_height", [](Moment m) { return m.estimated_altitude_m; });
   add("clearance", [](Moment m) { return shown_m(m.clearance_m); });
   add("bank", [](Moment m) { return degrees * m.bank_rad; });
+  add("estimated_bank", [](Moment m) { return degrees * m.estimated_bank_rad; });
   add("commanded_bank", [](Moment m) { return degrees * m.commanded_bank_rad; });
-  if (!detail.has_all_charts) return;
+  if (!detail.is_whole) return;
   add("left_elevon", [](Moment m) { return degrees * m.left_elevon_rad; });
   add("right_elevon", [](Moment m) { return degrees * m.right_elevon_rad; });
   for (const auto& [axis, letter] : {std::pair(0, 'x'), {1, 'y'}, {2, 'z'}}) {
@@ -132,11 +133,12 @@ void add_hits(const FlightTrack& track, const Detail& detail, PageArrays& arrays
   const std::size_t first = recent == track.frames.end() ? track.hits.size() : recent->first_hit;
   const std::size_t every = one_of(track.hits.size() - first, detail.hits);
   if (every > 1) decimation.push_back(fmt::format("hits: one of {}", every));
-  std::vector<float> hits, hits_t, frame_t, frame_hits;
+  std::vector<float> hits, hits_t, frame_t, frame_hits, other_hits;
   for (const TrackFrame& frame : track.frames) {
     const auto t_s = static_cast<float>(static_cast<double>(frame.t_ns) * 1e-9);
     frame_t.push_back(t_s);
-    frame_hits.push_back(static_cast<float>(frame.hits));
+    frame_hits.push_back(static_cast<float>(frame.true_hits));
+    other_hits.push_back(static_cast<float>(frame.hits) - frame_hits.back());
     for (std::size_t i = std::max(first, frame.first_hit); i < frame.first_hit + frame.hits; ++i) {
       if (i % every != 0) continue;
       append(hits, track.hits[i].true_world);
@@ -150,6 +152,7 @@ void add_hits(const FlightTrack& track, const Detail& detail, PageArrays& arrays
   arrays.add("hits_t", 1, hits_t);
   arrays.add("frame_t", 1, decimated(frame_t, every_frame));
   arrays.add("frame_hits", 1, decimated(frame_hits, every_frame));
+  arrays.add("other_hits", 1, decimated(other_hits, every_frame));
 }
 
 void add_map(const FlightTrack& track, const Detail& detail, PageArrays& arrays, Json& decimation) {
@@ -157,6 +160,13 @@ void add_map(const FlightTrack& track, const Detail& detail, PageArrays& arrays,
   std::vector<TrackPoint> shown;
   std::ranges::copy_if(track.points, std::back_inserter(shown),
                        [&](const TrackPoint& point) { return point.to_s >= from_s; });
+  if (!detail.is_whole && shown.size() > detail.map_points) {
+    const Eigen::Vector3d end_world = track.moments.back().T_world_estimated.translation();
+    std::ranges::sort(shown, {}, [&](const TrackPoint& point) { return (point.position_world - end_world).norm(); });
+    decimation.push_back(fmt::format("points of the map: the {} nearest to the end, of {}", detail.map_points, shown.size()));
+    shown.resize(detail.map_points);
+    std::ranges::sort(shown, {}, &TrackPoint::from_s);
+  }
   const std::size_t every = one_of(shown.size(), detail.map_points);
   if (every > 1) decimation.push_back(fmt::format("points of the map: one of {}", every));
   std::vector<float> positions, from, to;
@@ -269,7 +279,7 @@ Json charts_of(const Scenario& scenario, const Detail& detail) {
   charts.push_back(chart("Speed over ground", "m/s",
                          {series("true", "speed", "truth"), series("estimated", "estimated_speed", "estimate")}));
   Json height = chart("Height", "m",
-                      {series("true", "height", "truth"), series("estimated", "estimated_height", "estimate")});
+                      {series("true", "height", "truth"), series("estimated above ground", "estimated_height", "estimate")});
   height["limits"] = {{{"name", "lower bound"}, {"value", scenario.band.minimum_altitude_m}},
                       {{"name", "upper bound"}, {"value", scenario.band.maximum_altitude_m}}};
   charts.push_back(height);
@@ -282,14 +292,15 @@ Json charts_of(const Scenario& scenario, const Detail& detail) {
        {PlanOrigin::straight, PlanOrigin::solved, PlanOrigin::kept, PlanOrigin::fallback})
     plans["words"].push_back(word_for(origin));
   charts.push_back(plans);
-  charts.push_back(chart("Detections", "per frame", {series("hits", "frame_hits", "other", "frame_t")}));
-  charts.push_back(chart("Bank", "deg", {series("true", "bank", "truth"),
+  charts.push_back(chart("Detections", "per frame", {series("on obstacles", "frame_hits", "truth", "frame_t"),
+                                                    series("elsewhere", "other_hits", "alert", "frame_t")}));
+  charts.push_back(chart("Bank", "deg", {series("true", "bank", "truth"), series("estimated", "estimated_bank", "estimate"),
                                          series("commanded", "commanded_bank", "command")}));
-  if (!detail.has_all_charts) return charts;
+  if (!detail.is_whole) return charts;
   charts.push_back(chart("Elevons", "deg", {series("left", "left_elevon", "truth"),
                                             series("right", "right_elevon", "other")}));
   for (const char* const axis : {"x", "y", "z"}) {
-    const std::string words = fmt::format("Estimate's error, {}", *axis == 'x'   ? "along the course"
+    const std::string words = fmt::format("Error of the odometry, {}", *axis == 'x'   ? "along the course"
                                                                   : *axis == 'y' ? "to the left"
                                                                                  : "upwards");
     const std::string name = fmt::format("error_{}", axis);
@@ -316,7 +327,7 @@ Json camera_of(const Flight& flight) {
           {"T_body_camera", T_body_camera}, {"depths_m", depths},       {"baseline_m", rig.baseline_m}};
 }
 
-Json result_of(const FlightResult& result) {
+Json result_of(const FlightResult& result, const Scenario& scenario, const StereoRig& rig) {
   Json rows = Json::array();
   const auto add = [&](const char* name, const std::string& text) { rows.push_back({name, text}); };
   add("ending", std::string(word_for(result.ending)));
@@ -331,7 +342,11 @@ Json result_of(const FlightResult& result) {
   const PlannerCounts& planner = result.planner;
   add("plans", fmt::format("{}: {} straight, {} solved, {} kept, {} fallback", planner.replans, planner.straight,
                            planner.solved, planner.kept, planner.fallback));
-  add("detector", result.detector);
+  std::vector<double> depths_m = scenario.perception.pushbroom.depths_m;
+  if (depths_m.empty()) depths_m.push_back(rig.detection_depth_m);
+  add("detector", looks(scenario.perception.detector)
+                      ? fmt::format("{}, looking {:.1f} m ahead", result.detector, fmt::join(depths_m, " and "))
+                      : result.detector);
   add("state", result.state_source);
   add("renderer", result.renderer.empty() ? "none: no images" : result.renderer);
   return rows;
@@ -449,7 +464,7 @@ std::string flight_page(const Flight& flight, const FlightResult& result, const 
   facts["command"] = "understory fly " + arguments_that_fly(scenario, extras.data_root);
   facts["warning"] = extras.warning;
   facts["scenario"] = scenario_to_text(scenario);
-  facts["result"] = result_of(result);
+  facts["result"] = result_of(result, scenario, flight.rig().rig);
   facts["keys"] = changed_keys(scenario);
   if (!extras.film.empty()) {
     facts["film"] = {{"times", "film_t"}};

@@ -98,7 +98,7 @@ void tell_of_obstacle(const Flight& flight, const FlightTrack& track, FlightStor
       track.moments.back().T_world_true * track.moments.back().T_world_estimated.inverse();
   const auto first_s = first_in_view_s(flight, track, *story.touched);
   if (first_s) {
-    const std::string text = fmt::format("{} came into view {:.2f} s before, {:.1f} m away", obstacle.name,
+    const std::string text = fmt::format("{} came into view {:.2f} s before the end, {:.1f} m away", obstacle.name,
                                          end_s - *first_s, ahead_m(track, *first_s, obstacle));
     story.events.push_back({*first_s, "in_view", text});
     story.before.push_back(text + ".");
@@ -119,7 +119,7 @@ void tell_of_obstacle(const Flight& flight, const FlightTrack& track, FlightStor
   }
   if (frames > 0) {
     const std::string text =
-        fmt::format("{} was first detected {:.2f} s before, {:.1f} m away", obstacle.name, end_s - first_hit_s,
+        fmt::format("{} was first detected {:.2f} s before the end, {:.1f} m away", obstacle.name, end_s - first_hit_s,
                     ahead_m(track, first_hit_s, obstacle));
     story.events.push_back({first_hit_s, "detected", text});
     story.before.push_back(fmt::format("{}; {} hits in {} frames.", text, hits, frames));
@@ -128,18 +128,26 @@ void tell_of_obstacle(const Flight& flight, const FlightTrack& track, FlightStor
   }
 
   int points = 0;
+  double forgotten_s = 0;
   double nearest_m = std::numeric_limits<double>::infinity();
   Eigen::Vector3d sum_world = Eigen::Vector3d::Zero();
   for (const TrackPoint& point : track.points) {
     const Eigen::Vector3d place_world = T_true_estimated * point.position_world;
     const double away_m = distance_m(place_world, obstacle);
-    if (point.to_s < end_s || away_m > 2 * belongs_within_m) continue;
+    if (away_m > 2 * belongs_within_m) continue;
+    forgotten_s = std::max(forgotten_s, point.to_s);
+    if (point.to_s < end_s) continue;
     ++points;
     nearest_m = std::min(nearest_m, away_m);
     sum_world += place_world;
   }
   if (points == 0) {
-    story.before.push_back(fmt::format("At the end the map held no point within {:.0f} m of it.", 2 * belongs_within_m));
+    story.before.push_back(fmt::format("At the end the map held no point within {:.0f} m of it", 2 * belongs_within_m));
+    if (forgotten_s > 0) {
+      story.before.back() += fmt::format(": it had lost the last one {:.2f} s before", end_s - forgotten_s);
+      story.events.push_back({forgotten_s, "forgotten", fmt::format("the map lost its last point of {}", obstacle.name)});
+    }
+    story.before.back() += ".";
     return;
   }
   const Eigen::Vector3d off_world = sum_world / points - obstacle.from_world;
@@ -149,6 +157,29 @@ void tell_of_obstacle(const Flight& flight, const FlightTrack& track, FlightStor
                   points, std::max(0.0, nearest_m), std::abs(off_world.y()),
                   off_world.y() > 0 ? "to the left" : "to the right", std::abs(off_world.x()),
                   off_world.x() > 0 ? "behind" : "before"));
+}
+
+/// Frames that did not come; an estimate that no longer knows how wrong it is.
+void tell_of_senses(const FlightTrack& track, double end_s, FlightStory& story) {
+  constexpr double gap_s = 0.1;
+  const double wrong_m = 0.3;
+  double before_s = track.frames.empty() ? end_s : seconds(track.frames.front().t_ns);
+  const auto tell_gap = [&](double until_s) {
+    if (until_s - before_s > gap_s)
+      story.events.push_back({before_s, "blind", fmt::format("no picture reached the autopilot for {:.2f} s", until_s - before_s)});
+  };
+  for (const TrackFrame& frame : track.frames) {
+    tell_gap(seconds(frame.t_ns));
+    before_s = seconds(frame.t_ns);
+  }
+  tell_gap(end_s);
+  const auto lost = std::ranges::find_if(track.moments, [wrong_m](const TrackMoment& moment) {
+    const Eigen::Array3d error_m = moment.position_error_world.array().abs();
+    return (error_m > wrong_m && error_m > 3 * moment.position_sigma_world.array()).any();
+  });
+  if (lost != track.moments.end())
+    story.events.push_back({lost->t_s, "estimate",
+                            fmt::format("the estimate's error left its 3 sigma: {:.2f} m", lost->position_error_world.norm())});
 }
 
 void tell_of_plans(const FlightTrack& track, FlightStory& story) {
@@ -163,8 +194,11 @@ void tell_of_plans(const FlightTrack& track, FlightStory& story) {
   const TrackPlan& last = track.plans.back();
   if (last.clearance_m)
     story.before.push_back(
-        fmt::format("The plan in force ({}) left {:.2f} m to what the planner believed was there.",
-                    word_for(last.origin), *last.clearance_m));
+        *last.clearance_m > 0
+            ? fmt::format("The plan in force ({}) left {:.2f} m to what the planner believed was there.",
+                          word_for(last.origin), *last.clearance_m)
+            : fmt::format("The plan in force ({}) led through what the planner believed was there.",
+                          word_for(last.origin)));
   else
     story.before.push_back(
         fmt::format("The plan in force ({}) knew of nothing within 3 m.", word_for(last.origin)));
@@ -191,6 +225,7 @@ FlightStory story_of(const Flight& flight, const FlightTrack& track) {
                               fmt::format("fault: {} {}", faulty_sensor_names[static_cast<std::size_t>(fault.sensor)].first,
                                           fault_kind_names[static_cast<std::size_t>(fault.kind)].first)});
   if (story.touched) tell_of_obstacle(flight, track, story);
+  tell_of_senses(track, end_s, story);
   if (flight.ending() != Ending::goal)
     tell_of_plans(track, story);
   story.events.push_back({end_s, "ending", std::string(word_for(flight.ending().value()))});

@@ -12,7 +12,7 @@ namespace understory {
 /// Something that happened at one moment.
 struct FlightEvent {
   double t_s = 0;
-  std::string kind;  ///< launch, in_view, detected, fallback, fault, ending
+  std::string kind;  ///< launch, in_view, detected, forgotten, blind, estimate, fallback, fault, ending
   std::string text;
 };
 

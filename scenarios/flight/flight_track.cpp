@@ -19,6 +19,13 @@ double bank_rad(const Eigen::Isometry3d& T_world_body) {
   return std::atan2(T_world_body.linear()(2, 1), T_world_body.linear()(2, 2));
 }
 
+bool is_on_obstacle(const Eigen::Vector3d& point_world, const std::vector<Obstacle>& obstacles) {
+  constexpr double within_m = 0.5;
+  return std::ranges::any_of(obstacles, [&](const Obstacle& obstacle) {
+    return obstacle_distance_m({point_world, point_world}, obstacle) < within_m;
+  });
+}
+
 using Place = std::array<double, 3>;
 Place place_of(const Eigen::Vector3d& position) { return {position.x(), position.y(), position.z()}; }
 
@@ -41,6 +48,7 @@ TrackMoment moment_of(const Flight& flight) {
   moment.estimated_speed_mps = state.velocity_body_mps.norm();
   moment.estimated_altitude_m = state.altitude_m;
   moment.bank_rad = bank_rad(truth.T_world_body);
+  moment.estimated_bank_rad = bank_rad(state.T_world_body);
   moment.commanded_bank_rad = command_at(flight.plan(), flight.clock().t_ns()).bank_rad;
   moment.left_elevon_rad = truth.left_elevon_rad;
   moment.right_elevon_rad = truth.right_elevon_rad;
@@ -83,8 +91,10 @@ void TrackRecorder::on_frame(const Flight& flight) {
   const Eigen::Isometry3d T_world_placed = flight.state_at(t_ns).T_world_body * T_body_camera;
   const Eigen::Isometry3d T_world_true = truth.T_world_body * T_body_camera;
   track_.frames.push_back({t_ns, truth, track_.hits.size(), flight.hits().size()});
-  for (const StereoHit& hit : flight.hits())
+  for (const StereoHit& hit : flight.hits()) {
     track_.hits.push_back({T_world_true * hit.position_camera, T_world_placed * hit.position_camera});
+    track_.frames.back().true_hits += is_on_obstacle(track_.hits.back().true_world, flight.obstacles());
+  }
   follow_map(flight);
 }
 

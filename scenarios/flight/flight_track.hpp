@@ -17,7 +17,7 @@ struct TrackMoment {
   Eigen::Isometry3d T_world_estimated = Eigen::Isometry3d::Identity();
   double speed_mps = 0, estimated_speed_mps = 0;  ///< over ground
   double estimated_altitude_m = 0;
-  double bank_rad = 0, commanded_bank_rad = 0;  ///< right wing down positive
+  double bank_rad = 0, estimated_bank_rad = 0, commanded_bank_rad = 0;  ///< right wing down positive
   double left_elevon_rad = 0, right_elevon_rad = 0;
   double clearance_m = 0;                                         ///< true; +infinity without obstacles
   Eigen::Vector3d position_error_world = Eigen::Vector3d::Zero();  ///< estimate less truth
@@ -30,6 +30,7 @@ struct TrackFrame {
   std::int64_t t_ns = 0;  ///< of the exposure
   Truth truth;            ///< then
   std::size_t first_hit = 0, hits = 0;  ///< in FlightTrack::hits
+  int true_hits = 0;                    ///< of these, within 0.5 m of an obstacle's surface
 };
 
 struct TrackHit {

@@ -223,7 +223,7 @@ function variants() {
   };
   const drop = (flight, ...names) => (flight.arrays = flight.arrays.filter((array) => !names.includes(array.name)));
   add("no map, hits, plans", (f) => drop(f, "map_points", "map_from", "map_to", "hits", "hits_t", "plan_t", "plan_start", "plan_points", "plan_origin", "plan_clearance"));
-  add("no obstacles", (f) => { drop(f, "obstacles"); Object.assign(f.facts, { touched: null, impact: null, obstacles: { names: [], kinds: [] } }); });
+  add("no obstacles", (f) => { drop(f, "obstacles"); Object.assign(f.facts, { touched: null, touched_name: undefined, impact: null }); });
   add("no estimate, no camera, no wing", (f) => { drop(f, "estimate", "wing_vertices", "wing_triangles", "wing_tips"); f.facts.camera = null; });
   add("empty charts", (f) => { for (const array of f.arrays) if (/speed|error|clearance/.test(array.name)) array.values = array.values.map(() => NaN); });
   add("one moment", (f) => {

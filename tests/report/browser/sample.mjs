@@ -127,7 +127,7 @@ export function sample_flight({ trunks = 150, end_s = 7.31 } = {}) {
     keys: [["planning.horizon_s", "1.5", "1.2"], ["camera.rate_hz", "120", "60"]],
     t_end_s: end_s, t_launch_s: 0.6,
     course: { goal_x_m: 95, half_width_m: 15, minimum_altitude_m: 0.5, maximum_altitude_m: 8, cruise_altitude_m: 2.5 },
-    obstacles: { names: [...Array(trunks).keys()].map((i) => `tree_${i}`), kinds: Array(trunks).fill("trunk") },
+    touched_name: touched >= 0 ? `tree_${touched}` : undefined,
     touched: touched >= 0 ? touched : null, impact: { position: [x1 + 0.02, y1 + 0.3, z1], part: "left_wing_outer" },
     camera: { width_px: 376, height_px: 240, fx: 210, fy: 210, cx: 188, cy: 120, T_body_camera: [0, 0.19, 0.98, 0.1, -1, 0, 0, 0.17, 0, -0.98, 0.19, 0, 0, 0, 0, 1], depths_m: [5, 10], baseline_m: 0.34 },
     charts: [

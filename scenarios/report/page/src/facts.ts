@@ -30,7 +30,7 @@ export interface ChartFact {
 
 export interface EventFact {
   t_s: number;
-  kind: "launch" | "in_view" | "detected" | "fallback" | "fault" | "ending";
+  kind: "launch" | "in_view" | "detected" | "forgotten" | "blind" | "estimate" | "fallback" | "fault" | "ending";
   text: string;
 }
 
@@ -63,7 +63,7 @@ export interface FlightFacts {
   t_end_s: number;
   t_launch_s?: number;
   course?: CourseFact | null;
-  obstacles?: { names: string[]; kinds: string[] };
+  touched_name?: string;
   touched?: number | null;
   impact?: { position: [number, number, number]; part: string } | null;
   camera?: CameraFact | null;

@@ -99,7 +99,7 @@ function make_painter(draw: () => void): () => void {
 function add_label(root: HTMLElement, facts: FlightFacts, replay: Replay | null): () => void {
   if (!replay || !facts.impact) return () => {};
   const { part, position } = facts.impact;
-  const touched = facts.touched != null ? facts.obstacles?.names[facts.touched] : undefined;
+  const touched = facts.touched_name;
   const label = find(root, ".label");
   label.textContent = [part.replaceAll("_", " "), touched].filter(Boolean).join(" · ");
   return () => {
