@@ -59,9 +59,8 @@ Scenario scenario_of_run(const fs::path& run) {
 }
 
 /// Flies the run again and says how `out` came about; the exit status.
-int fly_again(const AgainArguments& arguments, FlyOptions options, const fs::path& out,
+int fly_again(const Scenario& scenario, const AgainArguments& arguments, FlyOptions options, const fs::path& out,
               const std::function<void()>& place_output) {
-  const fs::path run = arguments.folder;
   options.models_folder = data_root() / "models";
   options.renderer = arguments.renderer;
   ProgressLine line(!arguments.quiet);
@@ -69,7 +68,7 @@ int fly_again(const AgainArguments& arguments, FlyOptions options, const fs::pat
     line.show(fmt::format("flying it again: {:5.2f} s  {:5.1f} of {:.0f} m", progress.simulated_s,
                           progress.progress_m, progress.goal_m));
   };
-  const FlightResult result = fly(scenario_of_run(run), options);
+  const FlightResult result = fly(scenario, options);
   line.clear();
   place_output();
   const std::string& expected = options.expected_digest;
@@ -85,7 +84,7 @@ int fly_again(const AgainArguments& arguments, FlyOptions options, const fs::pat
 int run_report(const ReportArguments& arguments) {
   const fs::path run = arguments.folder;
   const fs::path out = arguments.out.empty() ? run / "report.html" : fs::path(arguments.out);
-  scenario_of_run(run);
+  const Scenario scenario = scenario_of_run(run);
   FlyOptions options;
   options.expected_digest = digest_of(run);
   options.report = true;
@@ -96,7 +95,7 @@ int run_report(const ReportArguments& arguments) {
   Unfinished flown(folder / (out.filename().string() + ".part"));
   prepare_output_folder(flown.path());
   options.output_folder = flown.path();
-  return fly_again(arguments, options, out,
+  return fly_again(scenario, arguments, options, out,
                    [&] { Unfinished(flown.path() / "report.html").become(out); });
 }
 
@@ -128,13 +127,13 @@ int run_report_of_either(const ReportArguments& arguments) {
 int run_mcap(const McapArguments& arguments) {
   const fs::path run = arguments.folder;
   const fs::path out = arguments.out.empty() ? run / "flight.mcap" : fs::path(arguments.out);
-  scenario_of_run(run);
+  const Scenario scenario = scenario_of_run(run);
   FlyOptions options;
   options.expected_digest = digest_of(run);
   require_writable(out);
   FlightMcap log(out, arguments.compress);
   options.observers.push_back(&log);
-  return fly_again(arguments, options, out, [] {});
+  return fly_again(scenario, arguments, options, out, [] {});
 }
 
 void add_again_options(Command& command, AgainArguments& arguments, const std::string& out) {

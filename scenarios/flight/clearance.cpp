@@ -87,6 +87,10 @@ double clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airfra
   return minimum;
 }
 
+bool belongs_to(const Eigen::Vector3d& point_world, const Obstacle& obstacle) {
+  return obstacle_distance_m({point_world, point_world}, obstacle) < belongs_within_m;
+}
+
 std::optional<std::size_t> nearest_obstacle(const Eigen::Isometry3d& T_world_body, const Airframe& airframe,
                                             const std::vector<Obstacle>& obstacles) {
   std::optional<std::size_t> nearest;

@@ -126,22 +126,28 @@ void add_moments(const FlightTrack& track, const Detail& detail, PageArrays& arr
   }
 }
 
-void add_hits(const FlightTrack& track, const Detail& detail, PageArrays& arrays, Json& decimation) {
+void add_hits(const FlightTrack& track, const std::vector<Obstacle>& obstacles, const Detail& detail,
+              PageArrays& arrays, Json& decimation) {
   const double from_s = track.moments.back().t_s - detail.from_end_s;
   const auto recent = std::ranges::partition_point(
       track.frames, [&](const TrackFrame& frame) { return static_cast<double>(frame.t_ns) * 1e-9 < from_s; });
-  const std::size_t first = recent == track.frames.end() ? track.hits.size() : recent->first_hit;
-  const std::size_t every = one_of(track.hits.size() - first, detail.hits);
+  const std::size_t first = recent == track.frames.end() ? track.hits_world.size() : recent->first_hit;
+  const std::size_t every = one_of(track.hits_world.size() - first, detail.hits);
   if (every > 1) decimation.push_back(fmt::format("hits: one of {}", every));
   std::vector<float> hits, hits_t, frame_t, frame_hits, other_hits;
   for (const TrackFrame& frame : track.frames) {
     const auto t_s = static_cast<float>(static_cast<double>(frame.t_ns) * 1e-9);
     frame_t.push_back(t_s);
-    frame_hits.push_back(static_cast<float>(frame.true_hits));
+    const auto begin = track.hits_world.begin() + static_cast<std::ptrdiff_t>(frame.first_hit);
+    const auto on_obstacles =
+        std::count_if(begin, begin + static_cast<std::ptrdiff_t>(frame.hits), [&](const Eigen::Vector3d& hit_world) {
+          return std::ranges::any_of(obstacles, [&](const Obstacle& one) { return belongs_to(hit_world, one); });
+        });
+    frame_hits.push_back(static_cast<float>(on_obstacles));
     other_hits.push_back(static_cast<float>(frame.hits) - frame_hits.back());
     for (std::size_t i = std::max(first, frame.first_hit); i < frame.first_hit + frame.hits; ++i) {
       if (i % every != 0) continue;
-      append(hits, track.hits[i].true_world);
+      append(hits, track.hits_world[i]);
       hits_t.push_back(t_s);
     }
   }
@@ -313,21 +319,24 @@ Json charts_of(const Scenario& scenario, const Detail& detail) {
   return charts;
 }
 
+/// That the detector looks at.
+std::vector<double> depths_of(const Flight& flight) {
+  const std::vector<double>& depths_m = flight.scenario().perception.pushbroom.depths_m;
+  return depths_m.empty() ? std::vector{flight.rig().rig.detection_depth_m} : depths_m;
+}
+
 Json camera_of(const Flight& flight) {
   const StereoRig& rig = flight.rig().rig;
   Json T_body_camera = Json::array();
   const Eigen::Matrix4d matrix = rig.T_body_camera.matrix();
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column) T_body_camera.push_back(matrix(row, column));
-  Json depths = Json::array();
-  for (const double depth_m : flight.scenario().perception.pushbroom.depths_m) depths.push_back(depth_m);
-  if (depths.empty()) depths.push_back(rig.detection_depth_m);
   return {{"width_px", rig.width_px},     {"height_px", rig.height_px}, {"fx", rig.focal_px},
           {"fy", rig.focal_px},           {"cx", rig.center_left_x_px}, {"cy", rig.center_y_px},
-          {"T_body_camera", T_body_camera}, {"depths_m", depths},       {"baseline_m", rig.baseline_m}};
+          {"T_body_camera", T_body_camera}, {"depths_m", depths_of(flight)},       {"baseline_m", rig.baseline_m}};
 }
 
-Json result_of(const FlightResult& result, const Scenario& scenario, const StereoRig& rig) {
+Json result_of(const FlightResult& result, const Flight& flight) {
   Json rows = Json::array();
   const auto add = [&](const char* name, const std::string& text) { rows.push_back({name, text}); };
   add("ending", std::string(word_for(result.ending)));
@@ -342,10 +351,8 @@ Json result_of(const FlightResult& result, const Scenario& scenario, const Stere
   const PlannerCounts& planner = result.planner;
   add("plans", fmt::format("{}: {} straight, {} solved, {} kept, {} fallback", planner.replans, planner.straight,
                            planner.solved, planner.kept, planner.fallback));
-  std::vector<double> depths_m = scenario.perception.pushbroom.depths_m;
-  if (depths_m.empty()) depths_m.push_back(rig.detection_depth_m);
-  add("detector", looks(scenario.perception.detector)
-                      ? fmt::format("{}, looking {:.1f} m ahead", result.detector, fmt::join(depths_m, " and "))
+  add("detector", looks(flight.scenario().perception.detector)
+                      ? fmt::format("{}, looking {:.1f} m ahead", result.detector, fmt::join(depths_of(flight), " and "))
                       : result.detector);
   add("state", result.state_source);
   add("renderer", result.renderer.empty() ? "none: no images" : result.renderer);
@@ -445,7 +452,7 @@ void add_track(const Flight& flight, const FlightTrack& track, const FlightStory
   Json decimation = Json::array();
   facts["charts"] = charts_of(flight.scenario(), detail);
   add_moments(track, detail, arrays, decimation);
-  add_hits(track, detail, arrays, decimation);
+  add_hits(track, flight.obstacles(), detail, arrays, decimation);
   add_map(track, detail, arrays, decimation);
   add_plans(track, detail, arrays, decimation);
   add_obstacles(flight, story.touched, detail, arrays, facts, decimation);
@@ -464,7 +471,7 @@ std::string flight_page(const Flight& flight, const FlightResult& result, const 
   facts["command"] = "understory fly " + arguments_that_fly(scenario, extras.data_root);
   facts["warning"] = extras.warning;
   facts["scenario"] = scenario_to_text(scenario);
-  facts["result"] = result_of(result, scenario, flight.rig().rig);
+  facts["result"] = result_of(result, flight);
   facts["keys"] = changed_keys(scenario);
   if (!extras.film.empty()) {
     facts["film"] = {{"times", "film_t"}};

@@ -12,11 +12,10 @@
 namespace understory {
 namespace {
 
-/// A hit or a remembered point this near to an obstacle's surface stands for it, m: what stereo at 10 m and
-/// the estimate's drift leave open.
-constexpr double belongs_within_m = 0.5;
 /// What a person, too, would see as the obstacle: pixels of the left image.
 constexpr int in_view_px = 25;
+/// The frames' times apart from which pictures are missing, and an estimate's error that matters.
+constexpr double gap_s = 0.1, wrong_m = 0.3;
 
 double seconds(std::int64_t t_ns) { return static_cast<double>(t_ns) * 1e-9; }
 
@@ -110,9 +109,9 @@ void tell_of_obstacle(const Flight& flight, const FlightTrack& track, FlightStor
   std::int64_t hits = 0;
   double first_hit_s = 0;
   for (const TrackFrame& frame : track.frames) {
-    const auto begin = track.hits.begin() + static_cast<std::ptrdiff_t>(frame.first_hit);
-    const auto on_it = std::count_if(begin, begin + static_cast<std::ptrdiff_t>(frame.hits), [&](const TrackHit& hit) {
-      return distance_m(hit.true_world, obstacle) < belongs_within_m;
+    const auto begin = track.hits_world.begin() + static_cast<std::ptrdiff_t>(frame.first_hit);
+    const auto on_it = std::count_if(begin, begin + static_cast<std::ptrdiff_t>(frame.hits), [&](const Eigen::Vector3d& hit_world) {
+      return belongs_to(hit_world, obstacle);
     });
     if (on_it > 0 && frames++ == 0) first_hit_s = seconds(frame.t_ns);
     hits += on_it;
@@ -161,8 +160,6 @@ void tell_of_obstacle(const Flight& flight, const FlightTrack& track, FlightStor
 
 /// Frames that did not come; an estimate that no longer knows how wrong it is.
 void tell_of_senses(const FlightTrack& track, double end_s, FlightStory& story) {
-  constexpr double gap_s = 0.1;
-  const double wrong_m = 0.3;
   double before_s = track.frames.empty() ? end_s : seconds(track.frames.front().t_ns);
   const auto tell_gap = [&](double until_s) {
     if (until_s - before_s > gap_s)
@@ -173,7 +170,7 @@ void tell_of_senses(const FlightTrack& track, double end_s, FlightStory& story) 
     before_s = seconds(frame.t_ns);
   }
   tell_gap(end_s);
-  const auto lost = std::ranges::find_if(track.moments, [wrong_m](const TrackMoment& moment) {
+  const auto lost = std::ranges::find_if(track.moments, [](const TrackMoment& moment) {
     const Eigen::Array3d error_m = moment.position_error_world.array().abs();
     return (error_m > wrong_m && error_m > 3 * moment.position_sigma_world.array()).any();
   });
@@ -214,14 +211,14 @@ FlightStory story_of(const Flight& flight, const FlightTrack& track) {
     story.part = touch.part;
     story.impact_world = touch.position_world;
   }
-  if (flight.ending() == Ending::collision) 
+  if (flight.ending() == Ending::collision)
     story.touched = nearest_obstacle(flight.truth().T_world_body, flight.scenario().airframe, flight.obstacles());
   story.ending = ending_sentence(flight, story);
   if (!story.ending.empty()) story.ending.front() = static_cast<char>(std::toupper(story.ending.front()));
   if (track.launch_s > 0) story.events.push_back({track.launch_s, "launch", "left the catapult"});
   for (const FaultConfig& fault : flight.scenario().faults)
     if (fault.at_s <= end_s)
-      story.events.push_back({fault.at_s, "fault", 
+      story.events.push_back({fault.at_s, "fault",
                               fmt::format("fault: {} {}", faulty_sensor_names[static_cast<std::size_t>(fault.sensor)].first,
                                           fault_kind_names[static_cast<std::size_t>(fault.kind)].first)});
   if (story.touched) tell_of_obstacle(flight, track, story);

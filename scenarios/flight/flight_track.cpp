@@ -19,13 +19,6 @@ double bank_rad(const Eigen::Isometry3d& T_world_body) {
   return std::atan2(T_world_body.linear()(2, 1), T_world_body.linear()(2, 2));
 }
 
-bool is_on_obstacle(const Eigen::Vector3d& point_world, const std::vector<Obstacle>& obstacles) {
-  constexpr double within_m = 0.5;
-  return std::ranges::any_of(obstacles, [&](const Obstacle& obstacle) {
-    return obstacle_distance_m({point_world, point_world}, obstacle) < within_m;
-  });
-}
-
 using Place = std::array<double, 3>;
 Place place_of(const Eigen::Vector3d& position) { return {position.x(), position.y(), position.z()}; }
 
@@ -87,14 +80,9 @@ std::optional<double> planned_clearance_m(const Flight& flight) {
 void TrackRecorder::on_frame(const Flight& flight) {
   const std::int64_t t_ns = flight.frame().t_ns;
   const Truth& truth = flight.truth_at(t_ns);
-  const Eigen::Isometry3d& T_body_camera = flight.rig().rig.T_body_camera;
-  const Eigen::Isometry3d T_world_placed = flight.state_at(t_ns).T_world_body * T_body_camera;
-  const Eigen::Isometry3d T_world_true = truth.T_world_body * T_body_camera;
-  track_.frames.push_back({t_ns, truth, track_.hits.size(), flight.hits().size()});
-  for (const StereoHit& hit : flight.hits()) {
-    track_.hits.push_back({T_world_true * hit.position_camera, T_world_placed * hit.position_camera});
-    track_.frames.back().true_hits += is_on_obstacle(track_.hits.back().true_world, flight.obstacles());
-  }
+  const Eigen::Isometry3d T_world_camera = truth.T_world_body * flight.rig().rig.T_body_camera;
+  track_.frames.push_back({t_ns, truth, track_.hits_world.size(), flight.hits().size()});
+  for (const StereoHit& hit : flight.hits()) track_.hits_world.push_back(T_world_camera * hit.position_camera);
   follow_map(flight);
 }
 

@@ -29,13 +29,7 @@ struct TrackMoment {
 struct TrackFrame {
   std::int64_t t_ns = 0;  ///< of the exposure
   Truth truth;            ///< then
-  std::size_t first_hit = 0, hits = 0;  ///< in FlightTrack::hits
-  int true_hits = 0;                    ///< of these, within 0.5 m of an obstacle's surface
-};
-
-struct TrackHit {
-  Eigen::Vector3d true_world = Eigen::Vector3d::Zero();    ///< placed by the true pose
-  Eigen::Vector3d placed_world = Eigen::Vector3d::Zero();  ///< placed by the estimate, as the map has it
+  std::size_t first_hit = 0, hits = 0;  ///< in FlightTrack::hits_world
 };
 
 /// A point of the map, for as long as it lay where it lay.
@@ -57,7 +51,7 @@ struct TrackPlan {
 struct FlightTrack {
   std::vector<TrackMoment> moments;  ///< 120 a second, and the last
   std::vector<TrackFrame> frames;
-  std::vector<TrackHit> hits;
+  std::vector<Eigen::Vector3d> hits_world;  ///< placed by the true pose
   std::vector<TrackPoint> points;  ///< in order of from_s
   std::vector<TrackPlan> plans;
   double launch_s = 0;  ///< when the aircraft left the catapult

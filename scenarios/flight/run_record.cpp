@@ -182,7 +182,7 @@ FlightResult RunRecord::finish(const Flight& flight) {
 void RunRecord::count_points_on_obstacles(const std::vector<Obstacle>& obstacles) {
   for (const Obstacle& bar : obstacles) {
     const auto near = [&](const Eigen::Vector3d& point_world) {
-      return obstacle_distance_m({point_world, point_world}, bar) < 0.5;
+      return belongs_to(point_world, bar);
     };
     result_.points_on_obstacles.emplace_back(bar.name, std::ranges::count_if(true_positions_world_, near));
   }

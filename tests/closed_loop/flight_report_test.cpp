@@ -103,8 +103,8 @@ TEST(FlightTrack, IsTheFlight) {
   EXPECT_EQ(track.moments.back().t_s, told.flight.clock().t_s());
   EXPECT_TRUE(track.moments.back().T_world_true.isApprox(told.flight.truth().T_world_body));
   EXPECT_EQ(static_cast<std::int64_t>(track.frames.size()), told.result.frames);
-  EXPECT_EQ(static_cast<std::int64_t>(track.hits.size()), told.result.detections);
-  EXPECT_EQ(track.frames.back().first_hit + track.frames.back().hits, track.hits.size());
+  EXPECT_EQ(static_cast<std::int64_t>(track.hits_world.size()), told.result.detections);
+  EXPECT_EQ(track.frames.back().first_hit + track.frames.back().hits, track.hits_world.size());
   // What the map holds at the end is what the track holds then.
   const double end_s = told.flight.clock().t_s();
   const auto remembered = std::ranges::count_if(track.points, [&](const TrackPoint& point) { return point.to_s == end_s; });
