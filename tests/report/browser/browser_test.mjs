@@ -28,8 +28,7 @@ async function check_speed(file, name) {
     opens_s.push(opened.open_s);
     await opened.page.close();
   }
-  // Asked are 2 s and 10 pictures/s; a machine that does other work, too, gets twice the time.
-  check(`${name}: opens in 2 s`, Math.min(...opens_s) < 4, opens_s.map((s) => `${s.toFixed(2)} s`).join(", "));
+  check(`${name}: opens in 2 s`, Math.min(...opens_s) < 2, opens_s.map((s) => `${s.toFixed(2)} s`).join(", "));
   const opened = await open(file, { width: 1300, height: 800 });
   const { page } = opened;
   await page.addStyleTag({ content: ".replay { position: fixed !important; inset: 0 auto auto 0; width: 1280px; height: 720px; z-index: 9; }" });
@@ -39,7 +38,7 @@ async function check_speed(file, name) {
     await page.evaluate((view) => understory.view(view), view);
     await opened.settle();
     const [seconds, triangles] = await page.evaluate(() => [Math.min(...[1, 2, 3].map(() => understory.draw_seconds(4))), understory.triangles()]);
-    check(`${name}: 10 pictures/s at 1280x720, ${view}`, seconds <= 0.2, `${(1 / seconds).toFixed(0)}/s`);
+    check(`${name}: 10 pictures/s at 1280x720, ${view}`, seconds <= 0.1, `${(1 / seconds).toFixed(0)}/s`);
     check(`${name}: at most 50,000 triangles, ${view}`, triangles > 0 && triangles <= 50000, triangles);
   }
   await close(opened, `${name}, large`);

@@ -15,9 +15,9 @@ function nearest_picture(times: Numbers, time_s: number): number {
 
 /// Shows the film and the still that the page holds in `place`; hides `place` where it holds neither.
 export function add_film(place: HTMLElement, times: Numbers, clock: Clock): void {
-  const film = times.length > 0 ? take_bytes("film") : null;
+  const has_film = times.length > 0 && document.getElementById("film") !== null;
   const still = take_bytes("still");
-  place.hidden = !film && !still;
+  place.hidden = !has_film && !still;
   if (place.hidden) return;
   const caption = place.querySelector("figcaption")!;
 
@@ -28,14 +28,17 @@ export function add_film(place: HTMLElement, times: Numbers, clock: Clock): void
     image.addEventListener("error", () => (caption.textContent = "The still cannot be shown."));
     place.prepend(image);
   }
-  const video = film ? document.createElement("video") : null;
+  const video = has_film ? document.createElement("video") : null;
   if (video) {
     video.muted = true;
     video.playsInline = true;
     video.preload = "auto";
     video.setAttribute("aria-label", "What the left camera saw");
     video.addEventListener("error", () => (caption.textContent = "This browser does not play the film (H.264)."));
-    video.src = URL.createObjectURL(new Blob([film!], { type: "video/mp4" }));
+    // Decoding its text and its first picture takes longer than all the rest, and a video holds up the page's load.
+    const show_film = () => (video.src = URL.createObjectURL(new Blob([take_bytes("film")!], { type: "video/mp4" })));
+    if (document.readyState === "complete") show_film();
+    else addEventListener("load", () => setTimeout(show_film), { once: true });
     place.prepend(video);
     video.addEventListener("loadedmetadata", update);
     video.addEventListener("seeked", update);
