@@ -136,7 +136,8 @@ Plan AvoidancePlanner::adopt(std::int64_t t_ns, const Manoeuvre& manoeuvre, Plan
   }
   manoeuvre_ = manoeuvre;
   manoeuvre_t_ns_ = t_ns;
-  return {t_ns, origin, std::move(rollout.points)};
+  const bool is_near = rollout.minimum_clearance_m < config_.trajectory.comfortable_clearance_m;
+  return {t_ns, origin, std::move(rollout.points), is_near ? rollout.minimum_clearance_m : INFINITY};
 }
 
 std::vector<Manoeuvre> avoidance_primitives(double maximum_bank_rad) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/core.hpp>
 
 #include "scenarios/flight/flight_track.hpp"
@@ -15,11 +16,15 @@ constexpr double film_rate_hz = 30;
 
 double seconds(std::int64_t t_ns) { return static_cast<double>(t_ns) * 1e-9; }
 
-std::string caption_of(const Flight& flight, const Truth& truth, std::optional<double> planned_m) {
-  const std::string planned = planned_m ? fmt::format("{:.2f} m clear", *planned_m) : "nothing near";
-  return fmt::format("{:.3f} s   {:.1f} m/s   {:.1f} m high   plan {}, {}", seconds(truth.t_ns),
-                     truth.velocity_world_mps.norm(), truth.T_world_body.translation().z(),
-                     word_for(flight.plan().origin), planned);
+std::string caption_of(const Flight& flight, const Truth& truth) {
+  const Plan& plan = flight.plan();
+  const std::string planned =
+      plan.points.empty() ? "none"
+      : std::isfinite(plan.clearance_m)
+          ? fmt::format("{}, {:.2f} m clear", word_for(plan.origin), plan.clearance_m)
+          : fmt::format("{}, nothing near", word_for(plan.origin));
+  return fmt::format("{:.3f} s   {:.1f} m/s   {:.1f} m high   plan: {}", seconds(truth.t_ns),
+                     truth.velocity_world_mps.norm(), truth.T_world_body.translation().z(), planned);
 }
 
 void mark(cv::Mat picture, const Eye& eye, const Eigen::Vector3d& place_world, int scale) {
@@ -39,10 +44,6 @@ FlightFilm::FlightFilm(const std::filesystem::path& folder, double frame_rate_hz
       video_(folder / "flight.mp4", frame_rate_hz / every_) {}
 
 FlightFilm::Moment FlightFilm::moment_of(const Flight& flight) {
-  if (flight.plan().t_ns != plan_t_ns_) {
-    plan_t_ns_ = flight.plan().t_ns;
-    planned_clearance_m_ = planned_clearance_m(flight);
-  }
   const StereoFrame& frame = flight.frame();
   const State seen = flight.state_at(frame.t_ns);
   const Truth& truth = flight.truth_at(frame.t_ns);
@@ -53,8 +54,8 @@ FlightFilm::Moment FlightFilm::moment_of(const Flight& flight) {
                         seen.T_world_body * flight.rig().rig.T_body_camera,
                         seen.velocity_body_mps.x(),
                         seen.T_world_body.translation().z(),
-                        caption_of(flight, truth, planned_clearance_m_)};
-  return {frames_++, frame, std::move(overlay), truth};
+                        {}};
+  return {frames_++, frame, std::move(overlay), truth, caption_of(flight, truth)};
 }
 
 cv::Mat FlightFilm::draw(const Flight& flight, Moment& moment) {
@@ -64,6 +65,7 @@ cv::Mat FlightFilm::draw(const Flight& flight, Moment& moment) {
   const cv::Mat eye = draw_overlay(moment.overlay, rig.rig, scale);
   cv::Mat picture;
   cv::hconcat(eye, flight.cameras()->chase_view(moment.truth, eye.cols, eye.rows), picture);
+  write_caption(picture, moment.caption);
   return picture;
 }
 
@@ -92,7 +94,7 @@ void FlightFilm::finish(const Flight& flight) {
   if (is_lost && !recent_.empty()) {
     Moment& end = recent_.back();
     end.truth = flight.truth();  // a little after the last frame
-    end.overlay.caption = fmt::format("{:.3f} s   {}", flight.clock().t_s(), word_for(*flight.ending()));
+    end.caption = fmt::format("{:.3f} s   {}", flight.clock().t_s(), word_for(*flight.ending()));
     last_ = draw(flight, end);
     const Touch touch = flight.touch();
     if (touch.with != Contact::none) {

@@ -37,6 +37,7 @@ class FlightFilm : public FlightObserver {
     StereoFrame frame;
     OverlayMoment overlay;
     Truth truth;
+    std::string caption;
   };
   Moment moment_of(const Flight& flight);
   cv::Mat draw(const Flight& flight, Moment& moment);
@@ -48,8 +49,6 @@ class FlightFilm : public FlightObserver {
   std::optional<Rectifier> rectifier_;  ///< for raw pairs, since the detector rectifies only part of an image
   std::deque<Moment> recent_;
   std::int64_t frames_ = 0;
-  std::int64_t plan_t_ns_ = -1;
-  std::optional<double> planned_clearance_m_;
   std::vector<float> times_s_;
   std::size_t maximum_hits_ = 0;
   cv::Mat still_, last_;

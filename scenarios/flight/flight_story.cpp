@@ -17,6 +17,8 @@ constexpr int in_view_px = 25;
 /// The frames' times apart from which pictures are missing, and an estimate's error that matters.
 constexpr double gap_s = 0.1, wrong_m = 0.3;
 
+constexpr double degrees = 57.29577951308232;
+
 double seconds(std::int64_t t_ns) { return static_cast<double>(t_ns) * 1e-9; }
 
 /// "left_wing_outer": "the outer left wing".
@@ -179,6 +181,37 @@ void tell_of_senses(const FlightTrack& track, double end_s, FlightStory& story) 
                             fmt::format("the estimate's error left its 3 sigma: {:.2f} m", lost->position_error_world.norm())});
 }
 
+/// Of an aircraft that left its band: how it moved in the last second, and what it knew of that.
+void tell_of_motion(const FlightTrack& track, FlightStory& story) {
+  constexpr double told_s = 1, level_rad = 0.2, wrong_height_m = 0.2;
+  const TrackMoment& end = track.moments.back();
+  const auto first = std::ranges::lower_bound(track.moments, end.t_s - told_s, {}, &TrackMoment::t_s);
+  const auto banked = std::ranges::max_element(
+      first, track.moments.end(), {}, [](const TrackMoment& moment) { return std::abs(moment.bank_rad); });
+  const double risen_m = end.T_world_true.translation().z() - first->T_world_true.translation().z();
+  std::string text =
+      fmt::format("In the last {:.1f} s it {} {:.1f} m", end.t_s - first->t_s, risen_m < 0 ? "sank" : "climbed", std::abs(risen_m));
+  if (std::abs(banked->bank_rad) > level_rad)
+    text += fmt::format(", banked up to {:.0f} degrees to the {} ({:.0f} were commanded)",
+                        degrees * std::abs(banked->bank_rad), banked->bank_rad > 0 ? "right" : "left",
+                        degrees * std::abs(banked->commanded_bank_rad));
+  story.before.push_back(fmt::format("{}, and its speed went from {:.1f} to {:.1f} m/s.", text, first->speed_mps, end.speed_mps));
+  double lowest_m = std::numeric_limits<double>::infinity(), highest_m = -lowest_m;
+  for (const TrackPlan& plan : track.plans)
+    if (plan.from_s >= end.t_s - told_s)
+      for (const Eigen::Vector3d& point : plan.way_world) {
+        lowest_m = std::min(lowest_m, point.z());
+        highest_m = std::max(highest_m, point.z());
+      }
+  if (lowest_m <= highest_m)
+    story.before.push_back(
+        fmt::format("The plans of that time led to heights from {:.1f} to {:.1f} m.", lowest_m, highest_m));
+  const double believed_m = end.estimated_altitude_m - end.T_world_true.translation().z();
+  if (std::abs(believed_m) > wrong_height_m)
+    story.before.push_back(fmt::format("It believed itself {:.1f} m {} than it was.", std::abs(believed_m),
+                                       believed_m > 0 ? "higher" : "lower"));
+}
+
 void tell_of_plans(const FlightTrack& track, FlightStory& story) {
   bool falls_back = false;
   for (const TrackPlan& plan : track.plans) {
@@ -189,16 +222,16 @@ void tell_of_plans(const FlightTrack& track, FlightStory& story) {
   }
   if (track.plans.empty()) return;
   const TrackPlan& last = track.plans.back();
-  if (last.clearance_m)
+  if (std::isfinite(last.clearance_m))
     story.before.push_back(
-        *last.clearance_m > 0
+        last.clearance_m > 0
             ? fmt::format("The plan in force ({}) left {:.2f} m to what the planner believed was there.",
-                          word_for(last.origin), *last.clearance_m)
+                          word_for(last.origin), last.clearance_m)
             : fmt::format("The plan in force ({}) led through what the planner believed was there.",
                           word_for(last.origin)));
   else
     story.before.push_back(
-        fmt::format("The plan in force ({}) knew of nothing within 3 m.", word_for(last.origin)));
+        fmt::format("The plan in force ({}) knew of nothing near.", word_for(last.origin)));
 }
 
 }  // namespace
@@ -223,9 +256,11 @@ FlightStory story_of(const Flight& flight, const FlightTrack& track) {
                                           fault_kind_names[static_cast<std::size_t>(fault.kind)].first)});
   if (story.touched) tell_of_obstacle(flight, track, story);
   tell_of_senses(track, end_s, story);
-  if (flight.ending() != Ending::goal)
-    tell_of_plans(track, story);
-  story.events.push_back({end_s, "ending", std::string(word_for(flight.ending().value()))});
+  if (flight.ending() == Ending::out_of_bounds || flight.ending() == Ending::ground) tell_of_motion(track, story);
+  if (flight.ending() != Ending::goal) tell_of_plans(track, story);
+  std::string ending(word_for(flight.ending().value()));
+  std::ranges::replace(ending, '_', ' ');
+  story.events.push_back({end_s, "ending", ending});
   std::ranges::stable_sort(story.events, {}, &FlightEvent::t_s);
   return story;
 }

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 
-#include "planning/obstacle_field.hpp"
 #include "planning/path_follower.hpp"
 #include "scenarios/flight/clearance.hpp"
 
@@ -13,7 +12,6 @@ namespace understory {
 namespace {
 
 constexpr std::int64_t moment_every_steps = physics_rate_hz / 120;
-constexpr double farthest_asked_m = 3;
 
 double bank_rad(const Eigen::Isometry3d& T_world_body) {
   return std::atan2(T_world_body.linear()(2, 1), T_world_body.linear()(2, 2));
@@ -60,23 +58,6 @@ std::vector<Eigen::Vector3d> planned_way_world(const Flight& flight) {
   return way_world;
 }
 
-std::optional<double> planned_clearance_m(const Flight& flight) {
-  const AutopilotConfig& config = flight.scenario().autopilot.autopilot;
-  const ObstacleField field(config.planner.field, flight.map().trusted_points(),
-                            flight.state().distance_flown_m, farthest_asked_m);
-  double minimum_m = farthest_asked_m;
-  for (const PlanPoint& point : flight.plan().points) {
-    FlightState there;
-    there.position_world = point.position_world + ground_world(flight);
-    there.heading_rad = point.heading_rad;
-    there.climb_angle_rad = point.climb_angle_rad;
-    there.bank_rad = point.bank_rad;
-    minimum_m = std::min(minimum_m, field.clearance_m(there, farthest_asked_m));
-  }
-  if (minimum_m >= farthest_asked_m) return std::nullopt;
-  return minimum_m;
-}
-
 void TrackRecorder::on_frame(const Flight& flight) {
   const std::int64_t t_ns = flight.frame().t_ns;
   const Truth& truth = flight.truth_at(t_ns);
@@ -114,8 +95,7 @@ void TrackRecorder::on_step(const Flight& flight) {
   const Plan& plan = flight.plan();
   if (plan.t_ns != plan_t_ns_ && !plan.points.empty()) {
     plan_t_ns_ = plan.t_ns;
-    track_.plans.push_back(
-        {flight.clock().t_s(), plan.origin, planned_way_world(flight), planned_clearance_m(flight)});
+    track_.plans.push_back({flight.clock().t_s(), plan.origin, planned_way_world(flight), plan.clearance_m});
   }
   if (flight.clock().step() % moment_every_steps == 0) track_.moments.push_back(moment_of(flight));
 }

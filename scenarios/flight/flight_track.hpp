@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "planning/plan.hpp"
@@ -42,9 +41,7 @@ struct TrackPlan {
   double from_s = 0;  ///< in force from then on
   PlanOrigin origin = PlanOrigin::straight;
   std::vector<Eigen::Vector3d> way_world;
-  /// Minimum distance that the planner leaves between the wing and what it trusts of the map; nothing where
-  /// that is more than 3 m.
-  std::optional<double> clearance_m;
+  double clearance_m = 0;  ///< as in Plan
 };
 
 /// A flight over time, for people who look at it afterwards.
@@ -80,8 +77,5 @@ TrackMoment moment_of(const Flight& flight);
 
 /// The plan now in force, in the world of the estimate as the map has it.
 std::vector<Eigen::Vector3d> planned_way_world(const Flight& flight);
-
-/// What TrackPlan::clearance_m says, of the plan now in force.
-std::optional<double> planned_clearance_m(const Flight& flight);
 
 }  // namespace understory

@@ -3,148 +3,16 @@
 #include <fmt/format.h>
 #include <google/protobuf/descriptor.pb.h>
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <opencv2/core/matx.hpp>
 #include <set>
 
-#include "perception/io/picture_codecs.hpp"
 #include "scenarios/flight/flight_track.hpp"
 #include "scenarios/recording/foxglove.pb.h"
+#include "scenarios/recording/foxglove_messages.hpp"
 #include "scenarios/recording/mcap_file.hpp"
 #include "scenarios/recording/understory.pb.h"
 
 namespace understory {
 namespace {
-
-// ---- messages of ours as Foxglove has them ----
-
-void set_time(google::protobuf::Timestamp* timestamp, std::int64_t t_ns) {
-  timestamp->set_seconds(t_ns / 1'000'000'000);
-  timestamp->set_nanos(static_cast<std::int32_t>(t_ns % 1'000'000'000));
-}
-
-void set_vector(foxglove::Vector3* to, const Eigen::Vector3d& from) {
-  to->set_x(from.x());
-  to->set_y(from.y());
-  to->set_z(from.z());
-}
-
-void set_turn(foxglove::Quaternion* to, const Eigen::Isometry3d& from) {
-  const Eigen::Quaterniond turn(from.linear());
-  to->set_x(turn.x());
-  to->set_y(turn.y());
-  to->set_z(turn.z());
-  to->set_w(turn.w());
-}
-
-void set_pose(foxglove::Pose* to, const Eigen::Isometry3d& from) {
-  set_vector(to->mutable_position(), from.translation());
-  set_turn(to->mutable_orientation(), from);
-}
-
-foxglove::FrameTransform transform(const char* parent, const char* child, const Eigen::Isometry3d& pose,
-                                   std::int64_t t_ns) {
-  foxglove::FrameTransform message;
-  set_time(message.mutable_timestamp(), t_ns);
-  message.set_parent_frame_id(parent);
-  message.set_child_frame_id(child);
-  set_vector(message.mutable_translation(), pose.translation());
-  set_turn(message.mutable_rotation(), pose);
-  return message;
-}
-
-/// Points of three 32-bit floats each.
-foxglove::PointCloud cloud(const char* frame, const std::vector<Eigen::Vector3d>& points, std::int64_t t_ns) {
-  foxglove::PointCloud message;
-  set_time(message.mutable_timestamp(), t_ns);
-  message.set_frame_id(frame);
-  set_pose(message.mutable_pose(), Eigen::Isometry3d::Identity());
-  message.set_point_stride(3 * sizeof(float));
-  std::uint32_t offset = 0;
-  for (const char* const name : {"x", "y", "z"}) {
-    foxglove::PackedElementField* field = message.add_fields();
-    field->set_name(name);
-    field->set_offset(offset);
-    field->set_type(foxglove::PackedElementField::FLOAT32);
-    offset += sizeof(float);
-  }
-  std::string& data = *message.mutable_data();
-  for (const Eigen::Vector3d& point : points)
-    for (const double coordinate : point) {
-      const auto value = static_cast<float>(coordinate);
-      data.append(reinterpret_cast<const char*>(&value), sizeof value);
-    }
-  return message;
-}
-
-/// Points about every 0.1 m round the trunks, for viewers that draw no cylinders.
-std::vector<Eigen::Vector3d> surface_points(const std::vector<Obstacle>& obstacles) {
-  constexpr double step_m = 0.1;
-  std::vector<Eigen::Vector3d> points;
-  for (const Obstacle& obstacle : obstacles) {
-    const Eigen::Vector3d along = obstacle.to_world - obstacle.from_world;
-    const auto rings = static_cast<int>(std::ceil(along.norm() / step_m));
-    const int sides = std::max(6, static_cast<int>(2 * std::numbers::pi * obstacle.radius_m / step_m));
-    const Eigen::Vector3d axis = along.normalized();
-    const Eigen::Vector3d side = axis.unitOrthogonal(), other = axis.cross(side);
-    for (int ring = 0; ring <= rings; ++ring)
-      for (int i = 0; i < sides; ++i) {
-        const double angle = 2 * std::numbers::pi * i / sides;
-        points.push_back(obstacle.from_world + static_cast<double>(ring) / std::max(1, rings) * along +
-                         obstacle.radius_m * (std::cos(angle) * side + std::sin(angle) * other));
-      }
-  }
-  return points;
-}
-
-foxglove::CameraCalibration calibration_of(const CalibratedRig& rig, bool is_left, std::int64_t t_ns) {
-  foxglove::CameraCalibration message;
-  set_time(message.mutable_timestamp(), t_ns);
-  message.set_frame_id(is_left ? "left_camera" : "right_camera");
-  message.set_width(static_cast<std::uint32_t>(rig.rig.width_px));
-  message.set_height(static_cast<std::uint32_t>(rig.rig.height_px));
-  const auto put = [](const auto& matrix, google::protobuf::RepeatedField<double>* to) {
-    for (const double value : matrix.val) to->Add(value);
-  };
-  if (rig.calibration) {
-    const CameraCalibration& raw = is_left ? rig.calibration->left : rig.calibration->right;
-    message.set_distortion_model(raw.distortion.size() > 5 ? "rational_polynomial" : "plumb_bob");
-    for (const double number : raw.distortion) message.add_d(number);
-    put(raw.camera_matrix, message.mutable_k());
-    put(raw.rectification, message.mutable_r());
-    put(raw.projection, message.mutable_p());
-    return message;
-  }
-  const double focal = rig.rig.focal_px, row = rig.rig.center_y_px;
-  const double column = is_left ? rig.rig.center_left_x_px : rig.rig.center_right_x_px;
-  const double shift = is_left ? 0 : -focal * rig.rig.baseline_m;
-  put(cv::Matx33d(focal, 0, column, 0, focal, row, 0, 0, 1), message.mutable_k());
-  put(cv::Matx33d::eye(), message.mutable_r());
-  put(cv::Matx34d(focal, 0, column, shift, 0, focal, row, 0, 0, 0, 1, 0), message.mutable_p());
-  return message;
-}
-
-/// Of a camera as its images come, in the body: a raw one is turned against the rectified pair.
-Eigen::Isometry3d camera_pose(const CalibratedRig& rig, bool is_left) {
-  Eigen::Isometry3d pose =
-      rig.rig.T_body_camera * Eigen::Translation3d(is_left ? 0 : rig.rig.baseline_m, 0, 0);
-  if (!rig.calibration) return pose;
-  const cv::Matx33d& turn = (is_left ? rig.calibration->left : rig.calibration->right).rectification;
-  pose.linear() *= Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(turn.val);
-  return pose;
-}
-
-foxglove::CompressedImage image_message(const cv::Mat& image, bool is_left, std::int64_t t_ns) {
-  foxglove::CompressedImage message;
-  set_time(message.mutable_timestamp(), t_ns);
-  message.set_frame_id(is_left ? "left_camera" : "right_camera");
-  message.set_format("png");
-  const std::vector<unsigned char> bytes = picture_codecs().encode(".png", image);
-  message.set_data(bytes.data(), bytes.size());
-  return message;
-}
 
 /// A type's file and all that it imports.
 void add_file(const google::protobuf::FileDescriptor& file, std::set<std::string>& known,
@@ -191,7 +59,6 @@ struct FlightMcap::Implementation {
   std::uint16_t log = channel<foxglove::Log>("/log");
 
   std::int64_t plan_t_ns = -1;
-  double planned_clearance = 0;
   bool begun = false, launched = false, fell_back = false;
 
   void say(std::int64_t t_ns, foxglove::Log::Level level, const std::string& text) {
@@ -228,7 +95,6 @@ void FlightMcap::Implementation::begin(const Flight& flight) {
 void FlightMcap::Implementation::put_plan(const Flight& flight) {
   if (flight.plan().t_ns == plan_t_ns || flight.plan().points.empty()) return;
   plan_t_ns = flight.plan().t_ns;
-  planned_clearance = planned_clearance_m(flight).value_or(3);
   const std::int64_t t_ns = flight.clock().t_ns();
   foxglove::PosesInFrame message;
   set_time(message.mutable_timestamp(), t_ns);
@@ -265,7 +131,7 @@ void FlightMcap::Implementation::put_moment(const Flight& flight) {
   numbers.set_left_elevon(moment.left_elevon_rad);
   numbers.set_right_elevon(moment.right_elevon_rad);
   numbers.set_clearance(moment.clearance_m);
-  numbers.set_planned_clearance(planned_clearance);
+  numbers.set_planned_clearance(flight.plan().clearance_m);
   numbers.set_position_error_x(moment.position_error_world.x());
   numbers.set_position_error_y(moment.position_error_world.y());
   numbers.set_position_error_z(moment.position_error_world.z());

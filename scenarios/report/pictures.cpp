@@ -31,8 +31,9 @@ constexpr double nearest_drawn_m = 0.5;
 
 void write_text(cv::Mat& picture, const std::string& text, cv::Point place, double size) {
   constexpr int font = cv::FONT_HERSHEY_SIMPLEX;
-  cv::putText(picture, text, place, font, size, cv::Scalar(0, 0, 0), 4, cv::LINE_AA);
-  cv::putText(picture, text, place, font, size, cv::Scalar(255, 255, 255), 1, cv::LINE_AA);
+  const int thickness = size < 0.8 ? 1 : 2;
+  cv::putText(picture, text, place, font, size, cv::Scalar(0, 0, 0), thickness + 3, cv::LINE_AA);
+  cv::putText(picture, text, place, font, size, cv::Scalar(255, 255, 255), thickness, cv::LINE_AA);
 }
 
 void write_at_side(cv::Mat& picture, const std::string& text, bool at_right) {
@@ -106,6 +107,14 @@ void VideoFile::finish() {
     throw MachineError(fmt::format("{}: what was written does not read back whole", file_.string()));
   }
   part_.become(file_);
+}
+
+void write_caption(cv::Mat& picture, const std::string& text) {
+  constexpr double largest = 1.2;
+  int baseline = 0;
+  const cv::Size extent = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, 1, 2, &baseline);
+  const double size = std::min(largest, static_cast<double>(picture.cols - 24) / std::max(1, extent.width));
+  write_text(picture, text, {12, picture.rows - 14}, size);
 }
 
 void mark_place(cv::Mat& picture, double u_px, double v_px) {

@@ -3,7 +3,7 @@
 import uPlot from "uplot";
 import type { Clock } from "./clock";
 import { make, say_number, show_tip } from "./elements";
-import { array_of, count_until, type Arrays } from "./data";
+import { array_of, count_until, type Arrays, type Numbers } from "./data";
 import type { ChartFact, EventFact, SeriesFact } from "./facts";
 
 type Column = (number | null)[];
@@ -67,6 +67,15 @@ function join_lines(lines: Line[], arrays: Arrays): uPlot.AlignedData {
   });
   lines.sort((a, b) => times.indexOf(a.time) - times.indexOf(b.time)); // join puts table after table
   return tables.length === 1 ? tables[0] : uPlot.join(tables);
+}
+
+/// Between which values most of a line lies from the launch to 2 s before the end: what is usual in this flight.
+function say_usual(line: Line, times: Numbers, unit: string, from_s: number, to_s: number): string {
+  const values = line.values.filter((value, i): value is number => value !== null && times[i] >= from_s && times[i] <= to_s);
+  if (values.length < 20) return "";
+  values.sort((a, b) => a - b);
+  const at = (share: number) => values[Math.round(share * (values.length - 1))];
+  return `usually ${say_number(at(0.05), "")} … ${say_number(at(0.95), unit)}`;
 }
 
 /// The range of the values and limits with a margin. A line that does not move lies in the middle.
@@ -181,6 +190,11 @@ export function add_charts(place: HTMLElement, tip: HTMLElement, facts: ChartFac
     if (lines.length === 0) {
       box.append(make("p", "No values in this flight.", "quiet"));
       continue;
+    }
+    if (!fact.words) {
+      const launch_s = events.find((event) => event.kind === "launch")?.t_s ?? clock.begin_s;
+      const usual = say_usual(lines[0], array_of(arrays, lines[0].time), fact.unit, launch_s, clock.end_s - 2);
+      heading.append(make("span", usual, "usual"));
     }
     const data = join_lines(lines, arrays);
     const row_of = (label: string) => lines.findIndex((line) => line.options.label === label) + 1;

@@ -115,6 +115,14 @@ export interface PlotFact {
   x_label: string;
   y_label: string;
   series: { name: string; x: string; y: string; lower?: string; upper?: string; mark: Mark; labels?: string[] }[];
+  references?: Reference[];
+}
+
+/// A line across the plot at one value.
+export interface Reference {
+  at: number;
+  label: string;
+  vertical: boolean;
 }
 
 export type Mark = "line" | "points" | "steps";

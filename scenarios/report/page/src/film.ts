@@ -49,7 +49,7 @@ export function add_film(place: HTMLElement, times: Numbers, clock: Clock): void
     if (image) image.hidden = !frozen;
     if (video) video.hidden = frozen;
     if (video?.error) return;
-    caption.textContent = frozen ? "left camera: the frozen frame" : "left camera";
+    caption.textContent = frozen ? "left camera, and from behind: the frozen frame" : "left camera, and from behind";
     if (!video || video.seeking || !(video.duration > 0)) return; // "seeked" calls again with the newest time
     const middle_s = ((nearest_picture(times, clock.time_s) + 0.5) / times.length) * video.duration;
     if (Math.abs(video.currentTime - middle_s) > (0.25 / times.length) * video.duration) video.currentTime = middle_s;

@@ -1,7 +1,7 @@
 // Curves, steps and points with their intervals over one axis, as SVG: the page's style colours it.
 
 import { make, make_button, say_number, show_tip } from "./elements";
-import type { Mark } from "./facts";
+import type { Mark, Reference } from "./facts";
 
 export interface Series {
   name: string;
@@ -17,6 +17,7 @@ interface PlotWords {
   title: string;
   x_label: string;
   y_label: string;
+  references?: Reference[];
 }
 
 const height_px = 300;
@@ -107,8 +108,10 @@ export function add_plot(place: HTMLElement, tip: HTMLElement, words: PlotWords,
   function draw(): void {
     const width_px = Math.max(box.clientWidth, 200);
     const shown = all.filter((series) => !hidden.has(series));
-    const x_ticks = find_ticks(shown.map((series) => series.x), width_px / 90, shown.some(({ mark }) => mark === "points") ? 0.03 : 0);
-    const y_ticks = find_ticks(shown.flatMap(({ y, lower, upper }) => [y, lower ?? [], upper ?? []]), 5);
+    const references = words.references ?? [];
+    const referred = (vertical: boolean) => references.filter((line) => line.vertical === vertical).map((line) => line.at);
+    const x_ticks = find_ticks([...shown.map((series) => series.x), referred(true)], width_px / 90, shown.some(({ mark }) => mark === "points") ? 0.03 : 0);
+    const y_ticks = find_ticks(shown.flatMap(({ y, lower, upper }) => [y, lower ?? [], upper ?? []]).concat([referred(false)]), 5);
     const place_on = (ticks: number[], from_px: number, to_px: number) => (value: number) =>
       from_px + ((value - ticks[0]) / (ticks[ticks.length - 1] - ticks[0])) * (to_px - from_px);
     const x_px = place_on(x_ticks, margin_px.left, width_px - margin_px.right);
@@ -126,6 +129,12 @@ export function add_plot(place: HTMLElement, tip: HTMLElement, words: PlotWords,
     for (const y of y_ticks) {
       picture.append(svg("path", { class: "grid", d: `M${at(x_ticks[0], y)}H${width_px - margin_px.right}` }));
       picture.append(svg("text", { x: margin_px.left - 6, y: y_px(y) + 4, "text-anchor": "end" }, String(y)));
+    }
+    for (const { at: value, label, vertical } of references) {
+      const from = vertical ? at(value, y_ticks[0]) : at(x_ticks[0], value);
+      picture.append(svg("path", { class: "reference", d: `M${from}${vertical ? `V${margin_px.top}` : `H${width_px - margin_px.right}`}` }));
+      const place = vertical ? { x: x_px(value) + 4, y: margin_px.top + 10 } : { x: margin_px.left + 4, y: y_px(value) - 4 };
+      picture.append(svg("text", { ...place, class: "reference" }, label));
     }
     picture.append(svg("text", { x: width_px - margin_px.right, y: height_px - 6, "text-anchor": "end" }, words.x_label));
     const middle_px = (height_px - margin_px.bottom) / 2;

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "scenarios/flight/flight_story.hpp"
+#include "scenarios/flight/flight_track.hpp"
+#include "scenarios/report/page.hpp"
+
+namespace understory {
+
+enum class PageDetail {
+  everything,  ///< below 3 MB in base64
+  compact      ///< the last two seconds, and the way there: below 30 kB in base64
+};
+
+/// What a page draws of a flight, thinned to fit: its arrays, and in `facts` the charts of them, the obstacle
+/// that was touched and how much was left out.
+void add_track(const Flight& flight, const FlightTrack& track, const FlightStory& story, PageDetail detail,
+               PageArrays& arrays, nlohmann::ordered_json& facts);
+
+}  // namespace understory
