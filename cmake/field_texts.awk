@@ -50,6 +50,9 @@ line ~ /^\/\/\// {  # comes before its field
   flush()
   sub(/ *(=|\{).*/, "", code)
   sub(/; *$/, "", code)
+  if (code ~ /^const [A-Za-z]+& [a-z_]+\(\) const$/) {  # an accessor gives a struct as a field does
+    gsub(/^const |&|\(\) const$/, "", code)
+  }
   if (code ~ /^[A-Za-z_:<>,0-9 ]+ [a-z_0-9]+$/ && code !~ /^(return|using|case|break) /) {
     name = type = code
     sub(/.* /, "", name)

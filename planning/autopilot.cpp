@@ -13,14 +13,13 @@ std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
 }  // namespace
 
 Autopilot::Autopilot(const AutopilotConfig& config, const Airframe& airframe, const StereoRig& rig,
-                     const Mission& mission, ObstacleDetector& detector, StateSource& state_source,
-                     std::uint64_t seed)
+                     ObstacleDetector& detector, StateSource& state_source, Planner& planner)
     : config_(config),
       rig_(rig),
       detector_(detector),
       state_source_(state_source),
       model_(airframe, config.flight_model),
-      planner_(config.planner, model_, mission, seed),
+      planner_(planner),
       map_(config.map),
       resightings_(config.resightings) {}
 
@@ -88,9 +87,9 @@ void Autopilot::replan(std::int64_t t_ns) {
   // slowly.
   const double ground_m = state.T_world_body.translation().z() - state.altitude_m;
   start.position_world.z() -= ground_m;
-  std::vector<ObstaclePoint> points = map_.trusted_points();
-  for (ObstaclePoint& point : points) point.position_world.z() -= ground_m;
-  next_plan_ = planner_.plan(start, effective_ns, points, state.distance_flown_m, outdated);
+  PlanRequest request{start, effective_ns, map_.trusted_points(), state.distance_flown_m, outdated};
+  for (ObstaclePoint& point : request.points) point.position_world.z() -= ground_m;
+  next_plan_ = planner_.plan(request);
   next_plan_due_ns_ = t_ns + nanoseconds(config_.plan_latency_s);
 }
 

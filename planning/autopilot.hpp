@@ -11,18 +11,17 @@
 #include "perception/stereo_rig.hpp"
 #include "planning/airframe.hpp"
 #include "planning/autopilot_config.hpp"
-#include "planning/avoidance_planner.hpp"
 #include "planning/path_follower.hpp"
+#include "planning/planner.hpp"
 
 namespace understory {
 
-/// The flight stack composed: what would run on the aircraft. It knows the airframe, its rig and the mission.
-/// `detector` tells it what is around it, `state_source` where it is. Both must outlive it.
+/// The flight stack composed: what would run on the aircraft. It knows the airframe and its rig. `detector` tells
+/// it what is around it, `state_source` where it is, `planner` where to go. All three must outlive it.
 class Autopilot {
  public:
   Autopilot(const AutopilotConfig& config, const Airframe& airframe, const StereoRig& rig,
-            const Mission& mission, ObstacleDetector& detector, StateSource& state_source,
-            std::uint64_t seed);
+            ObstacleDetector& detector, StateSource& state_source, Planner& planner);
 
   void on(const ImuSample& sample);
   void on(const PitotSample& sample) { state_source_.on(sample); }
@@ -52,7 +51,7 @@ class Autopilot {
   ObstacleDetector& detector_;
   StateSource& state_source_;
   FlightModel model_;
-  AvoidancePlanner planner_;
+  Planner& planner_;
   LocalMap map_;
   Resightings resightings_;
   std::vector<StereoHit> hits_;

@@ -125,8 +125,7 @@ void visit_fields(Visitor& visit, TrajectoryConfig& config) {
   visit("maximum_climb_mps", config.maximum_climb_mps, 0.0, 6.0);
 }
 
-/// The tree of manoeuvres that OMPL grows (SST, Li, Littlefield & Bekris 2016, in the space of bank and climb
-/// commands over time).
+/// The tree of manoeuvres that OMPL grows (SST, RRT or EST, in the space of bank and climb commands over time).
 struct ManoeuvreSearchConfig {
   int iterations = 600;             ///< extensions tried; never a time, so that runs repeat
   double maximum_bank_rad = 1.57;   ///< a wing on edge passes where a level one does not
@@ -137,7 +136,7 @@ struct ManoeuvreSearchConfig {
   int maximum_parts = 4;            ///< commands in a row before the course guidance takes over
   double hint_share = 0.3;          ///< of the commands tried: near those of the plan in force
   double extreme_share = 0.2;       ///< of the commands tried: with the maximum bank, to either side
-  double selection_radius = 0.6;    ///< SST's, in the search's metric (see manoeuvre_search.cpp)
+  double selection_radius = 0.6;    ///< SST's, in the search's metric (squared_distance())
   double pruning_radius = 0.15;     ///< SST's: nearer nodes of higher cost go
 };
 
@@ -199,6 +198,16 @@ void visit_fields(Visitor& visit, PlannerConfig& config) {
   visit("trajectory", config.trajectory);
   visit("search", config.search);
   visit("improvement", config.improvement);
+}
+
+/// The planner `library`: manoeuvres made beforehand, the one with the greatest clearance first.
+struct ManoeuvreLibraryConfig {
+  double safe_clearance_m = 0.3;  ///< the manoeuvre in force is flown on while its rest keeps this much
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, ManoeuvreLibraryConfig& config) {
+  visit("safe_clearance_m", config.safe_clearance_m, 0.0, 3.0);
 }
 
 struct AutopilotConfig {

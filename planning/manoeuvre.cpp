@@ -161,6 +161,17 @@ ImprovedManoeuvre improve_manoeuvre(const FlightTask& task, const FlightState& s
   return best;
 }
 
+Manoeuvre rest_of(const Manoeuvre& manoeuvre, double elapsed_s) {
+  Manoeuvre left;
+  for (ManoeuvrePart part : manoeuvre) {
+    const double used_s = std::min(elapsed_s, part.duration_s);
+    elapsed_s -= used_s;
+    part.duration_s -= used_s;
+    if (part.duration_s > 1e-3) left.push_back(part);
+  }
+  return left;
+}
+
 std::size_t FlightPlaces::nearest(const FlightPlace& place) const {
   std::size_t best = 0;
   double minimum = std::sqrt(squared_distance(places_.front(), place)), enough = no_less_than(minimum);

@@ -40,7 +40,7 @@ struct PlanPoint {
 /// How a plan came about.
 enum class PlanOrigin {
   straight,  ///< nothing in the way: towards the goal, holding altitude
-  solved,    ///< OMPL found it in this replan
+  solved,    ///< the planner's search found it in this replan
   kept,      ///< an earlier plan, still valid and good
   fallback   ///< nothing free of collision found: the primitive with the maximum clearance
 };
@@ -63,14 +63,14 @@ struct Plan {
 struct PlannerCounts {
   std::int64_t replans = 0;         ///< how often a plan was made
   std::int64_t straight = 0;        ///< nothing within comfortable clearance of the straight way
-  std::int64_t solved = 0;          ///< OMPL's answer of this replan taken
+  std::int64_t solved = 0;          ///< the search's answer of this replan taken
   std::int64_t kept = 0;            ///< the plan in force still good
-  std::int64_t kept_ompl = 0;       ///< of `kept`: the rest of an OMPL answer; the others go straight
+  std::int64_t kept_ompl = 0;       ///< of `kept`: the rest of an answer of OMPL; the others go straight
   std::int64_t fallback = 0;        ///< no free manoeuvre found: the primitive with the maximum clearance
   std::int64_t obstacle_ahead = 0;  ///< straight on would come nearer than the minimum clearance
   std::int64_t obstacle_ahead_ompl = 0;  ///< of those: flown on an OMPL answer, of this replan or kept
   std::int64_t searches =
-      0;                   ///< how often OMPL was asked (a kept plan is searched against anew now and then)
+      0;                   ///< how often a search was made (a kept plan is searched against anew now and then)
   std::int64_t found = 0;  ///< how often it answered with a free manoeuvre
 };
 

@@ -13,6 +13,7 @@
 
 #include "perception/io/text_table.hpp"
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/config/field_visitor.hpp"
 
 namespace understory {
 
@@ -81,6 +82,18 @@ class ConfigReader {
       }
       expected += (expected.empty() ? "" : " | ") + std::string(word);
     }
+    refuse(*node, name, expected);
+  }
+
+  void operator()(std::string_view name, std::string& field, const Words& words) {
+    const ConfigNode* node = take(name);
+    if (node == nullptr) return;
+    if (node->kind == ConfigNode::Kind::scalar && std::ranges::find(words, node->text) != words.end()) {
+      field = node->text;
+      return;
+    }
+    std::string expected;
+    for (const std::string& word : words) expected += (expected.empty() ? "" : " | ") + word;
     refuse(*node, name, expected);
   }
 

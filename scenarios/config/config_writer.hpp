@@ -9,6 +9,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "scenarios/config/field_visitor.hpp"
+
 namespace understory {
 
 /// The visitor that writes a config struct as YAML, every field in its order. Numbers are written in the
@@ -52,6 +54,8 @@ class ConfigWriter {
       if (field == value) line(name, word);
     }
   }
+
+  void operator()(std::string_view name, std::string& field, const Words&) { line(name, field); }
 
   const std::string& text() const { return text_; }
 

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "scenarios/config/field_visitor.hpp"
+
 /// What a configuration's keys and a result's columns mean. The comment beside a struct's field says it,
 /// once; the build reads the comments (cmake/field_texts.awk), the visitors add names, values and ranges.
 namespace understory {
@@ -86,12 +88,20 @@ class KeyLister {
     add(name, given, words);
   }
 
+  void operator()(std::string_view name, std::string& field, const Words& words) {
+    std::string range;
+    for (const std::string& word : words) range += (range.empty() ? "" : " | ") + word;
+    add(name, field, range);
+  }
+
   const std::vector<Key>& keys() const { return keys_; }
 
  private:
   template <typename T>
   void list(const std::string& name, T& group) {
-    KeyLister within(typeid(T), prefix_ + name + ".");
+    const std::type_info* owner = &typeid(T);
+    if constexpr (std::is_base_of_v<AnyConfig, T>) owner = &group.type();
+    KeyLister within(*owner, prefix_ + name + ".");
     visit_fields(within, group);
     keys_.insert(keys_.end(), within.keys_.begin(), within.keys_.end());
   }

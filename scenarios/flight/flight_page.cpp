@@ -25,7 +25,7 @@ constexpr std::size_t maximum_film_bytes = std::size_t{1} << 30;
 
 /// That the detector looks at.
 std::vector<double> depths_of(const Flight& flight) {
-  const std::vector<double>& depths_m = flight.scenario().perception.pushbroom.depths_m;
+  const std::vector<double>& depths_m = flight.scenario().perception.pushbroom().depths_m;
   return depths_m.empty() ? std::vector{flight.rig().rig.detection_depth_m} : depths_m;
 }
 
@@ -55,7 +55,7 @@ Json result_of(const FlightResult& result, const Flight& flight) {
   const PlannerCounts& planner = result.planner;
   add("plans", fmt::format("{}: {} straight, {} solved, {} kept, {} fallback", planner.replans, planner.straight,
                            planner.solved, planner.kept, planner.fallback));
-  add("detector", looks(flight.scenario().perception.detector)
+  add("detector", flight.scenario().looks()
                       ? fmt::format("{}, looking {:.1f} m ahead", result.detector, fmt::join(depths_of(flight), " and "))
                       : result.detector);
   add("state", result.state_source);
@@ -143,7 +143,7 @@ Json facts_of(const Flight& flight, const FlightResult& result, const FlightTrac
     const Eigen::Vector3d& place = *story.impact_world;
     facts["impact"] = {{"position", {place.x(), place.y(), place.z()}}, {"part", story.part}};
   }
-  facts["camera"] = looks(scenario.perception.detector) ? camera_of(flight) : Json();
+  facts["camera"] = scenario.looks() ? camera_of(flight) : Json();
   facts["events"] = Json::array();
   for (const FlightEvent& event : story.events)
     facts["events"].push_back({{"t_s", event.t_s}, {"kind", event.kind}, {"text", event.text}});

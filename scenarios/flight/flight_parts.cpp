@@ -3,29 +3,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include "estimation/filter.hpp"
-#include "perception/full_stereo/full_stereo.hpp"
 #include "perception/pushbroom/pushbroom_stereo.hpp"
-#include "perception/rectification/rectify.hpp"
-#include "scenarios/config/config_tree.hpp"
+#include "planning/planners/planners.hpp"
 #include "scenarios/config/named_seed.hpp"
-#include "scenarios/flight/oracles.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/parts/oracles.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
 
 namespace understory {
-namespace {
-
-template <typename MatcherConfig>
-std::unique_ptr<ObstacleDetector> full_stereo_of(const CalibratedRig& cameras, const MatcherConfig& matcher,
-                                                 const FullStereoCrop& crop) {
-  auto detector = std::make_unique<FullStereoDetector>(cameras.rig, matcher, crop);
-  if (!cameras.calibration) return detector;
-  return std::make_unique<RectifyingDetector>(*cameras.calibration, std::move(detector));
-}
-
-}  // namespace
-
 World world_of(const Scenario& scenario, const std::filesystem::path& models_folder,
                const std::vector<Obstacle>& obstacles) {
   try {
@@ -61,30 +46,33 @@ std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const Ca
                                               const std::vector<Obstacle>& obstacles,
                                               const TruthHistory& history) {
   const PerceptionSection& perception = scenario.perception;
-  switch (perception.detector) {
-    case DetectorKind::pushbroom:
-      check_depths(perception.pushbroom, rig.rig, "perception.depths_m", "perception.pushbroom");
-      return std::make_unique<PushbroomStereo>(rig, perception.pushbroom);
-    case DetectorKind::stereo_bm:
-      return full_stereo_of(rig, perception.stereo_bm, perception.full_stereo);
-    case DetectorKind::stereo_sgbm:
-      return full_stereo_of(rig, perception.stereo_sgbm, perception.full_stereo);
-    case DetectorKind::true_depth:
-      return std::make_unique<TrueDepth>(rig.rig, obstacles, history);
-    case DetectorKind::none:
-      break;
-  }
-  return std::make_unique<NoDetector>();
+  if (perception.detector == "pushbroom")
+    check_depths(perception.pushbroom(), rig.rig, "perception.depths_m", "perception.pushbroom");
+  return scenario.parts->detectors.find(perception.detector)
+      ->make(perception.detectors.find(perception.detector),
+             {rig, perception.full_stereo, obstacles, history, seed_for(scenario.seed, "detector")});
 }
 
 std::unique_ptr<StateSource> state_source_of(const Scenario& scenario, const TruthHistory& history) {
-  if (scenario.estimation.source == StateKind::truth) return std::make_unique<TrueState>(history);
-  return std::make_unique<Filter>(scenario.estimation.filter);
+  const std::string& name = scenario.estimation.source;
+  return scenario.parts->state_sources.find(name)->make(
+      scenario.estimation.sources.find(name),
+      {scenario.airframe, history, seed_for(scenario.seed, "state_source")});
+}
+
+std::unique_ptr<Planner> planner_of(const Scenario& scenario) {
+  const AutopilotConfig& config = scenario.autopilot.autopilot;
+  const std::string& name = scenario.autopilot.planning;
+  const FlightModel model(scenario.airframe, config.flight_model);
+  const Mission mission = scenario.mission();
+  return scenario.parts->planners.find(name)->make(
+      scenario.autopilot.planners.find(name),
+      {config.planner, model, mission, seed_for(scenario.seed, "planner")});
 }
 
 AutopilotConfig autopilot_config_of(const Scenario& scenario, const StereoRig& rig) {
   AutopilotConfig config = scenario.autopilot.autopilot;
-  config.resightings.depths_m = stated_depths_m(scenario.perception.pushbroom, rig);
+  config.resightings.depths_m = stated_depths_m(scenario.perception.pushbroom(), rig);
   return config;
 }
 

@@ -69,7 +69,7 @@ void RunRecord::on_frame(const Flight& flight) {
   const std::size_t hits = flight.hits().size();
   digest_.add(static_cast<std::uint64_t>(frame.t_ns));
   // Images that are rendered for an observer alone must not change the digest.
-  const bool looked_at = looks(flight.scenario().perception.detector);
+  const bool looked_at = flight.scenario().looks();
   digest_.add(looked_at ? bytes_of(frame.left) : std::span<const std::byte>());
   digest_.add(looked_at ? bytes_of(frame.right) : std::span<const std::byte>());
   digest_.add(static_cast<std::uint64_t>(hits));
@@ -150,8 +150,8 @@ FlightResult RunRecord::finish(const Flight& flight) {
   result_.scenario = scenario.name;
   result_.seed = scenario.seed;
   result_.sensor_seed = scenario.sensor_seed();
-  result_.detector = word_for(scenario.perception.detector);
-  result_.state_source = word_for(scenario.estimation.source);
+  result_.detector = scenario.perception.detector;
+  result_.state_source = scenario.estimation.source;
   result_.ending = flight.ending().value();
   result_.simulated_s = flight.clock().t_s();
   const double flown_s = released_ns_ ? result_.simulated_s - static_cast<double>(*released_ns_) * 1e-9 : 0;

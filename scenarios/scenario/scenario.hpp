@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "planning/autopilot_config.hpp"
 #include "planning/plan.hpp"
 #include "scenarios/course/courses.hpp"
+#include "scenarios/parts/parts.hpp"
 #include "sim/aircraft/aircraft_config.hpp"
 #include "sim/cameras/camera_config.hpp"
 #include "sim/scene/world_config.hpp"
@@ -25,8 +27,6 @@
 namespace understory {
 
 enum class Course { forest, goalposts, clear, windows, fence };
-enum class DetectorKind { pushbroom, stereo_bm, stereo_sgbm, true_depth, none };
-enum class StateKind { filter, truth };
 enum class FilterPreset { tuned, original, windy };  ///< which numbers estimation.filter starts from
 enum class PlanningPreset { thorough, economical };  ///< how often, and with how much search, plans are made
 
@@ -36,14 +36,6 @@ inline constexpr std::array<std::pair<std::string_view, Course>, 5> course_names
      {"clear", Course::clear},
      {"windows", Course::windows},
      {"fence", Course::fence}}};
-inline constexpr std::array<std::pair<std::string_view, DetectorKind>, 5> detector_names{
-    {{"pushbroom", DetectorKind::pushbroom},
-     {"stereo_bm", DetectorKind::stereo_bm},
-     {"stereo_sgbm", DetectorKind::stereo_sgbm},
-     {"true_depth", DetectorKind::true_depth},
-     {"none", DetectorKind::none}}};
-inline constexpr std::array<std::pair<std::string_view, StateKind>, 2> state_names{
-    {{"filter", StateKind::filter}, {"truth", StateKind::truth}}};
 inline constexpr std::array<std::pair<std::string_view, FilterPreset>, 3> filter_preset_names{
     {{"tuned", FilterPreset::tuned}, {"original", FilterPreset::original}, {"windy", FilterPreset::windy}}};
 inline constexpr std::array<std::pair<std::string_view, PlanningPreset>, 2> planning_preset_names{
@@ -53,16 +45,6 @@ inline constexpr std::array<std::pair<std::string_view, SensorGrade>, 4> sensor_
      {"plain", SensorGrade::plain},
      {"consumer", SensorGrade::consumer},
      {"rough", SensorGrade::rough}}};
-
-/// The word a scenario uses for a value.
-inline std::string_view word_for(DetectorKind kind) {
-  return detector_names[static_cast<std::size_t>(kind)].first;
-}
-/// Whether a detector looks at images. Oracles and the blind aircraft do not.
-inline bool looks(DetectorKind kind) {
-  return kind != DetectorKind::true_depth && kind != DetectorKind::none;
-}
-inline std::string_view word_for(StateKind kind) { return state_names[static_cast<std::size_t>(kind)].first; }
 
 /// Forwards a visitor past names that another key of the scenario stands for.
 template <typename Visitor, std::size_t N>
@@ -123,6 +105,7 @@ struct ComputeConfig {
   double pushbroom_s = 0.0010;    ///< 0 .. 1; the original, rectification included (docs/sources.md [17])
   double stereo_bm_s = 0.0090;    ///< StereoBM, 112 disparities (paper's rig, a Zen 4 core, 2026-11)
   double stereo_sgbm_s = 0.0127;  ///< StereoSGBM likewise, five paths
+  double plugin_s = 0;            ///< the detector of a plug-in, 0 .. 1
 };
 
 template <typename Visitor>
@@ -132,51 +115,73 @@ void visit_fields(Visitor& visit, ComputeConfig& config) {
   visit("pushbroom_s", config.pushbroom_s, 0.0, 1.0);
   visit("stereo_bm_s", config.stereo_bm_s, 0.0, 1.0);
   visit("stereo_sgbm_s", config.stereo_sgbm_s, 0.0, 1.0);
+  visit("plugin_s", config.plugin_s, 0.0, 1.0);
 }
 
 struct PerceptionSection {
-  DetectorKind detector = DetectorKind::pushbroom;  ///< true_depth and none look at no image
-  RulePreset rule = RulePreset::tuned;              ///< keys given under pushbroom win over it
-  PushbroomConfig pushbroom = tuned_rule("long");
-  StereoBmConfig stereo_bm;
-  StereoSgbmConfig stereo_sgbm;
-  FullStereoCrop full_stereo;  ///< what of either's depths becomes hits
+  std::string detector = "pushbroom";   ///< true_depth and none look at no image; a plug-in adds its own
+  RulePreset rule = RulePreset::tuned;  ///< keys given under pushbroom win over it
+  PartConfigs detectors;                ///< each detector's own keys
+  FullStereoCrop full_stereo;           ///< what of a depth map becomes hits
   ComputeConfig compute;
+
+  explicit PerceptionSection(const Parts& parts = *built_in_parts()) : detectors(parts.detectors) {}
+
+  PushbroomConfig& pushbroom() { return detectors.of<PushbroomConfig>("pushbroom"); }
+  const PushbroomConfig& pushbroom() const { return detectors.of<PushbroomConfig>("pushbroom"); }
+  const StereoBmConfig& stereo_bm() const { return detectors.of<StereoBmConfig>("stereo_bm"); }
+  const StereoSgbmConfig& stereo_sgbm() const { return detectors.of<StereoSgbmConfig>("stereo_sgbm"); }
 
   /// What one pair costs the aircraft's computer, simulated seconds; 0 for what is not computed there.
   double cost_s() const {
-    if (!compute.enabled) return 0;
-    switch (detector) {
-      case DetectorKind::pushbroom:
-        return compute.factor * compute.pushbroom_s;
-      case DetectorKind::stereo_bm:
-        return compute.factor * compute.stereo_bm_s;
-      case DetectorKind::stereo_sgbm:
-        return compute.factor * compute.stereo_sgbm_s;
-      case DetectorKind::true_depth:
-      case DetectorKind::none:
-        break;
-    }
-    return 0;
+    if (!compute.enabled || detector == "true_depth" || detector == "none") return 0;
+    if (detector == "pushbroom") return compute.factor * compute.pushbroom_s;
+    if (detector == "stereo_bm") return compute.factor * compute.stereo_bm_s;
+    if (detector == "stereo_sgbm") return compute.factor * compute.stereo_sgbm_s;
+    return compute.factor * compute.plugin_s;
   }
 };
 
 struct EstimationSection {
-  StateKind source = StateKind::filter;       ///< truth: the state is the true one, an oracle
+  std::string source = "filter";              ///< truth: the state is the true one, an oracle; a plug-in adds its own
   FilterPreset preset = FilterPreset::tuned;  ///< keys given under filter win over it
-  FilterConfig filter;
+  PartConfigs sources;                        ///< each source's own keys
+
+  explicit EstimationSection(const Parts& parts = *built_in_parts()) : sources(parts.state_sources) {}
+
+  FilterConfig& filter() { return sources.of<FilterConfig>("filter"); }
+  const FilterConfig& filter() const { return sources.of<FilterConfig>("filter"); }
 };
 
 struct AutopilotSection {
   PlanningPreset preset = PlanningPreset::thorough;  ///< keys given beside it win over it
-  int replan_rate_hz = 120;                          ///< divides 1200
+  /// Who plans. sst, rrt and est grow trees of manoeuvres (planner.search), library takes the manoeuvre with the
+  /// greatest clearance from a list; a plug-in adds its own.
+  std::string planning = "sst";
+  int replan_rate_hz = 120;  ///< divides 1200
   AutopilotConfig autopilot;
+  PartConfigs planners;  ///< each planner's own keys
+
+  explicit AutopilotSection(const Parts& parts = *built_in_parts()) : planners(parts.planners) {}
 };
+
+/// A shared library or Python file with parts of somebody's own (docs/integrate.md).
+struct PluginConfig {
+  std::string file;  ///< looked for beside the file that names it
+  std::string hash;  ///< of its contents; empty: whatever it holds. A run writes it
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, PluginConfig& plugin) {
+  visit("file", plugin.file);
+  visit("hash", plugin.hash);
+}
 
 struct Scenario {
   std::string name = "unnamed";  ///< letters, digits and - _ . : names the run's folder
   std::uint64_t seed = 1000;     ///< of the course, and of everything else unless said otherwise
   std::string rig = "long";  ///< a name in models/rigs, or a rig file, looked for beside the scenario first
+  std::vector<PluginConfig> plugins;                         ///< what adds parts to ours
   Course course = Course::forest;                            ///< what stands in the way
   double time_limit_s = 30;                                  ///< of simulated time
   Eigen::Vector3d wind_world_mps = Eigen::Vector3d::Zero();  ///< mean, at wind.reference_height_m
@@ -197,7 +202,13 @@ struct Scenario {
   PerceptionSection perception;
   EstimationSection estimation;
   AutopilotSection autopilot;
+  std::shared_ptr<const Parts> parts;  ///< that its names may mean: ours and those of its plug-ins
 
+  explicit Scenario(std::shared_ptr<const Parts> with = built_in_parts())
+      : perception(*with), estimation(*with), autopilot(*with), parts(std::move(with)) {}
+
+  /// Whether its detector looks at images. Oracles and the blind aircraft do not.
+  bool looks() const { return parts->detectors.find(perception.detector)->looks; }
   /// The mission as the stack knows it.
   Mission mission() const {
     return {0,
@@ -264,29 +275,35 @@ void visit_fields(Visitor& visit, SensorSection& section) {
 }
 
 template <typename Visitor>
+void visit_parts(Visitor& visit, PartConfigs& configs) {
+  for (PartConfigs::Entry& entry : configs.entries())
+    if (entry.config) visit(entry.name, *entry.config);
+}
+
+template <typename Visitor>
 void visit_fields(Visitor& visit, PerceptionSection& section) {
-  visit("detector", section.detector, detector_names);
+  visit("detector", section.detector, section.detectors.names());
   visit("rule", section.rule, rule_names);
-  visit("depths_m", section.pushbroom.depths_m, 0.1, 1000.0);  // to look at; empty: the rig's own
-  visit("pushbroom", section.pushbroom);
-  visit("stereo_bm", section.stereo_bm);
-  visit("stereo_sgbm", section.stereo_sgbm);
+  visit("depths_m", section.pushbroom().depths_m, 0.1, 1000.0);  // to look at; empty: the rig's own
+  visit_parts(visit, section.detectors);
   visit("full_stereo", section.full_stereo);
   visit("compute", section.compute);
 }
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, EstimationSection& section) {
-  visit("source", section.source, state_names);
+  visit("source", section.source, section.sources.names());
   visit("preset", section.preset, filter_preset_names);
-  visit("filter", section.filter);
+  visit_parts(visit, section.sources);
 }
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, AutopilotSection& section) {
   visit("preset", section.preset, planning_preset_names);
+  visit("planning", section.planning, section.planners.names());
   visit("replan_rate_hz", section.replan_rate_hz, 1, 1200);
   visit_fields(visit, section.autopilot);
+  visit_parts(visit, section.planners);
 }
 
 template <typename Visitor>
@@ -294,6 +311,7 @@ void visit_fields(Visitor& visit, Scenario& scenario) {
   visit("name", scenario.name);
   visit("seed", scenario.seed, std::uint64_t{0}, std::uint64_t{1} << 32);
   visit("rig", scenario.rig);
+  visit("plugins", scenario.plugins);
   visit("course", scenario.course, course_names);
   visit("time_limit_s", scenario.time_limit_s, 0.1, 600.0);
   visit("wind_world_mps", scenario.wind_world_mps, -20.0, 20.0);

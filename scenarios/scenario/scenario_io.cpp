@@ -58,8 +58,8 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
   for (const auto& [key, rate_hz] : rates_hz)
     expect(physics_rate_hz % rate_hz == 0, fmt::format("{}rate_hz: expected a rate that divides 1200", key));
   const PerceptionSection& perception = scenario.perception;
-  const StereoBmConfig& bm = perception.stereo_bm;
-  const StereoSgbmConfig& sgbm = perception.stereo_sgbm;
+  const StereoBmConfig& bm = perception.stereo_bm();
+  const StereoSgbmConfig& sgbm = perception.stereo_sgbm();
   const std::pair<const char*, int> odd_numbers[] = {{"stereo_bm.window_px", bm.window_px},
                                                      {"stereo_sgbm.window_px", sgbm.window_px},
                                                      {"stereo_bm.prefilter_size_px", bm.prefilter_size_px}};
@@ -84,7 +84,7 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
 
 /// The stack believes in one airframe: what the filter and the planner need of it they take from there.
 void take_airframe(const Airframe& airframe, Scenario& scenario) {
-  FilterConfig& filter = scenario.estimation.filter;
+  FilterConfig& filter = scenario.estimation.filter();
   filter.gravity_mps2 = airframe.gravity_mps2;
   filter.angle_of_attack.mass_kg = filter.sideslip.mass_kg = airframe.mass_kg;
   filter.angle_of_attack.air_density_kgpm3 = filter.sideslip.air_density_kgpm3 = airframe.air_density_kgpm3;
@@ -116,15 +116,13 @@ Eigen::Vector3d rail_start_world(const LaunchConfig& launch) {
 
 /// Plans at once for what is new near the way, seldom otherwise, and searches less: for forests that leave
 /// room (docs/decisions/015).
-AutopilotSection economical_planning() {
-  AutopilotSection section;
+void plan_economically(AutopilotSection& section) {
   section.replan_rate_hz = 600;  // the moments at which it may plan
   section.autopilot.straight_period_s = 0.1;
   section.autopilot.avoiding_period_s = 0.025;
   section.autopilot.planner.refresh_s = 0.105;
   section.autopilot.planner.search.iterations = 100;
   section.autopilot.planner.improvement.iterations = 20;
-  return section;
 }
 
 Sources sources_of(ConfigNode file, const std::vector<std::string>& settings,
@@ -145,13 +143,13 @@ Scenario compose(const Sources& sources, const std::string& name) {
   read_all(sources, first);
   Scenario scenario;
   scenario.sensors.sensors = sensors_of_grade(first.sensors.grade);
-  scenario.perception.pushbroom = rule_of(first.perception.rule, first.rig);
-  if (first.estimation.preset == FilterPreset::original) scenario.estimation.filter = original_filter();
-  if (first.estimation.preset == FilterPreset::windy) scenario.estimation.filter = windy_filter();
-  if (first.autopilot.preset == PlanningPreset::economical) scenario.autopilot = economical_planning();
-  scenario.estimation.filter.distrust.imu_gap_s = 1.5 / first.sensors.sensors.imu_rate_hz;
-  scenario.estimation.filter.start.position_world_m = rail_start_world(first.launch);
-  scenario.estimation.filter.start.pitch_rad = first.launch.climb_angle_rad;
+  scenario.perception.pushbroom() = rule_of(first.perception.rule, first.rig);
+  if (first.estimation.preset == FilterPreset::original) scenario.estimation.filter() = original_filter();
+  if (first.estimation.preset == FilterPreset::windy) scenario.estimation.filter() = windy_filter();
+  if (first.autopilot.preset == PlanningPreset::economical) plan_economically(scenario.autopilot);
+  scenario.estimation.filter().distrust.imu_gap_s = 1.5 / first.sensors.sensors.imu_rate_hz;
+  scenario.estimation.filter().start.position_world_m = rail_start_world(first.launch);
+  scenario.estimation.filter().start.pitch_rad = first.launch.climb_angle_rad;
   take_airframe(first.airframe, scenario);
   read_all(sources, scenario);
   scenario.rig = rig_file(scenario.rig, origin_of(sources, "rig"));

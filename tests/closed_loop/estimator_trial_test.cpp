@@ -69,7 +69,7 @@ Scenario forest(const std::vector<std::string>& settings) {
 TEST(MismatchPage, TheEstimateFollowedIsTheOneThatFlew) {
   Scenario scenario = forest(short_forest);
   scenario.mismatch = adverse(10);
-  const FlightTrace flight = traced_flight(scenario, StateKind::filter);
+  const FlightTrace flight = traced_flight(scenario, "filter");
   double maximum_m = 0;
   for (const TrialMoment& moment : run_trial(flight, trial_of(flight, scenario.sensor_seed())))
     if (moment.truth.t_ns * physics_rate_hz >= flight.release_step * 1'000'000'000)
@@ -80,7 +80,7 @@ TEST(MismatchPage, TheEstimateFollowedIsTheOneThatFlew) {
 
 TEST(MismatchPage, TallyCountsEveryFlightAndEveryFilter) {
   Scenario scenario = forest(short_forest);
-  const FlightTally tally = fly_seeds(scenario, {scenario.estimation.filter}, {1000, 2});
+  const FlightTally tally = fly_seeds(scenario, {scenario.estimation.filter()}, {1000, 2});
   EXPECT_EQ(tally.flights(), 2);
   EXPECT_EQ(tally.goals(), 2);
   EXPECT_NEAR(tally.mean_speed_mps(), 12, 1);

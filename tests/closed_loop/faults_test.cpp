@@ -4,8 +4,9 @@
 
 #include "perception/io/calibration_file.hpp"
 #include "planning/autopilot.hpp"
+#include "scenarios/flight/flight.hpp"
 #include "scenarios/flight/onboard_sensors.hpp"
-#include "scenarios/flight/oracles.hpp"
+#include "scenarios/parts/oracles.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "tests/closed_loop/flown.hpp"
 
@@ -46,8 +47,8 @@ Listener heard(const std::vector<std::string>& settings) {
   const StereoRig rig = read_rig(UNDERSTORY_SOURCE_DIR "/models/rigs/" + scenario.rig + ".yaml");
   Listener listener;
   NoDetector detector;
-  Autopilot autopilot(scenario.autopilot.autopilot, scenario.airframe, rig, scenario.mission(), detector,
-                      listener, 1);
+  const std::unique_ptr<Planner> planner = planner_of(scenario);
+  Autopilot autopilot(scenario.autopilot.autopilot, scenario.airframe, rig, detector, listener, *planner);
   OnboardSensors sensors(scenario);
   for (FlightClock clock(scenario); clock.step() <= 2 * physics_rate_hz; clock.advance()) {
     Truth truth;

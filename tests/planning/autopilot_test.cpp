@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "planning/path_follower.hpp"
+#include "planning/planners/planners.hpp"
 #include "tests/perception/rigs.hpp"
 
 /// When the autopilot plans, in level flight at 12 m/s along x with a pair of images and a call of replan()
@@ -52,7 +53,8 @@ class GivenHits : public ObstacleDetector {
 
 struct Flight {
   explicit Flight(const AutopilotConfig& config)
-      : autopilot(config, Airframe{}, rig, Mission{}, detector, state_source, 1) {
+      : planner(make_sst_planner({config.planner, FlightModel({}, config.flight_model), {}, 1})),
+        autopilot(config, Airframe{}, rig, detector, state_source, *planner) {
     for (const std::int64_t sample_ns : {0, 1}) autopilot.on(ImuSample{sample_ns, {}, {100, 0, 0}});
   }
 
@@ -87,6 +89,7 @@ struct Flight {
   StereoRig rig = support::house_rig("long.yaml");
   GivenHits detector;
   LevelFlight state_source;
+  std::unique_ptr<Planner> planner;
   Autopilot autopilot;
   std::int64_t tick = 0;
 };

@@ -1,4 +1,4 @@
-#include "planning/avoidance_planner.hpp"
+#include "planning/planners/avoidance_planner.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::int64_t replan_ns = 40'000'000;
 const Mission mission;
+const PlannerConfig defaults;
 const FlightModel model({}, {});
 
 FlightState level_start() {
@@ -34,8 +35,8 @@ std::int64_t total(const PlannerCounts& counts) {
 }
 
 TEST(AvoidancePlanner, FliesStraightWhereNothingIsInTheWay) {
-  AvoidancePlanner planner({}, model, mission, 1);
-  const Plan plan = planner.plan(level_start(), 5'000'000, {}, 0);
+  AvoidancePlanner planner({defaults, model, mission, 1}, sst_tree);
+  const Plan plan = planner.plan({level_start(), 5'000'000});
   EXPECT_EQ(plan.origin, PlanOrigin::straight);
   EXPECT_EQ(plan.t_ns, 5'000'000);
   EXPECT_EQ(planner.counts().straight, 1);
@@ -54,10 +55,10 @@ TEST(AvoidancePlanner, PlansNeverTouchAKnownTrunk) {
     std::mt19937_64 generator(seed);
     const std::vector<Trunk> trunks = random_forest(generator, 16, 7, 30);
     const std::vector<ObstaclePoint> points = points_of(trunks);
-    AvoidancePlanner planner(config, model, mission, seed);
+    AvoidancePlanner planner({config, model, mission, seed}, sst_tree);
     FlightState state = level_start();
     for (int replan = 0; replan < 40; ++replan) {
-      const Plan plan = planner.plan(state, replan * replan_ns, points, 0);
+      const Plan plan = planner.plan({state, replan * replan_ns, points, 0});
       ASSERT_GE(plan.points.size(), 2u);
       if (plan.origin == PlanOrigin::fallback) break;  // a fallback is not free of collision
       EXPECT_GE(plan_distance_m(plan, trunks, config.field), limit_m - 1e-9)
@@ -74,8 +75,8 @@ TEST(AvoidancePlanner, PlansNeverTouchAKnownTrunk) {
 }
 
 TEST(AvoidancePlanner, BoxedInItFallsBackAndSaysSo) {
-  AvoidancePlanner planner({}, model, mission, 1);
-  const Plan plan = planner.plan(level_start(), 0, points_of(wall(6)), 0);
+  AvoidancePlanner planner({defaults, model, mission, 1}, sst_tree);
+  const Plan plan = planner.plan({level_start(), 0, points_of(wall(6)), 0});
   EXPECT_EQ(plan.origin, PlanOrigin::fallback);
   EXPECT_FALSE(plan.points.empty());
   EXPECT_EQ(planner.counts().fallback, 1);
@@ -86,12 +87,12 @@ TEST(AvoidancePlanner, KeepsItsPlanWhileThatIsGood) {
   PlannerConfig config;
   config.kept_cost_ratio = 100;
   config.refresh_replans = 1000;
-  AvoidancePlanner planner(config, model, mission, 1);
+  AvoidancePlanner planner({config, model, mission, 1}, sst_tree);
   const std::vector<ObstaclePoint> points = points_of({{{9, 0.1}}});
-  const Plan first = planner.plan(level_start(), 0, points, 0);
+  const Plan first = planner.plan({level_start(), 0, points, 0});
   ASSERT_EQ(first.origin, PlanOrigin::solved);
   const FlightState state = follow_plan(level_start(), first, replan_ns);
-  const Plan second = planner.plan(state, replan_ns, points, 0);
+  const Plan second = planner.plan({state, replan_ns, points, 0});
   EXPECT_EQ(second.origin, PlanOrigin::kept);
   EXPECT_EQ(planner.counts().kept, 1);
   // Kept means the same path: its points are the first plan's, one replan later.
@@ -103,14 +104,14 @@ TEST(AvoidancePlanner, KeepsItsPlanWhileThatIsGood) {
 
 TEST(AvoidancePlanner, GivesUpAPlanThatIsBlockedByWhatIsNewlySeen) {
   const PlannerConfig config;
-  AvoidancePlanner planner(config, model, mission, 1);
+  AvoidancePlanner planner({config, model, mission, 1}, sst_tree);
   std::vector<Trunk> trunks{{{9, 0.1}}};
-  const Plan first = planner.plan(level_start(), 0, points_of(trunks), 0);
+  const Plan first = planner.plan({level_start(), 0, points_of(trunks), 0});
   ASSERT_EQ(first.origin, PlanOrigin::solved);
   const PlanPoint& there = first.points[first.points.size() * 3 / 4];
   trunks.push_back({there.position_world.head<2>()});
   const FlightState state = follow_plan(level_start(), first, replan_ns);
-  const Plan second = planner.plan(state, replan_ns, points_of(trunks), 0);
+  const Plan second = planner.plan({state, replan_ns, points_of(trunks), 0});
   EXPECT_NE(second.origin, PlanOrigin::kept);
   EXPECT_NE(second.origin, PlanOrigin::straight);
   if (second.origin == PlanOrigin::solved) {
@@ -121,9 +122,9 @@ TEST(AvoidancePlanner, GivesUpAPlanThatIsBlockedByWhatIsNewlySeen) {
 TEST(AvoidancePlanner, WithoutOmplThePrimitivesAnswer) {
   PlannerConfig config;
   config.use_ompl = false;
-  AvoidancePlanner planner(config, model, mission, 1);
+  AvoidancePlanner planner({config, model, mission, 1}, sst_tree);
   const std::vector<Trunk> trunks{{{9, 0.1}}};
-  const Plan plan = planner.plan(level_start(), 0, points_of(trunks), 0);
+  const Plan plan = planner.plan({level_start(), 0, points_of(trunks), 0});
   EXPECT_EQ(plan.origin, PlanOrigin::fallback);
   EXPECT_EQ(planner.counts().solved, 0);
   // With one trunk alone the primitive with the maximum clearance passes it.
@@ -135,11 +136,11 @@ TEST(AvoidancePlanner, AReplanCanBeRepeated) {
   std::mt19937_64 generator(5);
   const std::vector<ObstaclePoint> points = points_of(random_forest(generator, 14, 5, 14));
   const auto flown = [&] {
-    AvoidancePlanner planner({}, model, mission, 9);
+    AvoidancePlanner planner({defaults, model, mission, 9}, sst_tree);
     std::vector<Eigen::Vector3d> path;
     FlightState state = level_start();
     for (int replan = 0; replan < 6; ++replan) {
-      const Plan plan = planner.plan(state, replan * replan_ns, points, 0);
+      const Plan plan = planner.plan({state, replan * replan_ns, points, 0});
       for (const PlanPoint& point : plan.points) path.push_back(point.position_world);
       state = follow_plan(state, plan, replan_ns);
     }

@@ -1,4 +1,4 @@
-#include "planning/manoeuvre.hpp"
+#include "planning/planners/manoeuvre_search.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ struct Flight {
   }
   FlightTask task() const { return {model, config, mission, field, start.position_world}; }
   std::optional<Manoeuvre> search(std::uint64_t seed) const {
-    return search_manoeuvre(task(), start, {}, ManoeuvreSearchConfig{}, seed);
+    return search_manoeuvre(task(), start, {}, ManoeuvreSearchConfig{}, seed, sst_tree);
   }
 
   FlightModel model{Airframe{}, FlightModelConfig{}};

@@ -52,7 +52,7 @@ TEST_F(CampaignFile, FliesEverySeedInEveryConditionOfOverridesAndGrid) {
   EXPECT_EQ(campaign.conditions[3].name, "forest-blind-cruise_speed_mps=12");
   EXPECT_EQ(campaign.conditions[4].name, "dense-ours-cruise_speed_mps=10");
   const Scenario blind = scenario_from_text(campaign.conditions[3].scenario_text, "blind");
-  EXPECT_EQ(blind.perception.detector, DetectorKind::none);
+  EXPECT_EQ(blind.perception.detector, "none");
   EXPECT_EQ(blind.autopilot.autopilot.flight_model.cruise_speed_mps, 12);
   const std::vector<CampaignTask> tasks = tasks_of(campaign);
   ASSERT_EQ(tasks.size(), 32u);

@@ -61,7 +61,7 @@ TEST(Keys, NamesAndValuesAreThoseOfSet) {
   for (const Json& key : Json::parse(understory("keys goalposts --json").text)) {
     const std::string value =
         key["value"].is_string() ? key["value"].get<std::string>() : key["value"].dump();
-    if (key["key"].get<std::string>().starts_with("faults[]")) continue;
+    if (key["key"].get<std::string>().find("[]") != std::string::npos) continue;  // lists that are empty
     settings += " --set '" + key["key"].get<std::string>() + "=" + value + "'";
   }
   const std::string plain = folder.write("plain.yaml", "name: x\n").string();

@@ -60,7 +60,7 @@ TEST(Scenario, FilterAndPlannerTakeTheWingFromTheAirframe) {
   const Scenario heavy =
       scenario_from_text("airframe: {mass_kg: 0.8, wing_area_m2: 0.2, winglet_area_m2: 0.03, span_m: 1.0}\n",
                          "a.yaml", {"airframe.air_density_kgpm3=1.1", "airframe.gravity_mps2=9.7"});
-  const FilterConfig& filter = heavy.estimation.filter;
+  const FilterConfig& filter = heavy.estimation.filter();
   EXPECT_EQ(filter.gravity_mps2, 9.7);
   EXPECT_EQ(filter.sideslip.mass_kg, 0.8);
   EXPECT_EQ(filter.sideslip.air_density_kgpm3, 1.1);
@@ -72,11 +72,11 @@ TEST(Scenario, FilterAndPlannerTakeTheWingFromTheAirframe) {
 
   const Scenario doubting =
       scenario_from_text("airframe: {mass_kg: 0.8}\n", "a.yaml", {"estimation.filter.sideslip.mass_kg=0.5"});
-  EXPECT_EQ(doubting.estimation.filter.sideslip.mass_kg, 0.5);  // written, so it wins
-  EXPECT_EQ(doubting.estimation.filter.angle_of_attack.mass_kg, 0.8);
+  EXPECT_EQ(doubting.estimation.filter().sideslip.mass_kg, 0.5);  // written, so it wins
+  EXPECT_EQ(doubting.estimation.filter().angle_of_attack.mass_kg, 0.8);
 
   // By default nothing is derived that the structs do not say themselves.
-  const FilterConfig plain = scenario_from_text("name: a\n", "a.yaml").estimation.filter;
+  const FilterConfig plain = scenario_from_text("name: a\n", "a.yaml").estimation.filter();
   EXPECT_EQ(plain.sideslip.winglets_area_m2, SideslipConfig{}.winglets_area_m2);
   EXPECT_EQ(plain.sideslip.winglets_body_m, SideslipConfig{}.winglets_body_m);
   EXPECT_EQ(plain.angle_of_attack.pitch_damping_nmspr, AngleOfAttackConfig{}.pitch_damping_nmspr);
@@ -140,7 +140,7 @@ TEST(Scenario, AGradeIsWhereTheKeysBesideItStart) {
 
 TEST(Scenario, ARuleIsTheRigsOwnUnderTheKeysBesideIt) {
   const auto rule = [](const char* text) {
-    return scenario_from_text(text, "rule.yaml").perception.pushbroom;
+    return scenario_from_text(text, "rule.yaml").perception.pushbroom();
   };
   EXPECT_EQ(rule("name: a").minimum_edge_sum, tuned_rule("long").minimum_edge_sum);
   EXPECT_EQ(rule("perception: {rule: robust}").minimum_edge_sum, robust_rule().minimum_edge_sum);

@@ -15,8 +15,8 @@ TEST_F(TuningTest, ReadsWhatIsTunedForWhat) {
   ASSERT_EQ(tune.space.parameters.size(), 2u);
   EXPECT_TRUE(tune.space.parameters[0].whole);
   EXPECT_TRUE(tune.space.parameters[1].logarithmic);
-  EXPECT_EQ(tune.scenario_point[0], tune.scenario.perception.pushbroom.minimum_edge_sum);
-  EXPECT_EQ(tune.scenario_point[1], tune.scenario.perception.pushbroom.score_limit);
+  EXPECT_EQ(tune.scenario_point[0], tune.scenario.perception.pushbroom().minimum_edge_sum);
+  EXPECT_EQ(tune.scenario_point[1], tune.scenario.perception.pushbroom().score_limit);
   EXPECT_EQ(tune.figures[tune.objective.goals[0].figure], "mean_speed_mps");
   EXPECT_EQ(tune.objective.limits[0].bound, 0.5);
   EXPECT_EQ(tune.training_seeds, (std::vector<std::uint64_t>{1000, 1001, 1002, 1003}));

@@ -11,7 +11,7 @@
 
 #include "scenarios/flight/flight.hpp"
 #include "scenarios/flight/onboard_sensors.hpp"
-#include "scenarios/flight/oracles.hpp"
+#include "scenarios/parts/oracles.hpp"
 #include "scenarios/flight/run_record.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
@@ -92,8 +92,8 @@ FilterConfig woken_at(const Truth& truth, FilterConfig filter) {
 
 }  // namespace
 
-FlightTrace traced_flight(Scenario scenario, StateKind flown_on) {
-  scenario.perception.detector = DetectorKind::true_depth;
+FlightTrace traced_flight(Scenario scenario, const std::string& flown_on) {
+  scenario.perception.detector = "true_depth";
   scenario.estimation.source = flown_on;
   RunRecord record;
   Flight flight(scenario, {UNDERSTORY_SOURCE_DIR "/models"}, {&record});
@@ -110,7 +110,7 @@ FlightTrace traced_flight(Scenario scenario, StateKind flown_on) {
 Scenario forest_in(const Air& air, std::uint64_t seed) {
   Scenario scenario =
       load_scenario(UNDERSTORY_SOURCE_DIR "/scenarios/library/forest.yaml", {fmt::format("seed={}", seed)});
-  scenario.autopilot = {};
+  scenario.autopilot = AutopilotSection();
   scenario.wind_world_mps = {0, air.wind_mps, 0};
   if (air.turbulent) scenario.wind.turbulence_wind20_mps = air.wind_mps;
   return scenario;
@@ -154,7 +154,7 @@ Sightings sightings(const FlightTrace& flight, const std::vector<double>& depths
 
 TrialConfig trial_of(const FlightTrace& flight, std::uint64_t sensor_seed) {
   TrialConfig config;
-  config.filter = flight.scenario.estimation.filter;
+  config.filter = flight.scenario.estimation.filter();
   config.sensors = flight.scenario.sensors.sensors;
   config.sensor_seed = sensor_seed;
   return config;

@@ -34,7 +34,7 @@ std::vector<OtherFilter> other_filters(const FilterConfig& flown) {
   std::vector<OtherFilter> others{{"and angle of attack", flown}, {"no sideslip", flown}};
   others.front().filter.angle_of_attack.enabled = true;
   others.back().filter.sideslip.model = SideslipModel::off;
-  others.push_back({"preset windy", load_scenario(forest, {"estimation.preset=windy"}).estimation.filter});
+  others.push_back({"preset windy", load_scenario(forest, {"estimation.preset=windy"}).estimation.filter()});
   return others;
 }
 
@@ -228,10 +228,10 @@ FlightTally fly_seeds(Scenario scenario, const std::vector<FilterConfig>& others
   tally.others.resize(others.size());
   for (int i = 0; i < seeds.count; ++i) {
     scenario.seed = seeds.first + static_cast<std::uint64_t>(i);
-    const FlightTrace flight = traced_flight(scenario, StateKind::filter);
+    const FlightTrace flight = traced_flight(scenario, "filter");
     tally.endings.push_back(flight.result.ending);
     tally.speed_sum_mps += flight.result.mean_speed_mps;
-    tally.drift.add(drifts_with(scenario.estimation.filter, flight));
+    tally.drift.add(drifts_with(scenario.estimation.filter(), flight));
     for (std::size_t other = 0; other < others.size(); ++other)
       tally.others[other].add(drifts_with(others[other], flight));
   }
@@ -240,7 +240,7 @@ FlightTally fly_seeds(Scenario scenario, const std::vector<FilterConfig>& others
 
 std::vector<Section> mismatch_sections() {
   const Scenario scenario = load_scenario(forest);
-  const std::vector<OtherFilter> others = other_filters(scenario.estimation.filter);
+  const std::vector<OtherFilter> others = other_filters(scenario.estimation.filter());
   const std::vector<FlownCondition> all = fly_all(scenario, others);
   return {success_section(all), map_drift_section(all, others)};
 }

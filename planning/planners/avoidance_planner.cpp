@@ -1,4 +1,4 @@
-#include "planning/avoidance_planner.hpp"
+#include "planning/planners/avoidance_planner.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,17 +14,16 @@ Rollout flown_through(const FlightTask& task, const FlightState& start, const Ma
 
 }  // namespace
 
-AvoidancePlanner::AvoidancePlanner(const PlannerConfig& config, const FlightModel& model,
-                                   const Mission& mission, std::uint64_t seed)
-    : config_(config),
-      model_(model),
-      mission_(mission),
-      seed_(seed),
-      primitives_(avoidance_primitives(config.search.maximum_bank_rad)) {}
+AvoidancePlanner::AvoidancePlanner(const PlannerContext& context, TreeMaker tree)
+    : config_(context.config),
+      model_(context.model),
+      mission_(context.mission),
+      seed_(context.seed),
+      tree_(tree),
+      primitives_(avoidance_primitives(config_.search.maximum_bank_rad)) {}
 
-Plan AvoidancePlanner::plan(const FlightState& start, std::int64_t t_ns,
-                            const std::vector<ObstaclePoint>& points, double distance_flown_m,
-                            bool outdated) {
+Plan AvoidancePlanner::plan(const PlanRequest& request) {
+  const auto& [start, t_ns, points, distance_flown_m, outdated] = request;
   ++counts_.replans;
   const double asked_m = maximum_clearance_m(
       config_.trajectory,
@@ -50,7 +49,7 @@ Plan AvoidancePlanner::plan(const FlightState& start, std::int64_t t_ns,
 
 Plan AvoidancePlanner::avoid(const FlightTask& task, const FlightState& start, std::int64_t t_ns,
                              bool outdated) {
-  const Manoeuvre left = remaining(t_ns);
+  const Manoeuvre left = rest_of(manoeuvre_, 1e-9 * static_cast<double>(t_ns - manoeuvre_t_ns_));
   const TrajectoryConfig& limits = config_.trajectory;
   Rollout kept = fly_out(task, start, left, limits.minimum_kept_clearance_m, true);
   const bool may_keep = kept.reached_horizon && manoeuvre_origin_ != PlanOrigin::fallback;
@@ -80,7 +79,7 @@ std::optional<Plan> AvoidancePlanner::search(const FlightTask& task, const Fligh
     return improve_manoeuvre(task, start, manoeuvre, minimum_clearance_m, config_.improvement, search_seed);
   };
   ++counts_.searches;
-  const std::optional<Manoeuvre> answer = search_manoeuvre(task, start, left, config_.search, search_seed);
+  const std::optional<Manoeuvre> answer = search_manoeuvre(task, start, left, config_.search, search_seed, tree_);
   ImprovedManoeuvre found{{}, INFINITY}, kept{{}, INFINITY};
   if (answer) {
     ++counts_.found;
@@ -112,18 +111,6 @@ Plan AvoidancePlanner::fall_back(const FlightTask& task, const FlightState& star
     widest = primitive;
   }
   return adopt(t_ns, widest, PlanOrigin::fallback, flown_through(task, start, widest));
-}
-
-Manoeuvre AvoidancePlanner::remaining(std::int64_t t_ns) const {
-  double elapsed_s = 1e-9 * static_cast<double>(t_ns - manoeuvre_t_ns_);
-  Manoeuvre left;
-  for (ManoeuvrePart part : manoeuvre_) {
-    const double used_s = std::min(elapsed_s, part.duration_s);
-    elapsed_s -= used_s;
-    part.duration_s -= used_s;
-    if (part.duration_s > 1e-3) left.push_back(part);
-  }
-  return left;
 }
 
 Plan AvoidancePlanner::adopt(std::int64_t t_ns, const Manoeuvre& manoeuvre, PlanOrigin origin,

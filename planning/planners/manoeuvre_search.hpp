@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "planning/manoeuvre.hpp"
+#include "planning/planners/planners.hpp"
+
+namespace ompl::base {
+class Planner;
+class State;
+}  // namespace ompl::base
+namespace ompl::control {
+class SpaceInformation;
+}
+
+namespace understory {
+
+/// An OMPL planner for the space of flight states, under the commands' controls, whose every generator is
+/// seeded with `seed`: OMPL has one generator per process, with which a replan would depend on every replan
+/// before it.
+using TreeMaker = std::shared_ptr<ompl::base::Planner> (*)(
+    const std::shared_ptr<ompl::control::SpaceInformation>& space, const ManoeuvreSearchConfig& config,
+    std::uint32_t seed);
+
+/// The cheapest manoeuvre found whose rollout reaches the horizon without touching an obstacle, or nothing.
+/// Some commands are drawn near those of `hint`, the plan in force (may be empty). Repeats exactly for equal
+/// arguments, whatever was searched before: `seed` seeds every generator of the search.
+std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightState& start,
+                                          const Manoeuvre& hint, const ManoeuvreSearchConfig& config,
+                                          std::uint64_t seed, TreeMaker tree);
+
+/// SST, RRT and EST (planners.hpp).
+std::shared_ptr<ompl::base::Planner> sst_tree(const std::shared_ptr<ompl::control::SpaceInformation>& space,
+                                              const ManoeuvreSearchConfig& config, std::uint32_t seed);
+std::shared_ptr<ompl::base::Planner> rrt_tree(const std::shared_ptr<ompl::control::SpaceInformation>& space,
+                                              const ManoeuvreSearchConfig& config, std::uint32_t seed);
+std::shared_ptr<ompl::base::Planner> est_tree(const std::shared_ptr<ompl::control::SpaceInformation>& space,
+                                              const ManoeuvreSearchConfig& config, std::uint32_t seed);
+
+/// The predicted aircraft at a node of the tree.
+const FlightState& flight_of(const ompl::base::State* state);
+
+}  // namespace understory

@@ -1,0 +1,30 @@
+#include <ompl/control/planners/rrt/RRT.h>
+#include <ompl/datastructures/NearestNeighborsLinear.h>
+
+#include "planning/planners/avoidance_planner.hpp"
+
+namespace understory {
+namespace {
+
+namespace oc = ompl::control;
+
+class SeededRrt : public oc::RRT {
+ public:
+  SeededRrt(const oc::SpaceInformationPtr& space, std::uint32_t seed) : RRT(space) {
+    rng_.setLocalSeed(seed);
+    nn_ = std::make_shared<ompl::NearestNeighborsLinear<Motion*>>();  // the others own a generator
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<ompl::base::Planner> rrt_tree(const oc::SpaceInformationPtr& space,
+                                              const ManoeuvreSearchConfig&, std::uint32_t seed) {
+  return std::make_shared<SeededRrt>(space, seed);
+}
+
+std::unique_ptr<Planner> make_rrt_planner(const PlannerContext& context) {
+  return std::make_unique<AvoidancePlanner>(context, rrt_tree);
+}
+
+}  // namespace understory
