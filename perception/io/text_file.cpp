@@ -1,10 +1,13 @@
 #include "perception/io/text_file.hpp"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <array>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 
 namespace understory {
@@ -38,6 +41,20 @@ void refuse_input(const std::string& place, const std::string& key, const std::s
                    (key.empty() ? "" : ": ") + quotable(expected, maximum_expected));
 }
 
+std::string lacking_resource(int error) {
+  const auto limit = [](auto kind) {
+    struct rlimit is {};
+    getrlimit(kind, &is);
+    return is.rlim_cur == RLIM_INFINITY ? std::string("none") : std::to_string(is.rlim_cur);
+  };
+  if (error == EMFILE) return "too many open files, this program's limit is " + limit(RLIMIT_NOFILE) + " (ulimit -n)";
+  if (error == ENFILE) return "too many open files on this machine";
+  if (error == EFBIG) return "too large, this program's limit is " + limit(RLIMIT_FSIZE) + " bytes a file (ulimit -f)";
+  if (error == ENOMEM || error == EAGAIN)
+    return "not enough memory, this program's limit is " + limit(RLIMIT_AS) + " bytes (ulimit -v)";
+  return "";
+}
+
 std::string place_in(const std::string& file, int line) { return file + ":" + std::to_string(line); }
 
 std::string read_file(const std::filesystem::path& file, std::size_t maximum_bytes) {
@@ -46,14 +63,19 @@ std::string read_file(const std::filesystem::path& file, std::size_t maximum_byt
     refuse_input(name, "", std::string("expected a readable file") + found);
   };
   const std::string too_large = "expected at most " + std::to_string(maximum_bytes >> 20) + " MiB";
+  const auto refuse_for_errno = [&] {
+    const std::string lacking = lacking_resource(errno);
+    if (!lacking.empty()) throw MachineError(name + ": " + lacking);
+    refuse((std::string(": ") + std::strerror(errno)).c_str());
+  };
   struct stat is {};
-  if (stat(name.c_str(), &is) != 0) refuse("");
+  if (stat(name.c_str(), &is) != 0) refuse_for_errno();
   if (S_ISDIR(is.st_mode)) refuse(", this is a folder");
   if (!S_ISREG(is.st_mode) && !S_ISFIFO(is.st_mode)) refuse(", this is a device");
   if (S_ISREG(is.st_mode) && static_cast<std::size_t>(is.st_size) > maximum_bytes)
     refuse_input(name, "", too_large);
   const auto stream = opened(name);
-  if (!stream) refuse("");
+  if (!stream) refuse_for_errno();
   std::string text;
   text.reserve(static_cast<std::size_t>(is.st_size));
   std::array<char, 65536> piece;
@@ -61,7 +83,7 @@ std::string read_file(const std::filesystem::path& file, std::size_t maximum_byt
     text.append(piece.data(), count);
     if (text.size() > maximum_bytes) refuse_input(name, "", too_large);
   }
-  if (std::ferror(stream.get()) != 0) refuse("");
+  if (std::ferror(stream.get()) != 0) refuse_for_errno();
   return text;
 }
 

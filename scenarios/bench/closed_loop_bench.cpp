@@ -141,7 +141,7 @@ std::string to_json(const std::vector<BenchRow>& rows) {
                         {"p99_ms", row.p99_ms},
                         {"yardstick", or_null(row.ratio > 0, row.yardstick)},
                         {"ratio", or_null(row.ratio > 0, row.ratio)}});
-  return list.dump(2) + "\n";
+  return json_text(list, 2) + "\n";
 }
 
 std::string to_table(const std::vector<ClosedLoopRow>& rows) {
@@ -175,7 +175,7 @@ std::string to_json(const std::vector<ClosedLoopRow>& rows) {
                         {"yardstick", or_null(row.ratio > 0, row.yardstick)},
                         {"ratio", or_null(row.ratio > 0, row.ratio)}});
   }
-  return list.dump(2) + "\n";
+  return json_text(list, 2) + "\n";
 }
 
 std::vector<ClosedLoopRow> bench_closed_loop(const ClosedLoopBenchOptions& options) {

@@ -140,8 +140,6 @@ std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, cons
 
 }  // namespace
 
-bool is_plain_name(const std::string& name) { return !name.empty() && plain(name) == name; }
-
 std::string name_in(const ConfigNode& top, const fs::path& file) {
   const ConfigNode* name = find_child(top, "name");
   if (name == nullptr) return plain(file.stem().string());

@@ -35,9 +35,6 @@ Campaign load_campaign(const std::filesystem::path& file, const FindScenario& fi
 std::filesystem::path scenario_beside(const std::filesystem::path& file, const ConfigNode& node,
                                       const std::string& word, const FindScenario& find_scenario);
 
-/// Letters, digits and . _ = -: a name for files.
-bool is_plain_name(const std::string& name);
-
 /// What the file calls itself: its name, else its file's. Throws ScenarioError where that is no plain word.
 std::string name_in(const ConfigNode& top, const std::filesystem::path& file);
 

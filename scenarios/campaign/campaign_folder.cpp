@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
 
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
@@ -17,17 +21,26 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* manifest_name = "campaign.json";
 
+/// What must be a campaign's description is none.
+[[noreturn]] void refuse_manifest(const CampaignFolder& folder, const std::string& key, const std::string& expected) {
+  refuse_input((folder.path / manifest_name).string(), key, expected);
+}
+
 std::string manifest_of(const Campaign& campaign) {
   std::vector<std::string> conditions;
   for (const Condition& condition : campaign.conditions) conditions.push_back(condition.name);
+  Json identity = Json::object();
+  for (const auto& [name, digest] : campaign.identity) identity[name] = digest;
   const Json json{{"format", results_format},
-                  {"program", {{"understory", understory_version}, {"digest", program_digest()}}},
+                  {"understory", understory_version},
+                  {"identity", identity},
+                  {"processor", processor_model()},
                   {"name", campaign.name},
                   {"renderer", campaign.renderer},
                   {"timeout_s", campaign.timeout_s},
                   {"conditions", conditions},
                   {"seeds", campaign.seeds}};
-  return json.dump(1) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
 Json manifest_in(const CampaignFolder& folder) {
@@ -39,9 +52,9 @@ Json manifest_in(const CampaignFolder& folder) {
   const Json json = parse_json(*text);
   if (!json.is_object() || !json.contains("format"))
     throw ScenarioError(fmt::format("{}: expected a campaign's description, whole", file.string()));
-  if (json["format"] != results_format)
+  if (!json["format"].is_number_integer() || json["format"] != results_format)
     throw ScenarioError(fmt::format("{}: format: expected {}, the results are of another version: {}",
-                                    file.string(), results_format, json["format"].dump()));
+                                    file.string(), results_format, json_text(json["format"])));
   return json;
 }
 
@@ -52,9 +65,8 @@ void require_same(const CampaignFolder& folder, const Campaign& campaign) {
     throw ScenarioError(fmt::format("{}: {}: expected as it was begun; --out names another folder",
                                     (folder.path / manifest_name).string(), what));
   };
-  const Json json = manifest_in(folder);
-  if (json["program"].value("digest", "") != program_digest())
-    refuse("this understory is another build than the campaign's");
+  if (const std::string name = difference_of(held.identity, campaign.identity); !name.empty())
+    refuse(fmt::format("{} changed since the campaign began", name));
   if (held.seeds != campaign.seeds) refuse("seeds changed");
   if (held.renderer != campaign.renderer) refuse("renderer changed");
   if (held.timeout_s != campaign.timeout_s) refuse("timeout_s changed");
@@ -69,8 +81,20 @@ void require_same(const CampaignFolder& folder, const Campaign& campaign) {
 
 }  // namespace
 
+const std::vector<std::string> campaign_patterns{
+    "campaign.json", "conditions/*.yaml", "flights.csv",  "flights.jsonl", "costs.csv",
+    "summary.md",    "campaign.svg",      "report.html", "slurm.sh"};
+
+bool is_plain_name(const std::string& name) {
+  const auto is_plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || std::string_view("._=-").find(static_cast<char>(c)) != std::string_view::npos;
+  };
+  return !name.empty() && name.size() <= 200 && name.front() != '.' && std::ranges::all_of(name, is_plain);
+}
+
 std::optional<std::string> text_if_there(const fs::path& file) {
-  if (!fs::exists(file)) return {};
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return {};
   return read_file(file, maximum_table_bytes);
 }
 
@@ -102,23 +126,36 @@ void prepare_campaign_folder(const CampaignFolder& folder, const Campaign& campa
   }
   for (const char* part : {"conditions", "flights", "tracks", "logs"}) prepare_output_folder(folder.path / part);
   for (const Condition& condition : campaign.conditions)
-    write_lasting_file(folder.condition_file(condition), condition.scenario_text);
-  write_lasting_file(folder.path / manifest_name, manifest_of(campaign));  // last: now it is a campaign
+    write_whole_file(folder.condition_file(condition), condition.scenario_text);
+  write_whole_file(folder.path / manifest_name, manifest_of(campaign));  // last: now it is a campaign
 }
 
 Campaign read_campaign(const CampaignFolder& folder) {
   const Json json = manifest_in(folder);
   Campaign campaign;
+  std::set<std::string> names;
+  const char* key = "name";
   try {
-    campaign.name = json.at("name");
-    campaign.renderer = json.at("renderer");
-    campaign.timeout_s = json.at("timeout_s");
-    campaign.seeds = json.at("seeds").get<std::vector<std::uint64_t>>();
-    for (const Json& name : json.at("conditions")) campaign.conditions.push_back({name, ""});
+    campaign.name = json.at(key);
+    campaign.renderer = json.at(key = "renderer");
+    campaign.timeout_s = json.at(key = "timeout_s");
+    for (const Json& seed : json.at(key = "seeds")) {
+      if (!seed.is_number_unsigned()) refuse_manifest(folder, key, "expected whole numbers");
+      campaign.seeds.push_back(seed);
+    }
+    for (const Json& name : json.at(key = "conditions")) {
+      campaign.conditions.push_back({name, ""});
+      const bool is_new = names.insert(campaign.conditions.back().name).second;
+      if (!is_plain_name(campaign.conditions.back().name) || !is_new)
+        refuse_manifest(folder, key, "expected names of letters, digits and . _ = -, each once");
+    }
+    if (json.contains(key = "identity"))
+      for (const auto& [name, digest] : json.at(key).items()) campaign.identity.emplace_back(name, digest);
   } catch (const Json::exception&) {
-    throw ScenarioError(
-        fmt::format("{}: expected a campaign's description, whole", (folder.path / manifest_name).string()));
+    refuse_manifest(folder, key, "expected as `understory campaign` writes it");
   }
+  if (std::set(campaign.seeds.begin(), campaign.seeds.end()).size() != campaign.seeds.size())
+    refuse_manifest(folder, "seeds", "expected each once");
   for (Condition& condition : campaign.conditions) {
     const auto text = text_if_there(folder.condition_file(condition));
     if (!text)
@@ -132,7 +169,9 @@ Campaign read_campaign(const CampaignFolder& folder) {
 std::optional<FlightFile> read_flight(const CampaignFolder& folder, const CampaignTask& task) {
   const auto text = text_if_there(folder.flight_file(task));
   auto file = text ? flight_file_from_json(*text) : std::nullopt;
-  if (file && (file->row.id != task.id || file->row.seed != task.seed)) return {};
+  if (!file) return {};
+  const FlightRow& row = file->row;
+  if (row.id != task.id || row.id != fmt::format("{}-{}", row.condition, task.seed) || row.seed != task.seed) return {};
   return file;
 }
 
@@ -141,7 +180,7 @@ void write_flight(const CampaignFolder& folder, const Campaign& campaign, const 
   file.row.id = task.id;
   file.row.condition = campaign.conditions[task.condition].name;
   file.row.seed = task.seed;
-  write_lasting_file(folder.flight_file(task), to_json(file));
+  write_whole_file(folder.flight_file(task), to_json(file), Named::by_user);  // as the flight itself
 }
 
 Collected gather(const CampaignFolder& folder, const Campaign& campaign) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenarios/campaign/flight_row.hpp"
+#include "scenarios/output/program.hpp"
 
 namespace understory {
 
@@ -24,6 +25,7 @@ struct Campaign {
   std::vector<std::uint64_t> seeds;
   std::string renderer = "osmesa";  ///< renderer_kind.hpp's word: the machine's, given with the command
   double timeout_s = 300;           ///< of wall time: a flight that takes longer hangs
+  Identity identity;                ///< of its flights (identity_of)
 };
 
 /// One flight to be flown.
@@ -63,13 +65,19 @@ struct CampaignFolder {
   }
 };
 
+/// What a campaign's program writes there itself, by relative path; flights write the rest.
+extern const std::vector<std::string> campaign_patterns;
+
 /// Makes the folder, or, with `resume`, makes sure that it holds this very campaign, begun by this program.
 /// Throws ScenarioError in one line where it holds a campaign already (without `resume`), another one, or one
-/// of another program or format, or where it cannot be written.
+/// of another identity or format, or where it cannot be written.
 void prepare_campaign_folder(const CampaignFolder& folder, const Campaign& campaign, bool resume);
 
 /// The campaign that a folder holds. Throws ScenarioError where it holds none or one of another format.
 Campaign read_campaign(const CampaignFolder& folder);
+
+/// Letters, digits and . _ = -, no '.' first, at most 200: a name for files.
+bool is_plain_name(const std::string& name);
 
 /// A file's text; nothing where it cannot be read.
 std::optional<std::string> text_if_there(const std::filesystem::path& file);

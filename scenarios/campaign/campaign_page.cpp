@@ -229,7 +229,7 @@ std::string campaign_page(const CampaignFolder& folder, const Campaign& campaign
   facts["survival"] = survival_of(campaign, summaries, page.arrays);
   add_rows(folder, campaign, rows, conditions, page, facts);
   facts["gate"] = gated ? gate_of(*gated, campaign.name) : Json();
-  page.facts = facts.dump();
+  page.facts = json_text(facts);
   return page_html(data_root, page);
 }
 

@@ -8,6 +8,7 @@
 #include <concepts>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 
 #include "perception/io/text_table.hpp"
@@ -108,7 +109,7 @@ bool take_row(FlightRow& row, TextOf&& text_of) {
   bool is_whole = true;
   visit_columns(
       row, [&](std::string_view name, auto& value) { is_whole = take(text_of(name), value) && is_whole; });
-  return is_whole;
+  return is_whole && row.flown() == is_ending(row.outcome);
 }
 
 Table empty_table() {
@@ -147,27 +148,29 @@ FlightRow flown_row(const std::string& condition, const Scenario& scenario, cons
   return row;
 }
 
-std::string to_json_line(const FlightRow& row) { return json_of(row).dump(); }
+std::string to_json_line(const FlightRow& row) { return json_text(json_of(row)); }
 
 std::string to_json(const FlightFile& file) {
   const Json json{{"format", results_format},
                   {"row", json_of(file.row)},
                   {"wall_s", file.cost.wall_s},
                   {"peak_memory_mb", file.cost.peak_memory_mb}};
-  return json.dump(1) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
-std::optional<FlightFile> flight_file_from_json(const std::string& text) {
+std::optional<FlightFile> flight_file_from_json(const std::string& text) try {
   const Json json = parse_json(text);
   if (!json.is_object() || json.value("format", 0) != results_format || !json.contains("row")) return {};
   FlightFile file;
   const auto text_of = [&](std::string_view name) {
     const Json value = json["row"].value(std::string(name), Json(nullptr));
-    return value.is_null() ? std::string() : value.is_string() ? value.get<std::string>() : value.dump();
+    return value.is_null() ? std::string() : value.is_string() ? value.get<std::string>() : json_text(value);
   };
   if (!take_row(file.row, text_of)) return {};
   file.cost = {json.value("wall_s", 0.0), json.value("peak_memory_mb", 0.0)};
   return file;
+} catch (const Json::exception&) {  // a value of another type
+  return {};
 }
 
 std::string to_csv(const std::vector<FlightRow>& rows) {
@@ -185,10 +188,16 @@ std::vector<FlightRow> rows_from_csv(const std::string& text, const std::string&
     throw ScenarioError(fmt::format("{}:1: expected the columns of results format {}: {}", name,
                                     results_format, fmt::join(expected.head, ",")));
   std::vector<FlightRow> rows;
+  std::set<std::string> seen;
+  int line = 2;
   for (const std::vector<std::string>& cells : table.rows) {
     auto cell = cells.begin();
     if (!take_row(rows.emplace_back(), [&](std::string_view) { return *cell++; }))
-      throw ScenarioError(fmt::format("{}: expected a whole row for flight {}", name, cells.front()));
+      refuse_input(place_in(name, line), cells.front(), "expected a whole row, as understory writes it");
+    if (!seen.insert(cells.front()).second)
+      refuse_input(place_in(name, line), cells.front(), "expected each flight once, this row is there twice");
+    for (const std::string& words : cells) line += static_cast<int>(std::ranges::count(words, '\n'));
+    ++line;
   }
   return rows;
 }

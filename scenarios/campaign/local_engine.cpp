@@ -14,6 +14,7 @@
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/output/folder_claim.hpp"
 #include "scenarios/output/program.hpp"
 #include "scenarios/output/signals.hpp"
 
@@ -63,6 +64,12 @@ FlightRow row_of_failure(int wait_status, bool hung, double timeout_s, const std
                      : fmt::format("status {}, no result{}", WEXITSTATUS(wait_status), words);
   }
   return row;
+}
+
+/// Leaves the process to be waited for.
+bool is_over(pid_t child) {
+  siginfo_t info{};
+  return waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid != 0;
 }
 
 /// The flights in the air, and what becomes of them.
@@ -124,7 +131,11 @@ class Flights {
     return stop_signals_.asked();
   }
 
+  /// A flight clears away what it has not finished, if it is asked to end; one that does not listen is killed.
   void stop() {
+    for (const auto& [child, flight] : air_) kill(child, SIGTERM);
+    for (int look = 0; look < 50 && !std::ranges::all_of(air_, [](const auto& one) { return is_over(one.first); }); ++look)
+      std::this_thread::sleep_for(look_every);
     for (const auto& [child, flight] : air_) kill(child, SIGKILL);
     for (const auto& [child, flight] : air_) {
       waitpid(child, nullptr, 0);
@@ -132,6 +143,7 @@ class Flights {
       if (!read_flight(folder_, *flight.task)) fs::remove(folder_.log_file(*flight.task), ignored);
     }
     air_.clear();
+    remove_parts(folder_);
   }
 
  private:
@@ -145,9 +157,7 @@ class Flights {
 }  // namespace
 
 void remove_parts(const CampaignFolder& folder) {
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder.path / "flights", ignored))
-    if (entry.path().extension() == ".part") fs::remove(entry.path(), ignored);
+  for (const char* part : {"conditions", "flights", "tracks", "logs", "runs"}) clear_unfinished(folder.path / part);
 }
 
 void count(const FlightRow& row, CampaignProgress& progress) {

@@ -9,8 +9,9 @@
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/flight/flight_identity.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/output/output_folder.hpp"
+#include "scenarios/output/folder_claim.hpp"
 #include "scenarios/output/progress_line.hpp"
 #include "scenarios/output/signals.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
@@ -37,6 +38,7 @@ struct CampaignArguments {
   bool resume = false;
   bool print_tasks = false;
   bool keeps_runs = false;
+  bool force = false;
 };
 
 /// Before anything is flown: a rig that is not there would fail every flight.
@@ -48,6 +50,27 @@ void require_rigs(const Campaign& campaign, const std::string& file) {
       throw ScenarioError(fmt::format("{}: condition {}: {}", file, condition.name, error.what()));
     }
   }
+}
+
+std::vector<Scenario> scenarios_of(const Campaign& campaign) {
+  std::vector<Scenario> scenarios;
+  for (const Condition& condition : campaign.conditions)
+    scenarios.push_back(scenario_from_text(condition.scenario_text, condition.name));
+  return scenarios;
+}
+
+/// A campaign writes into a folder of its own: a new one, an empty one, or a campaign's.
+void claim_campaign_folder(FolderClaim& claim, const CampaignFolder& folder, bool force) {
+  std::error_code ignored;
+  if (fs::exists(folder.path / "campaign.json", ignored)) {
+    read_campaign(folder);
+    claim.adopt(campaign_patterns);
+  } else if (!force && claim.holds_other_files()) {
+    throw ScenarioError(fmt::format("{}: holds other files and no campaign: --out names another folder, --force writes "
+                                    "beside them",
+                                    folder.path.string()));
+  }
+  claim.require_own(campaign_patterns);
 }
 
 void show(ProgressLine& line, const CampaignProgress& progress) {
@@ -99,10 +122,15 @@ int run_campaign(const CampaignArguments& arguments) {
   Campaign campaign = load_campaign(arguments.file, scenario_file);
   campaign.renderer = word_for(arguments.renderer);
   require_rigs(campaign, arguments.file);
-  require_writable(arguments.junit);
   const CampaignFolder folder{arguments.out.empty() ? fs::path("results") / campaign.name
                                                     : fs::path(arguments.out)};
-  const FolderLock lock(folder.path, folder.path);
+  std::vector<fs::path> others{arguments.file};
+  for (const std::string& file : campaign_patterns) others.push_back(folder.path / file);
+  require_separate({arguments.junit}, others);
+  require_writable(arguments.junit);
+  campaign.identity = identity_of(scenarios_of(campaign), data_root() / "models", arguments.renderer);
+  FolderClaim claim(folder.path, "campaign", folder.path);
+  claim_campaign_folder(claim, folder, arguments.force);
   remove_parts(folder);
   prepare_campaign_folder(folder, campaign, arguments.resume);
   if (arguments.print_tasks) return print_tasks(folder, campaign);
@@ -164,6 +192,7 @@ void add_campaign_command(CommandLine& line) {
                 "slurm: an option of sbatch, --sbatch=--partition=short");
   command.flag("--no-wait", arguments->no_wait, "slurm: submit and leave");
   command.flag("--resume", arguments->resume, "go on with what the folder holds");
+  command.flag("--force", arguments->force, "write into a folder that holds other files; none of them is replaced");
   command.flag("--print-tasks", arguments->print_tasks,
                "fly nothing: print a command for each flight; collect gathers what they leave");
   command.text("--junit", "FILE", arguments->junit, "write a test case per flight as JUnit XML");

@@ -8,9 +8,12 @@
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/output/folder_claim.hpp"
 
 namespace understory {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct GateArguments {
   std::string baseline;
@@ -20,11 +23,13 @@ struct GateArguments {
 };
 
 int run_gate(const GateArguments& arguments) {
+  require_separate({arguments.junit}, {fs::path(arguments.baseline) / "flights.csv",
+                                       fs::path(arguments.candidate) / "flights.csv"});
   require_writable(arguments.junit);
   const Comparison comparison =
       compare_campaigns(read_campaign_rows(arguments.baseline), read_campaign_rows(arguments.candidate));
   const GateVerdict verdict = judge(comparison, arguments.rule);
-  if (!arguments.junit.empty()) write_whole_file(arguments.junit, gate_junit(comparison, arguments.rule));
+  if (!arguments.junit.empty()) write_whole_file(arguments.junit, gate_junit(comparison, arguments.rule), Named::by_user);
   fmt::print("{}", to_report(comparison, verdict, arguments.rule));
   return verdict.passes() ? exit_goal : exit_not_goal;
 }
@@ -36,7 +41,7 @@ int report(const CampaignFolder& folder, const Collected& collected, const std::
   write_whole_file(folder.path / "summary.md", to_markdown(table));
   const std::string plots = campaign_svg(collected.rows);
   if (!plots.empty()) write_whole_file(folder.path / "campaign.svg", plots);
-  if (!junit.empty()) write_whole_file(junit, campaign_junit(collected.rows));
+  if (!junit.empty()) write_whole_file(junit, campaign_junit(collected.rows), Named::by_user);
 
   fmt::print("{}", to_text(table));
   std::size_t not_flown = 0;
@@ -58,7 +63,11 @@ void add_collect_command(CommandLine& line) {
   command.text("folder", "FOLDER", *folder, "the campaign's results folder").required();
   command.runs([folder] {
     const CampaignFolder results{*folder};
-    return report(results, collect(results, read_campaign(results)));
+    const Campaign campaign = read_campaign(results);
+    FolderClaim claim(results.path, "campaign", results.path, FolderClaim::Manner::beside_others);
+    claim.adopt(campaign_patterns);
+    claim.require_own(campaign_patterns);
+    return report(results, collect(results, campaign));
   });
 }
 

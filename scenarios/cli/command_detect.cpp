@@ -58,12 +58,13 @@ int run_rig(const RigArguments& arguments) {
   const fs::path out = arguments.out;
   if (!out.empty() && out.extension() != ".png" && out.extension() != ".jpg")
     throw ScenarioError(fmt::format("--out {}: expected a .png or .jpg", arguments.out));
-  require_writable(out);
   const CalibrationOptions options = calibration_options(arguments);
   const fs::path path = rig_path(arguments.rig);
+  require_separate({out}, {path});
+  require_writable(out);
   const CalibratedRig calibrated = bad_input_if_refused([&] { return read_calibrated_rig(path, options); });
   const RigFigures figures = rig_figures(calibrated.rig, PushbroomConfig());
-  if (!arguments.out.empty()) write_picture(arguments.out, draw_rig(calibrated.rig, figures));
+  if (!arguments.out.empty()) write_picture(arguments.out, draw_rig(calibrated.rig, figures), Named::by_user);
   fmt::print("{}", to_report(calibrated, figures));
   if (!arguments.out.empty()) fmt::print("  {:<20}{}\n", "picture", arguments.out);
   return 0;

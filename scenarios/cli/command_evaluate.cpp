@@ -9,7 +9,7 @@
 #include "scenarios/evaluation/evaluation_report.hpp"
 #include "scenarios/evaluation/evaluation_suite.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/output/output_folder.hpp"
+#include "scenarios/output/folder_claim.hpp"
 #include "scenarios/output/progress_line.hpp"
 
 namespace understory {
@@ -34,8 +34,9 @@ int run_evaluate(const EvaluateArguments& arguments) {
   std::error_code ignored;
   const bool is_suite = arguments.inputs.size() == 1 && fs::is_regular_file(arguments.inputs[0], ignored);
   if (out.empty()) out = fs::path("evaluations") / fs::path(arguments.inputs[0]).stem();
-  const FolderLock lock(out, out);
-  prepare_output_folder(out);
+  require_separate({out}, {arguments.inputs.begin(), arguments.inputs.end()});
+  FolderClaim claim(out, "evaluation", out);
+  claim.require_own(evaluation_patterns);
   if (is_suite)
     options.folders = record_suite(arguments.inputs[0], out / "recordings", options.jobs, scenario_file,
                                    data_root() / "models");
@@ -51,6 +52,7 @@ int run_evaluate(const EvaluateArguments& arguments) {
   const Evaluation evaluation = evaluate(options);
   line.clear();
   write_evaluation(evaluation, out, data_root());
+  claim.remove_stale(evaluation_patterns);
   fmt::print("{}\nfiles: {}\n", evaluation_report(evaluation), out.string());
   return exit_goal;
 }

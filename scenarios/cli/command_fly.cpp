@@ -20,6 +20,7 @@
 #include "scenarios/recording/flight_mcap.hpp"
 #include "scenarios/recording/record.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
 #include "sim/render/offscreen_context.hpp"
 
 namespace understory {
@@ -107,6 +108,16 @@ fs::path folder_of(const FlyArguments& arguments, const Scenario& scenario) {
   return fmt::format("runs/{}-{}", scenario.name, scenario.seed);
 }
 
+/// What the options name is none of what the command reads, and none of the run's own files.
+void require_separate_outputs(const FlyArguments& arguments, const fs::path& folder, const Scenario& scenario) {
+  std::vector<fs::path> others{scenario_file(arguments.scenario)};
+  others.insert(others.end(), arguments.with.begin(), arguments.with.end());
+  for (const fs::path& file : rig_files_of(scenario, data_root() / "models")) others.push_back(file);
+  if (!folder.empty())
+    for (const std::string& file : run_patterns) others.push_back(folder / file);
+  require_separate({arguments.row, arguments.track, arguments.junit}, others);
+}
+
 /// What is to be written beside the run folder; within it, it can be once that is there.
 void require_writable_beside(const fs::path& folder, const std::string& file) {
   if (file.empty()) return;
@@ -145,6 +156,7 @@ int run_fly(const FlyArguments& arguments) {
     throw ScenarioError(fmt::format("--{}: expected --out beside --row", options.report  ? "report"
                                                                        : options.video ? "video"
                                                                                        : "mcap"));
+  require_separate_outputs(arguments, folder, scenario);
   for (const std::string& file : {arguments.row, arguments.track, arguments.junit})
     require_writable_beside(folder, file);
   std::optional<OutputFolder> output;
@@ -159,8 +171,9 @@ int run_fly(const FlyArguments& arguments) {
   line.clear();
   FlightRow row = flown_row(fs::path(arguments.scenario).stem().string(), scenario, result);
   if (!arguments.row.empty()) row.id = fs::path(arguments.row).stem().string();  // as the campaign asked
-  if (!arguments.row.empty()) write_lasting_file(arguments.row, to_json(FlightFile{row, cost_of(result)}));
-  if (!arguments.junit.empty()) write_whole_file(arguments.junit, campaign_junit({row}));
+  if (!arguments.row.empty()) 
+    write_whole_file(arguments.row, to_json(FlightFile{row, cost_of(result)}), Named::by_user);
+  if (!arguments.junit.empty()) write_whole_file(arguments.junit, campaign_junit({row}), Named::by_user);
   if (!arguments.quiet) {
     fmt::print("{}", to_report(result));
     if (output) fmt::print("  {:<18}{}\n", "files", folder.string());

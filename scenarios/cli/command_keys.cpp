@@ -6,6 +6,7 @@
 #include "scenarios/campaign/flight_row.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
+#include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/keys.hpp"
 #include "scenarios/flight/flight_result.hpp"
 #include "scenarios/report/table.hpp"
@@ -101,7 +102,7 @@ std::string json_of(const std::vector<Key>& keys, const std::vector<Key>& defaul
                     {"meaning", key.meaning},
                     {"source", key.source}});
   }
-  return json.dump(1) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
 std::string lines_of(const std::vector<Key>& keys, const std::vector<Key>& defaults) {

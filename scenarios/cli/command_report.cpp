@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <functional>
@@ -11,6 +12,7 @@
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/flight/fly.hpp"
+#include "scenarios/flight/run_record.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/output_folder.hpp"
 #include "scenarios/output/progress_line.hpp"
@@ -58,6 +60,28 @@ Scenario scenario_of_run(const fs::path& run) {
   return load_scenario(run / "scenario.yaml");
 }
 
+/// Where the result goes, and under which claim: the option's file, or one of that name in the folder.
+struct AgainOutput {
+  fs::path file;
+  Named named = Named::by_user;
+  std::optional<FolderClaim> claim;
+
+  AgainOutput(const AgainArguments& arguments, const char* kind, const char* name) {
+    const fs::path folder = arguments.folder;
+    file = arguments.out.empty() ? folder / name : fs::path(arguments.out);
+    std::vector<fs::path> others;
+    for (const char* input : {"scenario.yaml", "result.json", "trajectory.csv", "map.ply", "obstacles.csv",
+                                       "truth.tum", "estimate.tum", "campaign.json", "flights.csv", "flights.jsonl"})
+      others.push_back(folder / input);
+    require_separate({file}, others);
+    if (!arguments.out.empty()) return;
+    named = Named::by_us;
+    claim.emplace(folder, kind, folder, FolderClaim::Manner::beside_others);
+    claim->adopt(kind == std::string("campaign") ? campaign_patterns : run_patterns);
+    claim->require_own({name});
+  }
+};
+
 /// Flies the run again and says how `out` came about; the exit status.
 int fly_again(const Scenario& scenario, const AgainArguments& arguments, FlyOptions options, const fs::path& out,
               const std::function<void()>& place_output) {
@@ -83,27 +107,28 @@ int fly_again(const Scenario& scenario, const AgainArguments& arguments, FlyOpti
 
 int run_report(const ReportArguments& arguments) {
   const fs::path run = arguments.folder;
-  const fs::path out = arguments.out.empty() ? run / "report.html" : fs::path(arguments.out);
   const Scenario scenario = scenario_of_run(run);
   FlyOptions options;
   options.expected_digest = digest_of(run);
   options.report = true;
   options.video = !arguments.no_film;
-  require_writable(out);
-  const fs::path folder = fs::absolute(out).parent_path();
-  const FolderLock lock(folder, folder);
-  Unfinished flown(folder / (out.filename().string() + ".part"));
-  prepare_output_folder(flown.path());
+  const AgainOutput output(arguments, "flight", "report.html");
+  require_writable(output.file);
+  // The film, too, is made as a file first: beside the page, or where that is a device.
+  const fs::path beside = is_stream(output.file) ? fs::temp_directory_path() / fmt::format("report-{}", getpid())
+                                                 : fs::weakly_canonical(fs::absolute(output.file));
+  const UnfinishedFolder flown(beside, output.file);
   options.output_folder = flown.path();
-  return fly_again(scenario, arguments, options, out,
-                   [&] { Unfinished(flown.path() / "report.html").become(out); });
+  return fly_again(scenario, arguments, options, output.file, [&] {
+    write_whole_file(output.file, read_file(flown.path() / "report.html", maximum_image_bytes), output.named);
+  });
 }
 
 /// Only reads what the flights left. The exit status is the gate's where there is one.
 int report_campaign(const ReportArguments& arguments) {
   const CampaignFolder folder{arguments.folder};
-  const fs::path out = arguments.out.empty() ? folder.path / "report.html" : fs::path(arguments.out);
   const Campaign campaign = read_campaign(folder);
+  const AgainOutput output(arguments, "campaign", "report.html");
   const Collected collected = gather(folder, campaign);
   std::optional<GatedCampaign> gated;
   if (!arguments.baseline.empty()) {
@@ -111,9 +136,9 @@ int report_campaign(const ReportArguments& arguments) {
     const Comparison comparison = compare_campaigns(read_campaign_rows(baseline), collected.rows);
     gated = GatedCampaign{baseline.filename().string(), comparison, judge(comparison)};
   }
-  require_writable(out);
-  write_whole_file(out, campaign_page(folder, campaign, collected, data_root(), gated));
-  if (!arguments.quiet) fmt::print("{}\n", out.string());
+  require_writable(output.file);
+  write_whole_file(output.file, campaign_page(folder, campaign, collected, data_root(), gated), output.named);
+  if (!arguments.quiet) fmt::print("{}\n", output.file.string());
   return gated && !gated->verdict.passes() ? exit_not_goal : exit_goal;
 }
 
@@ -126,14 +151,14 @@ int run_report_of_either(const ReportArguments& arguments) {
 
 int run_mcap(const McapArguments& arguments) {
   const fs::path run = arguments.folder;
-  const fs::path out = arguments.out.empty() ? run / "flight.mcap" : fs::path(arguments.out);
   const Scenario scenario = scenario_of_run(run);
   FlyOptions options;
   options.expected_digest = digest_of(run);
-  require_writable(out);
-  FlightMcap log(out, arguments.compress);
+  const AgainOutput output(arguments, "flight", "flight.mcap");
+  require_writable(output.file);
+  FlightMcap log(output.file, arguments.compress, output.named);
   options.observers.push_back(&log);
-  return fly_again(scenario, arguments, options, out, [] {});
+  return fly_again(scenario, arguments, options, output.file, [] {});
 }
 
 void add_again_options(Command& command, AgainArguments& arguments, const std::string& out) {

@@ -6,9 +6,12 @@
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/flight/flight_identity.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/output/output_folder.hpp"
+#include "scenarios/output/folder_claim.hpp"
+#include "scenarios/output/program.hpp"
 #include "scenarios/output/progress_line.hpp"
+#include "scenarios/output/signals.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
 #include "scenarios/tuning/judge.hpp"
 #include "scenarios/tuning/tune_report.hpp"
@@ -24,6 +27,7 @@ struct TuneArguments {
   RendererKind renderer = RendererKind::osmesa;
   int jobs = 0;  // 0: a core each
   bool resume = false;
+  bool force = false;
 };
 
 struct Judges {
@@ -43,6 +47,28 @@ Judges judges_of(const TuneFile& file, const TuneArguments& arguments, const fs:
   return {judge("training", file.training_seeds), judge("validation", file.validation_seeds)};
 }
 
+/// What decides the trials: flights' identity, or the recordings and what looks at them.
+Identity identity_of(const TuneFile& file, RendererKind renderer) {
+  if (file.over == TuningData::flights) return understory::identity_of({file.scenario}, data_root() / "models", renderer);
+  Identity identity{{"program", program_digest()}, {"libraries", mapped_libraries_digest()}};
+  for (const auto* folders : {&file.training_folders, &file.validation_folders})
+    for (const fs::path& folder : *folders)
+      identity.emplace_back("recording " + folder.string(), digest_of_recording(folder));
+  return identity;
+}
+
+void claim_tune_folder(FolderClaim& claim, const fs::path& folder, bool force) {
+  std::error_code ignored;
+  if (fs::exists(folder / "tune.json", ignored)) {
+    claim.adopt(tune_patterns);
+  } else if (!force && claim.holds_other_files()) {
+    throw ScenarioError(fmt::format("{}: holds other files and no tuning: --out names another folder, --force writes "
+                                    "beside them",
+                                    folder.string()));
+  }
+  claim.require_own(tune_patterns);
+}
+
 void show(ProgressLine& line, const TuneFile& file, const TuneProgress& progress) {
   line.show(fmt::format("{} {} of {}, best {} {:.4g}", progress.part, progress.done, progress.of,
                         file.figures[file.objective.goals.front().figure], progress.best),
@@ -53,8 +79,14 @@ int run_tune(const TuneArguments& arguments) {
   const TuneFile file = load_tune_file(arguments.file, scenario_file);
   const fs::path folder =
       arguments.out.empty() ? fs::path("results") / ("tune-" + file.name) : fs::path(arguments.out);
-  const FolderLock lock(folder, folder);
-  prepare_tune_folder(folder, file, std::string(word_for(arguments.renderer)), arguments.resume);
+  std::vector<fs::path> others{arguments.file};
+  for (const auto* folders : {&file.training_folders, &file.validation_folders})
+    others.insert(others.end(), folders->begin(), folders->end());
+  require_separate({folder}, others);
+  const Identity identity = identity_of(file, arguments.renderer);
+  FolderClaim claim(folder, "tuning", folder);
+  claim_tune_folder(claim, folder, arguments.force);
+  prepare_tune_folder(folder, file, std::string(word_for(arguments.renderer)), arguments.resume, identity);
   const Judges judges = judges_of(file, arguments, folder);
   const StopSignals stop_signals;
   ProgressLine line;
@@ -65,6 +97,7 @@ int run_tune(const TuneArguments& arguments) {
   try {
     const Tuned tuned = tune(file, *judges.training, *judges.validation, options);
     write_tune_report(folder, file, tuned, data_root());
+    claim.remove_stale({"best.yaml", "front/*.yaml"});
     line.clear();
     fmt::print("{}{}", to_text(comparison_table(file, tuned)),
                tuned.keeps_limits ? "" : "no trial keeps the limits\n");
@@ -92,6 +125,7 @@ void add_tune_command(CommandLine& line) {
   add_jobs_option(command, arguments->jobs, "flights or recordings");
   add_renderer_option(command, arguments->renderer);
   command.flag("--resume", arguments->resume, "go on with what the folder holds");
+  command.flag("--force", arguments->force, "write into a folder that holds other files; none of them is replaced");
   command.runs([arguments] { return run_tune(*arguments); });
 }
 

@@ -2,10 +2,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <filesystem>
 #include <memory>
+#include <new>
+#include <system_error>
 
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
@@ -17,12 +22,32 @@ namespace {
 
 using namespace understory;
 
-/// One line, whatever a library has put into its message.
+/// One line that a person can read, whatever a library or an argument has put into the message.
 void complain(std::string message) {
-  std::replace(message.begin(), message.end(), '\n', ' ');
+  constexpr std::size_t maximum = 5000, shown_end = 500;  // a path has 4096 bytes at most
+  std::ranges::replace_if(message, [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
   while (!message.empty() && message.back() == ' ') message.pop_back();
+  if (message.size() > maximum)
+    message = message.substr(0, shown_end) + " ... " + message.substr(message.size() - shown_end);
+  const std::string line = "understory: " + message + "\n";
   const auto lock = hold_outputs();
-  fmt::print(stderr, "understory: {}\n", message);
+  std::fwrite(line.data(), 1, line.size(), stderr);  // unbuffered; where nobody reads it nothing can be done
+}
+
+/// What an error of the system means: whose fault it is, by errno.
+int complain_of(const std::string& what, int error) {
+  const std::string lacking = lacking_resource(error);
+  complain(fmt::format("{}: {}", what, lacking.empty() ? std::strerror(error) : lacking));
+  const bool is_machine = !lacking.empty() || error == ENOSPC || error == EDQUOT || error == EIO || error == EPIPE;
+  return is_machine ? exit_machine_failed : exit_bad_input;
+}
+
+/// What was printed has reached its reader.
+void require_printed() {
+  errno = 0;
+  const bool is_flushed = std::fflush(stdout) == 0;
+  if (is_flushed && std::ferror(stdout) == 0) return;
+  throw MachineError(fmt::format("standard output: {}", errno != 0 ? std::strerror(errno) : "what was printed is lost"));
 }
 
 std::string version() {
@@ -78,11 +103,12 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  repair_surroundings();
   std::signal(SIGABRT, [](int) { std::_Exit(exit_machine_failed); });  // an assertion has already said why
   try {
     end_on_signals();
     const int status = run(argc, argv);
-    if (std::fflush(stdout) != 0) throw MachineError("standard output: No space left, or its reader is gone");
+    require_printed();
     return status;
   } catch (const ScenarioError& error) {
     complain(error.what());
@@ -93,6 +119,13 @@ int main(int argc, char** argv) {
   } catch (const Stopped& error) {
     complain(error.what());
     return 128 + error.signal;
+  } catch (const std::filesystem::filesystem_error& error) {
+    return complain_of(error.path1().string(), error.code().value());
+  } catch (const std::system_error& error) {  // of fmt: what cannot be printed
+    return complain_of(std::ferror(stdout) != 0 ? "standard output" : error.what(), error.code().value());
+  } catch (const std::bad_alloc&) {
+    complain(lacking_resource(ENOMEM));
+    return exit_machine_failed;
   } catch (const std::exception& error) {
     complain(std::string("internal fault: ") + error.what());
     return exit_machine_failed;

@@ -183,4 +183,8 @@ nlohmann::ordered_json parse_json(const std::string& text) {
   }
 }
 
+std::string json_text(const nlohmann::ordered_json& json, int indent) {
+  return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
 }  // namespace understory

@@ -139,11 +139,12 @@ struct CarriedMap {
 /// overlay.mp4.
 class DetectionPictures {
  public:
-  DetectionPictures(const DetectionOptions& options, const StereoRecording& recording) {
+  DetectionPictures(const DetectionOptions& options, const StereoRecording& recording, const fs::path& folder)
+      : folder_(folder / "overlays") {
     if (options.video)
-      film_ = std::make_unique<VideoFile>(options.output_folder / "overlay.mp4", film_rate_hz(recording));
+      film_ = std::make_unique<VideoFile>(folder / "overlay.mp4", film_rate_hz(recording));
     else
-      pictures_ = std::make_unique<PictureFolder>(options.output_folder / "overlays");
+      prepare_output_folder(folder_);
   }
   void add(const OverlayMoment& moment, const StereoRig& rig) {
     constexpr int narrow_px = 500;  // images below this are drawn at twice their size
@@ -151,17 +152,15 @@ class DetectionPictures {
     if (film_)  // H.264 wants even sides: the last column or row goes
       film_->add(picture(cv::Rect(0, 0, picture.cols / 2 * 2, picture.rows / 2 * 2)));
     else
-      pictures_->add(picture);
+      write_picture(folder_ / fmt::format("{:06}.png", count_++), picture);
   }
   void finish() {
-    if (film_)
-      film_->finish();
-    else
-      pictures_->finish();
+    if (film_) film_->finish();
   }
 
  private:
-  std::unique_ptr<PictureFolder> pictures_;
+  fs::path folder_;
+  std::int64_t count_ = 0;
   std::unique_ptr<VideoFile> film_;
 };
 
@@ -194,13 +193,9 @@ std::string depths_text(const DetectionResult& result) {
   return fmt::format("{} m", fmt::join(texts, ", "));
 }
 
-/// What an earlier run left must not pass for this one's.
-void prepare(const fs::path& folder) {
-  prepare_output_folder(folder);
-  remove_pictures(folder / "overlays");
-  std::error_code shows_when_written;
-  for (const char* file : {"points.csv", "points.ply", "timings.csv", "map.ply", "overlay.mp4"})
-    fs::remove(folder / file, shows_when_written);
+/// What an earlier run left does not pass for this one's: OutputFolder removes it.
+FolderContents detection_contents() {
+  return {"detection", "", "", {"points.csv", "points.ply", "timings.csv", "map.ply", "overlay.mp4", "overlays/*.png"}};
 }
 
 }  // namespace
@@ -213,11 +208,13 @@ DetectionResult run_detection(const DetectionOptions& options) {
   std::optional<Rectifier> rectifier;
   if (camera.calibration) rectifier.emplace(*camera.calibration, options.interpolation);
   PushbroomStereo detector(camera.rig, config.pushbroom);
-  const FolderLock lock(options.output_folder, options.output_folder);
-  prepare(options.output_folder);
+  std::vector<fs::path> read = options.inputs;
+  read.push_back(options.rig);
+  require_separate({options.output_folder}, read);
+  OutputFolder output(options.output_folder, detection_contents(), Replace::anything);
   DetectionResult result = described(camera, detector, config, recording);
   const std::string depths = depths_text(result);
-  DetectionPictures pictures(options, recording);
+  DetectionPictures pictures(options, recording, output.path());
   std::vector<FrameHits> hits;
   std::int64_t hit_count = 0;
   StereoFrame frame;
@@ -247,12 +244,13 @@ DetectionResult run_detection(const DetectionOptions& options) {
   pictures.finish();
   const bool has_map = !options.poses.empty();
   if (has_map) result.remembered_points = std::ssize(map.remembered);
-  const fs::path& folder = options.output_folder;
+  const fs::path& folder = output.path();
   write_whole_file(folder / "timings.csv", timings_csv(result.frames));
   if (has_map) write_whole_file(folder / "map.ply", points_to_ply(map.remembered));
   write_whole_file(folder / "points.ply", hits_to_ply(hits));
   write_whole_file(folder / "points.csv", hits_to_csv(hits));
-  result.files = fmt::format("{}: points.csv, points.ply, timings.csv, {}{}", folder.string(),
+  output.finish();
+  result.files = fmt::format("{}: points.csv, points.ply, timings.csv, {}{}", options.output_folder.string(),
                              has_map ? "map.ply, " : "", options.video ? "overlay.mp4" : "overlays/");
   return result;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "perception/io/picture_codecs.hpp"
+#include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/report/pictures.hpp"
 #include "scenarios/report/sheet_page.hpp"
@@ -101,20 +102,19 @@ std::string evaluation_json(const Evaluation& evaluation) {
             {"one_pixel_m", {first.looked_at.one_pixel.near_m, first.looked_at.one_pixel.far_m}},
             {"all", sum_json(evaluation.all)}};
   for (const EvaluationSum& scene : evaluation.scenes) json["scenes"].push_back(sum_json(scene));
-  return json.dump(1) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
 /// Into the folder, and as a part of the page.
 SheetSection write_worst_frames(const Evaluation& evaluation, const fs::path& folder) {
   SheetSection section{"The frames with the most false hits"};
-  remove_pictures(folder);
-  PictureFolder pictures(folder);
+  prepare_output_folder(folder);
+  int number = 0;
   for (const WorstPicture& worst : worst_pictures(evaluation)) {
-    pictures.add(worst.picture);
+    write_picture(folder / fmt::format("{:06}.png", number++), worst.picture);
     const auto jpeg = picture_codecs().encode(".jpg", worst.picture);
     section.pictures.push_back({worst.caption, {jpeg.begin(), jpeg.end()}});
   }
-  pictures.finish();
   return section;
 }
 
@@ -126,6 +126,11 @@ std::string evaluation_report(const Evaluation& evaluation) {
     text += "\n" + table.title + "\n" + to_text(table.table);
   return text;
 }
+
+const std::vector<std::string> evaluation_patterns{
+    "summary.md",        "report.html",   "evaluation.json",       "tables/*.csv",   "precision_recall.svg",
+    "response.svg",      "heat_map.png",  "heat_map_paper.png",    "first_hits.svg", "obstacles.csv",
+    "distances.svg",     "worst/*.png"};
 
 void write_evaluation(const Evaluation& evaluation, const fs::path& folder, const fs::path& data_root) {
   prepare_output_folder(folder);

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/flight/flight_identity.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/program.hpp"
 #include "scenarios/output/progress_line.hpp"
@@ -100,8 +101,35 @@ std::vector<SuiteRecording> load_suite(const fs::path& file, const FindScenario&
   return suite;
 }
 
+/// What decides a recording, as text: its scenario, how the cameras are carried, and what flies and draws it.
+std::string identity_text(const SuiteRecording& recording, const Scenario& scenario, Identity identity) {
+  identity.emplace_back("scenario", digest_of_text(scenario_to_text(scenario)));
+  for (const std::string& argument : recording.arguments) {
+    std::error_code ignored;
+    identity.emplace_back(argument, fs::is_regular_file(argument, ignored) ? digest_of_file(argument) : "");
+  }
+  std::string text;
+  for (const auto& [name, digest] : identity) text += fmt::format("{}: {}\n", name, digest);
+  return text;
+}
+
+constexpr const char* identity_name = "identity.txt";
+
+/// What keeps a recording that is there from being taken; empty: nothing.
+std::string fault_of(const fs::path& folder, const std::string& identity) {
+  std::error_code ignored;
+  if (!fs::exists(folder / identity_name, ignored)) return "nothing says what it is a recording of";
+  const std::string held = read_file(folder / identity_name);
+  for (std::size_t begin = 0, end; begin < identity.size(); begin = end + 1) {
+    end = identity.find('\n', begin);
+    const std::string line = identity.substr(begin, end + 1 - begin);
+    if (held.find(line) == std::string::npos) return line.substr(0, line.rfind(": ")) + " changed since";
+  }
+  return held.size() == identity.size() ? "" : "it was carried otherwise";
+}
+
 std::vector<std::string> arguments_of(const SuiteRecording& recording, const fs::path& folder) {
-  std::vector<std::string> arguments{"record", recording.scenario.string(), "--quiet", "--out",
+  std::vector<std::string> arguments{"record", recording.scenario.string(), "--quiet", "--force", "--out",
                                      folder.string()};
   arguments.insert(arguments.end(), recording.arguments.begin(), recording.arguments.end());
   for (const std::string& setting : recording.settings) arguments.insert(arguments.end(), {"--set", setting});
@@ -113,16 +141,23 @@ std::vector<std::string> arguments_of(const SuiteRecording& recording, const fs:
 std::vector<fs::path> record_suite(const fs::path& file, const fs::path& folder, int jobs,
                                    const FindScenario& find_scenario, const fs::path& models) {
   const std::vector<SuiteRecording> suite = load_suite(file, find_scenario);
+  std::vector<Scenario> scenarios;
   for (const SuiteRecording& recording : suite) try {  // what a child process would refuse
-      rig_of(load_scenario(recording.scenario, recording.settings), models);
+      scenarios.push_back(load_scenario(recording.scenario, recording.settings));
+      rig_of(scenarios.back(), models);
     } catch (const ScenarioError& error) {
       throw ScenarioError(fmt::format("{}: {}: {}", file.string(), recording.name, error.what()));
     }
+  const Identity identity = identity_of(scenarios, models, RendererKind::osmesa);
+  std::vector<std::string> identities;
+  for (std::size_t i = 0; i < suite.size(); ++i)
+    identities.push_back(identity_text(suite[i], scenarios[i], identity));
   prepare_output_folder(folder);
   const std::size_t all = suite.size();
   std::size_t failed = all, done = 0, here = 0;
   ProgressLine line;
   ProgramProcesses processes(jobs, [&](std::uint64_t tag, int status, const EndedProcess&) {
+    if (status == 0) write_whole_file(folder / suite[tag].name / identity_name, identities[tag]);
     if (status != 0 && failed == all) failed = static_cast<std::size_t>(tag);
     ++done;
     line.show(fmt::format("{} of {} recorded", done, all), ++here, all - done);
@@ -130,9 +165,16 @@ std::vector<fs::path> record_suite(const fs::path& file, const fs::path& folder,
   std::vector<fs::path> folders;
   for (const SuiteRecording& recording : suite) {
     folders.push_back(folder / recording.name);
-    if (fs::exists(folders.back() / "mav0")) {  // it bears that name only when it is whole
-      ++done;
-      continue;
+    std::error_code ignored;
+    if (fs::exists(folders.back() / "mav0", ignored)) {
+      const std::string fault = fault_of(folders.back(), identities[folders.size() - 1]);
+      if (fault.empty()) {
+        ++done;
+        continue;
+      }
+      line.clear();
+      fmt::print("{}: recorded anew: {}\n", folders.back().string(), fault);
+      fs::remove(folders.back() / identity_name, ignored);
     }
     processes.start(folders.size() - 1, arguments_of(recording, folders.back()));
   }

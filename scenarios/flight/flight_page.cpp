@@ -174,7 +174,7 @@ std::string flight_page(const Flight& flight, const FlightResult& result, const 
     }
   }
   add_track(flight, track, story, PageDetail::everything, page.arrays, facts);
-  page.facts = facts.dump();
+  page.facts = json_text(facts);
   return page_html(extras.data_root, page);
 }
 
@@ -183,7 +183,7 @@ std::string compact_flight(const Flight& flight, const FlightResult& result, con
   Json facts = facts_of(flight, result, track, story);
   PageArrays arrays(true);
   add_track(flight, track, story, PageDetail::compact, arrays, facts);
-  return packed_part(facts.dump(), arrays);
+  return packed_part(json_text(facts), arrays);
 }
 
 }  // namespace understory

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core/version.hpp>
 
+#include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/program.hpp"
 
 namespace understory {
@@ -75,6 +76,11 @@ const char* const trajectory_columns =
     "est_p_radps,est_q_radps,est_r_radps,left_elevon_command_rad,right_elevon_command_rad,thrust_command_n,"
     "left_elevon_rad,right_elevon_rad,thrust_n,clearance_m\n";
 
+bool is_ending(std::string_view word) {
+  constexpr std::array all{Ending::goal, Ending::collision, Ending::ground, Ending::out_of_bounds, Ending::time};
+  return std::ranges::any_of(all, [&](Ending ending) { return word == word_for(ending); });
+}
+
 std::string_view word_for(Ending ending) {
   switch (ending) {
     case Ending::goal:
@@ -132,7 +138,7 @@ std::string to_json(const FlightResult& result) {
   json["versions"] = {{"understory", understory_version}, {"opencv", CV_VERSION}, {"compiler", __VERSION__}};
   if (!result.renderer.empty()) json["versions"]["renderer"] = result.renderer;
   json["digest"] = result.digest;
-  return json.dump(2) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 std::string to_report(const FlightResult& result) {

@@ -39,6 +39,8 @@ enum class Ending {
 };
 
 std::string_view word_for(Ending ending);
+/// Whether an ending is called so.
+bool is_ending(std::string_view word);
 
 /// Wall time of one stage of the loop, for people. It decides nothing.
 struct StageTiming {

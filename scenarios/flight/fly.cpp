@@ -53,7 +53,7 @@ void write_story(const Flight& flight, const FlightResult& result, const FlyOpti
   if (!options.report && !keeps_track) return;
   const FlightTrack track = recorder.finish(flight);
   const FlightStory story = story_of(flight, track);
-  if (keeps_track) write_whole_file(options.track, compact_flight(flight, result, track, story));
+  if (keeps_track) write_whole_file(options.track, compact_flight(flight, result, track, story), Named::by_user);
   if (!options.report) return;
   FlightPageExtras extras{root, warning_of(result, options.expected_digest)};
   if (film != nullptr) {

@@ -57,11 +57,12 @@ std::span<const std::byte> bytes_of(const cv::Mat& image) {
 
 }  // namespace
 
+const std::vector<std::string> run_patterns{"result.json", "scenario.yaml", "trajectory.csv", "map.ply",
+                                            "obstacles.csv", "truth.tum", "estimate.tum", "flight.mp4",
+                                            "still.png", "flight.mcap", "report.html"};
+
 FolderContents run_contents(const Scenario& scenario) {
-  return {"scenario.yaml",
-          scenario_to_text(scenario),
-          {"result.json", "scenario.yaml", "trajectory.csv", "map.ply", "obstacles.csv", "truth.tum", "estimate.tum",
-           "flight.mp4", "still.png", "flight.mcap", "report.html"}};
+  return {"flight", "scenario.yaml", scenario_to_text(scenario), run_patterns};
 }
 
 void RunRecord::on_frame(const Flight& flight) {

@@ -14,7 +14,8 @@
 
 namespace understory {
 
-/// What a flight leaves in its folder.
+/// What a flight may leave in its folder: all names; and with the manifest of this one.
+extern const std::vector<std::string> run_patterns;
 FolderContents run_contents(const Scenario& scenario);
 
 /// Collects what a flight leaves behind and scores it. Works in memory; write() makes the run folder's files,

@@ -12,10 +12,7 @@ namespace understory {
 /// Bad input from a person: where (file:line, an option), the key, what was expected. Exit status 2.
 using ScenarioError = InputError;
 
-/// The machine failed us: a full disk, a missing GL library. Exit status 3.
-struct MachineError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+// MachineError (perception/io/text_file.hpp): the machine failed us. Exit status 3.
 
 /// A signal came. Exit status 128 and its number.
 struct Stopped : std::runtime_error {

@@ -2,9 +2,12 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <charconv>
 #include <csignal>
@@ -12,6 +15,7 @@
 #include <cstring>
 #include <optional>
 
+#include "scenarios/output/folder_claim.hpp"
 #include "scenarios/output/signals.hpp"
 
 namespace understory {
@@ -76,6 +80,7 @@ class Stream {
     sigaction(SIGPIPE, &before, nullptr);
     return error;
   }
+  bool is_open() const { return descriptor_ >= 0; }
   int sync() { return fsync(descriptor_) == 0 ? 0 : errno; }
   int close() {
     const int error = descriptor_ >= 0 && ::close(descriptor_) != 0 ? errno : 0;
@@ -87,69 +92,130 @@ class Stream {
   int descriptor_;
 };
 
-void write_through(const fs::path& name, const Destination& to, std::string_view content) {
-  std::fflush(stdout);  // what was printed before stands before
-  Stream stream(to.descriptor >= 0 ? fcntl(to.descriptor, F_DUPFD_CLOEXEC, 0)
-                                   : open(to.file.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC));
-  int error = stream.write(content);
-  if (const int last = stream.close(); error == 0) error = last;
-  if (error != 0) refuse_output(name, error);
-}
-
-/// Two programs may write one file at a time, even from two machines: each has a part of its own.
-fs::path part_of(const fs::path& file) {
-  char host[64] = "";
-  gethostname(host, sizeof host - 1);
-  return fmt::format("{}.{}-{}.part", file.string(), host, getpid());
-}
-
+/// A new file, locked while it is open: what bears such a name and is not locked was left by a killed program.
 int made(const fs::path& part) {
   const auto lock = hold_outputs();
-  std::remove(part.c_str());
-  return open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  const int descriptor = open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor >= 0) flock(descriptor, LOCK_EX | LOCK_NB);
+  return descriptor;
 }
 
-void write_regular(const fs::path& name, const fs::path& file, std::string_view content, bool lasting) {
-  Unfinished part(part_of(file));
-  Stream stream(made(part.path()));
-  int error = stream.write(content);
-  struct stat former {};
-  if (error == 0 && stat(file.c_str(), &former) == 0) chmod(part.path().c_str(), former.st_mode & 07777);
-  if (error == 0 && lasting) error = stream.sync();
-  if (const int last = stream.close(); error == 0) error = last;
-  if (error != 0) refuse_output(name, error);
-  part.become(file);
-  if (!lasting) return;
-  // The new name is the folder's, and lasts once that has reached the disk.
-  Stream(open(file.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)).sync();
-}
-
-void write(const fs::path& name, std::string_view content, bool lasting) {
-  const Destination to = destination_of(name);
-  if (to.is_stream)
-    write_through(name, to, content);
-  else
-    write_regular(name, to.file, content, lasting);
-}
-
-/// That a file can be made beside `file` and gets a first block.
-void probe(const fs::path& name, const fs::path& file) {
-  const Unfinished part(part_of(file));
+/// That a file can be made in `folder` and gets a first block.
+void probe(const fs::path& name, const fs::path& folder) {
+  const Unfinished part(unfinished_name_in(folder));
   const int error = Stream(made(part.path())).write(std::string(4096, ' '));
   if (error != 0) refuse_output(name, error);
 }
 
+constexpr std::string_view unfinished_prefix = ".understory-", unfinished_suffix = ".unfinished";
+
+std::string host_name() {
+  char host[64] = "";
+  gethostname(host, sizeof host - 1);
+  return host;
+}
+
+bool lies_in_unfinished_folder(const fs::path& file) {
+  return std::ranges::any_of(file.parent_path(), is_unfinished_name);
+}
+
 }  // namespace
 
+bool is_unfinished_name(const fs::path& path) {
+  const std::string name = path.filename().string();
+  return name.starts_with(unfinished_prefix) && name.ends_with(unfinished_suffix);
+}
+
+fs::path unfinished_name_in(const fs::path& folder) {
+  static std::atomic<int> count = 0;
+  // Programs on two machines may write into one folder.
+  const std::string owner = fmt::format("{}-{}-{}", host_name(), getpid(), count++);
+  return folder / fmt::format("{}{}{}", unfinished_prefix, owner, unfinished_suffix);
+}
+
+fs::path unfinished_name_of(const fs::path& target, const fs::path& folder) {
+  return folder / fmt::format("{}{}{}", unfinished_prefix, target.filename().string(), unfinished_suffix);
+}
+
+bool is_at_work_on(const fs::path& unfinished) {
+  const std::string name = unfinished.filename().string(), ours = fmt::format("{}{}-", unfinished_prefix, host_name());
+  int process = 0;
+  if (!name.starts_with(ours)) return false;
+  const auto parsed = std::from_chars(name.data() + ours.size(), name.data() + name.size(), process);
+  return parsed.ec == std::errc() && *parsed.ptr == '-' && (kill(process, 0) == 0 || errno == EPERM);
+}
+
 void refuse_output(const fs::path& file, int error) {
+  if (const std::string lacking = lacking_resource(error); !lacking.empty())
+    throw MachineError(fmt::format("{}: {}", file.string(), lacking));
   if (error == ENOSPC || error == EDQUOT || error == EIO || error == EPIPE)
     throw MachineError(fmt::format("{}: {}", file.string(), std::strerror(error)));
   throw ScenarioError(fmt::format("{}: expected a writable output: {}", file.string(), std::strerror(error)));
 }
 
-void write_whole_file(const fs::path& file, std::string_view content) { write(file, content, false); }
+struct OutputFile::State {
+  fs::path name;
+  Destination to;
+  std::optional<Unfinished> part;
+  std::optional<Stream> stream;
+};
 
-void write_lasting_file(const fs::path& file, std::string_view content) { write(file, content, true); }
+OutputFile::OutputFile(fs::path file, Named named) : state_(std::make_unique<State>()) {
+  State& state = *state_;
+  state.name = std::move(file);
+  state.to = destination_of(state.name);
+  if (state.to.is_stream) {
+    std::fflush(stdout);  // what was printed before stands before
+    state.stream.emplace(state.to.descriptor >= 0 ? fcntl(state.to.descriptor, F_DUPFD_CLOEXEC, 0)
+                                                  : open(state.to.file.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC));
+  } else {
+    FolderClaim* claim = named == Named::by_us ? claim_of(state.to.file) : nullptr;
+    if (claim != nullptr) claim->add(state.to.file);
+    state.part.emplace(unfinished_name_in(state.to.file.parent_path()));
+    state.stream.emplace(made(state.part->path()));
+  }
+  if (!state.stream->is_open()) refuse_output(state.name, errno);
+}
+
+OutputFile::~OutputFile() = default;
+
+void OutputFile::write(std::string_view bytes) {
+  if (const int error = state_->stream->write(bytes); error != 0) refuse_output(state_->name, error);
+}
+
+void OutputFile::finish() {
+  State& state = *state_;
+  const fs::path& file = state.to.file;
+  const bool lasts = !state.to.is_stream && !lies_in_unfinished_folder(file);
+  struct stat former {};
+  int error = 0;
+  if (state.part && stat(file.c_str(), &former) == 0) chmod(state.part->path().c_str(), former.st_mode & 07777);
+  if (lasts) error = state.stream->sync();
+  // Named before it is closed: until then its lock says that somebody is at work on it.
+  if (error == 0 && state.part) state.part->become(file);
+  if (const int last = state.stream->close(); error == 0) error = last;
+  if (error != 0) refuse_output(state.name, error);
+  if (lasts) sync_folder(file.parent_path());  // the new name is the folder's
+}
+
+void write_whole_file(const fs::path& file, std::string_view content, Named named) {
+  OutputFile output(file, named);
+  output.write(content);
+  output.finish();
+}
+
+void sync_folder(const fs::path& folder) {
+  Stream(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)).sync();
+}
+
+void sync_file_system(const fs::path& folder) {
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const int error = descriptor < 0 || syncfs(descriptor) != 0 ? errno : 0;
+  if (descriptor >= 0) close(descriptor);
+  if (error != 0) refuse_output(folder, error);
+}
+
+bool is_stream(const fs::path& file) { return destination_of(file).is_stream; }
 
 void require_writable(const fs::path& file) {
   if (file.empty()) return;
@@ -161,18 +227,35 @@ void require_writable(const fs::path& file) {
   }
   std::error_code ignored;
   if (fs::exists(to.file, ignored) && access(to.file.c_str(), W_OK) != 0) refuse_output(file, errno);
-  if (!to.is_stream) probe(file, to.file);
+  if (to.is_stream) return;
+  clear_unfinished(to.file.parent_path());
+  probe(file, to.file.parent_path());
 }
 
 void prepare_output_folder(const fs::path& folder) {
-  std::error_code error;
-  {
-    const auto lock = hold_outputs();
-    fs::create_directories(folder, error);
+  const std::vector<fs::path> made = make_folders(folder, folder);
+  std::error_code ignored;
+  if (FolderClaim* claim = claim_of(fs::weakly_canonical(folder, ignored))) claim->made_folders(made);
+  probe(folder, folder);
+}
+
+void require_separate(const std::vector<fs::path>& outputs, const std::vector<fs::path>& others) {
+  const auto same = [](const fs::path& one, const fs::path& other) {
+    std::error_code ignored;
+    if (one.empty() || other.empty() || (!fs::is_directory(one, ignored) && is_stream(one))) return false;
+    return fs::equivalent(one, other, ignored) || fs::weakly_canonical(fs::absolute(one), ignored) ==
+                                                      fs::weakly_canonical(fs::absolute(other), ignored);
+  };
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    for (const fs::path& other : others)
+      if (same(outputs[i], other))
+        throw ScenarioError(fmt::format("{}: expected an output of its own, this file or folder is read, or holds "
+                                        "another result",
+                                        outputs[i].string()));
+    for (std::size_t j = 0; j < i; ++j)
+      if (same(outputs[i], outputs[j]))
+        throw ScenarioError(fmt::format("{}: expected an output of its own, it is given twice", outputs[i].string()));
   }
-  if (error) refuse_output(folder, error.value());
-  if (!fs::is_directory(folder)) refuse_output(folder, ENOTDIR);
-  probe(folder, folder / "probe");
 }
 
 void require_free_space(const fs::path& file, std::uintmax_t bytes) {

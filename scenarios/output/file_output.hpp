@@ -2,31 +2,70 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string_view>
+#include <vector>
 
 #include "scenarios/output/errors.hpp"
 
 /// The one way files are written.
 namespace understory {
 
-/// Writes a file: whole or not at all where it is a regular file or a new one (it bears another name that
-/// ends with ".part" until then), straight through where it is a device, a FIFO or a descriptor as
-/// /dev/stdout is. Symbolic links are followed. Throws MachineError where the disk is full or the reader is
-/// gone, ScenarioError where the file cannot be written.
-void write_whole_file(const std::filesystem::path& file, std::string_view content);
+/// Who chose the name of an output file.
+enum class Named {
+  by_us,   ///< in a claimed folder it replaces what the same command wrote, and nothing else (FolderClaim)
+  by_user  ///< an option's value: it replaces whatever has the name
+};
 
-/// The same, and back only when it would outlive a power cut.
-void write_lasting_file(const std::filesystem::path& file, std::string_view content);
+/// A file being written. A regular file, or a new one, appears whole or not at all: it bears another name until
+/// finish(), which returns only when the file would outlive a power cut (in an UnfinishedFolder the folder sees to
+/// that). A device, a FIFO or a descriptor as /dev/stdout is written straight through. Symbolic links are followed.
+/// All throw MachineError where the disk is full or the reader is gone, ScenarioError where the file cannot be
+/// written.
+class OutputFile {
+ public:
+  explicit OutputFile(std::filesystem::path file, Named named = Named::by_us);
+  ~OutputFile();
+  void write(std::string_view bytes);
+  void finish();
 
-/// Throws what write_whole_file would throw, as far as that can be known beforehand; for outputs that end the
-/// work, before it starts. An empty name means no output.
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// The same at once.
+void write_whole_file(const std::filesystem::path& file, std::string_view content, Named named = Named::by_us);
+
+/// Throws what writing would throw, as far as that can be known beforehand; for outputs that end the work, before it
+/// starts. Clears away what killed programs left unfinished beside it. An empty name means no output.
 void require_writable(const std::filesystem::path& file);
 
-/// Makes `folder` and proves that files can be written into it. Throws as write_whole_file does.
+/// Makes `folder` and proves that files can be written into it. Throws as writing does.
 void prepare_output_folder(const std::filesystem::path& folder);
 
 /// Throws MachineError where fewer than `bytes` are free beside `file`: for writers that cannot tell (video).
 void require_free_space(const std::filesystem::path& file, std::uintmax_t bytes);
+
+/// Throws ScenarioError where one of `outputs` is also one of `others` or is given twice. Empty names mean nothing;
+/// devices and FIFOs may be given again and again.
+void require_separate(const std::vector<std::filesystem::path>& outputs,
+                      const std::vector<std::filesystem::path>& others);
+
+/// Whether the name leads to a device, a FIFO or a descriptor of this process: what is there stays. Throws as writing.
+bool is_stream(const std::filesystem::path& file);
+
+/// Whether a file or folder bears the name of something that a program is at work on.
+bool is_unfinished_name(const std::filesystem::path& path);
+/// Such a name in `folder`: for this process alone; for what will be called `target`, whoever makes it.
+std::filesystem::path unfinished_name_in(const std::filesystem::path& folder);
+std::filesystem::path unfinished_name_of(const std::filesystem::path& target, const std::filesystem::path& folder);
+/// Whether the process that a name of the first kind tells of is alive on this machine.
+bool is_at_work_on(const std::filesystem::path& unfinished);
+
+/// What was written into the folders reaches the disk. Throws as writing does.
+void sync_file_system(const std::filesystem::path& folder);
+void sync_folder(const std::filesystem::path& folder);
 
 /// Throws what errno says about an output.
 [[noreturn]] void refuse_output(const std::filesystem::path& file, int error);

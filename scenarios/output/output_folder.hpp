@@ -5,51 +5,53 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/output/folder_claim.hpp"
 #include "scenarios/output/signals.hpp"
 
 namespace understory {
 
-/// Keeps a second program on this machine from writing into a folder; dropped however this one ends. A folder
-/// that it made and nobody used goes with it.
-class FolderLock {
+/// A folder for what is not finished: made empty, gone with this object, whatever is in it. One program at a time
+/// works on `target`.
+class UnfinishedFolder {
  public:
-  /// Makes the folder where there is none. Throws ScenarioError, which calls it by `name`, where it is taken
-  /// or cannot be written.
-  FolderLock(const std::filesystem::path& folder, const std::filesystem::path& name);
-  ~FolderLock();
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
+  /// `within`: in the target's folder itself, where nothing can be made beside it. Throws ScenarioError, which calls the
+  /// target by `name`, where another program works on it, or where it cannot be written.
+  UnfinishedFolder(const std::filesystem::path& target, const std::filesystem::path& name, bool within = false);
+  const std::filesystem::path& path() const { return part_->path(); }
+  /// Gives it its name, where that is free or an empty folder; false where something is in the way. From then on it
+  /// lists `files` under `kind`.
+  bool become(const std::filesystem::path& name, const std::string& kind,
+              const std::vector<std::filesystem::path>& files);
 
  private:
-  std::filesystem::path folder_;
-  int file_ = -1;
-  std::optional<Unfinished> file_name_;
-  bool is_new_ = false;
+  std::optional<FolderClaim> claim_;
+  std::optional<Unfinished> part_;
 };
 
-/// What a command may leave in its folder.
+/// What a command may leave in its folder, and of what kind that is (FolderClaim).
 struct FolderContents {
-  std::string manifest;  ///< the file that says how the others came about: scenario.yaml
+  std::string kind;
+  std::string manifest;       ///< the file that says how the others came about: scenario.yaml; empty: none
   std::string manifest_text;
   /// Everything that may be there, by relative path, with '*': "overlays/*.png". The first says that all is
   /// there.
   std::vector<std::string> patterns;
 };
 
-/// What may be replaced in a folder that holds results already.
+/// What may be replaced in a folder that holds results of that kind already.
 enum class Replace {
   nothing,
   same,     ///< results of the same manifest
   anything  ///< --force
 };
 
-/// A folder of results that appear whole or not at all: they are written into "FOLDER.part" and get their
-/// names in finish(). One program at a time writes into a folder. What is there already and is not the
-/// command's stays.
+/// A folder of results that appear whole or not at all: they are written into an UnfinishedFolder and get their
+/// names in finish(), which returns when they would outlive a power cut. One program at a time writes into a folder.
+/// What is there already and is not of the kind stays.
 class OutputFolder {
  public:
   /// Throws ScenarioError in one line where the folder cannot be written, is being written by another
-  /// program, or holds results that may not be replaced; MachineError where the disk is full.
+  /// program, or holds files of these names that may not be replaced; MachineError where the disk is full.
   OutputFolder(std::filesystem::path folder, FolderContents contents, Replace replace);
 
   /// Where to write until then; holds the manifest.
@@ -60,8 +62,8 @@ class OutputFolder {
  private:
   std::filesystem::path folder_;
   FolderContents contents_;
-  std::optional<FolderLock> lock_;
-  std::optional<Unfinished> part_;
+  std::optional<FolderClaim> there_;  ///< of the folder that was there already
+  std::optional<UnfinishedFolder> part_;
 };
 
 }  // namespace understory

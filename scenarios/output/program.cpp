@@ -7,12 +7,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <set>
 #include <string_view>
 
 #include "scenarios/output/errors.hpp"
@@ -35,10 +38,56 @@ namespace {
 
 const char* const understory_version = UNDERSTORY_VERSION;
 
-std::string program_digest() {
-  std::ifstream stream("/proc/self/exe", std::ios::binary);
-  const std::string binary{std::istreambuf_iterator<char>(stream), {}};
-  return fmt::format("{:016x}", std::hash<std::string_view>{}(binary));
+std::string digest_of_text(std::string_view text) {
+  return fmt::format("{:016x}", std::hash<std::string_view>{}(text));
+}
+
+std::string digest_of_file(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  const std::string content{std::istreambuf_iterator<char>(stream), {}};
+  return digest_of_text(content);
+}
+
+std::string program_digest() { return digest_of_file("/proc/self/exe"); }
+
+std::string mapped_libraries_digest() {
+  std::set<std::string> files;
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    const std::size_t path = line.find('/');
+    if (path != std::string::npos && line.find(".so", path) != std::string::npos) files.insert(line.substr(path));
+  }
+  std::set<std::string> digests;  // wherever they lie
+  for (const std::string& file : files) digests.insert(digest_of_file(file));
+  std::string all;
+  for (const std::string& digest : digests) all += digest + '\n';
+  return digest_of_text(all);
+}
+
+std::string difference_of(const Identity& one, const Identity& other) {
+  const auto lacks = [](const Identity& identity, const auto& entry) {
+    return std::ranges::find(identity, entry) == identity.end();
+  };
+  for (const auto& entry : one)
+    if (lacks(other, entry)) return entry.first;
+  for (const auto& entry : other)
+    if (lacks(one, entry)) return entry.first;
+  return "";
+}
+
+std::string processor_model() {
+  std::ifstream stream("/proc/cpuinfo");
+  for (std::string line; std::getline(stream, line);)
+    if (line.starts_with("model name")) return line.substr(std::min(line.size(), line.find(": ") + 2));
+  return "";
+}
+
+void repair_surroundings() {
+  // A file that takes descriptor 1 or 2 would get what is printed.
+  for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(standard, F_GETFD) < 0 && open("/dev/null", O_RDWR) != standard) std::_Exit(3);
+  std::signal(SIGCHLD, SIG_DFL);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 pid_t start_this_program(const std::vector<std::string>& arguments, int at_our_end,

@@ -13,6 +13,8 @@
 #include <set>
 #include <string_view>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/progress_line.hpp"
@@ -36,6 +38,8 @@ int last_words =
 std::recursive_mutex& door = *new std::recursive_mutex;
 std::set<fs::path>& unfinished = *new std::set<fs::path>;
 std::set<pid_t>& children = *new std::set<pid_t>;
+std::vector<std::pair<const void*, std::function<void()>>>& calls =
+    *new std::vector<std::pair<const void*, std::function<void()>>>;
 
 void set_actions(void (*handler)(int), Actions& former) {
   struct sigaction action {};
@@ -70,6 +74,7 @@ void say(int descriptor, std::string_view text) {
     for (int tries = 0; tries < 100 && fs::exists(fs::symlink_status(path, error)); ++tries)
       fs::remove_all(path, error);
   }
+  for (auto call = calls.rbegin(); call != calls.rend(); ++call) call->second();
   ProgressLine::clear_any();
   const std::string line = fmt::format("understory: stopped by {}\n", name_of(signal));
   if (signal != SIGHUP) say(last_words, line);
@@ -89,6 +94,16 @@ void end_on_signals() {
       },
       former);
   std::thread(wait_and_end).detach();
+}
+
+void at_signal(const void* key, std::function<void()> call) {
+  const auto lock = hold_outputs();
+  calls.emplace_back(key, std::move(call));
+}
+
+void forget_at_signal(const void* key) {
+  const auto lock = hold_outputs();
+  std::erase_if(calls, [&](const auto& call) { return call.first == key; });
 }
 
 void ends_with_us(pid_t child) {

@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <functional>
 #include <mutex>
 
 /// What becomes of unfinished work when SIGINT, SIGTERM or SIGHUP comes.
@@ -12,6 +13,10 @@ namespace understory {
 /// status 128 and the signal's number. A thread does that, so that nothing has to ask. SIGHUP says nothing,
 /// there is nobody to read it, and stays ignored where it was (nohup).
 void end_on_signals();
+
+/// `call` is made when a signal ends the program, after everything Unfinished is removed: the last one given first.
+void at_signal(const void* key, std::function<void()> call);
+void forget_at_signal(const void* key);
 
 /// A child process that ends with this one: a signal here hangs it up, and is waited for there.
 void ends_with_us(pid_t child);

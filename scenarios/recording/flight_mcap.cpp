@@ -42,7 +42,7 @@ struct FlightMcap::Implementation {
     file.add(topic, t_ns, message.SerializeAsString());
   }
 
-  Implementation(const std::filesystem::path& name, bool compress) : file(name, compress) {}
+  Implementation(const std::filesystem::path& name, bool compress, Named named) : file(name, compress, named) {}
 
   std::uint16_t left_image = channel<foxglove::CompressedImage>("/camera/left/image");
   std::uint16_t right_image = channel<foxglove::CompressedImage>("/camera/right/image");
@@ -143,8 +143,8 @@ void FlightMcap::Implementation::put_moment(const Flight& flight) {
   put(scalars, t_ns, numbers);
 }
 
-FlightMcap::FlightMcap(const std::filesystem::path& file, bool compress)
-    : implementation_(std::make_unique<Implementation>(file, compress)) {}
+FlightMcap::FlightMcap(const std::filesystem::path& file, bool compress, Named named)
+    : implementation_(std::make_unique<Implementation>(file, compress, named)) {}
 
 FlightMcap::~FlightMcap() = default;
 

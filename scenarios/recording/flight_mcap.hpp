@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "scenarios/flight/flight.hpp"
+#include "scenarios/output/file_output.hpp"
 
 namespace understory {
 
@@ -13,7 +14,7 @@ namespace understory {
 class FlightMcap : public FlightObserver {
  public:
   /// `compress`: in zstd. Throws ScenarioError where the file cannot be made.
-  FlightMcap(const std::filesystem::path& file, bool compress);
+  FlightMcap(const std::filesystem::path& file, bool compress, Named named = Named::by_us);
   ~FlightMcap() override;
 
   bool needs_images() const override { return true; }

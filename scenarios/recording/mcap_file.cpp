@@ -4,12 +4,10 @@
 
 #include <boost/crc.hpp>
 #include <bit>
-#include <cerrno>
 #include <cstring>
 #include <numeric>
 
 #include "scenarios/output/errors.hpp"
-#include "scenarios/output/file_output.hpp"
 #include "scenarios/output/program.hpp"
 
 namespace understory {
@@ -64,18 +62,14 @@ std::string compressed(const std::string& bytes) {
 
 }  // namespace
 
-McapFile::McapFile(std::filesystem::path file, bool compress)
-    : file_(std::move(file)), part_(file_.string() + ".part"), compress_(compress) {
-  const auto lock = hold_outputs();
-  stream_.open(part_.path(), std::ios::binary | std::ios::trunc);
-  if (!stream_) refuse_output(file_, errno);
+McapFile::McapFile(const std::filesystem::path& file, bool compress, Named named)
+    : file_(file, named), compress_(compress) {
   write(magic);
   write(record(header_record, sized("").append(sized(std::string("understory ") + understory_version))));
 }
 
 void McapFile::write(std::string_view bytes) {
-  stream_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!stream_) refuse_output(file_, errno);
+  file_.write(bytes);
   position_ += bytes.size();
 }
 
@@ -175,9 +169,7 @@ void McapFile::finish() {
   write(summary);
   write(number(crc_of(summary)));
   write(magic);
-  stream_.close();
-  if (!stream_) refuse_output(file_, errno);
-  part_.become(file_);
+  file_.finish();
 }
 
 }  // namespace understory

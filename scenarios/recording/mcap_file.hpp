@@ -2,23 +2,22 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "scenarios/output/signals.hpp"
+#include "scenarios/output/file_output.hpp"
 
 namespace understory {
 
 /// An MCAP file (mcap.dev/spec) of messages in order of time: chunks with checksums and indexes, a summary at
-/// its end. It bears its name when it is whole.
+/// its end. It is an OutputFile.
 class McapFile {
  public:
   /// `compress`: chunks in zstd. Throws ScenarioError where the file cannot be made.
-  McapFile(std::filesystem::path file, bool compress);
+  McapFile(const std::filesystem::path& file, bool compress, Named named);
 
   /// A topic of protobuf messages of the type `schema` ("foxglove.Log"), which `descriptors`, a serialised
   /// google.protobuf.FileDescriptorSet, describes. Gives the channel's number.
@@ -38,9 +37,7 @@ class McapFile {
   void end_chunk();
   std::string statistics() const;
 
-  std::filesystem::path file_;
-  Unfinished part_;
-  std::ofstream stream_;
+  OutputFile file_;
   bool compress_;
   std::uint64_t position_ = 0;
   Chunk chunk_;

@@ -12,6 +12,7 @@
 #include "perception/obstacle_point.hpp"
 #include "perception/stereo_hit.hpp"
 #include "perception/stereo_rig.hpp"
+#include "scenarios/output/file_output.hpp"
 #include "scenarios/output/signals.hpp"
 
 namespace cv {
@@ -21,29 +22,9 @@ class VideoWriter;
 namespace understory {
 
 /// A picture of the kind that the name ends in (.png, .jpg), whole or not at all.
-void write_picture(const std::filesystem::path& file, const cv::Mat& picture);
+void write_picture(const std::filesystem::path& file, const cv::Mat& picture, Named named = Named::by_us);
 
-/// Pictures numbered 000000.png, 000001.png ... in a folder that bears its name only when all of them are
-/// there ("<folder>.part" until then).
-class PictureFolder {
- public:
-  explicit PictureFolder(std::filesystem::path folder);
-  /// BGR or gray, 8-bit. Throws MachineError where the disk is full.
-  void add(const cv::Mat& picture);
-  void finish();
-
- private:
-  std::filesystem::path folder_;
-  Unfinished part_;
-  std::int64_t count_ = 0;
-};
-
-/// Removes a folder that such pictures made. Throws ScenarioError, removing nothing, where it holds anything
-/// else.
-void remove_pictures(const std::filesystem::path& folder);
-
-/// H.264 in mp4, which browsers play. Written under another name and renamed by finish(), so that a
-/// broken-off video does not look whole.
+/// H.264 in mp4, which browsers play, in an UnfinishedFolder. Removed where it does not come to finish().
 class VideoFile {
  public:
   VideoFile(std::filesystem::path file, double frames_per_s);
@@ -55,8 +36,7 @@ class VideoFile {
   void finish();
 
  private:
-  std::filesystem::path file_;
-  Unfinished part_;  ///< FFmpeg tells the format by the name's end
+  Unfinished file_;
   double rate_hz_;
   int picture_count_ = 0;
   std::unique_ptr<cv::VideoWriter> writer_;  ///< from the first picture on

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/program.hpp"
 #include "scenarios/report/page.hpp"
 
@@ -74,7 +75,7 @@ std::string sheet_page(const std::filesystem::path& data_root, const std::string
     for (const LinePlot& plot : section.plots)
       add_section(plot.title)["plot"] = json_of(plot, page.arrays, arrays);
   }
-  page.facts = facts.dump();
+  page.facts = json_text(facts);
   return page_html(data_root, page);
 }
 

@@ -26,8 +26,12 @@ void require_alike(const StereoRig& rectified, const StereoRig& rig, const fs::p
         rectified.width_px, rectified.height_px, rectified.focal_px, rectified.baseline_m));
 }
 
+fs::path raw_file_of(const fs::path& rig_file) {
+  return rig_file.parent_path() / "raw" / (rig_file.stem().string() + ".xml");
+}
+
 CalibratedRig raw_rig(const fs::path& rig_file, const StereoRig& rig, double meters_per_unit) {
-  const fs::path file = rig_file.parent_path() / "raw" / (rig_file.stem().string() + ".xml");
+  const fs::path file = raw_file_of(rig_file);
   if (!fs::exists(file)) throw std::runtime_error("expected the rig's calibration in " + file.string());
   CalibrationOptions options;
   options.meters_per_unit = meters_per_unit;
@@ -44,14 +48,21 @@ CalibratedRig raw_rig(const fs::path& rig_file, const StereoRig& rig, double met
 
 }  // namespace
 
-CalibratedRig rig_of(const Scenario& scenario, const fs::path& models_folder) {
+std::vector<fs::path> rig_files_of(const Scenario& scenario, const fs::path& models_folder) {
   const fs::path named = models_folder / "rigs" / (scenario.rig + ".yaml");
-  const bool is_named = fs::exists(named);
-  if (!is_named && !fs::exists(scenario.rig)) {
+  std::error_code ignored;
+  const bool is_named = fs::exists(named, ignored);
+  if (!is_named && !fs::exists(scenario.rig, ignored)) {
     throw ScenarioError(fmt::format("rig: expected a name in {} or a rig file, got {}",
                                     named.parent_path().string(), scenario.rig));
   }
   const fs::path file = is_named ? named : fs::path(scenario.rig);
+  if (scenario.cameras.raw) return {file, raw_file_of(file)};
+  return {file};
+}
+
+CalibratedRig rig_of(const Scenario& scenario, const fs::path& models_folder) {
+  const fs::path file = rig_files_of(scenario, models_folder).front();
   try {
     const StereoRig rig = read_rig(file);
     if (!scenario.cameras.raw) return {rig, std::nullopt};

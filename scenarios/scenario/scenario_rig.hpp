@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "perception/io/calibration_file.hpp"
 #include "perception/perception_config.hpp"
@@ -13,6 +14,9 @@ namespace understory {
 /// file, mounted so that the rectified pair has the pose of that file; `rig` is then that pair. Throws
 /// ScenarioError in one line where there is no such rig or its files cannot be read.
 CalibratedRig rig_of(const Scenario& scenario, const std::filesystem::path& models_folder);
+
+/// The files that rig_of() reads. Throws as it does where there is no such rig.
+std::vector<std::filesystem::path> rig_files_of(const Scenario& scenario, const std::filesystem::path& models_folder);
 
 /// Throws ScenarioError, one line, where the rule cannot look through the rig (fault_of). The line names the
 /// keys as the user writes them: `depths_key`, and the section of all others.

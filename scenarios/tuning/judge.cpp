@@ -31,7 +31,7 @@ void keep_condition(const CampaignFolder& folder, const Campaign& campaign) {
   const Condition& condition = campaign.conditions.front();
   if (text_if_there(folder.condition_file(condition)) == condition.scenario_text) return;
   for (const CampaignTask& task : tasks_of(campaign)) fs::remove(folder.flight_file(task));
-  write_lasting_file(folder.condition_file(condition), condition.scenario_text);
+  write_whole_file(folder.condition_file(condition), condition.scenario_text);
 }
 
 class FlightJudge : public Judge {
@@ -42,7 +42,7 @@ class FlightJudge : public Judge {
 
   Measured measure(const std::string& name, const Scenario& scenario) override {
     const Campaign campaign{
-        "tuning", {{name, scenario_to_text(scenario)}}, config_.seeds, config_.renderer, config_.timeout_s};
+        "tuning", {{name, scenario_to_text(scenario)}}, config_.seeds, config_.renderer, config_.timeout_s, {}};
     keep_condition(folder_, campaign);
     const std::vector<CampaignTask> tasks = tasks_of(campaign);
     if (!fly_locally(folder_, campaign, tasks, {config_.jobs, false}, {})) throw Stopped{};

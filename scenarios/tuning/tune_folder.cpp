@@ -6,13 +6,13 @@
 
 #include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/campaign/campaign_folder.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/output/folder_claim.hpp"
 #include "scenarios/output/program.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
@@ -36,7 +36,7 @@ std::string line_of(const Trial& trial, const std::vector<std::string>& paramete
     json["figures"] = numbers_of(figures, trial.figures);
   else
     json["refused"] = trial.refused;
-  return json.dump() + "\n";
+  return json_text(json) + "\n";
 }
 
 /// False where `json` has other names.
@@ -59,16 +59,21 @@ bool take_trial(const std::string& line, const std::vector<std::string>& paramet
 }
 
 /// Under each name what must not change between two runs that go on with each other.
-Json manifest_of(const TuneFile& file, const std::string& renderer) {
-  return {{"format", results_format},
-          {"understory", understory_version},
-          {"build", program_digest()},
-          {"file", file.text},
-          {"scenario", scenario_to_text(file.scenario)},
-          {"renderer", renderer}};
+Json manifest_of(const TuneFile& file, const std::string& renderer, const Identity& identity) {
+  Json json{{"format", results_format},
+            {"understory", understory_version},
+            {"file", file.text},
+            {"scenario", scenario_to_text(file.scenario)},
+            {"renderer", renderer}};
+  for (const auto& [name, digest] : identity) json[name] = digest;
+  return json;
 }
 
 }  // namespace
+
+const std::vector<std::string> tune_patterns{"tune.json",  "trials.jsonl", "validation.jsonl", "sensitivity.jsonl",
+                                             "trials.csv", "pareto.csv",   "summary.md",       "tune.svg",
+                                             "best.yaml",  "report.html",  "front/*.yaml"};
 
 TrialLog::TrialLog(fs::path file, std::vector<std::string> parameters, std::vector<std::string> figures,
                    Measure measure)
@@ -86,7 +91,7 @@ TrialLog::TrialLog(fs::path file, std::vector<std::string> parameters, std::vect
                                       file_.string(), held_.size() + 1, held_.size()));
     held_.push_back(std::move(trial));
   }
-  if (begin < text.size()) write_lasting_file(file_, text.substr(0, begin));
+  if (begin < text.size()) write_whole_file(file_, text.substr(0, begin));
 }
 
 Trial TrialLog::evaluate(const Point& point) {
@@ -111,27 +116,32 @@ Trial TrialLog::evaluate(const Point& point) {
 
 void TrialLog::append(const Trial& trial) {
   const std::string line = line_of(trial, parameters_, figures_);
+  std::error_code ignored;
+  if (FolderClaim* claim = claim_of(fs::weakly_canonical(file_, ignored))) claim->add(fs::weakly_canonical(file_));
   const int file = open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   const bool is_written =
-      file >= 0 && write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size());
+      file >= 0 && write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size()) && fdatasync(file) == 0;
   const int reason = errno;
   if (file >= 0) close(file);
-  if (!is_written)
-    throw MachineError(fmt::format("{}: cannot be written: {}", file_.string(), std::strerror(reason)));
+  if (!is_written) refuse_output(file_, reason);
 }
 
 void prepare_tune_folder(const fs::path& folder, const TuneFile& file, const std::string& renderer,
-                         bool resume) {
+                         bool resume, const Identity& identity) {
   const fs::path manifest_file = folder / "tune.json";
-  const Json manifest = manifest_of(file, renderer);
+  const Json manifest = manifest_of(file, renderer, identity);
   if (fs::exists(manifest_file)) {
     if (!resume)
       throw ScenarioError(
           fmt::format("{}: holds a tuning already: --resume goes on with it, --out names another folder",
                       folder.string()));
     const Json held = parse_json(text_if_there(manifest_file).value_or(""));
+    if (!held.is_object())
+      throw ScenarioError(fmt::format("{}: expected what `understory tune` writes there, this is no JSON object; --out "
+                                      "names another folder",
+                                      manifest_file.string()));
     for (const auto& [key, value] : manifest.items())
-      if (!held.is_object() || held.value(key, Json()) != value)
+      if (!held.contains(key) || held[key] != value)
         throw ScenarioError(
             fmt::format("{}: {} changed: expected as it was begun; --out names another folder",
                         manifest_file.string(), key));
@@ -141,7 +151,7 @@ void prepare_tune_folder(const fs::path& folder, const TuneFile& file, const std
   for (const char* log : {"trials.jsonl", "validation.jsonl", "sensitivity.jsonl"})
     if (fs::exists(folder / log))
       throw ScenarioError(fmt::format("{}: {}: expected none in a new folder", folder.string(), log));
-  write_lasting_file(manifest_file, manifest.dump(1) + "\n");
+  write_whole_file(manifest_file, json_text(manifest, 1) + "\n");
 }
 
 }  // namespace understory

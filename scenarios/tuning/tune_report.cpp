@@ -230,10 +230,7 @@ void write_tune_report(const std::filesystem::path& folder, const TuneFile& file
                   {.title = "Front", .plots = {pareto_plot(file, tuned)}, .table = front},
                   {.title = "Each parameter alone", .plots = sensitivity_plots(file, tuned)},
                   {.title = "Trials", .table = trials}}));
-  if (gains(file, tuned))
-    write_whole_file(folder / "best.yaml", tuned_config(file, tuned.best));
-  else
-    std::filesystem::remove(folder / "best.yaml");
+  if (gains(file, tuned)) write_whole_file(folder / "best.yaml", tuned_config(file, tuned.best));
   prepare_output_folder(folder / "front");
   for (const JudgedTrial& member : tuned.front)
     write_whole_file(folder / "front" / fmt::format("trial-{}.yaml", member.training.number),

@@ -102,7 +102,7 @@ TEST(CliOutput, TwoFlightsDoNotMixInOneFolder) {
   // The second starts when the first has begun to write.
   const std::string first = std::string(UNDERSTORY_BINARY) + " " + short_flight +
                             "--set forest.length_m=20 " + out + " & " + "for i in $(seq 500); do test -e " +
-                            (folder.path() / "run.part/scenario.yaml").string() +
+                            (folder.path() / ".understory-run.unfinished/scenario.yaml").string() +
                             " && break; sleep 0.01; done;";
   const Outcome second = understory(short_flight + "--seed 7 " + out + " 2>&1; echo status $?; wait", first);
   EXPECT_NE(second.text.find("another understory writes there"), std::string::npos) << second.text;
@@ -136,10 +136,10 @@ TEST(CliOutput, NoCommandWritesIntoAFolderThatAnotherWritesInto) {
   for (const std::string& command :
        {std::string("detect rec"), std::string("evaluate rec"), campaign, std::string("tune tune.yaml")}) {
     expect_refusal(command + " --out /dev/null/x", "expected a writable output", 2, in_folder);
-    const std::string locked = in_folder + "mkdir -p out && flock out/lock ";
+    const std::string locked = in_folder + "mkdir -p out && flock out/.understory ";
     expect_refusal(command + " --out out", "out: another understory writes there at this moment", 2, locked);
   }
-  fs::remove(folder.path() / "out/lock");
+  fs::remove(folder.path() / "out/.understory");
   EXPECT_TRUE(fs::is_empty(folder.path() / "out"));
   expect_refusal("evaluate none --out new", "none", 2, in_folder);
   EXPECT_FALSE(fs::exists(folder.path() / "new"));
@@ -168,7 +168,7 @@ TEST(CliOutput, ASignalStopsACampaignThatGoesOnLater) {
   EXPECT_EQ(stopped.status, 143);
   EXPECT_NE(stopped.text.find("stopped with 0 of 3 flights over; --resume goes on\n"), std::string::npos)
       << stopped.text;
-  for (const std::string& name : names_in(folder.path())) EXPECT_FALSE(name.ends_with(".part")) << name;
+  for (const std::string& name : names_in(folder.path())) EXPECT_EQ(name.find("unfinished"), std::string::npos) << name;
 }
 
 TEST(CliOutput, ASignalStopsTheRecordersOfAnEvaluation) {
@@ -176,8 +176,7 @@ TEST(CliOutput, ASignalStopsTheRecordersOfAnEvaluation) {
   folder.write(
       "suite.yaml",
       "recordings:\n  - {name: forest, scenario: forest, seeds: 1..2, set: {forest.length_m: 400}}\n");
-  expect_stopped("evaluate suite.yaml --jobs 2 --out results", folder.path(),
-                 {"results", "results/recordings", "suite.yaml"});
+  expect_stopped("evaluate suite.yaml --jobs 2 --out results", folder.path(), {"suite.yaml"});
 }
 
 /// Runs `arguments` with `folder` a disk of that size, in a mount namespace of its own.
@@ -200,15 +199,15 @@ TEST(CliOutput, AFullDiskIsOneLineAndAFilmThatDoesNotFitLosesNoResult) {
   const Outcome film = on_small_disk("fly clear --set forest.length_m=10 --quiet --video --out run",
                                      folder.path(), "300k", "ls -A . run");
   EXPECT_NE(film.text.find("No space left on device\nstatus 3\n"), std::string::npos) << film.text;
-  EXPECT_NE(film.text.find("run:\nestimate.tum\nmap.ply\nobstacles.csv\nresult.json\nscenario.yaml\n"), std::string::npos) << film.text;
-  EXPECT_EQ(film.text.find("run.part", film.text.find("status 3")), std::string::npos) << film.text;
+  EXPECT_NE(film.text.find("run:\n.understory\nestimate.tum\nmap.ply\nobstacles.csv\nresult.json\nscenario.yaml\n"), std::string::npos) << film.text;
+  EXPECT_EQ(film.text.find("unfinished", film.text.find("status 3")), std::string::npos) << film.text;
 }
 
 TEST(CliOutput, AFolderThatIsADiskOfItsOwnIsWrittenWithin) {
   if (!mounts_disks()) GTEST_SKIP() << "only root may mount a small disk";
   const TemporaryFolder folder;
   const Outcome flown = on_small_disk(short_flight + "--out .", folder.path(), "1m", "ls -A");
-  EXPECT_EQ(flown.text, "status 0\nestimate.tum\nmap.ply\nobstacles.csv\nresult.json\nscenario.yaml\ntrajectory.csv\ntruth.tum\n");
+  EXPECT_EQ(flown.text, "status 0\n.understory\nestimate.tum\nmap.ply\nobstacles.csv\nresult.json\nscenario.yaml\ntrajectory.csv\ntruth.tum\n");
 }
 
 #endif

@@ -237,18 +237,21 @@ TEST_F(Detect, BadInputIsOneLineAndLeavesNoResult) {
   EXPECT_FALSE(fs::exists(fs::path(out)));
 }
 
-TEST_F(Detect, AFaultHalfWayLeavesNothingThatLooksWhole) {
+TEST_F(Detect, AFaultHalfWayLeavesTheRunBeforeAsItWas) {
   support::write_pairs(folder.path(), support::planes(rig, 3), {"a1", "a2", "a3"});
   expect_success("detect " + folders() + to_out());
   cv::imwrite(right + "/a3.png", cv::Mat(rig.height_px, rig.width_px, CV_8UC3, cv::Scalar(5)));
+  const std::string before = support::content_of(fs::path(out) / "points.csv");
   for (const char* video : {"", " --video"})
     support::expect_refusal("detect " + folders() + to_out() + video,
                             "right/a3.png: expected an 8-bit gray image");
-  EXPECT_TRUE(fs::is_empty(out));  // nor anything of the run before
-  fs::create_directories(fs::path(out) / "overlays");
+  EXPECT_EQ(support::content_of(fs::path(out) / "points.csv"), before);  // the run before, whole
+  EXPECT_TRUE(fs::exists(fs::path(out) / "overlays/000002.png"));
   std::ofstream(fs::path(out) / "overlays/mine.txt") << "keep";
-  support::expect_refusal("detect " + left + "/a1.png " + right + "/a1.png" + to_out(), "found mine.txt");
+  expect_success("detect " + left + "/a1.png " + right + "/a1.png" + to_out());
   EXPECT_TRUE(fs::exists(fs::path(out) / "overlays/mine.txt"));
+  EXPECT_TRUE(fs::exists(fs::path(out) / "overlays/000000.png"));
+  EXPECT_FALSE(fs::exists(fs::path(out) / "overlays/000002.png"));  // it must not pass for this run's
 }
 
 }  // namespace

@@ -88,29 +88,6 @@ TEST(RigPicture, ShowsTheDetectionSurface) {
   EXPECT_GT(far_px, 2 * near_px);
 }
 
-TEST(PictureFolder, AppearsWholeOrNotAtAll) {
-  const support::TemporaryFolder folder;
-  const fs::path pictures = folder.path() / "overlays";
-  const cv::Mat picture(4, 6, CV_8UC3, cv::Scalar(1, 2, 3));
-  {
-    PictureFolder broken_off(pictures);
-    broken_off.add(picture);
-    EXPECT_FALSE(fs::exists(pictures));
-  }
-  EXPECT_TRUE(fs::is_empty(folder.path()));
-  for (const int count : {2, 1}) {
-    PictureFolder made(pictures);
-    for (int i = 0; i < count; ++i) made.add(picture);
-    made.finish();
-    EXPECT_EQ(std::distance(fs::directory_iterator(pictures), fs::directory_iterator()), count);
-  }
-  std::ofstream(pictures / "notes.txt") << "mine";
-  PictureFolder refused(pictures);
-  refused.add(picture);
-  EXPECT_THROW(refused.finish(), ScenarioError);
-  EXPECT_TRUE(fs::exists(pictures / "notes.txt"));
-}
-
 /// A camera that looks along world x whatever the body's axes are, moved along x at 1 m/s.
 TEST(PosedMap, ForgetsWhatTheCameraHasPassedWhateverTheBodysAxes) {
   Eigen::Matrix3d looks_along_x;  // camera (right, down, ahead) into world (ahead, left, up)
@@ -185,7 +162,6 @@ TEST(Video, CanBeReadBackFrameByFrame) {
   fs::remove(file);
   VideoFile video(file, 30);
   for (int i = 0; i < 12; ++i) video.add(cv::Mat(240, 320, CV_8UC3, cv::Scalar::all(20 * i)));
-  EXPECT_FALSE(fs::exists(file));  // not before it is whole
   video.finish();
   cv::VideoCapture capture(file.string());
   ASSERT_TRUE(capture.isOpened());

@@ -95,7 +95,7 @@ TEST_F(Output, AnUnwritableFolderIsBadInput) {
 }
 
 FolderContents contents(const std::string& configuration) {
-  return {"scenario.yaml", configuration, {"result.json", "scenario.yaml", "film.mp4", "pictures/*.png"}};
+  return {"flight", "scenario.yaml", configuration, {"result.json", "scenario.yaml", "film.mp4", "pictures/*.png"}};
 }
 
 /// A run of that configuration, as a command leaves it.
@@ -119,7 +119,7 @@ TEST_F(OutputFolderTest, BearsItsNameOnlyWhenItIsWhole) {
   EXPECT_TRUE(fs::is_empty(folder.path() / "runs"));
   run_into(run, "a", Replace::same, true);
   EXPECT_EQ(content_of(run / "scenario.yaml"), "a");
-  EXPECT_EQ(std::distance(fs::directory_iterator(run), {}), 4);  // no lock either
+  EXPECT_EQ(std::distance(fs::directory_iterator(run), {}), 5);  // and the list of them
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path() / "runs"), {}), 1);
 }
 
@@ -156,11 +156,13 @@ TEST_F(OutputFolderTest, AnotherConfigurationIsKeptUnlessForced) {
 TEST_F(OutputFolderTest, WhatNobodySaysIsOursIsNeverReplaced) {
   folder.write("mine/result.json", "precious");
   expect_part(refusal_of<ScenarioError>([&] { run_into(folder.path() / "mine", "a", Replace::anything); }),
-              "no scenario.yaml");
+              "mine/result.json");
   EXPECT_EQ(content_of(folder.path() / "mine/result.json"), "precious");
   folder.write("new.part/thesis.tex", "precious");
-  expect_part(refusal_of<ScenarioError>([&] { run_into(folder.path() / "new", "a"); }), "new.part");
+  folder.write("new/lock", "precious");
+  run_into(folder.path() / "new", "a");
   EXPECT_EQ(content_of(folder.path() / "new.part/thesis.tex"), "precious");
+  EXPECT_EQ(content_of(folder.path() / "new/lock"), "precious");
   folder.write("notes/notes.txt", "mine");
   run_into(folder.path() / "notes", "a");
   EXPECT_EQ(content_of(folder.path() / "notes/notes.txt"), "mine");
@@ -178,12 +180,12 @@ TEST_F(OutputFolderTest, OneProgramAtATimeWritesIntoAFolder) {
   }
 }
 
-TEST_F(OutputFolderTest, ALockLeavesNothingBehind) {
+TEST_F(OutputFolderTest, AClaimLeavesNothingBehind) {
   const fs::path fresh = folder.path() / "new";
-  { const FolderLock lock(fresh, fresh); }
+  { const FolderClaim claim(fresh, "flight", fresh); }
   EXPECT_FALSE(fs::exists(fresh));
   fs::create_directory(fresh);
-  { const FolderLock lock(fresh, fresh); }
+  { const FolderClaim claim(fresh, "flight", fresh); }
   EXPECT_TRUE(fs::is_empty(fresh));
 }
 

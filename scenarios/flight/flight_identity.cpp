@@ -1,0 +1,64 @@
+#include "scenarios/flight/flight_identity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "scenarios/output/errors.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
+#include "sim/render/offscreen_context.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> files_below(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) files.push_back(entry.path().lexically_relative(folder));
+  std::ranges::sort(files);
+  return files;
+}
+
+std::string digest_of_models(const fs::path& folder) {
+  std::string all;
+  for (const fs::path& file : files_below(folder))
+    if (*file.begin() != "rigs") all += file.string() + ' ' + digest_of_file(folder / file) + '\n';
+  return digest_of_text(all);
+}
+
+}  // namespace
+
+Identity identity_of(const std::vector<Scenario>& scenarios, const fs::path& models_folder, RendererKind renderer) {
+  try {
+    OffscreenContext context({renderer});
+    context.make_current(16, 16);  // now everything that draws is mapped
+  } catch (const std::runtime_error& error) {
+    throw MachineError(error.what());
+  }
+  Identity identity{{"program", program_digest()},
+                    {"libraries", mapped_libraries_digest()},
+                    {"models", digest_of_models(models_folder)}};
+  std::set<std::string> rigs;
+  for (const Scenario& scenario : scenarios) {
+    std::string all;
+    for (const fs::path& file : rig_files_of(scenario, models_folder)) all += digest_of_file(file) + '\n';
+    const std::string name = "rig " + scenario.rig + (scenario.cameras.raw ? ", raw" : "");
+    if (rigs.insert(name).second) identity.emplace_back(name, digest_of_text(all));
+  }
+  return identity;
+}
+
+std::string digest_of_recording(const fs::path& folder) {
+  std::string all;
+  for (const fs::path& file : files_below(folder)) {
+    const bool is_table = file.extension() == ".csv" || file.extension() == ".yaml";
+    all += fmt::format("{} {} {}\n", file.string(), fs::file_size(folder / file),
+                       is_table ? digest_of_file(folder / file) : "");
+  }
+  return digest_of_text(all);
+}
+
+}  // namespace understory

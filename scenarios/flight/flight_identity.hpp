@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenarios/output/program.hpp"
+#include "scenarios/scenario/scenario.hpp"
+#include "sim/render/renderer_kind.hpp"
+
+namespace understory {
+
+/// Of flights that this program, as it is loaded, would fly: its file, the libraries it has mapped (the renderer's too,
+/// which is opened here), all of the models folder but its rigs, and each scenario's rig. Throws ScenarioError where a
+/// rig is missing, MachineError where nothing can be drawn.
+Identity identity_of(const std::vector<Scenario>& scenarios, const std::filesystem::path& models_folder,
+                     RendererKind renderer);
+
+/// Of everything in a recording's folder: names and sizes of its files, contents of its tables.
+std::string digest_of_recording(const std::filesystem::path& folder);
+
+}  // namespace understory

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace understory {
+
+/// The file in a folder of results that lists what this program wrote there, and of which kind of results it is.
+inline constexpr const char* claim_name = ".understory";
+
+/// A folder that this program writes into. The file ".understory" in it lists what the program wrote there: nothing
+/// else in the folder is ever replaced or removed. That file is locked, too, so that one program at a time writes
+/// there. Whatever writes a file (OutputFile) asks the claims that are alive. Each kind of results ("flight",
+/// "campaign") owns its files: a campaign does not replace those of a flight.
+class FolderClaim {
+ public:
+  enum class Manner {
+    alone,         ///< no other program may write there meanwhile
+    beside_others  ///< adds a file or two, whoever else is at work
+  };
+
+  /// Makes the folder where there is none, and clears away what killed programs left in it unfinished. Throws
+  /// ScenarioError, which calls the folder by `name`, where another program holds it, it cannot be written or
+  /// ".understory" is a file of somebody else's.
+  FolderClaim(const std::filesystem::path& folder, std::string kind, const std::filesystem::path& name,
+              Manner manner = Manner::alone);
+  /// Where nothing is listed, removes the folders that it made, as far as they are empty.
+  ~FolderClaim();
+  FolderClaim(const FolderClaim&) = delete;
+  FolderClaim& operator=(const FolderClaim&) = delete;
+
+  const std::filesystem::path& folder() const { return folder_; }
+  /// Whether there are files in the folder, or below it, that are not listed.
+  bool holds_other_files() const;
+  /// Whether the file, a path below the folder, is listed under our kind.
+  bool owns(const std::filesystem::path& file) const;
+  /// Lists what is there and matches (fnmatch; '*' is no '/') where nothing is listed yet: results of older programs,
+  /// or copies without their hidden files.
+  void adopt(const std::vector<std::string>& patterns);
+  /// Throws ScenarioError where something matches one of `patterns` that is not ours, or where a file stands in place
+  /// of a folder that they need.
+  void require_own(const std::vector<std::string>& patterns) const;
+  /// Lists a file that will be written now. Throws as require_own().
+  void add(const std::filesystem::path& file);
+  /// Removes what is ours, matches one of `patterns` and was not added by this object.
+  void remove_stale(const std::vector<std::string>& patterns);
+  /// The list becomes `files`, by relative path, of that kind.
+  void list(const std::string& kind, const std::vector<std::filesystem::path>& files);
+  /// Folders were made in it: they go with those that it made itself.
+  void made_folders(const std::vector<std::filesystem::path>& folders);
+
+ private:
+  void lock(const std::filesystem::path& name, Manner manner);
+  void read_list(const std::filesystem::path& name);
+  void note(const std::string& file);
+  void write_list();
+  void let_go();
+
+  std::filesystem::path folder_;  ///< canonical
+  std::string kind_;
+  int file_ = -1;
+  bool is_locked_ = false;
+  bool is_new_ = false;                         ///< we made ".understory"
+  std::map<std::string, std::string> written_;  ///< path to kind, of all kinds
+  std::set<std::string> added_;                 ///< by this object
+  std::vector<std::filesystem::path> made_;     ///< folders, outermost first
+};
+
+/// The claim of the innermost folder that holds `file` (canonical); null where nobody claims it.
+FolderClaim* claim_of(const std::filesystem::path& file);
+
+/// Removes what programs left unfinished in `folder` that are alive no more.
+void clear_unfinished(const std::filesystem::path& folder);
+
+/// Makes a folder and those above it. Gives those that were not there before, outermost first. Throws as OutputFile,
+/// calling the folder by `name`.
+std::vector<std::filesystem::path> make_folders(const std::filesystem::path& folder, const std::filesystem::path& name);
+
+/// Every file below `folder` that a pattern means, by relative path, sorted.
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& folder,
+                                            const std::vector<std::string>& patterns);
+
+}  // namespace understory
