@@ -30,6 +30,22 @@ FlightModel::FlightModel(const Airframe& airframe, const FlightModelConfig& conf
       std::min(airframe_.max_thrust_n, weight_n * sine * drag_to_lift + q * airframe_.body_drag_area_m2);
 }
 
+double FlightModel::fastest_level_mps() const {
+  const double weight_n = airframe_.mass_kg * airframe_.gravity_mps2, thrust_n = airframe_.max_thrust_n;
+  const double drag_to_lift = airframe_.wing_drag_factor / airframe_.wing_lift_factor;
+  for (double speed_mps = 20; speed_mps > 1; speed_mps -= 0.01) {
+    const double q = dynamic_pressure_pa(airframe_, speed_mps);
+    double sine = 0, cosine = 1;  // of the angle of attack: plate and thrust carry the weight
+    for (int i = 0; i < 20; ++i) {
+      sine = std::min(0.7, weight_n / (2 * cosine * q * lifting_area_m2_ + thrust_n));
+      cosine = std::sqrt(1 - sine * sine);
+    }
+    const double drag_n = 2 * sine * sine * q * lifting_area_m2_ * drag_to_lift + q * airframe_.body_drag_area_m2;
+    if (sine < 0.7 && drag_n <= thrust_n * cosine) return speed_mps;
+  }
+  return 0;
+}
+
 FlightModel::Attitude::Attitude(const FlightState& state)
     : sin_alpha(std::sin(state.angle_of_attack_rad)),
       cos_alpha(std::cos(state.angle_of_attack_rad)),

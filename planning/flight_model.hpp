@@ -61,6 +61,9 @@ class FlightModel {
     return path_pitch_rate_radps(state, Attitude(state));
   }
 
+  /// The highest speed up to 20 m/s that full thrust holds in level flight; 0 where it holds none.
+  double fastest_level_mps() const;
+
   const Airframe& airframe() const { return airframe_; }
   const FlightModelConfig& config() const { return config_; }
 

@@ -34,6 +34,12 @@ bool begins_as_image(std::string_view bytes) {
          });
 }
 
+/// What cannot be decoded for want of memory or descriptors is no damaged file.
+void require_resources(const std::filesystem::path& file) {
+  const std::string lacking = lacking_resource();
+  if (!lacking.empty()) throw MachineError(file.string() + ": " + lacking);
+}
+
 struct ClaimedSize {
   std::uint32_t width_px = 0, height_px = 0;
 };
@@ -119,9 +125,13 @@ cv::Mat read_gray_image(const std::filesystem::path& file, int depth) {
   cv::Mat image;
   try {
     image = picture_codecs().decode(bytes);
+  } catch (const MachineError&) {
+    throw;
   } catch (const std::exception&) {  // not all its libraries throw cv::Exception
+    require_resources(file);
     throw expected("what OpenCV cannot decode");
   }
+  if (image.empty()) require_resources(file);
   if (image.empty()) throw expected("no image, or a damaged one");
   if (image.type() != CV_MAKETYPE(depth, 1)) throw expected(kind_of(image));
   return image;

@@ -1,8 +1,11 @@
 #include "perception/io/text_file.hpp"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+
+#include <unistd.h>
 
 #include <array>
 #include <cerrno>
@@ -53,6 +56,29 @@ std::string lacking_resource(int error) {
   if (error == ENOMEM || error == EAGAIN)
     return "not enough memory, this program's limit is " + limit(RLIMIT_AS) + " bytes (ulimit -v)";
   return "";
+}
+
+namespace {
+
+bool maps(std::size_t bytes) {
+  void* const place = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (place == MAP_FAILED) return false;
+  munmap(place, bytes);
+  return true;
+}
+
+}  // namespace
+
+std::string lacking_resource() {
+  const int descriptor = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return lacking_resource(errno);
+  close(descriptor);
+  return maps(std::size_t{64} << 20) ? "" : lacking_resource(ENOMEM);
+}
+
+void require_address_space(std::size_t bytes, const std::string& work) {
+  if (maps(bytes)) return;
+  throw MachineError(lacking_resource(ENOMEM) + "; " + work + " takes " + std::to_string(bytes >> 20) + " MiB more");
 }
 
 std::string place_in(const std::string& file, int line) { return file + ":" + std::to_string(line); }

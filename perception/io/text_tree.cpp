@@ -34,6 +34,50 @@ std::size_t depth_of(const TextNode& node) {
   return deepest + 1;
 }
 
+/// What most often keeps a text from being YAML, and where, which its parser tells in its own words: a tab that
+/// indents, a bracket or a quotation mark that is not closed.
+struct YamlFault {
+  int line = 0;  ///< 0: none of these
+  std::string what;
+};
+
+YamlFault likely_fault(const std::string& text) {
+  struct Open {
+    char mark;
+    int line;
+  };
+  std::vector<Open> open;
+  int line = 1;
+  bool is_indentation = true, is_comment = false;
+  char quote = 0, before = '\n';
+  int quote_line = 0;
+  for (const char c : text) {
+    if (quote != 0) {
+      if (c == quote && before != '\\') quote = 0;
+    } else if (!is_comment) {
+      if (is_indentation && c == '\t' && open.empty()) return {line, "expected blanks, found a tab before the key"};
+      const bool begins_value = before == ' ' || before == '\n' || before == '[' || before == '{' || before == ',';
+      if (c == '#' && (before == ' ' || before == '\n' || before == '\t')) is_comment = true;
+      if ((c == '"' || c == '\'') && begins_value) {
+        quote = c;
+        quote_line = line;
+      }
+      if ((c == '[' || c == '{') && (begins_value || before == ':')) open.push_back({c, line});
+      if ((c == ']' || c == '}') && !open.empty()) open.pop_back();
+    }
+    is_indentation = c == '\n' || (is_indentation && (c == ' ' || c == '\t'));
+    if (c == '\n') {
+      ++line;
+      is_comment = false;
+    }
+    before = c;
+  }
+  if (quote != 0) return {quote_line, std::string("expected a second ") + quote + " that ends the text"};
+  if (open.empty()) return {};
+  return {open.back().line, std::string("expected a ") + (open.back().mark == '[' ? ']' : '}') + " that closes the " +
+                                open.back().mark};
+}
+
 /// Builds the tree from the parser's events, because yaml-cpp's own loaders cannot be left alone with a
 /// strange file: YAML::LoadAll (0.7) finds documents without end behind a stray comma, an alias that contains
 /// itself makes a node without end, and aliases of aliases make more nodes than memory holds. Here all end at
@@ -44,12 +88,14 @@ class TreeBuilder : public YAML::EventHandler {
 
   std::optional<TextNode> read(const std::string& text) {
     std::istringstream stream(text);
+    text_ = &text;
     try {
       YAML::Parser parser(stream);
       while (parser.HandleNextDocument(*this)) {
       }
     } catch (const YAML::Exception& error) {
-      refuse_input(place(error.mark), "", "expected YAML: " + error.msg);
+      refuse_likely_fault();
+      refuse_input(place(error.mark), "", "expected YAML, `key: value` on a line of its own: " + error.msg);
     }
     return std::move(root_);
   }
@@ -128,7 +174,13 @@ class TreeBuilder : public YAML::EventHandler {
 
   bool expects_key() const { return open_.back().node.kind == TextNode::Kind::map && !open_.back().key; }
 
-  [[noreturn]] static void refuse_key(const TextNode& node) {
+  void refuse_likely_fault() const {
+    const YamlFault fault = likely_fault(*text_);
+    if (fault.line > 0) refuse_input(has_lines_ ? place_in(name_, fault.line) : name_, "", fault.what);
+  }
+
+  [[noreturn]] void refuse_key(const TextNode& node) const {
+    refuse_likely_fault();
     refuse_input(node.origin, "", "expected a plain word as key");
   }
 
@@ -154,6 +206,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   const std::string& name_;
+  const std::string* text_ = nullptr;  ///< while it is read
   bool has_lines_;
   std::size_t nodes_ = 0;
   std::vector<OpenNode> open_;  // outermost first

@@ -7,6 +7,7 @@
 
 #include "perception/io/text_table.hpp"
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/config/keys.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
@@ -15,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t maximum_seed = std::uint64_t{1} << 32;
-constexpr std::size_t maximum_flights = 1'000'000;
+constexpr std::size_t maximum_flights = 200'000, maximum_conditions = 2'000;
 
 using Changes = std::vector<ConfigNode>;  ///< a tree per key
 
@@ -86,14 +87,32 @@ std::vector<Variant> overrides_of(const ConfigNode* list, const fs::path& campai
   return variants;
 }
 
-/// Every combination of the grid's values over each of `variants`.
-std::vector<Variant> with_grid(std::vector<Variant> variants, const ConfigNode* grid) {
+/// Before any is made: whether the grid's keys are a scenario's, and how many variants it makes of so many.
+std::size_t require_grid(const ConfigNode* grid, std::size_t variants) {
   if (grid == nullptr) return variants;
   if (grid->kind != ConfigNode::Kind::map || grid->children.empty())
     refuse_key(*grid, "grid", "a group {key: [values], ...}");
+  std::vector<std::string> known;
+  for (const Key& key : keys_of(scenario_from_text("{}", "defaults"))) known.push_back(key.name);
   for (const ConfigNode& axis : grid->children) {
+    const auto is_named = [&](const std::string& key) {
+      return key == axis.key || key.starts_with(axis.key + ".") || key.starts_with(axis.key + "[");
+    };
+    if (std::ranges::none_of(known, is_named))
+      refuse_input(axis.origin, "grid." + axis.key, "expected a known key" + did_you_mean(axis.key, known));
     if (axis.kind != ConfigNode::Kind::list || axis.children.empty())
       refuse_key(axis, "grid." + axis.key, "a list of values");
+    variants *= axis.children.size();
+    if (variants > maximum_conditions)
+      refuse_key(*grid, "grid", fmt::format("at most {} conditions in all", maximum_conditions));
+  }
+  return variants;
+}
+
+/// Every combination of the grid's values over each of `variants`.
+std::vector<Variant> with_grid(std::vector<Variant> variants, const ConfigNode* grid) {
+  if (grid == nullptr) return variants;
+  for (const ConfigNode& axis : grid->children) {
     const std::string short_key = axis.key.substr(axis.key.rfind('.') + 1);
     std::vector<Variant> more;
     for (const Variant& variant : variants)
@@ -142,7 +161,10 @@ std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, cons
 
 std::string name_in(const ConfigNode& top, const fs::path& file) {
   const ConfigNode* name = find_child(top, "name");
-  if (name == nullptr) return plain(file.stem().string());
+  if (name == nullptr) {
+    const std::string stem = plain(file.stem().string());
+    return stem.starts_with('.') ? "_" + stem : stem.substr(0, 200);
+  }
   if (!is_plain_name(name->text)) refuse_key(*name, "name", "letters, digits and . _ = -");
   return name->text;
 }
@@ -182,10 +204,17 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario) 
                "the scenarios to fly, once: [forest, dense]");
   campaign.seeds = seeds_in(top, "seeds");
 
-  const std::vector<Variant> variants =
-      with_grid(overrides_of(find_child(top, "overrides"), file), find_child(top, "grid"));
+  std::vector<Variant> overrides = overrides_of(find_child(top, "overrides"), file);
+  const std::vector<std::string> words = words_of(*scenarios, "scenarios", "names or files of scenarios");
+  const std::size_t conditions = words.size() * require_grid(find_child(top, "grid"), overrides.size());
+  if (conditions > maximum_conditions)
+    refuse_key(*scenarios, "scenarios", fmt::format("at most {} conditions in all", maximum_conditions));
+  if (conditions * campaign.seeds.size() > maximum_flights)
+    refuse_key(*find_child(top, "seeds"), "seeds",
+               fmt::format("at most {} flights in all, these are {}", maximum_flights, conditions * campaign.seeds.size()));
+  const std::vector<Variant> variants = with_grid(std::move(overrides), find_child(top, "grid"));
   std::set<std::string> seen;
-  for (const std::string& word : words_of(*scenarios, "scenarios", "names or files of scenarios")) {
+  for (const std::string& word : words) {
     const fs::path path = scenario_beside(file, *scenarios, word, find_scenario);
     for (const Variant& variant : variants) {
       const Scenario scenario = load_changed_scenario(path, variant.changes);
@@ -195,8 +224,6 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario) 
       campaign.conditions.push_back({name, scenario_to_text(scenario)});
     }
   }
-  if (campaign.conditions.size() * campaign.seeds.size() > maximum_flights)
-    refuse_key(*find_child(top, "seeds"), "seeds", fmt::format("at most {} flights in all", maximum_flights));
   return campaign;
 }
 

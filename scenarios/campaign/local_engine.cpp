@@ -187,6 +187,7 @@ bool fly_locally(const CampaignFolder& folder, const Campaign& campaign,
   progress.flights = tasks.size();
   std::vector<const CampaignTask*> left;
   for (const CampaignTask& task : tasks) {
+    if (stop_signals.asked()) return false;
     const auto file = read_flight(folder, task);
     if (file && file->row.flown())
       count(file->row, progress);

@@ -12,6 +12,7 @@
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/flight/fly.hpp"
 #include "scenarios/flight/run_record.hpp"
+#include "planning/flight_model.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/output_folder.hpp"
 #include "scenarios/output/progress_line.hpp"
@@ -62,6 +63,17 @@ Scenario scenario_of(const FlightArguments& arguments) {
     throw ScenarioError(fmt::format("{}: rig: expected a name in {} or a rig file, got '{}'",
                                     where_given(file, settings, "rig", with), rigs.string(), scenario.rig));
   return scenario;
+}
+
+/// What is odd about a scenario and no error, on standard error: a grid sweeps through it.
+void warn_of(const Scenario& scenario, bool quiet) {
+  const FlightModel model(scenario.airframe, scenario.autopilot.autopilot.flight_model);
+  const double asked_mps = model.config().cruise_speed_mps, fastest_mps = model.fastest_level_mps();
+  if (!quiet && asked_mps > fastest_mps + 0.1)
+    fmt::print(stderr,
+               "understory: warning: autopilot.flight_model.cruise_speed_mps: the aircraft holds at most {:.1f} m/s in level "
+               "flight, {:g} m/s are asked for\n",
+               fastest_mps, asked_mps);
 }
 
 FlyOptions options_of(const FlightArguments& arguments) {
@@ -165,8 +177,11 @@ int run_fly(const FlyArguments& arguments) {
     options.output_folder = output->path();
   }
   const std::unique_ptr<FlightMcap> log = log_of(arguments, options);
+  warn_of(scenario, arguments.quiet);
   ProgressLine line(!arguments.quiet);
   options.on_progress = [&](const FlightProgress& progress) { show(line, progress); };
+  if (const std::size_t obstacles = course_obstacles(scenario).size(); obstacles > 2000)
+    line.show(fmt::format("building a world with {} obstacles", obstacles));
   const FlightResult result = flown(scenario, options, output);
   line.clear();
   FlightRow row = flown_row(fs::path(arguments.scenario).stem().string(), scenario, result);

@@ -30,6 +30,27 @@ void refuse_empty_assignments(int argc, char** argv) {
   }
 }
 
+/// CLI11's errors in our words.
+void refuse_arguments(const Command& command, const CLI::ParseError& error) {
+  const std::string& name = command.text().name;
+  const auto about = [&](const OptionText& option) {
+    return std::string(error.what()).starts_with(option.name) || option.name == error.what();
+  };
+  const auto option = std::ranges::find_if(command.options(), about);
+  if (option == command.options().end()) return;
+  const std::string text = error.what();
+  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr)
+    throw ScenarioError(fmt::format("{}: expected {} {}: {}", name, option->name, option->placeholder, option->meaning));
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+    const bool too_many = text.find("received") != std::string::npos;
+    throw ScenarioError(fmt::format("{} {}: {} (understory {} --help)", name, option->name,
+                                    too_many ? "expected fewer arguments, or once" : "expected a value behind it", name));
+  }
+  if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr)
+    throw ScenarioError(fmt::format("{} {}: expected without {}", name, option->name,
+                                    text.substr(std::min(text.size(), text.rfind(' ') + 1))));
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> exit_statuses(const CommandText& command) {
@@ -169,6 +190,9 @@ int CommandLine::run(int argc, char** argv) {
     if (!command.hidden()) names.push_back(command.text().name);
   if (argc < 2) throw ScenarioError(fmt::format("expected a command: {}", fmt::join(names, ", ")));
   const std::string_view first = argv[1];
+  if (first.starts_with('-') && first != "--help" && first != "-h" && first != "--version")
+    throw ScenarioError(fmt::format("{}: expected a command first: {}{}", first, fmt::join(names, ", "),
+                                    did_you_mean(first.substr(std::min(first.size(), first.find_first_not_of('-'))), names)));
   const auto named = std::ranges::find(commands_, first, [](const Command& c) { return c.text().name; });
   if (named == commands_.end() && !first.starts_with('-'))
     throw ScenarioError(fmt::format("{}: expected a command: {}{}", first, fmt::join(names, ", "),
@@ -186,6 +210,7 @@ int CommandLine::run(int argc, char** argv) {
                             : fmt::format("{} {}: expected no further argument", first, extra));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app_->exit(error);
+    if (named != commands_.end()) refuse_arguments(*named, error);
     throw ScenarioError(
         fmt::format("{} {} (understory {} --help says what there is)", first, error.what(), first));
   }

@@ -76,12 +76,17 @@ ConfigNode under_keys(ConfigNode value, std::string keys) {
 }
 
 ConfigNode parse_assignment(const std::string& assignment) {
-  const std::string origin = "--set " + assignment;
+  constexpr std::size_t maximum_shown = 200;
+  constexpr std::ptrdiff_t maximum_levels = 16;  // as in a file
+  const std::string origin =
+      "--set " + (assignment.size() <= maximum_shown ? assignment : assignment.substr(0, maximum_shown) + "...");
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0) {
     throw ScenarioError(fmt::format("{}: expected key=value, for instance forest.length_m=60", origin));
   }
   const std::string key = assignment.substr(0, equals);
+  if (std::ranges::count(key, '.') >= maximum_levels)
+    throw ScenarioError(fmt::format("{}: expected at most {} levels of keys", origin, maximum_levels));
   return under_keys(parse_yaml_value(assignment.substr(equals + 1), origin, key), key);
 }
 

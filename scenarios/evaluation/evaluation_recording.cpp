@@ -47,6 +47,8 @@ template <typename Read>
 auto bad_input_where_refused(Read&& read) {
   try {
     return read();
+  } catch (const MachineError&) {
+    throw;
   } catch (const std::runtime_error& error) {
     throw ScenarioError(error.what());
   }

@@ -1,5 +1,7 @@
 #include "scenarios/flight/flight.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -108,7 +110,13 @@ void Flight::tell(void (FlightObserver::*event)(const Flight&)) {
 
 void Flight::advance() {
   const auto timed = stopwatch_.time("physics");
-  aircraft_.step(controls_);
+  try {
+    aircraft_.step(controls_);
+  } catch (const SimulationError& error) {
+    throw ScenarioError(fmt::format("{}: airframe: {}, {:.3f} s into the flight; expected an aircraft that steps of 1/1200 "
+                                    "s can follow (keys of airframe, actuators, mismatch, autopilot)",
+                                    scenario_.name, error.what(), clock_.t_s()));
+  }
   clock_.advance();
 }
 

@@ -1,5 +1,7 @@
 #include "scenarios/flight/flight.hpp"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
 #include <utility>
 
@@ -30,6 +32,8 @@ World world_of(const Scenario& scenario, const std::filesystem::path& models_fol
                const std::vector<Obstacle>& obstacles) {
   try {
     return build_world(models_folder, scenario.flown_airframe(), obstacles, scenario.world_config());
+  } catch (const SimulationError& error) {
+    throw ScenarioError(fmt::format("{}: airframe or course: {}", scenario.name, error.what()));
   } catch (const std::runtime_error& error) {
     throw MachineError(error.what());  // the models are the project's, not the caller's
   }
@@ -39,11 +43,15 @@ std::unique_ptr<StereoCameras> cameras_of(const Scenario& scenario, const World&
                                           const CalibratedRig& rig, RendererKind renderer) {
   const CameraSeeds seeds{seed_for(scenario.sensor_seed(), "cameras"),
                           seed_for(scenario.sensor_seed(), "camera_shot_noise")};
+  // llvmpipe ends with a signal where it gets no memory for its code.
+  constexpr std::size_t drawing_bytes = std::size_t{320} << 20;
+  require_address_space(drawing_bytes, "drawing");
   try {
     return std::make_unique<StereoCameras>(world, rig.rig, scenario.cameras.cameras, seeds, rig.calibration,
                                            renderer);
   } catch (const std::runtime_error& error) {
-    throw MachineError(error.what());
+    const std::string lacking = lacking_resource();
+    throw MachineError(error.what() + (lacking.empty() ? "" : ": " + lacking));
   }
 }
 

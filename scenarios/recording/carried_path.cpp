@@ -21,6 +21,7 @@ namespace understory {
 namespace {
 
 constexpr double fastest_mps = 100;
+constexpr int longest_s = 3600;  // 430,000 frames, some 100 GB
 constexpr double widest_turn_rad = std::numbers::pi / 2;
 constexpr std::int64_t closest_ns = 50'000'000;
 
@@ -85,6 +86,10 @@ std::vector<TimedPose> read_path(const std::filesystem::path& file) {
   if (poses.size() < 2)
     throw ScenarioError(
         fmt::format("{}: expected at least two poses to go between, found one", file.string()));
+  const double span_s = static_cast<double>(poses.back().t_ns - poses.front().t_ns) * 1e-9;
+  if (span_s > longest_s)
+    throw ScenarioError(fmt::format("{}: expected at most {} s from the first pose to the last, found {:.0f} s",
+                                    file.string(), longest_s, span_s));
   for (std::size_t i = 1; i < poses.size(); ++i) {
     const Eigen::Isometry3d step = poses[i - 1].T_world_body.inverse() * poses[i].T_world_body;
     const double step_s = static_cast<double>(poses[i].t_ns - poses[i - 1].t_ns) * 1e-9;

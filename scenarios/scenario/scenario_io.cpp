@@ -27,6 +27,15 @@ bool is_plain_word(const std::string& name) {
          std::all_of(name.begin(), name.end(), is_plain);
 }
 
+/// More of them take a minute to build.
+constexpr int maximum_obstacles = 20'000;
+
+double palings_of(const FenceConfig& fence, double goal_x_m) {
+  const double fences = std::max(0.0, std::ceil((goal_x_m - fence.first_across_m) / fence.across_apart_m));
+  const double across_m = fences * 2 * (fence.reach_m - 0.5 * fence.gate_m);
+  return (across_m + std::max(0.0, goal_x_m - fence.first_across_m)) / fence.spacing_m;
+}
+
 /// Conditions between several keys.
 void check(const Scenario& scenario, const Sources& sources, const std::string& name) {
   const auto expect = [&](bool holds, const std::string& what) {
@@ -40,6 +49,18 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
          "forest.radius_min_m: expected at most forest.radius_max_m");
   expect(scenario.band.minimum_altitude_m < scenario.band.maximum_altitude_m,
          "band.minimum_altitude_m: expected less than band.maximum_altitude_m");
+  expect(scenario.band.cruise_altitude_m > scenario.band.minimum_altitude_m &&
+             scenario.band.cruise_altitude_m < scenario.band.maximum_altitude_m,
+         "band.cruise_altitude_m: expected between band.minimum_altitude_m and band.maximum_altitude_m");
+  const double trees = scenario.forest.length_m * 2 * scenario.forest.half_width_m / scenario.forest.square_metres_per_tree;
+  expect(scenario.course != Course::forest || trees <= maximum_obstacles,
+         fmt::format("forest.square_metres_per_tree: expected at most {} trees in the forest, it would have about {:.0f} "
+                     "(length_m, half_width_m)",
+                     maximum_obstacles, trees));
+  const double palings = palings_of(scenario.fence, scenario.goal_x_m());
+  expect(scenario.course != Course::fence || palings <= maximum_obstacles,
+         fmt::format("fence.spacing_m: expected at most {} palings, there would be about {:.0f}", maximum_obstacles,
+                     palings));
   expect(scenario.goalposts.pass_minimum_m <= scenario.goalposts.pass_maximum_m,
          "goalposts.pass_minimum_m: expected at most goalposts.pass_maximum_m");
   expect(scenario.fence.gate_m < 2 * scenario.fence.reach_m,

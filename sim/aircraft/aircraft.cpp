@@ -31,7 +31,7 @@ Eigen::Quaterniond pitched_up(double pitch_rad) {
 Controls within_limits(const Controls& controls, const Airframe& airframe) {
   if (!std::isfinite(controls.left_elevon_rad) || !std::isfinite(controls.right_elevon_rad) ||
       !std::isfinite(controls.thrust_n)) {
-    throw std::logic_error("Aircraft::step: controls are not finite");
+    throw SimulationError("the controls are not finite");
   }
   return {std::clamp(controls.left_elevon_rad, airframe.elevon_min_rad, airframe.elevon_max_rad),
           std::clamp(controls.right_elevon_rad, airframe.elevon_min_rad, airframe.elevon_max_rad),

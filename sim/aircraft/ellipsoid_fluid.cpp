@@ -53,7 +53,7 @@ std::string model_xml(const Airframe& airframe, const EllipsoidCoefficients& coe
 
 // MuJoCo's own handlers write a log file and wait for Enter.
 [[noreturn]] void raise_error(const char* message) {
-  throw std::runtime_error(std::string("MuJoCo: ") + message);
+  throw SimulationError(std::string("MuJoCo: ") + message);
 }
 
 void require_room(int failure) {

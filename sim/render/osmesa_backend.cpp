@@ -25,12 +25,13 @@ void* open_library() {
   if (const char* named = std::getenv("UNDERSTORY_OSMESA")) {
     if (void* library = dlopen(named, mode)) return library;
     throw std::runtime_error(std::string("UNDERSTORY_OSMESA names ") + named +
-                             ", which cannot be opened: unset it and install Debian's libosmesa6");
+                             ", which cannot be opened (" + dlerror() + "): unset it and install Debian's libosmesa6");
   }
   for (const char* name : {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"})
     if (void* library = dlopen(name, mode)) return library;
-  throw std::runtime_error(
-      "no software OpenGL: libOSMesa.so.8 cannot be opened; install Debian's libosmesa6");
+  const std::string reason = dlerror();
+  throw std::runtime_error("no software OpenGL: libOSMesa.so.8 cannot be opened (" + reason +
+                           "); install Debian's libosmesa6");
 }
 
 class OsmesaBackend : public OffscreenBackend {

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 // MuJoCo's own handlers write a log file and wait for Enter.
 [[noreturn]] void raise_error(const char* message) {
-  throw std::runtime_error(std::string("MuJoCo: ") + message);
+  throw SimulationError(std::string("MuJoCo: ") + message);
 }
 
 std::string text_of(const fs::path& file) {
@@ -128,7 +128,7 @@ World build_world(const fs::path& models_folder, const Airframe& airframe,
 
   char message[1000] = "";
   ModelPointer model(mj_loadXML("scene.xml", files.get(), message, sizeof message));
-  if (!model) throw std::runtime_error(aircraft_file.string() + ": MuJoCo refuses the scene: " + message);
+  if (!model) throw SimulationError(aircraft_file.string() + ": MuJoCo refuses the scene: " + message);
   for (const char* name : {"aircraft", "left_elevon", "right_elevon"}) {
     if (mj_name2id(model.get(), mjOBJ_BODY, name) < 0) {
       throw std::runtime_error(aircraft_file.string() + ": expected a body named \"" + name + "\"");

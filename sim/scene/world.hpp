@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 #include "planning/airframe.hpp"
@@ -21,6 +22,11 @@ struct DeleteData {
 };
 using ModelPointer = std::unique_ptr<mjModel_, DeleteModel>;
 using DataPointer = std::unique_ptr<mjData_, DeleteData>;
+
+/// MuJoCo refuses a model or cannot go on with it: the numbers of an aircraft or a world make no sense together.
+struct SimulationError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 /// Geom groups: collisions (never drawn), the scenery (drawn to everyone), the aircraft's skin (drawn only to
 /// the chase camera: the stereo cameras look ahead of it).
