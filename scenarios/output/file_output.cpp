@@ -156,6 +156,7 @@ void refuse_output(const fs::path& file, int error) {
 struct OutputFile::State {
   fs::path name;
   Destination to;
+  FolderClaim* claim = nullptr;  ///< which lists the file, where it is not the user's to name
   std::optional<Unfinished> part;
   std::optional<Stream> stream;
 };
@@ -169,8 +170,9 @@ OutputFile::OutputFile(fs::path file, Named named) : state_(std::make_unique<Sta
     state.stream.emplace(state.to.descriptor >= 0 ? fcntl(state.to.descriptor, F_DUPFD_CLOEXEC, 0)
                                                   : open(state.to.file.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC));
   } else {
-    FolderClaim* claim = named == Named::by_us ? claim_of(state.to.file) : nullptr;
-    if (claim != nullptr) claim->add(state.to.file);
+    const bool asks = named == Named::by_us && !lies_in_unfinished_folder(state.to.file);
+    state.claim = asks ? claim_of(state.to.file) : nullptr;
+    if (state.claim != nullptr) state.claim->require_own({state.to.file.lexically_relative(state.claim->folder())});
     state.part.emplace(unfinished_name_in(state.to.file.parent_path()));
     state.stream.emplace(made(state.part->path()));
   }
@@ -191,6 +193,7 @@ void OutputFile::finish() {
   int error = 0;
   if (state.part && stat(file.c_str(), &former) == 0) chmod(state.part->path().c_str(), former.st_mode & 07777);
   if (lasts) error = state.stream->sync();
+  if (error == 0 && state.claim != nullptr) state.claim->add(file);
   // Named before it is closed: until then its lock says that somebody is at work on it.
   if (error == 0 && state.part) state.part->become(file);
   if (const int last = state.stream->close(); error == 0) error = last;
@@ -242,7 +245,8 @@ void prepare_output_folder(const fs::path& folder) {
 void require_separate(const std::vector<fs::path>& outputs, const std::vector<fs::path>& others) {
   const auto same = [](const fs::path& one, const fs::path& other) {
     std::error_code ignored;
-    if (one.empty() || other.empty() || (!fs::is_directory(one, ignored) && is_stream(one))) return false;
+    if (one.empty() || other.empty() || (fs::exists(one, ignored) && !fs::is_directory(one, ignored) && is_stream(one)))
+      return false;
     return fs::equivalent(one, other, ignored) || fs::weakly_canonical(fs::absolute(one), ignored) ==
                                                       fs::weakly_canonical(fs::absolute(other), ignored);
   };

@@ -184,10 +184,11 @@ FolderClaim::~FolderClaim() {
 void FolderClaim::let_go() {
   const auto hold = hold_outputs();
   const fs::path file = folder_ / claim_name;
-  if (file_ >= 0 && is_new_ && is_locked_ && written_.empty() && is_file(file_, file)) ::unlink(file.c_str());
+  const bool is_empty = written_.empty() || !is_saved_;  // in the file
+  if (file_ >= 0 && is_new_ && is_locked_ && is_empty && is_file(file_, file)) ::unlink(file.c_str());
   if (file_ >= 0) close(file_);
   file_ = -1;
-  if (!written_.empty()) return;
+  if (!is_empty) return;
   for (auto made = made_.rbegin(); made != made_.rend(); ++made) ::rmdir(made->c_str());  // where it is empty
 }
 
@@ -208,7 +209,10 @@ bool FolderClaim::owns(const fs::path& file) const {
 
 void FolderClaim::adopt(const std::vector<std::string>& patterns) {
   if (!written_.empty()) return;
-  for (const fs::path& file : files_of(folder_, patterns)) note(file.string());
+  for (const fs::path& file : files_of(folder_, patterns)) {
+    written_[file.string()] = kind_;
+    is_saved_ = false;
+  }
 }
 
 void FolderClaim::require_own(const std::vector<std::string>& patterns) const {
@@ -228,6 +232,7 @@ void FolderClaim::require_own(const std::vector<std::string>& patterns) const {
 
 void FolderClaim::note(const std::string& file) {
   if (const auto known = written_.find(file); known != written_.end() && known->second == kind_) return;
+  if (!is_saved_) write_list();
   const std::string line = fmt::format("{} {}\n", kind_, file);
   if (write(file_, line.data(), line.size()) != static_cast<ssize_t>(line.size())) refuse_output(folder_ / file, errno);
   fdatasync(file_);  // whoever finds the file after a power cut must find whose it is
@@ -261,6 +266,7 @@ void FolderClaim::remove_stale(const std::vector<std::string>& patterns) {
 }
 
 void FolderClaim::write_list() {
+  is_saved_ = true;
   std::string text(header);
   for (const auto& [file, kind] : written_) text += fmt::format("{} {}\n", kind, file);
   if (ftruncate(file_, 0) != 0 || write(file_, text.data(), text.size()) != static_cast<ssize_t>(text.size()))

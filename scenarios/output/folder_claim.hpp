@@ -37,8 +37,8 @@ class FolderClaim {
   bool holds_other_files() const;
   /// Whether the file, a path below the folder, is listed under our kind.
   bool owns(const std::filesystem::path& file) const;
-  /// Lists what is there and matches (fnmatch; '*' is no '/') where nothing is listed yet: results of older programs,
-  /// or copies without their hidden files.
+  /// Takes what is there and matches (fnmatch; '*' is no '/') for ours where nothing is listed yet: results of older
+  /// programs, or copies without their hidden files. The list says so from the first file on that is written.
   void adopt(const std::vector<std::string>& patterns);
   /// Throws ScenarioError where something matches one of `patterns` that is not ours, or where a file stands in place
   /// of a folder that they need.
@@ -64,6 +64,7 @@ class FolderClaim {
   int file_ = -1;
   bool is_locked_ = false;
   bool is_new_ = false;                         ///< we made ".understory"
+  bool is_saved_ = true;                        ///< the list is in the file as it is here
   std::map<std::string, std::string> written_;  ///< path to kind, of all kinds
   std::set<std::string> added_;                 ///< by this object
   std::vector<std::filesystem::path> made_;     ///< folders, outermost first
