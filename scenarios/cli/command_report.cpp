@@ -78,7 +78,7 @@ struct AgainOutput {
     named = Named::by_us;
     claim.emplace(folder, kind, folder, FolderClaim::Manner::beside_others);
     claim->adopt(kind == std::string("campaign") ? campaign_patterns : run_patterns);
-    claim->require_own({name});
+    claim->require_own(std::vector<std::string>{name});
   }
 };
 

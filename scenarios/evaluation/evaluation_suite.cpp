@@ -155,10 +155,14 @@ std::vector<fs::path> record_suite(const fs::path& file, const fs::path& folder,
   prepare_output_folder(folder);
   const std::size_t all = suite.size();
   std::size_t failed = all, done = 0, here = 0;
+  int failed_with = 0;
   ProgressLine line;
   ProgramProcesses processes(jobs, [&](std::uint64_t tag, int status, const EndedProcess&) {
     if (status == 0) write_whole_file(folder / suite[tag].name / identity_name, identities[tag]);
-    if (status != 0 && failed == all) failed = static_cast<std::size_t>(tag);
+    if (status != 0 && failed == all) {
+      failed = static_cast<std::size_t>(tag);
+      failed_with = status;
+    }
     ++done;
     line.show(fmt::format("{} of {} recorded", done, all), ++here, all - done);
   });
@@ -179,9 +183,11 @@ std::vector<fs::path> record_suite(const fs::path& file, const fs::path& folder,
     processes.start(folders.size() - 1, arguments_of(recording, folders.back()));
   }
   processes.wait_for_all();
-  if (failed < all)
-    throw ScenarioError(
-        fmt::format("{}: expected to record {}, which failed", file.string(), suite[failed].name));
+  if (failed < all) {
+    const std::string what = fmt::format("{}: {} could not be recorded", file.string(), suite[failed].name);
+    if (failed_with != 2) throw MachineError(what);  // exit_bad_input of the command line
+    throw ScenarioError(what);
+  }
   return folders;
 }
 

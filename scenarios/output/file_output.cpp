@@ -44,6 +44,7 @@ Destination destination_of(const fs::path& given) {
       return {given, descriptor, true};
     const fs::path file = folder / last;
     const fs::file_status status = fs::symlink_status(file, error);
+    if (error && error != std::errc::no_such_file_or_directory) refuse_output(given, error.value());
     if (!fs::is_symlink(status)) {
       if (fs::is_directory(status)) refuse_output(given, EISDIR);
       return {file, -1, fs::exists(status) && !fs::is_regular_file(status)};
@@ -172,7 +173,7 @@ OutputFile::OutputFile(fs::path file, Named named) : state_(std::make_unique<Sta
   } else {
     const bool asks = named == Named::by_us && !lies_in_unfinished_folder(state.to.file);
     state.claim = asks ? claim_of(state.to.file) : nullptr;
-    if (state.claim != nullptr) state.claim->require_own({state.to.file.lexically_relative(state.claim->folder())});
+    if (state.claim != nullptr) state.claim->require_own(state.to.file);
     state.part.emplace(unfinished_name_in(state.to.file.parent_path()));
     state.stream.emplace(made(state.part->path()));
   }

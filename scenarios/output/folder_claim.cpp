@@ -222,12 +222,15 @@ void FolderClaim::require_own(const std::vector<std::string>& patterns) const {
     if (!folder_in(pattern).empty() && fs::exists(fs::symlink_status(within, ignored)) && !fs::is_directory(within, ignored))
       refuse_output(within, ENOTDIR);
   }
-  for (const fs::path& file : files_of(folder_, patterns))
-    if (!owns(folder_ / file))
-      throw ScenarioError(
-          fmt::format("{}: is there and is no {} of understory's: move it away, or name "
-                      "another folder with --out",
-                      (folder_ / file).string(), kind_));
+  for (const fs::path& file : files_of(folder_, patterns)) require_own(folder_ / file);
+}
+
+void FolderClaim::require_own(const fs::path& file) const {
+  std::error_code ignored;
+  if (owns(file) || !fs::exists(fs::symlink_status(file, ignored))) return;
+  throw ScenarioError(fmt::format("{}: is there and is no {} of understory's: move it away, or name another folder with "
+                                  "--out",
+                                  file.string(), kind_));
 }
 
 void FolderClaim::note(const std::string& file) {
@@ -242,8 +245,7 @@ void FolderClaim::note(const std::string& file) {
 void FolderClaim::add(const fs::path& file) {
   const auto hold = hold_outputs();
   const std::string relative = file.lexically_relative(folder_).string();
-  std::error_code ignored;
-  if (!owns(file) && fs::exists(fs::symlink_status(file, ignored))) require_own({relative});
+  require_own(file);
   note(relative);
   added_.insert(relative);
 }

@@ -43,6 +43,8 @@ class FolderClaim {
   /// Throws ScenarioError where something matches one of `patterns` that is not ours, or where a file stands in place
   /// of a folder that they need.
   void require_own(const std::vector<std::string>& patterns) const;
+  /// The same of one file.
+  void require_own(const std::filesystem::path& file) const;
   /// Lists a file that will be written now. Throws as require_own().
   void add(const std::filesystem::path& file);
   /// Removes what is ours, matches one of `patterns` and was not added by this object.

@@ -1,0 +1,187 @@
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <map>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/misuse/misuse_table.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+/// Whatever a command does and however it ends, files of a user's in its folder are as they were; and what it said it
+/// wrote has reached the disk.
+namespace understory::support {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Commands that write into the folder "out", with what stands beside it.
+const std::map<std::string, std::string> commands{
+    {"fly", "$U fly clear --set forest.length_m=1 --quiet --out out"},
+    {"film", "$U fly clear --set forest.length_m=1 --quiet --video --mcap --out out"},
+    {"record", "$U record clear --path $F/path.tum --quiet --out out"},
+    {"report", "cp -rn $F/run/. out/; $U report out --no-film --quiet"},
+    {"mcap", "cp -rn $F/run/. out/; $U mcap out --quiet"},
+    {"row", "$U fly clear --set forest.length_m=1 --quiet --row out/of_mine.json"},
+    {"detect", "$U detect $F/recording --out out"},
+    {"evaluate", "$U evaluate $F/recording --out out"},
+    {"campaign", "$U campaign $F/campaign.yaml --out out --force"},
+    {"collect", "cp -rn $F/campaign/. out/; $U collect out"},
+    {"campaign_page", "cp -rn $F/campaign/. out/; $U report out --quiet"},
+    {"tune", "$U tune $F/tune.yaml --out out --force"},
+    {"rig", "$U rig long --out out/of_mine.png"},
+    {"bench", "$U bench --pairs 1 --rounds 1 --json out/of_mine.json"}};
+
+/// Names that no command writes, and names that some do.
+const std::vector<std::string> neutral{"lock",        ".lock",          "notes.txt",       "thesis.tex",
+                                       "a.part",      "report.html.part", "flight.mcap.part", "overlays.part/1.png",
+                                       "run.part/x",  ".hidden",        "with blank",      "\xc3\xbcml\xc3\xa4ut",
+                                       "\xff\xfe",    "sub/of/mine",    ".understory-mine", "unfinished"};
+const std::vector<std::string> taken{"result.json",  "scenario.yaml", "map.ply",      "report.html",     "flight.mcap",
+                                     "flights.csv",  "summary.md",    "campaign.json", "best.yaml",      "tune.json",
+                                     "worst/a.png",  "points.csv",    "overlay.mp4",  "tables/mine.csv", "evaluation.json",
+                                     "overlays/000000.png", "conditions/mine.yaml", "flights/mine.json"};
+
+struct Ending {
+  std::string name;
+  bool neutral_names = true;   ///< none that a command writes: the command is to succeed
+  int signal = 0;              ///< sent after a drawn time
+  long long disk_bytes = -1;   ///< then the disk is full
+};
+
+void draw_files(const fs::path& folder, bool neutral_names, std::mt19937_64& generator) {
+  std::vector<std::string> names = neutral;
+  if (!neutral_names) names.insert(names.end(), taken.begin(), taken.end());
+  for (const std::string& name : names) {
+    if (generator() % 3 == 0) continue;
+    fs::create_directories((folder / name).parent_path());
+    std::ofstream(folder / name) << "mine " << generator();
+  }
+}
+
+/// Status, or 128 and the signal.
+int run(const std::string& command, const fs::path& folder, const Fixtures& fixtures, const Ending& ending,
+        std::chrono::milliseconds after) {
+  const pid_t child = fork();
+  if (child == 0) {
+    setpgid(0, 0);
+    setenv("U", UNDERSTORY_BINARY, 1);
+    setenv("F", fixtures.folder().c_str(), 1);
+    if (ending.disk_bytes >= 0) {
+      setenv("LD_PRELOAD", UNDERSTORY_FAILING_DISK, 1);
+      setenv("FAILING_DISK_FOLDER", folder.c_str(), 1);
+      setenv("FAILING_DISK_BYTES", std::to_string(ending.disk_bytes).c_str(), 1);
+    }
+    const std::string script = "cd '" + folder.string() + "' && { " + command + "; } >/dev/null 2>'" + folder.string() + ".err'";
+    execl("/bin/bash", "bash", "-c", script.c_str(), nullptr);
+    _exit(127);
+  }
+  if (ending.signal != 0) {
+    std::this_thread::sleep_for(after);
+    kill(-child, ending.signal);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+class KeptFiles : public testing::TestWithParam<Ending> {};
+
+TEST_P(KeptFiles, AreAsTheyWereAfterEveryCommand) {
+  const Ending& ending = GetParam();
+  const fs::path folder = fs::path(testing::TempDir()) / ("understory_kept_" + ending.name);
+  fs::remove_all(folder);
+  fs::create_directories(folder / "fixtures");
+  Fixtures fixtures(folder / "fixtures");
+  fixtures.make_those_in("$F/run $F/recording $F/campaign $F/tuning");
+  std::mt19937_64 generator(20261124);
+  for (const auto& [name, command] : commands) {
+    const fs::path work = folder / name;
+    fs::create_directories(work / "out");
+    draw_files(work / "out", ending.neutral_names, generator);
+    const auto before = tree_of(work);
+    const int status = run(command, work, fixtures, ending, std::chrono::milliseconds(generator() % 600));
+    const std::string said = content_of(work.string() + ".err");
+    const auto after = tree_of(work);
+    for (const auto& [path, content] : before) {
+      ASSERT_TRUE(after.contains(path)) << ending.name << " " << name << ": " << path << " is gone\n" << said;
+      EXPECT_EQ(after.at(path), content) << ending.name << " " << name << ": " << path << "\n" << said;
+    }
+    EXPECT_EQ(said.find("internal fault"), std::string::npos) << said;
+    if (ending.signal == SIGKILL) continue;  // what is unfinished then goes with the next run
+    for (const auto& [path, content] : after)
+      EXPECT_TRUE(before.contains(path) || path.find(".unfinished") == std::string::npos) << name << " left " << path;
+    if (ending.name == "success") {
+      EXPECT_EQ(status, 0) << name << "\n" << said;
+    }
+    if (ending.disk_bytes >= 0) {
+      EXPECT_TRUE(status == 3 || (status == 0 && ending.name == "disk_that_fills")) << name << " " << status << "\n" << said;
+    }
+  }
+  fs::remove_all(folder);
+}
+
+INSTANTIATE_TEST_SUITE_P(Endings, KeptFiles,
+                         testing::Values(Ending{"success"}, Ending{"refusal", false},
+                                         Ending{"interrupted", true, SIGINT}, Ending{"killed", true, SIGKILL},
+                                         Ending{"full_disk", true, 0, 100}, Ending{"disk_that_fills", true, 0, 9000}),
+                         [](const auto& ending) { return ending.param.name; });
+
+/// Files by the names they have at last, and "in FOLDER" for names that changed there: whether each was synced since.
+std::map<std::string, bool> synced_by(const fs::path& diary) {
+  std::map<std::string, bool> is_synced;
+  std::ifstream lines(diary);
+  for (std::string word, path; lines >> word;) {
+    if (word == "syncfs") {
+      for (auto& [file, synced] : is_synced) synced = true;
+      continue;
+    }
+    if (word == "say") continue;
+    lines >> path;
+    if (word == "write") is_synced[path] = false;
+    if (word == "sync") is_synced[fs::is_directory(path) ? "in " + path : path] = true;
+    if (word != "rename") continue;
+    std::string to;
+    lines >> to;
+    std::map<std::string, bool> renamed;
+    for (const auto& [file, synced] : is_synced) {
+      const bool is_moved = file == path || file.starts_with(path + "/");
+      renamed[is_moved ? to + file.substr(path.size()) : file] = synced;
+    }
+    is_synced = renamed;
+    if (to.find(".unfinished/") == std::string::npos) is_synced["in " + fs::path(to).parent_path().string()] = false;
+  }
+  std::erase_if(is_synced, [](const auto& one) { return one.first.find(".unfinished") != std::string::npos; });
+  return is_synced;
+}
+
+TEST(KeptFiles, WhatACommandSaysItWroteHasReachedTheDisk) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "fixtures");
+  Fixtures fixtures(folder.path() / "fixtures");
+  fixtures.make_those_in("$F/run $F/recording $F/campaign");
+  for (const char* name : {"fly", "record", "report", "mcap", "detect", "evaluate", "campaign", "collect"}) {
+    const fs::path work = folder.path() / name, diary = folder.path() / (std::string(name) + ".diary");
+    fs::create_directories(work / "out");
+    setenv("FAILING_DISK_DIARY", diary.c_str(), 1);
+    const Ending on_that_disk{name, true, 0, 1'000'000'000'000};
+    ASSERT_EQ(run(commands.at(name), work, fixtures, on_that_disk, {}), 0) << content_of(work.string() + ".err");
+    unsetenv("FAILING_DISK_DIARY");
+    const std::map<std::string, bool> is_synced = synced_by(diary);
+    EXPECT_FALSE(is_synced.empty()) << name;
+    for (const auto& [path, synced] : is_synced) {
+      const bool says_nothing_of = path.ends_with("/.understory") || path.find("/logs/") != std::string::npos;
+      EXPECT_TRUE(synced || says_nothing_of) << name << ": " << path;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace understory::support
