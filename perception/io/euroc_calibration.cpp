@@ -110,6 +110,8 @@ EurocCalibration read_euroc_calibration(const fs::path& folder, const Calibratio
   if (left.says_rectification != right.says_rectification)
     refuse_input(right_file.string(), "rectification", "expected in both cameras' files or in neither");
   const Eigen::Isometry3d T_right_left = right.T_body_sensor.inverse() * left.T_body_sensor;
+  if (T_right_left.translation().x() >= 0)
+    refuse_input(right_file.string(), "T_BS", "expected cam1 to the right of cam0, it lies to its left");
   if (left.says_rectification) {
     calibration.right.projection(0, 3) =
         -calibration.right.projection(0, 0) * T_right_left.translation().norm();

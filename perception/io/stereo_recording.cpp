@@ -24,7 +24,8 @@ ImageSequence sequence_of(const std::vector<fs::path>& inputs) {
   for (const fs::path& input : inputs)
     if (!fs::exists(input, ignored)) throw InputError(input.string() + ": found no such file or folder");
   if (inputs.size() == 1 && fs::is_directory(inputs[0], ignored)) return euroc_sequence(inputs[0]);
-  if (inputs.size() != 2) throw InputError(what_serves);
+  if (inputs.size() != 2)
+    throw InputError((inputs.empty() ? "" : inputs[0].string() + ": ") + std::string(what_serves));
   const bool left_is_folder = fs::is_directory(inputs[0], ignored);
   if (left_is_folder != fs::is_directory(inputs[1], ignored))
     throw InputError(inputs[1].string() + ": " + what_serves);

@@ -18,6 +18,8 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t maximum_seed = std::uint64_t{1} << 32;
 constexpr std::size_t maximum_flights = 200'000, maximum_conditions = 2'000;
 
+const std::string seeds_decide = "no seed here: each flight has one of the campaign's seeds";
+
 using Changes = std::vector<ConfigNode>;  ///< a tree per key
 
 /// What is added to a scenario's name and keys.
@@ -63,7 +65,8 @@ fs::path beside_or_as_said(const std::string& word, const fs::path& campaign_fil
   return fs::is_regular_file(beside, ignored) ? beside : fs::path(word);
 }
 
-std::vector<Variant> overrides_of(const ConfigNode* list, const fs::path& campaign_file) {
+std::vector<Variant> overrides_of(const ConfigNode* list, const fs::path& campaign_file,
+                                  std::vector<fs::path>& files) {
   if (list == nullptr) return {{}};
   if (list->kind != ConfigNode::Kind::list || list->children.empty())
     refuse_key(*list, "overrides", "a list [{name: ..., set: {key: value}}, ...]");
@@ -77,9 +80,10 @@ std::vector<Variant> overrides_of(const ConfigNode* list, const fs::path& campai
     Variant variant{name->text, {}};
     if (const ConfigNode* with = find_child(entry, "with"))
       for (const std::string& word : words_of(*with, "overrides.with", "a file of keys, or a list of such"))
-        variant.changes.push_back(parse_config_file(beside_or_as_said(word, campaign_file)));
+        variant.changes.push_back(parse_config_file(files.emplace_back(beside_or_as_said(word, campaign_file))));
     if (const ConfigNode* set = find_child(entry, "set")) {
       if (set->kind != ConfigNode::Kind::map) refuse_key(*set, "overrides.set", "a group {key: value, ...}");
+      if (const ConfigNode* seed = find_child(*set, "seed")) refuse_key(*seed, "overrides.set.seed", seeds_decide);
       add_changes(*set, "", variant.changes);
     }
     variants.push_back(std::move(variant));
@@ -100,6 +104,7 @@ std::size_t require_grid(const ConfigNode* grid, std::size_t variants) {
     };
     if (std::ranges::none_of(known, is_named))
       refuse_input(axis.origin, "grid." + axis.key, "expected a known key" + did_you_mean(axis.key, known));
+    if (axis.key == "seed") refuse_key(axis, "grid.seed", seeds_decide);
     if (axis.kind != ConfigNode::Kind::list || axis.children.empty())
       refuse_key(axis, "grid." + axis.key, "a list of values");
     variants *= axis.children.size();
@@ -146,7 +151,7 @@ std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, cons
     const std::uint64_t last =
         dots == std::string::npos ? first : seed_of(std::string_view(range).substr(dots + 2), where, range);
     if (last < first) throw ScenarioError(fmt::format("{}: expected first <= last, got '{}'", where, range));
-    if (last - first >= maximum_flights)
+    if (last - first >= maximum_flights - std::min(seeds.size(), maximum_flights - 1))
       throw ScenarioError(fmt::format("{}: expected at most {} flights", where, maximum_flights));
     for (std::uint64_t seed = first; seed <= last; ++seed) {
       if (!seen.insert(seed).second)
@@ -194,6 +199,7 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario) 
   require_known_keys(top, {"name", "scenario", "scenarios", "seeds", "overrides", "grid", "timeout_s"}, "");
   Campaign campaign;
   campaign.name = name_in(top, file);
+  campaign.files.push_back(file);
   if (const ConfigNode* timeout = find_child(top, "timeout_s"))
     campaign.timeout_s = number_of(*timeout, "timeout_s", 1, 86400);
 
@@ -204,7 +210,7 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario) 
                "the scenarios to fly, once: [forest, dense]");
   campaign.seeds = seeds_in(top, "seeds");
 
-  std::vector<Variant> overrides = overrides_of(find_child(top, "overrides"), file);
+  std::vector<Variant> overrides = overrides_of(find_child(top, "overrides"), file, campaign.files);
   const std::vector<std::string> words = words_of(*scenarios, "scenarios", "names or files of scenarios");
   const std::size_t conditions = words.size() * require_grid(find_child(top, "grid"), overrides.size());
   if (conditions > maximum_conditions)
@@ -216,9 +222,13 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario) 
   std::set<std::string> seen;
   for (const std::string& word : words) {
     const fs::path path = scenario_beside(file, *scenarios, word, find_scenario);
+    campaign.files.push_back(path);
     for (const Variant& variant : variants) {
       const Scenario scenario = load_changed_scenario(path, variant.changes);
       const std::string name = joined(plain(path.stem().string()), variant.name);
+      if (!is_plain_name(name))
+        refuse_key(*scenarios, "scenarios",
+                   fmt::format("names of conditions of at most 200 characters, no '.' first; '{}' comes out", name));
       if (!seen.insert(name).second)
         refuse_key(*scenarios, "scenarios", fmt::format("each condition once, '{}' comes out twice", name));
       campaign.conditions.push_back({name, scenario_to_text(scenario)});

@@ -12,6 +12,7 @@
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/program.hpp"
 #include "scenarios/report/table.hpp"
+#include "sim/render/renderer_kind.hpp"
 
 namespace understory {
 namespace {
@@ -65,8 +66,7 @@ void require_same(const CampaignFolder& folder, const Campaign& campaign) {
     throw ScenarioError(fmt::format("{}: {}: expected as it was begun; --out names another folder",
                                     (folder.path / manifest_name).string(), what));
   };
-  if (const std::string name = difference_of(held.identity, campaign.identity); !name.empty())
-    refuse(fmt::format("{} changed since the campaign began", name));
+  require_identity(folder, held, campaign.identity);
   if (held.seeds != campaign.seeds) refuse("seeds changed");
   if (held.renderer != campaign.renderer) refuse("renderer changed");
   if (held.timeout_s != campaign.timeout_s) refuse("timeout_s changed");
@@ -85,11 +85,19 @@ const std::vector<std::string> campaign_patterns{
     "campaign.json", "conditions/*.yaml", "flights.csv",  "flights.jsonl", "costs.csv",
     "summary.md",    "campaign.svg",      "report.html", "slurm.sh"};
 
+const std::vector<std::string> flight_patterns{"flights/*", "tracks/*", "logs/*", "runs/*"};
+
 bool is_plain_name(const std::string& name) {
   const auto is_plain = [](unsigned char c) {
     return std::isalnum(c) != 0 || std::string_view("._=-").find(static_cast<char>(c)) != std::string_view::npos;
   };
   return !name.empty() && name.size() <= 200 && name.front() != '.' && std::ranges::all_of(name, is_plain);
+}
+
+void require_identity(const CampaignFolder& folder, const Campaign& held, const Identity& identity) {
+  const std::string name = difference_of(held.identity, identity);
+  if (!name.empty())
+    refuse_manifest(folder, name, "changed since the campaign began, expected as it was; --out names another folder");
 }
 
 std::optional<std::string> text_if_there(const fs::path& file) {
@@ -139,8 +147,15 @@ Campaign read_campaign(const CampaignFolder& folder) {
     campaign.name = json.at(key);
     campaign.renderer = json.at(key = "renderer");
     campaign.timeout_s = json.at(key = "timeout_s");
+    if (campaign.timeout_s < 1 || campaign.timeout_s > 86400) refuse_manifest(folder, key, "expected 1 to 86400");
+    const auto is_renderer = [&](const auto& entry) { return entry.first == campaign.renderer; };
+    if (std::ranges::none_of(renderer_names, is_renderer))
+      refuse_manifest(folder, "renderer", "expected osmesa, egl or auto");
+    for (const char* list : {"seeds", "conditions"})
+      if (!json.at(key = list).is_array() || json[key].empty()) refuse_manifest(folder, key, "expected a list that is not empty");
     for (const Json& seed : json.at(key = "seeds")) {
-      if (!seed.is_number_unsigned()) refuse_manifest(folder, key, "expected whole numbers");
+      if (!seed.is_number_unsigned() || seed > std::uint64_t{1} << 32)
+        refuse_manifest(folder, key, "expected whole numbers from 0 to 2^32");
       campaign.seeds.push_back(seed);
     }
     for (const Json& name : json.at(key = "conditions")) {

@@ -26,6 +26,7 @@ struct Campaign {
   std::string renderer = "osmesa";  ///< renderer_kind.hpp's word: the machine's, given with the command
   double timeout_s = 300;           ///< of wall time: a flight that takes longer hangs
   Identity identity;                ///< of its flights (identity_of)
+  std::vector<std::filesystem::path> files;  ///< that its description was read from
 };
 
 /// One flight to be flown.
@@ -65,13 +66,16 @@ struct CampaignFolder {
   }
 };
 
-/// What a campaign's program writes there itself, by relative path; flights write the rest.
-extern const std::vector<std::string> campaign_patterns;
+/// What a campaign's program writes there itself, by relative path, and what its flights write.
+extern const std::vector<std::string> campaign_patterns, flight_patterns;
 
 /// Makes the folder, or, with `resume`, makes sure that it holds this very campaign, begun by this program.
 /// Throws ScenarioError in one line where it holds a campaign already (without `resume`), another one, or one
 /// of another identity or format, or where it cannot be written.
 void prepare_campaign_folder(const CampaignFolder& folder, const Campaign& campaign, bool resume);
+
+/// Throws ScenarioError where the flights of `held`, which the folder holds, began with another identity.
+void require_identity(const CampaignFolder& folder, const Campaign& held, const Identity& identity);
 
 /// The campaign that a folder holds. Throws ScenarioError where it holds none or one of another format.
 Campaign read_campaign(const CampaignFolder& folder);

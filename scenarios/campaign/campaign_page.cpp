@@ -32,8 +32,8 @@ std::string command(const ShownCondition& condition, std::uint64_t seed) {
   return fmt::format("understory fly {} --seed {}{}", condition.before_seed, seed, condition.after_seed);
 }
 
-ShownCondition shown(const Condition& condition, const fs::path& data_root) {
-  const Scenario scenario = scenario_from_text(condition.scenario_text, condition.name);
+ShownCondition shown(const CampaignFolder& folder, const Condition& condition, const fs::path& data_root) {
+  const Scenario scenario = scenario_from_text(condition.scenario_text, folder.condition_file(condition).string());
   const std::string arguments = arguments_that_fly(scenario, data_root);
   const std::string mark = fmt::format(" --seed {}", scenario.seed);
   const std::size_t at = arguments.find(mark);
@@ -209,7 +209,7 @@ std::string campaign_page(const CampaignFolder& folder, const Campaign& campaign
   const std::vector<FlightRow>& rows = collected.rows;
   const std::vector<ConditionSummary> summaries = summarise(rows);
   std::vector<ShownCondition> conditions;
-  for (const Condition& condition : campaign.conditions) conditions.push_back(shown(condition, data_root));
+  for (const Condition& condition : campaign.conditions) conditions.push_back(shown(folder, condition, data_root));
   const std::vector<std::string> keys = grid_keys(conditions);
   const auto goals = std::ranges::count_if(rows, &FlightRow::reached_goal);
   const auto flown = std::ranges::count_if(rows, &FlightRow::flown);

@@ -84,7 +84,7 @@ std::string cell_of(const std::string& text) { return text; }
 std::string cell_of(double number) { return fmt::format("{:.6g}", number); }
 std::string cell_of(std::integral auto count) { return fmt::format("{}", count); }
 
-/// False where the text is no such value. Empty says nothing and leaves the value alone.
+/// False where the text is no such value.
 template <typename Value>
 bool take(const std::string& text, Value& value) {
   if constexpr (std::is_same_v<Value, std::string>) {
@@ -95,9 +95,9 @@ bool take(const std::string& text, Value& value) {
     value = static_cast<RunStatus>(found - status_names.begin());
     return found != status_names.end();
   } else {
-    if (text.empty()) return true;
     const auto number = number_in<Value>(text);
     if (number) value = *number;
+    if constexpr (std::same_as<Value, std::int64_t>) return number && *number >= 0;  // a count
     return number.has_value();
   }
 }
@@ -106,9 +106,14 @@ bool take(const std::string& text, Value& value) {
 template <typename TextOf>
 bool take_row(FlightRow& row, TextOf&& text_of) {
   row.min_clearance_m = std::numeric_limits<double>::infinity();
-  bool is_whole = true;
-  visit_columns(
-      row, [&](std::string_view name, auto& value) { is_whole = take(text_of(name), value) && is_whole; });
+  bool is_whole = true, is_measured = false;
+  visit_columns(row, [&](std::string_view name, auto& value) {
+    is_measured = is_measured || name == "outcome";
+    const std::string text = text_of(name);
+    const bool may_be_empty = is_measured ? !row.flown() || name == "min_clearance_m" || name == "minimum_points_on_a_bar"
+                                          : name == "reason";
+    is_whole = (text.empty() ? may_be_empty : take(text, value)) && is_whole;
+  });
   return is_whole && row.flown() == is_ending(row.outcome);
 }
 
@@ -194,8 +199,9 @@ std::vector<FlightRow> rows_from_csv(const std::string& text, const std::string&
     auto cell = cells.begin();
     if (!take_row(rows.emplace_back(), [&](std::string_view) { return *cell++; }))
       refuse_input(place_in(name, line), cells.front(), "expected a whole row, as understory writes it");
-    if (!seen.insert(cells.front()).second)
-      refuse_input(place_in(name, line), cells.front(), "expected each flight once, this row is there twice");
+    const FlightRow& row = rows.back();
+    if (!seen.insert(fmt::format("{} {}", row.condition, row.seed)).second)
+      refuse_input(place_in(name, line), cells.front(), "expected each condition and seed once, these are there twice");
     for (const std::string& words : cells) line += static_cast<int>(std::ranges::count(words, '\n'));
     ++line;
   }

@@ -34,14 +34,6 @@ struct InTheAir {
   bool hung = false;
 };
 
-std::string last_line_of(const fs::path& file) {
-  std::ifstream stream(file);
-  std::string last;
-  for (std::string line; std::getline(stream, line);)
-    if (!line.empty()) last = line;
-  return last;
-}
-
 /// What a flight without a file of its own is written down as.
 FlightRow row_of_failure(int wait_status, bool hung, double timeout_s, const std::string& last_words) {
   FlightRow row;

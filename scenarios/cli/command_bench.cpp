@@ -58,8 +58,14 @@ std::vector<StereoFrame> recorded(const BenchArguments& arguments) {
 }
 
 int run_bench(const BenchArguments& arguments) {
+  std::vector<std::filesystem::path> read{arguments.inputs.begin(), arguments.inputs.end()};
+  read.emplace_back(arguments.rig);
+  require_separate({arguments.json}, read);
   require_writable(arguments.json);
   if (arguments.closed_loop) return run_closed_loop_bench(arguments);
+  if (arguments.rig.empty() && !arguments.inputs.empty() && !euroc_folder(arguments.inputs.front()))
+    throw ScenarioError(fmt::format("{}: expected a rig (--rig): only EuRoC folders bring their own",
+                                    arguments.inputs.front()));
   const std::filesystem::path rig_file = !arguments.rig.empty() ? rig_path(arguments.rig)
                                          : arguments.inputs.empty()
                                              ? data_root() / "models/rigs/raw/long.xml"

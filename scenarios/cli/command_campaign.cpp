@@ -41,21 +41,17 @@ struct CampaignArguments {
   bool force = false;
 };
 
-/// Before anything is flown: a rig that is not there would fail every flight.
-void require_rigs(const Campaign& campaign, const std::string& file) {
+/// Of every condition, before anything is flown: a rig that is not there would fail every flight.
+std::vector<Scenario> scenarios_of(const Campaign& campaign, const std::string& file) {
+  std::vector<Scenario> scenarios;
   for (const Condition& condition : campaign.conditions) {
     try {
-      rig_of(scenario_from_text(condition.scenario_text, condition.name), data_root() / "models");
+      scenarios.push_back(scenario_from_text(condition.scenario_text, condition.name));
+      rig_of(scenarios.back(), data_root() / "models");
     } catch (const ScenarioError& error) {
       throw ScenarioError(fmt::format("{}: condition {}: {}", file, condition.name, error.what()));
     }
   }
-}
-
-std::vector<Scenario> scenarios_of(const Campaign& campaign) {
-  std::vector<Scenario> scenarios;
-  for (const Condition& condition : campaign.conditions)
-    scenarios.push_back(scenario_from_text(condition.scenario_text, condition.name));
   return scenarios;
 }
 
@@ -69,6 +65,8 @@ void claim_campaign_folder(FolderClaim& claim, const CampaignFolder& folder, boo
     throw ScenarioError(fmt::format("{}: holds other files and no campaign: --out names another folder, --force writes "
                                     "beside them",
                                     folder.path.string()));
+  } else {
+    claim.require_own(flight_patterns);
   }
   claim.require_own(campaign_patterns);
 }
@@ -121,16 +119,18 @@ Finish fly_on_slurm(const CampaignFolder& folder, const Campaign& campaign,
 int run_campaign(const CampaignArguments& arguments) {
   Campaign campaign = load_campaign(arguments.file, scenario_file);
   campaign.renderer = word_for(arguments.renderer);
-  require_rigs(campaign, arguments.file);
+  const std::vector<Scenario> scenarios = scenarios_of(campaign, arguments.file);
   const CampaignFolder folder{arguments.out.empty() ? fs::path("results") / campaign.name
                                                     : fs::path(arguments.out)};
-  std::vector<fs::path> others{arguments.file};
-  for (const std::string& file : campaign_patterns) others.push_back(folder.path / file);
-  require_separate({arguments.junit}, others);
+  if (folder.path.string().find('\n') != std::string::npos)  // --print-tasks prints a line for each flight
+    throw ScenarioError(fmt::format("{}: expected a folder whose name has no line breaks", folder.path.string()));
+  require_separate({arguments.junit}, campaign.files);
+  require_outside({arguments.junit}, folder.path, campaign_patterns);
+  require_outside({arguments.junit}, folder.path, flight_patterns);
   require_writable(arguments.junit);
-  campaign.identity = identity_of(scenarios_of(campaign), data_root() / "models", arguments.renderer);
   FolderClaim claim(folder.path, "campaign", folder.path);
   claim_campaign_folder(claim, folder, arguments.force);
+  campaign.identity = identity_of(scenarios, data_root() / "models", arguments.renderer);
   remove_parts(folder);
   prepare_campaign_folder(folder, campaign, arguments.resume);
   if (arguments.print_tasks) return print_tasks(folder, campaign);
@@ -153,6 +153,12 @@ int run_campaign(const CampaignArguments& arguments) {
                             collected.rows.size(), collected.rows.size() + collected.missing));
 }
 
+RendererKind renderer_named(const std::string& word) {
+  for (const auto& [name, renderer] : renderer_names)
+    if (name == word) return renderer;
+  return RendererKind::osmesa;  // read_campaign() lets no other word through
+}
+
 struct ShardArguments {
   std::string folder;
   int number = 0;
@@ -166,6 +172,10 @@ int run_shard(const ShardArguments& arguments) {
   if (arguments.number >= arguments.of)
     throw ScenarioError(
         fmt::format("--number {}: expected less than --of {}", arguments.number, arguments.of));
+  std::vector<Scenario> scenarios;
+  for (const Condition& condition : campaign.conditions)
+    scenarios.push_back(scenario_from_text(condition.scenario_text, folder.condition_file(condition).string()));
+  require_identity(folder, campaign, identity_of(scenarios, data_root() / "models", renderer_named(campaign.renderer)));
   const StopSignals stop_signals;
   LocalEngineConfig config;
   config.jobs = arguments.jobs;

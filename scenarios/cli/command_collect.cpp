@@ -13,8 +13,6 @@
 namespace understory {
 namespace {
 
-namespace fs = std::filesystem;
-
 struct GateArguments {
   std::string baseline;
   std::string candidate;
@@ -23,8 +21,10 @@ struct GateArguments {
 };
 
 int run_gate(const GateArguments& arguments) {
-  require_separate({arguments.junit}, {fs::path(arguments.baseline) / "flights.csv",
-                                       fs::path(arguments.candidate) / "flights.csv"});
+  for (const std::string& folder : {arguments.baseline, arguments.candidate}) {
+    require_outside({arguments.junit}, folder, campaign_patterns);
+    require_outside({arguments.junit}, folder, flight_patterns);
+  }
   require_writable(arguments.junit);
   const Comparison comparison =
       compare_campaigns(read_campaign_rows(arguments.baseline), read_campaign_rows(arguments.candidate));

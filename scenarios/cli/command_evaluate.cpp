@@ -33,7 +33,10 @@ int run_evaluate(const EvaluateArguments& arguments) {
   fs::path out = arguments.out;
   std::error_code ignored;
   const bool is_suite = arguments.inputs.size() == 1 && fs::is_regular_file(arguments.inputs[0], ignored);
-  if (out.empty()) out = fs::path("evaluations") / fs::path(arguments.inputs[0]).stem();
+  if (out.empty()) {
+    const fs::path input = fs::absolute(arguments.inputs[0]).lexically_normal();  // "rec/", "."
+    out = fs::path("evaluations") / (input.has_filename() ? input : input.parent_path()).stem();
+  }
   require_separate({out}, {arguments.inputs.begin(), arguments.inputs.end()});
   FolderClaim claim(out, "evaluation", out);
   claim.require_own(evaluation_patterns);

@@ -60,20 +60,29 @@ Scenario scenario_of_run(const fs::path& run) {
   return load_scenario(run / "scenario.yaml");
 }
 
+std::vector<fs::path> with_folder(const fs::path& folder, const std::vector<std::string>& names) {
+  std::vector<fs::path> files;
+  for (const std::string& name : names) files.push_back(folder / name);
+  return files;
+}
+
 /// Where the result goes, and under which claim: the option's file, or one of that name in the folder.
 struct AgainOutput {
   fs::path file;
   Named named = Named::by_user;
   std::optional<FolderClaim> claim;
 
-  AgainOutput(const AgainArguments& arguments, const char* kind, const char* name) {
+  AgainOutput(const AgainArguments& arguments, const char* kind, const char* name, const std::string& baseline = "") {
     const fs::path folder = arguments.folder;
     file = arguments.out.empty() ? folder / name : fs::path(arguments.out);
-    std::vector<fs::path> others;
-    for (const char* input : {"scenario.yaml", "result.json", "trajectory.csv", "map.ply", "obstacles.csv",
-                                       "truth.tum", "estimate.tum", "campaign.json", "flights.csv", "flights.jsonl"})
-      others.push_back(folder / input);
-    require_separate({file}, others);
+    std::vector<fs::path> folders{folder};
+    if (!baseline.empty()) folders.emplace_back(baseline);
+    for (const fs::path& read : folders)
+      for (std::vector<std::string> patterns : {run_patterns, campaign_patterns, flight_patterns}) {
+        std::erase(patterns, name);  // what is made here
+        require_outside({file}, read, patterns);
+        require_separate({file}, with_folder(read, patterns));
+      }
     if (!arguments.out.empty()) return;
     named = Named::by_us;
     claim.emplace(folder, kind, folder, FolderClaim::Manner::beside_others);
@@ -128,7 +137,7 @@ int run_report(const ReportArguments& arguments) {
 int report_campaign(const ReportArguments& arguments) {
   const CampaignFolder folder{arguments.folder};
   const Campaign campaign = read_campaign(folder);
-  const AgainOutput output(arguments, "campaign", "report.html");
+  const AgainOutput output(arguments, "campaign", "report.html", arguments.baseline);
   const Collected collected = gather(folder, campaign);
   std::optional<GatedCampaign> gated;
   if (!arguments.baseline.empty()) {

@@ -5,6 +5,7 @@
 #include "scenarios/campaign/engines.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
+#include "scenarios/config/bad_input.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/flight/flight_identity.hpp"
 #include "scenarios/output/file_output.hpp"
@@ -65,6 +66,8 @@ void claim_tune_folder(FolderClaim& claim, const fs::path& folder, bool force) {
     throw ScenarioError(fmt::format("{}: holds other files and no tuning: --out names another folder, --force writes "
                                     "beside them",
                                     folder.string()));
+  } else {
+    claim.require_own(std::vector<std::string>{"flown/*"});
   }
   claim.require_own(tune_patterns);
 }
@@ -83,11 +86,14 @@ int run_tune(const TuneArguments& arguments) {
   for (const auto* folders : {&file.training_folders, &file.validation_folders})
     others.insert(others.end(), folders->begin(), folders->end());
   require_separate({folder}, others);
-  const Identity identity = identity_of(file, arguments.renderer);
+  require_not_within(folder, others);
+  Judges judges;
+  if (file.over == TuningData::recordings) judges = bad_input_if_refused([&] { return judges_of(file, arguments, folder); });
   FolderClaim claim(folder, "tuning", folder);
   claim_tune_folder(claim, folder, arguments.force);
+  const Identity identity = identity_of(file, arguments.renderer);
   prepare_tune_folder(folder, file, std::string(word_for(arguments.renderer)), arguments.resume, identity);
-  const Judges judges = judges_of(file, arguments, folder);
+  if (file.over == TuningData::flights) judges = judges_of(file, arguments, folder);
   const StopSignals stop_signals;
   ProgressLine line;
   TuneOptions options;

@@ -70,6 +70,8 @@ std::vector<RecordedObject> parse_recorded_objects(const std::string& text, cons
     const auto given = nanoseconds_in(line.cells[0]);  // a whole number from 0
     if (!given || *given < 1 || *given > 65535) fail_at_line(name, line.number, expected);
     object.number = static_cast<int>(*given);
+    if (std::ranges::find(objects, object.number, &RecordedObject::number) != objects.end())
+      fail_at_line(name, line.number, "expected each number once");
     object.name = line.cells[1];
     object.kind = line.cells[2];
     object.from_world = {number(3), number(4), number(5)};
@@ -120,10 +122,13 @@ EvaluationFrame EvaluationRecording::frame(std::size_t index) {
     if (has_objects()) frame.truth.objects = read_16_bit_image(folder_ / "objects0/data" / name, rig());
     return 0;
   });
+  const cv::Size size = camera_.calibration ? cv::Size(camera_.calibration->width_px, camera_.calibration->height_px)
+                                            : cv::Size(rig().width_px, rig().height_px);
+  for (const auto& [file, image] : {std::pair(&files.left, &frame.pair.left), {&files.right, &frame.pair.right}})
+    if (image->size() != size)
+      throw ScenarioError(fmt::format("{}: expected {}x{} as the calibration has, found {}x{}", file->string(),
+                                      size.width, size.height, image->cols, image->rows));
   if (rectifier_) frame.pair = rectifier_->rectify(frame.pair);
-  if (frame.pair.left.size() != cv::Size(rig().width_px, rig().height_px))
-    throw ScenarioError(fmt::format("{}: expected {}x{} as the calibration has", files.left.string(),
-                                    rig().width_px, rig().height_px));
   frame.mean_gray = cv::mean(frame.pair.left)[0];
   if (!has_poses()) return frame;
   if (const auto T_world_body = pose_at(true_poses_, files.t_ns)) {

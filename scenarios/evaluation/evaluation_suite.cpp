@@ -7,6 +7,7 @@
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/flight/flight_identity.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/output/output_folder.hpp"
 #include "scenarios/output/program.hpp"
 #include "scenarios/output/progress_line.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
@@ -19,6 +20,7 @@ namespace fs = std::filesystem;
 
 /// A recording asked for, in the words of `understory record`.
 struct SuiteRecording {
+  std::string origin;  ///< "suite.yaml:3"
   std::string name;  ///< of its folder: the entry's name and the seed, "level-7"
   fs::path scenario;
   std::vector<std::string> settings;   ///< of --set, the seed among them
@@ -56,12 +58,21 @@ std::vector<SuiteRecording> recordings_of(const ConfigNode& entry, const ConfigN
   const std::string name = word(entry, "name", "a name of letters, digits and . _ = -");
   if (!is_plain_name(name)) refuse_key(entry, "recordings.name", "a name of letters, digits and . _ = -");
   const std::string scenario = word(entry, "scenario", "a scenario");
-  const fs::path beside = folder / scenario;
   SuiteRecording recording;
-  recording.scenario = fs::is_regular_file(beside) ? beside : find_scenario(scenario);
+  recording.origin = entry.origin;
+  recording.scenario = scenario_beside(folder / "suite", *find_child(entry, "scenario"), scenario, find_scenario);
+  if (find_child(entry, "path") != nullptr && find_child(entry, "walk_mps") != nullptr)
+    refuse_key(*find_child(entry, "walk_mps"), "recordings.walk_mps", "either path or walk_mps");
+  if (const ConfigNode* height = find_child(entry, "height_m"); height != nullptr) {
+    number_of(*height, "recordings.height_m", 0.3, 8);
+    if (find_child(entry, "walk_mps") == nullptr)
+      refuse_key(*height, "recordings.height_m", "walk_mps beside it: it is the height of a walk");
+  }
+  if (const ConfigNode* walk = find_child(entry, "walk_mps")) number_of(*walk, "recordings.walk_mps", 0.1, 5);
   if (find_child(entry, "path") != nullptr) {
     const fs::path path = folder / word(entry, "path", "a file of poses");
-    if (!fs::is_regular_file(path))
+    std::error_code ignored;
+    if (!fs::is_regular_file(path, ignored))
       refuse_key(*find_child(entry, "path"), "recordings.path",
                  "a file of poses, found none at " + path.string());
     recording.arguments.insert(recording.arguments.end(), {"--path", path.string()});
@@ -156,12 +167,16 @@ std::vector<fs::path> record_suite(const fs::path& file, const fs::path& folder,
   const std::size_t all = suite.size();
   std::size_t failed = all, done = 0, here = 0;
   int failed_with = 0;
+  std::string reason;
+  const UnfinishedFolder said(folder / "said", folder, false);
+  const fs::path processes_said = said.path();
   ProgressLine line;
   ProgramProcesses processes(jobs, [&](std::uint64_t tag, int status, const EndedProcess&) {
     if (status == 0) write_whole_file(folder / suite[tag].name / identity_name, identities[tag]);
     if (status != 0 && failed == all) {
       failed = static_cast<std::size_t>(tag);
       failed_with = status;
+      reason = last_line_of(processes_said / suite[tag].name);
     }
     ++done;
     line.show(fmt::format("{} of {} recorded", done, all), ++here, all - done);
@@ -180,11 +195,12 @@ std::vector<fs::path> record_suite(const fs::path& file, const fs::path& folder,
       fmt::print("{}: recorded anew: {}\n", folders.back().string(), fault);
       fs::remove(folders.back() / identity_name, ignored);
     }
-    processes.start(folders.size() - 1, arguments_of(recording, folders.back()));
+    processes.start(folders.size() - 1, arguments_of(recording, folders.back()), processes_said / recording.name);
   }
   processes.wait_for_all();
   if (failed < all) {
-    const std::string what = fmt::format("{}: {} could not be recorded", file.string(), suite[failed].name);
+    const std::string what =
+        fmt::format("{}: {} could not be recorded: {}", suite[failed].origin, suite[failed].name, reason);
     if (failed_with != 2) throw MachineError(what);  // exit_bad_input of the command line
     throw ScenarioError(what);
   }

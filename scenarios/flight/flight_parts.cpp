@@ -10,6 +10,7 @@
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "perception/rectification/rectify.hpp"
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/config/config_writer.hpp"
 #include "scenarios/config/named_seed.hpp"
 #include "scenarios/flight/oracles.hpp"
 #include "scenarios/output/file_output.hpp"
@@ -33,7 +34,8 @@ World world_of(const Scenario& scenario, const std::filesystem::path& models_fol
   try {
     return build_world(models_folder, scenario.flown_airframe(), obstacles, scenario.world_config());
   } catch (const SimulationError& error) {
-    throw ScenarioError(fmt::format("{}: airframe or course: {}", scenario.name, error.what()));
+    if (write_config(scenario.airframe) == write_config(Airframe())) throw MachineError(error.what());
+    throw ScenarioError(fmt::format("{}: airframe: {}", scenario.name, error.what()));
   } catch (const std::runtime_error& error) {
     throw MachineError(error.what());  // the models are the project's, not the caller's
   }

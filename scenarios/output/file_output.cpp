@@ -243,6 +243,22 @@ void prepare_output_folder(const fs::path& folder) {
   probe(folder, folder);
 }
 
+namespace {
+
+/// `path` below `folder`; empty where it is not.
+fs::path path_within(const fs::path& path, const fs::path& folder) {
+  std::error_code ignored;
+  const fs::path relative = fs::weakly_canonical(fs::absolute(path), ignored)
+                                .lexically_relative(fs::weakly_canonical(fs::absolute(folder), ignored));
+  return relative.empty() || *relative.begin() == ".." ? fs::path() : relative;
+}
+
+[[noreturn]] void refuse_other_use(const fs::path& output, const char* use) {
+  throw ScenarioError(fmt::format("{}: expected an output of its own, {}", output.string(), use));
+}
+
+}  // namespace
+
 void require_separate(const std::vector<fs::path>& outputs, const std::vector<fs::path>& others) {
   const auto same = [](const fs::path& one, const fs::path& other) {
     std::error_code ignored;
@@ -254,13 +270,24 @@ void require_separate(const std::vector<fs::path>& outputs, const std::vector<fs
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     for (const fs::path& other : others)
       if (same(outputs[i], other))
-        throw ScenarioError(fmt::format("{}: expected an output of its own, this file or folder is read, or holds "
-                                        "another result",
-                                        outputs[i].string()));
+        refuse_other_use(outputs[i], "this file or folder is read, or holds another result");
     for (std::size_t j = 0; j < i; ++j)
       if (same(outputs[i], outputs[j]))
-        throw ScenarioError(fmt::format("{}: expected an output of its own, it is given twice", outputs[i].string()));
+        refuse_other_use(outputs[i], "it is given twice");
   }
+}
+
+void require_outside(const std::vector<fs::path>& outputs, const fs::path& folder,
+                     const std::vector<std::string>& patterns) {
+  for (const fs::path& output : outputs) {
+    const fs::path within = output.empty() ? fs::path() : path_within(output, folder);
+    if (!within.empty() && matches(within, patterns)) refuse_other_use(output, "results are read or written there");
+  }
+}
+
+void require_not_within(const fs::path& folder, const std::vector<fs::path>& others) {
+  for (const fs::path& other : others)
+    if (!path_within(folder, other).empty()) refuse_other_use(folder, "this folder lies within what is read");
 }
 
 void require_free_space(const fs::path& file, std::uintmax_t bytes) {

@@ -52,6 +52,12 @@ void require_free_space(const std::filesystem::path& file, std::uintmax_t bytes)
 void require_separate(const std::vector<std::filesystem::path>& outputs,
                       const std::vector<std::filesystem::path>& others);
 
+/// Throws ScenarioError where one of `outputs` would be one of the files that `patterns` mean in `folder`.
+void require_outside(const std::vector<std::filesystem::path>& outputs, const std::filesystem::path& folder,
+                     const std::vector<std::string>& patterns);
+/// Throws ScenarioError where `folder` is one of `others` or lies within one.
+void require_not_within(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& others);
+
 /// Whether the name leads to a device, a FIFO or a descriptor of this process: what is there stays. Throws as writing.
 bool is_stream(const std::filesystem::path& file);
 

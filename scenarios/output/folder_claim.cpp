@@ -24,12 +24,6 @@ constexpr std::string_view header = "Files that understory wrote here, each behi
 /// In the order in which they were made. The main thread changes it, under hold_outputs(); a signal's looks.
 std::vector<FolderClaim*>& claims = *new std::vector<FolderClaim*>;
 
-bool matches(const fs::path& file, const std::vector<std::string>& patterns) {
-  return std::ranges::any_of(patterns, [&](const std::string& pattern) {
-    return fnmatch(pattern.c_str(), file.c_str(), FNM_PATHNAME) == 0;
-  });
-}
-
 /// Whether the open file still bears that name.
 bool is_file(int descriptor, const fs::path& name) {
   struct stat held {
@@ -57,6 +51,12 @@ bool is_held(const fs::path& path) {
 }
 
 }  // namespace
+
+bool matches(const fs::path& file, const std::vector<std::string>& patterns) {
+  return std::ranges::any_of(patterns, [&](const std::string& pattern) {
+    return fnmatch(pattern.c_str(), file.c_str(), FNM_PATHNAME) == 0;
+  });
+}
 
 std::vector<fs::path> files_of(const fs::path& folder, const std::vector<std::string>& patterns) {
   std::vector<fs::path> files;
@@ -169,7 +169,10 @@ void FolderClaim::read_list(const fs::path& name) {
   for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
     const std::string line = text.substr(begin, end - begin);
     const std::size_t blank = line.find(' ');
-    if (blank != std::string::npos) written_[line.substr(blank + 1)] = line.substr(0, blank);
+    if (blank == std::string::npos) continue;
+    const fs::path path = line.substr(blank + 1);
+    const bool lies_within = path.is_relative() && std::ranges::find(path, "..") == path.end();
+    if (lies_within) written_[path.string()] = line.substr(0, blank);
   }
   if (begin < text.size() && write(file_, "\n", 1) != 1) refuse_output(name, errno);  // torn by a power cut
 }
@@ -196,7 +199,7 @@ bool FolderClaim::holds_other_files() const {
   std::error_code ignored;
   for (const auto& entry : fs::recursive_directory_iterator(folder_, ignored)) {
     const std::string file = entry.path().lexically_relative(folder_).string();
-    const bool is_ours = file == claim_name || written_.contains(file);
+    const bool is_ours = file == claim_name || owns(entry.path());
     if (!is_ours && !fs::is_directory(entry.symlink_status(ignored))) return true;
   }
   return false;
@@ -219,8 +222,12 @@ void FolderClaim::require_own(const std::vector<std::string>& patterns) const {
   std::error_code ignored;
   for (const std::string& pattern : patterns) {
     const fs::path within = folder_ / folder_in(pattern);
-    if (!folder_in(pattern).empty() && fs::exists(fs::symlink_status(within, ignored)) && !fs::is_directory(within, ignored))
-      refuse_output(within, ENOTDIR);
+    const fs::file_status status = fs::symlink_status(within, ignored);
+    if (!folder_in(pattern).empty() && fs::is_symlink(status))  // its files are not in this folder
+      throw ScenarioError(fmt::format("{}: expected a folder, this is a link", within.string()));
+    if (!folder_in(pattern).empty() && fs::exists(status) && !fs::is_directory(status)) refuse_output(within, ENOTDIR);
+    if (pattern.find('*') == std::string::npos && fs::is_directory(folder_ / pattern, ignored))
+      refuse_output(folder_ / pattern, EISDIR);
   }
   for (const fs::path& file : files_of(folder_, patterns)) require_own(folder_ / file);
 }

@@ -33,7 +33,7 @@ class FolderClaim {
   FolderClaim& operator=(const FolderClaim&) = delete;
 
   const std::filesystem::path& folder() const { return folder_; }
-  /// Whether there are files in the folder, or below it, that are not listed.
+  /// Whether there are files in the folder, or below it, that are not ours.
   bool holds_other_files() const;
   /// Whether the file, a path below the folder, is listed under our kind.
   bool owns(const std::filesystem::path& file) const;
@@ -81,6 +81,9 @@ void clear_unfinished(const std::filesystem::path& folder);
 /// Makes a folder and those above it. Gives those that were not there before, outermost first. Throws as OutputFile,
 /// calling the folder by `name`.
 std::vector<std::filesystem::path> make_folders(const std::filesystem::path& folder, const std::filesystem::path& name);
+
+/// Whether a relative path is what a pattern means (fnmatch; '*' is no '/').
+bool matches(const std::filesystem::path& file, const std::vector<std::string>& patterns);
 
 /// Every file below `folder` that a pattern means, by relative path, sorted.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& folder,

@@ -124,9 +124,19 @@ EndedProcess wait_for_process(pid_t pid, int options) {
   return ended;
 }
 
-void ProgramProcesses::start(std::uint64_t tag, const std::vector<std::string>& arguments) {
+std::string last_line_of(const std::filesystem::path& log) {
+  constexpr std::string_view name = "understory: ";
+  std::ifstream stream(log);
+  std::string last;
+  for (std::string line; std::getline(stream, line);)
+    if (!line.empty()) last = line;
+  return last.starts_with(name) ? last.substr(name.size()) : last;
+}
+
+void ProgramProcesses::start(std::uint64_t tag, const std::vector<std::string>& arguments,
+                             const std::filesystem::path& log) {
   while (running_.size() >= static_cast<std::size_t>(maximum_count_)) wait_for_one();
-  const pid_t child = start_this_program(arguments, SIGHUP);
+  const pid_t child = start_this_program(arguments, SIGHUP, log);
   ends_with_us(child);
   running_[child] = tag;
 }

@@ -54,6 +54,9 @@ struct EndedProcess {
 pid_t start_this_program(const std::vector<std::string>& arguments, int at_our_end,
                          const std::filesystem::path& log = {});
 
+/// What a program said last on its standard error, which `log` took: without the program's name.
+std::string last_line_of(const std::filesystem::path& log);
+
 /// Waits for `pid`, or with -1 for any child; with WNOHANG in `options` only looks: pid 0 where it runs yet.
 EndedProcess wait_for_process(pid_t pid, int options = 0);
 
@@ -69,7 +72,8 @@ class ProgramProcesses {
 
   /// Starts this program with `arguments` (without the program's name); first waits where all places are
   /// taken. Throws MachineError where it cannot be started.
-  void start(std::uint64_t tag, const std::vector<std::string>& arguments);
+  /// `log` as for start_this_program().
+  void start(std::uint64_t tag, const std::vector<std::string>& arguments, const std::filesystem::path& log = {});
   void wait_for_all();
 
  private:

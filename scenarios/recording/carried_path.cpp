@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -29,10 +30,15 @@ bool is_trajectory(const std::vector<TableLine>& lines) {
   return !lines.empty() && !lines.front().cells.empty() && lines.front().cells.front() == "t_s";
 }
 
+constexpr std::array trajectory_head{"t_s", "x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"};
+
 /// As lines of TUM's form with the file's line numbers, for messages.
 std::string as_tum(const std::vector<TableLine>& lines, const std::string& name) {
   std::string text;
   int number = 1;
+  const auto& head = lines.front().cells;
+  if (head.size() < trajectory_head.size() || !std::equal(trajectory_head.begin(), trajectory_head.end(), head.begin()))
+    fail_at_line(name, lines.front().number, "expected t_s,x_m,y_m,z_m,qw,qx,qy,qz and more, as a flight writes them");
   for (std::size_t i = 1; i < lines.size(); ++i) {
     const auto& cell = lines[i].cells;
     if (cell.size() < 8)
@@ -79,6 +85,13 @@ Eigen::Isometry3d pose_at(const WalkPath& path, double t_s) {
          Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitX());
 }
 
+int line_of_pose(const std::filesystem::path& file, std::size_t pose) {
+  const std::vector<TableLine> lines =
+      table_lines(read_file(file, maximum_table_bytes), CellsParted::by_commas, file.string());
+  const std::size_t line = pose + (is_trajectory(lines) ? 1 : 0);
+  return line < lines.size() ? lines[line].number : 1;
+}
+
 }  // namespace
 
 std::vector<TimedPose> read_path(const std::filesystem::path& file) {
@@ -95,7 +108,7 @@ std::vector<TimedPose> read_path(const std::filesystem::path& file) {
     const double step_s = static_cast<double>(poses[i].t_ns - poses[i - 1].t_ns) * 1e-9;
     const auto fail_unless = [&](bool holds, const char* what) {
       if (!holds)
-        throw ScenarioError(fmt::format("{}: expected {} from pose {} to the next", file.string(), what, i));
+        refuse_input(place_in(file.string(), line_of_pose(file, i)), "", fmt::format("expected {} from the pose before", what));
     };
     fail_unless(step.translation().norm() <= fastest_mps * step_s, "at most 100 m/s");
     fail_unless(Eigen::AngleAxisd(step.linear()).angle() <= widest_turn_rad, "at most a quarter turn");

@@ -33,14 +33,6 @@ std::uintmax_t expected_bytes(const Scenario& scenario, const StereoRig& rig, do
   return static_cast<std::uintmax_t>(per_frame * scenario.cameras.rate_hz * expected_s);
 }
 
-void require_numbers_for(const std::vector<Obstacle>& obstacles) {
-  constexpr std::size_t maximum = std::numeric_limits<std::uint16_t>::max() - object_first_obstacle + 1;
-  if (obstacles.size() > maximum)
-    throw ScenarioError(
-        fmt::format("record: expected at most {} obstacles, as many as 16 bits can number, found {}", maximum,
-                    obstacles.size()));
-}
-
 }  // namespace
 
 cv::Mat depth_in_millimetres(const cv::Mat& depth_m) {
@@ -70,7 +62,6 @@ EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario,
       rig_(rig.rig),
       truth_every_steps_(physics_rate_hz / scenario.sensors.sensors.imu_rate_hz) {
   const std::vector<Obstacle> obstacles = course_obstacles(scenario);
-  require_numbers_for(obstacles);
   require_free_space(folder_, expected_bytes(scenario, rig.rig, expected_s));
   for (const char* sensor :
        {"cam0/data", "cam1/data", "depth0/data", "objects0/data", "imu0", "state_groundtruth_estimate0"})

@@ -114,6 +114,12 @@ Trial TrialLog::evaluate(const Point& point) {
   return trial;
 }
 
+void TrialLog::finish() const {
+  if (held_.size() > evaluated_.size())
+    throw ScenarioError(fmt::format("{}:{}: expected no further trial, this tuning makes {}", file_.string(),
+                                    evaluated_.size() + 1, evaluated_.size()));
+}
+
 void TrialLog::append(const Trial& trial) {
   const std::string line = line_of(trial, parameters_, figures_);
   std::error_code ignored;

@@ -90,11 +90,13 @@ std::vector<Trial> run_search(const TuneFile& file, Tuning& tuning, Judge& train
   };
   evaluate(file.scenario_point);
   search(file.space, file.objective, file.search, evaluate);
+  log.finish();
   return log.evaluated();
 }
 
 /// The search's best, numbered as in `trials`; where none keeps the limits, the one that misses them minimum.
-std::size_t choose_best(const TuneFile& file, const std::vector<Trial>& trials, bool& keeps_limits) {
+std::size_t choose_best(const TuneFile& file, const std::vector<Trial>& trials, const std::filesystem::path& folder,
+                        bool& keeps_limits) {
   std::vector<Figures> figures = figures_of(trials);
   figures.front().clear();  // the scenario as it is stands beside, not in the search
   if (const auto best = best_of(file.objective, figures)) {
@@ -106,8 +108,8 @@ std::size_t choose_best(const TuneFile& file, const std::vector<Trial>& trials, 
   const auto minimum = std::ranges::min_element(figures, {}, cost);
   if (minimum->empty())
     throw ScenarioError(
-        fmt::format("{}: expected a trial that can be measured, all were refused; the first: {}", file.name,
-                    trials.back().refused));
+        fmt::format("{}: expected a trial that can be measured, all were refused; the last: {}",
+                    (folder / "trials.jsonl").string(), trials.back().refused));
   return static_cast<std::size_t>(minimum - figures.begin());
 }
 
@@ -175,7 +177,7 @@ Tuned tune(const TuneFile& file, Judge& training, Judge& validation, const TuneO
   Tuning tuning(file, options);
   Tuned tuned;
   tuned.trials = run_search(file, tuning, training);
-  const std::size_t best = choose_best(file, tuned.trials, tuned.keeps_limits);
+  const std::size_t best = choose_best(file, tuned.trials, options.folder, tuned.keeps_limits);
   const std::vector<std::size_t> front = choose_front(file, tuned.trials);
 
   TrialLog log = tuning.log("validation", validation);

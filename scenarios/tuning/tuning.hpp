@@ -40,6 +40,8 @@ class TrialLog {
   Trial evaluate(const Point& point);
 
   const std::vector<Trial>& evaluated() const { return evaluated_; }
+  /// To be called when nothing more is evaluated. Throws ScenarioError where the file holds more.
+  void finish() const;
 
  private:
   void append(const Trial& trial);

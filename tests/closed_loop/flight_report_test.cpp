@@ -90,7 +90,7 @@ TEST(FlightStory, TellsWhenTheTrunkWasSeenAndWhereItWasRemembered) {
 }
 
 TEST(FlightStory, SaysWhichBoundWasLeftAndByHowMuch) {
-  const Told told(library("clear", {"seed=1000", "band.maximum_altitude_m=2.2"}));
+  const Told told(library("clear", {"seed=1000", "band.maximum_altitude_m=2.2", "band.cruise_altitude_m=2.1"}));
   ASSERT_EQ(told.result.ending, Ending::out_of_bounds);
   expect_part(told.story.ending, "upper bound of 2.2 m");
   expect_part(told.story.ending, fmt::format("{:.2f} m", told.flight.truth().T_world_body.translation().z()));

@@ -113,7 +113,7 @@ TEST_F(CalibrationFaults, OpenCvYaml) {
       {"M1: !!opencv-matrix", "M1:", ":3: M1: ", "expected an OpenCV matrix"},
       {"data: [ 300., 0., 200., 0., 300.", "data: [ .Nan, 0., 200., 0., 300.", ":7: M1.data: ", "'.Nan'"},
       {"rows: 1\n   cols: 5", "rows: 5\n   cols: 3", ":22: D2.data: ", "15 numbers, found 5"},
-      {"[ -0.2, 0., 0. ]", "[ -0.2, 0., 0. ", ":", "expected YAML"},
+      {"[ -0.2, 0., 0. ]", "[ -0.2, 0., 0. ", ":", "expected a ]"},
       {"[ -0.2, 0., 0. ]", "[ 0.2, 0., 0. ]", ": P2: ", "to the right"},
       {"[ -0.2, 0., 0. ]", "[ 0., -0.2, 0. ]", ": P2: ", "to the right"},
       {"[ -0.2, 0., 0. ]", "[ 0., 0., 0. ]", ":23: R: ", "side by side"},
@@ -148,7 +148,7 @@ TEST_F(CalibrationFaults, Euroc) {
       {"[300,", "[0,", ":12: intrinsics: ", "too short"},
       {"radial-tangential", "equidistant", ":13: distortion_model: ", "found 'equidistant'"},
       {", -0.0001]", "]", ":14: distortion_coefficients: ", "4 numbers, found 3"},
-      {"%YAML:1.0", "a: [", ":", "expected YAML"},
+      {"%YAML:1.0", "a: [", ":", "expected a ]"},
   };
   const std::string left_file = (folder.path() / "cam0" / "sensor.yaml").string();
   for (const Fault& fault : faults) {

@@ -239,13 +239,5 @@ TEST(Objects, BeyondTheViewAreNone) {
   EXPECT_GT(forest.agreement.on_obstacles, 0);  // although some stand there
 }
 
-TEST(Objects, MoreThanTheirNumbersCanTellAreRefused) {
-  const support::TemporaryFolder folder;
-  const Scenario scenario = library_scenario(
-      "forest", {"forest.length_m=1000", "forest.half_width_m=200", "forest.square_metres_per_tree=4"});
-  EXPECT_THROW(fly_recorded(scenario, into(folder.path())), ScenarioError);
-  EXPECT_TRUE(fs::is_empty(folder.path()));
-}
-
 }  // namespace
 }  // namespace understory

@@ -246,7 +246,7 @@ TEST(Aircraft, RefusesWhatCannotBe) {
   buried.rail_length_m = 10;
   EXPECT_THROW(Aircraft(*world.model, airframe, buried, Vector3d::Zero()), std::runtime_error);
   Aircraft aircraft(*world.model, airframe, LaunchConfig{}, Vector3d::Zero());
-  EXPECT_THROW(aircraft.step({std::nan(""), 0, 0}), std::logic_error);
+  EXPECT_THROW(aircraft.step({std::nan(""), 0, 0}), SimulationError);
 }
 
 /// Every number of an airframe, by the visitor that knows them all.
