@@ -40,7 +40,8 @@ double FlightModel::fastest_level_mps() const {
       sine = std::min(0.7, weight_n / (2 * cosine * q * lifting_area_m2_ + thrust_n));
       cosine = std::sqrt(1 - sine * sine);
     }
-    const double drag_n = 2 * sine * sine * q * lifting_area_m2_ * drag_to_lift + q * airframe_.body_drag_area_m2;
+    const double drag_n =
+        2 * sine * sine * q * lifting_area_m2_ * drag_to_lift + q * airframe_.body_drag_area_m2;
     if (sine < 0.7 && drag_n <= thrust_n * cosine) return speed_mps;
   }
   return 0;

@@ -50,9 +50,11 @@ std::string lacking_resource(int error) {
     getrlimit(kind, &is);
     return is.rlim_cur == RLIM_INFINITY ? std::string("none") : std::to_string(is.rlim_cur);
   };
-  if (error == EMFILE) return "too many open files, this program's limit is " + limit(RLIMIT_NOFILE) + " (ulimit -n)";
+  if (error == EMFILE)
+    return "too many open files, this program's limit is " + limit(RLIMIT_NOFILE) + " (ulimit -n)";
   if (error == ENFILE) return "too many open files on this machine";
-  if (error == EFBIG) return "too large, this program's limit is " + limit(RLIMIT_FSIZE) + " bytes a file (ulimit -f)";
+  if (error == EFBIG)
+    return "too large, this program's limit is " + limit(RLIMIT_FSIZE) + " bytes a file (ulimit -f)";
   if (error == ENOMEM || error == EAGAIN)
     return "not enough memory, this program's limit is " + limit(RLIMIT_AS) + " bytes (ulimit -v)";
   return "";
@@ -78,7 +80,8 @@ std::string lacking_resource() {
 
 void require_address_space(std::size_t bytes, const std::string& work) {
   if (maps(bytes)) return;
-  throw MachineError(lacking_resource(ENOMEM) + "; " + work + " takes " + std::to_string(bytes >> 20) + " MiB more");
+  throw MachineError(lacking_resource(ENOMEM) + "; " + work + " takes " + std::to_string(bytes >> 20) +
+                     " MiB more");
 }
 
 std::string place_in(const std::string& file, int line) { return file + ":" + std::to_string(line); }

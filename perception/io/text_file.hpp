@@ -17,8 +17,8 @@ struct MachineError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What the machine lacks where a call ended with this errno: memory, descriptors, a limit on the size of files. In
-/// words, with the limit; empty where it is none of these.
+/// What the machine lacks where a call ended with this errno: memory, descriptors, a limit on the size of
+/// files. In words, with the limit; empty where it is none of these.
 std::string lacking_resource(int error);
 /// What it lacks at this moment, for libraries that do not say why they failed.
 std::string lacking_resource();
@@ -39,8 +39,8 @@ constexpr std::size_t maximum_table_bytes = std::size_t{256} << 20;  ///< poses,
 constexpr std::size_t maximum_image_bytes = std::size_t{256} << 20;
 
 /// The whole content of a regular file, or of a pipe that somebody writes. Throws InputError where `file` is
-/// none of these, cannot be read, or holds more than `maximum_bytes` (of a regular file: before reading), MachineError
-/// where the machine lacks memory or descriptors.
+/// none of these, cannot be read, or holds more than `maximum_bytes` (of a regular file: before reading),
+/// MachineError where the machine lacks memory or descriptors.
 std::string read_file(const std::filesystem::path& file, std::size_t maximum_bytes = maximum_keyed_bytes);
 
 }  // namespace understory

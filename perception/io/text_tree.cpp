@@ -34,8 +34,8 @@ std::size_t depth_of(const TextNode& node) {
   return deepest + 1;
 }
 
-/// What most often keeps a text from being YAML, and where, which its parser tells in its own words: a tab that
-/// indents, a bracket or a quotation mark that is not closed.
+/// What most often keeps a text from being YAML, and where, which its parser tells in its own words: a tab
+/// that indents, a bracket or a quotation mark that is not closed.
 struct YamlFault {
   int line = 0;  ///< 0: none of these
   std::string what;
@@ -55,8 +55,10 @@ YamlFault likely_fault(const std::string& text) {
     if (quote != 0) {
       if (c == quote && before != '\\') quote = 0;
     } else if (!is_comment) {
-      if (is_indentation && c == '\t' && open.empty()) return {line, "expected blanks, found a tab before the key"};
-      const bool begins_value = before == ' ' || before == '\n' || before == '[' || before == '{' || before == ',';
+      if (is_indentation && c == '\t' && open.empty())
+        return {line, "expected blanks, found a tab before the key"};
+      const bool begins_value =
+          before == ' ' || before == '\n' || before == '[' || before == '{' || before == ',';
       if (c == '#' && (before == ' ' || before == '\n' || before == '\t')) is_comment = true;
       if ((c == '"' || c == '\'') && begins_value) {
         quote = c;
@@ -74,8 +76,8 @@ YamlFault likely_fault(const std::string& text) {
   }
   if (quote != 0) return {quote_line, std::string("expected a second ") + quote + " that ends the text"};
   if (open.empty()) return {};
-  return {open.back().line, std::string("expected a ") + (open.back().mark == '[' ? ']' : '}') + " that closes the " +
-                                open.back().mark};
+  return {open.back().line, std::string("expected a ") + (open.back().mark == '[' ? ']' : '}') +
+                                " that closes the " + open.back().mark};
 }
 
 /// Builds the tree from the parser's events, because yaml-cpp's own loaders cannot be left alone with a

@@ -80,10 +80,12 @@ std::vector<Variant> overrides_of(const ConfigNode* list, const fs::path& campai
     Variant variant{name->text, {}};
     if (const ConfigNode* with = find_child(entry, "with"))
       for (const std::string& word : words_of(*with, "overrides.with", "a file of keys, or a list of such"))
-        variant.changes.push_back(parse_config_file(files.emplace_back(beside_or_as_said(word, campaign_file))));
+        variant.changes.push_back(
+            parse_config_file(files.emplace_back(beside_or_as_said(word, campaign_file))));
     if (const ConfigNode* set = find_child(entry, "set")) {
       if (set->kind != ConfigNode::Kind::map) refuse_key(*set, "overrides.set", "a group {key: value, ...}");
-      if (const ConfigNode* seed = find_child(*set, "seed")) refuse_key(*seed, "overrides.set.seed", seeds_decide);
+      if (const ConfigNode* seed = find_child(*set, "seed"))
+        refuse_key(*seed, "overrides.set.seed", seeds_decide);
       add_changes(*set, "", variant.changes);
     }
     variants.push_back(std::move(variant));
@@ -194,7 +196,8 @@ fs::path scenario_beside(const fs::path& file, const ConfigNode& node, const std
   }
 }
 
-Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario) {
+Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario,
+                       const std::function<void(std::size_t done, std::size_t of)>& on_condition) {
   const ConfigNode top = parse_config_file(file);
   require_known_keys(top, {"name", "scenario", "scenarios", "seeds", "overrides", "grid", "timeout_s"}, "");
   Campaign campaign;
@@ -217,7 +220,8 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario) 
     refuse_key(*scenarios, "scenarios", fmt::format("at most {} conditions in all", maximum_conditions));
   if (conditions * campaign.seeds.size() > maximum_flights)
     refuse_key(*find_child(top, "seeds"), "seeds",
-               fmt::format("at most {} flights in all, these are {}", maximum_flights, conditions * campaign.seeds.size()));
+               fmt::format("at most {} flights in all, these are {}", maximum_flights,
+                           conditions * campaign.seeds.size()));
   const std::vector<Variant> variants = with_grid(std::move(overrides), find_child(top, "grid"));
   std::set<std::string> seen;
   for (const std::string& word : words) {
@@ -227,11 +231,13 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario) 
       const Scenario scenario = load_changed_scenario(path, variant.changes);
       const std::string name = joined(plain(path.stem().string()), variant.name);
       if (!is_plain_name(name))
-        refuse_key(*scenarios, "scenarios",
-                   fmt::format("names of conditions of at most 200 characters, no '.' first; '{}' comes out", name));
+        refuse_key(
+            *scenarios, "scenarios",
+            fmt::format("names of conditions of at most 200 characters, no '.' first; '{}' comes out", name));
       if (!seen.insert(name).second)
         refuse_key(*scenarios, "scenarios", fmt::format("each condition once, '{}' comes out twice", name));
       campaign.conditions.push_back({name, scenario_to_text(scenario)});
+      if (on_condition) on_condition(campaign.conditions.size(), conditions);
     }
   }
   return campaign;

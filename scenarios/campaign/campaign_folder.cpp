@@ -11,6 +11,7 @@
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/program.hpp"
+#include "scenarios/output/progress_line.hpp"
 #include "scenarios/report/table.hpp"
 #include "sim/render/renderer_kind.hpp"
 
@@ -23,7 +24,8 @@ using Json = nlohmann::ordered_json;
 constexpr const char* manifest_name = "campaign.json";
 
 /// What must be a campaign's description is none.
-[[noreturn]] void refuse_manifest(const CampaignFolder& folder, const std::string& key, const std::string& expected) {
+[[noreturn]] void refuse_manifest(const CampaignFolder& folder, const std::string& key,
+                                  const std::string& expected) {
   refuse_input((folder.path / manifest_name).string(), key, expected);
 }
 
@@ -81,15 +83,16 @@ void require_same(const CampaignFolder& folder, const Campaign& campaign) {
 
 }  // namespace
 
-const std::vector<std::string> campaign_patterns{
-    "campaign.json", "conditions/*.yaml", "flights.csv",  "flights.jsonl", "costs.csv",
-    "summary.md",    "campaign.svg",      "report.html", "slurm.sh"};
+const std::vector<std::string> campaign_patterns{"campaign.json", "conditions/*.yaml", "flights.csv",
+                                                 "flights.jsonl", "costs.csv",         "summary.md",
+                                                 "campaign.svg",  "report.html",       "slurm.sh"};
 
 const std::vector<std::string> flight_patterns{"flights/*", "tracks/*", "logs/*", "runs/*"};
 
 bool is_plain_name(const std::string& name) {
   const auto is_plain = [](unsigned char c) {
-    return std::isalnum(c) != 0 || std::string_view("._=-").find(static_cast<char>(c)) != std::string_view::npos;
+    return std::isalnum(c) != 0 ||
+           std::string_view("._=-").find(static_cast<char>(c)) != std::string_view::npos;
   };
   return !name.empty() && name.size() <= 200 && name.front() != '.' && std::ranges::all_of(name, is_plain);
 }
@@ -97,7 +100,8 @@ bool is_plain_name(const std::string& name) {
 void require_identity(const CampaignFolder& folder, const Campaign& held, const Identity& identity) {
   const std::string name = difference_of(held.identity, identity);
   if (!name.empty())
-    refuse_manifest(folder, name, "changed since the campaign began, expected as it was; --out names another folder");
+    refuse_manifest(folder, name,
+                    "changed since the campaign began, expected as it was; --out names another folder");
 }
 
 std::optional<std::string> text_if_there(const fs::path& file) {
@@ -132,7 +136,8 @@ void prepare_campaign_folder(const CampaignFolder& folder, const Campaign& campa
                       folder.path.string()));
     require_same(folder, campaign);
   }
-  for (const char* part : {"conditions", "flights", "tracks", "logs"}) prepare_output_folder(folder.path / part);
+  for (const char* part : {"conditions", "flights", "tracks", "logs"})
+    prepare_output_folder(folder.path / part);
   for (const Condition& condition : campaign.conditions)
     write_whole_file(folder.condition_file(condition), condition.scenario_text);
   write_whole_file(folder.path / manifest_name, manifest_of(campaign));  // last: now it is a campaign
@@ -147,12 +152,14 @@ Campaign read_campaign(const CampaignFolder& folder) {
     campaign.name = json.at(key);
     campaign.renderer = json.at(key = "renderer");
     campaign.timeout_s = json.at(key = "timeout_s");
-    if (campaign.timeout_s < 1 || campaign.timeout_s > 86400) refuse_manifest(folder, key, "expected 1 to 86400");
+    if (campaign.timeout_s < 1 || campaign.timeout_s > 86400)
+      refuse_manifest(folder, key, "expected 1 to 86400");
     const auto is_renderer = [&](const auto& entry) { return entry.first == campaign.renderer; };
     if (std::ranges::none_of(renderer_names, is_renderer))
       refuse_manifest(folder, "renderer", "expected osmesa, egl or auto");
     for (const char* list : {"seeds", "conditions"})
-      if (!json.at(key = list).is_array() || json[key].empty()) refuse_manifest(folder, key, "expected a list that is not empty");
+      if (!json.at(key = list).is_array() || json[key].empty())
+        refuse_manifest(folder, key, "expected a list that is not empty");
     for (const Json& seed : json.at(key = "seeds")) {
       if (!seed.is_number_unsigned() || seed > std::uint64_t{1} << 32)
         refuse_manifest(folder, key, "expected whole numbers from 0 to 2^32");
@@ -186,7 +193,8 @@ std::optional<FlightFile> read_flight(const CampaignFolder& folder, const Campai
   auto file = text ? flight_file_from_json(*text) : std::nullopt;
   if (!file) return {};
   const FlightRow& row = file->row;
-  if (row.id != task.id || row.id != fmt::format("{}-{}", row.condition, task.seed) || row.seed != task.seed) return {};
+  if (row.id != task.id || row.id != fmt::format("{}-{}", row.condition, task.seed) || row.seed != task.seed)
+    return {};
   return file;
 }
 
@@ -200,7 +208,11 @@ void write_flight(const CampaignFolder& folder, const Campaign& campaign, const 
 
 Collected gather(const CampaignFolder& folder, const Campaign& campaign) {
   Collected collected;
-  for (const CampaignTask& task : tasks_of(campaign)) {
+  ProgressLine line;
+  const std::vector<CampaignTask> tasks = tasks_of(campaign);
+  for (const CampaignTask& task : tasks) {
+    const std::size_t done = collected.rows.size() + collected.missing;
+    line.show(fmt::format("{} of {} flights gathered", done, tasks.size()), done, tasks.size() - done);
     const auto file = read_flight(folder, task);
     if (!file) {
       collected.missing += 1;

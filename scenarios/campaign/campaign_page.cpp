@@ -33,7 +33,8 @@ std::string command(const ShownCondition& condition, std::uint64_t seed) {
 }
 
 ShownCondition shown(const CampaignFolder& folder, const Condition& condition, const fs::path& data_root) {
-  const Scenario scenario = scenario_from_text(condition.scenario_text, folder.condition_file(condition).string());
+  const Scenario scenario =
+      scenario_from_text(condition.scenario_text, folder.condition_file(condition).string());
   const std::string arguments = arguments_that_fly(scenario, data_root);
   const std::string mark = fmt::format(" --seed {}", scenario.seed);
   const std::size_t at = arguments.find(mark);
@@ -90,7 +91,8 @@ Json conditions_of(const Campaign& campaign, const std::vector<ShownCondition>& 
   return list;
 }
 
-Json survival_of(const Campaign& campaign, const std::vector<ConditionSummary>& summaries, PageArrays& arrays) {
+Json survival_of(const Campaign& campaign, const std::vector<ConditionSummary>& summaries,
+                 PageArrays& arrays) {
   Json list = Json::array();
   for (std::size_t i = 0; i < campaign.conditions.size(); ++i) {
     const auto summary =
@@ -142,7 +144,8 @@ void add_rows(const CampaignFolder& folder, const Campaign& campaign, const std:
   std::vector<std::uint16_t> condition_of_row;
   std::vector<std::uint8_t> ending_of_row;
   Json texts;
-  for (const char* const name : {"ids", "seeds", "reasons", "touched", "commands"}) texts[name] = Json::array();
+  for (const char* const name : {"ids", "seeds", "reasons", "touched", "commands"})
+    texts[name] = Json::array();
   facts["tracks"] = Json::object();
   std::size_t tracks = 0, left_out = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -166,7 +169,8 @@ void add_rows(const CampaignFolder& folder, const Campaign& campaign, const std:
     const std::string name = fmt::format("track-{}", i);
     page.parts.emplace_back(name, read_file(track, maximum_json_bytes));
     const Json told = facts_in(page.parts.back().second);
-    if (!told.is_object()) throw ScenarioError(fmt::format("{}: expected a flight's track, whole", track.string()));
+    if (!told.is_object())
+      throw ScenarioError(fmt::format("{}: expected a flight's track, whole", track.string()));
     texts["reasons"].back() = told.value("sentence", "");
     texts["touched"].back() = told.value("touched_name", "");
     facts["tracks"][fmt::format("{}", i)] = name;
@@ -177,7 +181,8 @@ void add_rows(const CampaignFolder& folder, const Campaign& campaign, const std:
   for (const Column& column : columns) {
     std::vector<float> values;
     for (const FlightRow& row : rows)
-      values.push_back(row.flown() ? static_cast<float>(column.value(row)) : std::numeric_limits<float>::quiet_NaN());
+      values.push_back(row.flown() ? static_cast<float>(column.value(row))
+                                   : std::numeric_limits<float>::quiet_NaN());
     page.arrays.add(fmt::format("column_{}", column.name), 1, values);
     facts["columns"].push_back({{"name", column.name}, {"label", column.label}, {"unit", column.unit}});
   }
@@ -209,7 +214,8 @@ std::string campaign_page(const CampaignFolder& folder, const Campaign& campaign
   const std::vector<FlightRow>& rows = collected.rows;
   const std::vector<ConditionSummary> summaries = summarise(rows);
   std::vector<ShownCondition> conditions;
-  for (const Condition& condition : campaign.conditions) conditions.push_back(shown(folder, condition, data_root));
+  for (const Condition& condition : campaign.conditions)
+    conditions.push_back(shown(folder, condition, data_root));
   const std::vector<std::string> keys = grid_keys(conditions);
   const auto goals = std::ranges::count_if(rows, &FlightRow::reached_goal);
   const auto flown = std::ranges::count_if(rows, &FlightRow::flown);
@@ -221,8 +227,9 @@ std::string campaign_page(const CampaignFolder& folder, const Campaign& campaign
              {"warning", ""},
              {"sentence", fmt::format("{} of {} flights reached the goal.", goals, flown)}};
   if (collected.missing > 0 || flown < static_cast<std::ptrdiff_t>(rows.size()))
-    facts["sentence"] = fmt::format("{} of {} flights reached the goal; {} were not flown, {} are missing.", goals,
-                                    flown, rows.size() - static_cast<std::size_t>(flown), collected.missing);
+    facts["sentence"] =
+        fmt::format("{} of {} flights reached the goal; {} were not flown, {} are missing.", goals, flown,
+                    rows.size() - static_cast<std::size_t>(flown), collected.missing);
   facts["conditions"] = conditions_of(campaign, conditions, keys, summaries);
   facts["grid_keys"] = keys;
   facts["endings"] = endings;

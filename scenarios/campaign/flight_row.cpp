@@ -110,8 +110,10 @@ bool take_row(FlightRow& row, TextOf&& text_of) {
   visit_columns(row, [&](std::string_view name, auto& value) {
     is_measured = is_measured || name == "outcome";
     const std::string text = text_of(name);
-    const bool may_be_empty = is_measured ? !row.flown() || name == "min_clearance_m" || name == "minimum_points_on_a_bar"
-                                          : name == "reason";
+    constexpr std::array<std::string_view, 4> optional{"reason", "min_clearance_m", "minimum_points_on_a_bar",
+                                                       "digest"};
+    const bool may_be_empty =
+        (is_measured && !row.flown()) || std::ranges::find(optional, name) != optional.end();
     is_whole = (text.empty() ? may_be_empty : take(text, value)) && is_whole;
   });
   return is_whole && row.flown() == is_ending(row.outcome);
@@ -201,7 +203,8 @@ std::vector<FlightRow> rows_from_csv(const std::string& text, const std::string&
       refuse_input(place_in(name, line), cells.front(), "expected a whole row, as understory writes it");
     const FlightRow& row = rows.back();
     if (!seen.insert(fmt::format("{} {}", row.condition, row.seed)).second)
-      refuse_input(place_in(name, line), cells.front(), "expected each condition and seed once, these are there twice");
+      refuse_input(place_in(name, line), cells.front(),
+                   "expected each condition and seed once, these are there twice");
     for (const std::string& words : cells) line += static_cast<int>(std::ranges::count(words, '\n'));
     ++line;
   }

@@ -123,10 +123,12 @@ class Flights {
     return stop_signals_.asked();
   }
 
-  /// A flight clears away what it has not finished, if it is asked to end; one that does not listen is killed.
+  /// A flight clears away what it has not finished, if it is asked to end; one that does not listen is
+  /// killed.
   void stop() {
     for (const auto& [child, flight] : air_) kill(child, SIGTERM);
-    for (int look = 0; look < 50 && !std::ranges::all_of(air_, [](const auto& one) { return is_over(one.first); }); ++look)
+    for (int look = 0;
+         look < 50 && !std::ranges::all_of(air_, [](const auto& one) { return is_over(one.first); }); ++look)
       std::this_thread::sleep_for(look_every);
     for (const auto& [child, flight] : air_) kill(child, SIGKILL);
     for (const auto& [child, flight] : air_) {
@@ -149,7 +151,8 @@ class Flights {
 }  // namespace
 
 void remove_parts(const CampaignFolder& folder) {
-  for (const char* part : {"conditions", "flights", "tracks", "logs", "runs"}) clear_unfinished(folder.path / part);
+  for (const char* part : {"conditions", "flights", "tracks", "logs", "runs"})
+    clear_unfinished(folder.path / part);
 }
 
 void count(const FlightRow& row, CampaignProgress& progress) {
@@ -165,7 +168,8 @@ std::vector<std::string> flight_arguments(const CampaignFolder& folder, const Ca
   std::vector<std::string> arguments{"fly", condition, "--seed", fmt::format("{}", task.seed), "--quiet"};
   arguments.insert(arguments.end(), {"--row", whole.flight_file(task).string()});
   const fs::path track = whole.track_file(task.id);
-  if (fs::exists(track.parent_path())) arguments.insert(arguments.end(), {"--track", track.string()});  // not in a tuning
+  if (fs::exists(track.parent_path()))
+    arguments.insert(arguments.end(), {"--track", track.string()});  // not in a tuning
   arguments.insert(arguments.end(), {"--renderer", campaign.renderer});
   if (keeps_run) arguments.insert(arguments.end(), {"--out", (whole.path / "runs" / task.id).string()});
   return arguments;

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <set>
 
 #include "scenarios/campaign/campaign_file.hpp"
 #include "scenarios/campaign/campaign_folder.hpp"
@@ -56,17 +57,24 @@ std::vector<Scenario> scenarios_of(const Campaign& campaign, const std::string& 
 }
 
 /// A campaign writes into a folder of its own: a new one, an empty one, or a campaign's.
-void claim_campaign_folder(FolderClaim& claim, const CampaignFolder& folder, bool force) {
+void claim_campaign_folder(FolderClaim& claim, const CampaignFolder& folder, const Campaign& campaign,
+                           bool force) {
   std::error_code ignored;
   if (fs::exists(folder.path / "campaign.json", ignored)) {
     read_campaign(folder);
     claim.adopt(campaign_patterns);
   } else if (!force && claim.holds_other_files()) {
-    throw ScenarioError(fmt::format("{}: holds other files and no campaign: --out names another folder, --force writes "
-                                    "beside them",
-                                    folder.path.string()));
+    throw ScenarioError(
+        fmt::format("{}: holds other files and no campaign: --out names another folder, --force writes "
+                    "beside them",
+                    folder.path.string()));
   } else {
-    claim.require_own(flight_patterns);
+    std::set<std::string> ids;
+    for (const CampaignTask& task : tasks_of(campaign)) ids.insert(task.id);
+    for (const fs::path& file : files_of(folder.path, flight_patterns)) {
+      const bool is_a_flights = ids.contains(file.stem().string()) || ids.contains(file.filename().string());
+      if (is_a_flights) claim.require_own(claim.folder() / file);
+    }
   }
   claim.require_own(campaign_patterns);
 }
@@ -117,19 +125,24 @@ Finish fly_on_slurm(const CampaignFolder& folder, const Campaign& campaign,
 }
 
 int run_campaign(const CampaignArguments& arguments) {
-  Campaign campaign = load_campaign(arguments.file, scenario_file);
+  ProgressLine line;
+  Campaign campaign = load_campaign(arguments.file, scenario_file, [&](std::size_t done, std::size_t of) {
+    line.show(fmt::format("{} of {} conditions read", done, of), done, of - done);
+  });
+  line.clear();
   campaign.renderer = word_for(arguments.renderer);
   const std::vector<Scenario> scenarios = scenarios_of(campaign, arguments.file);
   const CampaignFolder folder{arguments.out.empty() ? fs::path("results") / campaign.name
                                                     : fs::path(arguments.out)};
   if (folder.path.string().find('\n') != std::string::npos)  // --print-tasks prints a line for each flight
-    throw ScenarioError(fmt::format("{}: expected a folder whose name has no line breaks", folder.path.string()));
+    throw ScenarioError(
+        fmt::format("{}: expected a folder whose name has no line breaks", folder.path.string()));
   require_separate({arguments.junit}, campaign.files);
   require_outside({arguments.junit}, folder.path, campaign_patterns);
   require_outside({arguments.junit}, folder.path, flight_patterns);
   require_writable(arguments.junit);
   FolderClaim claim(folder.path, "campaign", folder.path);
-  claim_campaign_folder(claim, folder, arguments.force);
+  claim_campaign_folder(claim, folder, campaign, arguments.force);
   campaign.identity = identity_of(scenarios, data_root() / "models", arguments.renderer);
   remove_parts(folder);
   prepare_campaign_folder(folder, campaign, arguments.resume);
@@ -174,8 +187,10 @@ int run_shard(const ShardArguments& arguments) {
         fmt::format("--number {}: expected less than --of {}", arguments.number, arguments.of));
   std::vector<Scenario> scenarios;
   for (const Condition& condition : campaign.conditions)
-    scenarios.push_back(scenario_from_text(condition.scenario_text, folder.condition_file(condition).string()));
-  require_identity(folder, campaign, identity_of(scenarios, data_root() / "models", renderer_named(campaign.renderer)));
+    scenarios.push_back(
+        scenario_from_text(condition.scenario_text, folder.condition_file(condition).string()));
+  require_identity(folder, campaign,
+                   identity_of(scenarios, data_root() / "models", renderer_named(campaign.renderer)));
   const StopSignals stop_signals;
   LocalEngineConfig config;
   config.jobs = arguments.jobs;
@@ -202,7 +217,8 @@ void add_campaign_command(CommandLine& line) {
                 "slurm: an option of sbatch, --sbatch=--partition=short");
   command.flag("--no-wait", arguments->no_wait, "slurm: submit and leave");
   command.flag("--resume", arguments->resume, "go on with what the folder holds");
-  command.flag("--force", arguments->force, "write into a folder that holds other files; none of them is replaced");
+  command.flag("--force", arguments->force,
+               "write into a folder that holds other files; none of them is replaced");
   command.flag("--print-tasks", arguments->print_tasks,
                "fly nothing: print a command for each flight; collect gathers what they leave");
   command.text("--junit", "FILE", arguments->junit, "write a test case per flight as JUnit XML");

@@ -24,12 +24,14 @@ int run_gate(const GateArguments& arguments) {
   for (const std::string& folder : {arguments.baseline, arguments.candidate}) {
     require_outside({arguments.junit}, folder, campaign_patterns);
     require_outside({arguments.junit}, folder, flight_patterns);
+    require_separate({arguments.junit}, {std::filesystem::path(folder) / "flights.csv"});
   }
   require_writable(arguments.junit);
   const Comparison comparison =
       compare_campaigns(read_campaign_rows(arguments.baseline), read_campaign_rows(arguments.candidate));
   const GateVerdict verdict = judge(comparison, arguments.rule);
-  if (!arguments.junit.empty()) write_whole_file(arguments.junit, gate_junit(comparison, arguments.rule), Named::by_user);
+  if (!arguments.junit.empty())
+    write_whole_file(arguments.junit, gate_junit(comparison, arguments.rule), Named::by_user);
   fmt::print("{}", to_report(comparison, verdict, arguments.rule));
   return verdict.passes() ? exit_goal : exit_not_goal;
 }

@@ -6,13 +6,13 @@
 #include <memory>
 #include <optional>
 
+#include "planning/flight_model.hpp"
 #include "scenarios/campaign/flight_row.hpp"
 #include "scenarios/campaign/gate.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/flight/fly.hpp"
 #include "scenarios/flight/run_record.hpp"
-#include "planning/flight_model.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/output_folder.hpp"
 #include "scenarios/output/progress_line.hpp"
@@ -71,7 +71,8 @@ void warn_of(const Scenario& scenario, bool quiet) {
   const double asked_mps = model.config().cruise_speed_mps, fastest_mps = model.fastest_level_mps();
   if (!quiet && asked_mps > fastest_mps + 0.1)
     fmt::print(stderr,
-               "understory: warning: autopilot.flight_model.cruise_speed_mps: the aircraft holds at most {:.1f} m/s in level "
+               "understory: warning: autopilot.flight_model.cruise_speed_mps: the aircraft holds at most "
+               "{:.1f} m/s in level "
                "flight, {:g} m/s are asked for\n",
                fastest_mps, asked_mps);
 }
@@ -121,7 +122,8 @@ fs::path folder_of(const FlyArguments& arguments, const Scenario& scenario) {
 }
 
 /// What the options name is none of what the command reads, and none of the run's own files.
-void require_separate_outputs(const FlyArguments& arguments, const fs::path& folder, const Scenario& scenario) {
+void require_separate_outputs(const FlyArguments& arguments, const fs::path& folder,
+                              const Scenario& scenario) {
   std::vector<fs::path> others{scenario_file(arguments.scenario)};
   others.insert(others.end(), arguments.with.begin(), arguments.with.end());
   for (const fs::path& file : rig_files_of(scenario, data_root() / "models")) others.push_back(file);
@@ -166,8 +168,8 @@ int run_fly(const FlyArguments& arguments) {
   const fs::path folder = folder_of(arguments, scenario);
   if (folder.empty() && (options.video || arguments.mcap))
     throw ScenarioError(fmt::format("--{}: expected --out beside --row", options.report  ? "report"
-                                                                       : options.video ? "video"
-                                                                                       : "mcap"));
+                                                                         : options.video ? "video"
+                                                                                         : "mcap"));
   require_separate_outputs(arguments, folder, scenario);
   for (const std::string& file : {arguments.row, arguments.track, arguments.junit})
     require_writable_beside(folder, file);
@@ -186,7 +188,7 @@ int run_fly(const FlyArguments& arguments) {
   line.clear();
   FlightRow row = flown_row(fs::path(arguments.scenario).stem().string(), scenario, result);
   if (!arguments.row.empty()) row.id = fs::path(arguments.row).stem().string();  // as the campaign asked
-  if (!arguments.row.empty()) 
+  if (!arguments.row.empty())
     write_whole_file(arguments.row, to_json(FlightFile{row, cost_of(result)}), Named::by_user);
   if (!arguments.junit.empty()) write_whole_file(arguments.junit, campaign_junit({row}), Named::by_user);
   if (!arguments.quiet) {

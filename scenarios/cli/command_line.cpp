@@ -40,11 +40,13 @@ void refuse_arguments(const Command& command, const CLI::ParseError& error) {
   if (option == command.options().end()) return;
   const std::string text = error.what();
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr)
-    throw ScenarioError(fmt::format("{}: expected {} {}: {}", name, option->name, option->placeholder, option->meaning));
+    throw ScenarioError(
+        fmt::format("{}: expected {} {}: {}", name, option->name, option->placeholder, option->meaning));
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
     const bool too_many = text.find("received") != std::string::npos;
-    throw ScenarioError(fmt::format("{} {}: {} (understory {} --help)", name, option->name,
-                                    too_many ? "expected fewer arguments, or once" : "expected a value behind it", name));
+    throw ScenarioError(
+        fmt::format("{} {}: {} (understory {} --help)", name, option->name,
+                    too_many ? "expected fewer arguments, or once" : "expected a value behind it", name));
   }
   if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr)
     throw ScenarioError(fmt::format("{} {}: expected without {}", name, option->name,
@@ -191,8 +193,9 @@ int CommandLine::run(int argc, char** argv) {
   if (argc < 2) throw ScenarioError(fmt::format("expected a command: {}", fmt::join(names, ", ")));
   const std::string_view first = argv[1];
   if (first.starts_with('-') && first != "--help" && first != "-h" && first != "--version")
-    throw ScenarioError(fmt::format("{}: expected a command first: {}{}", first, fmt::join(names, ", "),
-                                    did_you_mean(first.substr(std::min(first.size(), first.find_first_not_of('-'))), names)));
+    throw ScenarioError(
+        fmt::format("{}: expected a command first: {}{}", first, fmt::join(names, ", "),
+                    did_you_mean(first.substr(std::min(first.size(), first.find_first_not_of('-'))), names)));
   const auto named = std::ranges::find(commands_, first, [](const Command& c) { return c.text().name; });
   if (named == commands_.end() && !first.starts_with('-'))
     throw ScenarioError(fmt::format("{}: expected a command: {}{}", first, fmt::join(names, ", "),

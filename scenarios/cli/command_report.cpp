@@ -72,7 +72,8 @@ struct AgainOutput {
   Named named = Named::by_user;
   std::optional<FolderClaim> claim;
 
-  AgainOutput(const AgainArguments& arguments, const char* kind, const char* name, const std::string& baseline = "") {
+  AgainOutput(const AgainArguments& arguments, const char* kind, const char* name,
+              const std::string& baseline = "") {
     const fs::path folder = arguments.folder;
     file = arguments.out.empty() ? folder / name : fs::path(arguments.out);
     std::vector<fs::path> folders{folder};
@@ -92,8 +93,8 @@ struct AgainOutput {
 };
 
 /// Flies the run again and says how `out` came about; the exit status.
-int fly_again(const Scenario& scenario, const AgainArguments& arguments, FlyOptions options, const fs::path& out,
-              const std::function<void()>& place_output) {
+int fly_again(const Scenario& scenario, const AgainArguments& arguments, FlyOptions options,
+              const fs::path& out, const std::function<void()>& place_output) {
   options.models_folder = data_root() / "models";
   options.renderer = arguments.renderer;
   ProgressLine line(!arguments.quiet);
@@ -124,8 +125,9 @@ int run_report(const ReportArguments& arguments) {
   const AgainOutput output(arguments, "flight", "report.html");
   require_writable(output.file);
   // The film, too, is made as a file first: beside the page, or where that is a device.
-  const fs::path beside = is_stream(output.file) ? fs::temp_directory_path() / fmt::format("report-{}", getpid())
-                                                 : fs::weakly_canonical(fs::absolute(output.file));
+  const fs::path beside = is_stream(output.file)
+                              ? fs::temp_directory_path() / fmt::format("report-{}", getpid())
+                              : fs::weakly_canonical(fs::absolute(output.file));
   const UnfinishedFolder flown(beside, output.file);
   options.output_folder = flown.path();
   return fly_again(scenario, arguments, options, output.file, [&] {
@@ -181,10 +183,9 @@ void add_again_options(Command& command, AgainArguments& arguments, const std::s
 
 void add_report_command(CommandLine& line) {
   const auto arguments = std::make_shared<ReportArguments>();
-  Command& command =
-      line.add({"report", "make a page to look at, of a flight or of a campaign",
-                "understory report runs/forest-7", "the page is there",
-                "it is there, but shows another flight than the run's, or the gate fails"});
+  Command& command = line.add({"report", "make a page to look at, of a flight or of a campaign",
+                               "understory report runs/forest-7", "the page is there",
+                               "it is there, but shows another flight than the run's, or the gate fails"});
   add_again_options(command, *arguments, "the page (default: FOLDER/report.html)");
   command.text("--baseline", "FOLDER", arguments->baseline, "of a campaign: the one it is gated against");
   command.flag("--no-film", arguments->no_film, "leave the film out: a smaller page, made sooner");
@@ -193,9 +194,9 @@ void add_report_command(CommandLine& line) {
 
 void add_mcap_command(CommandLine& line) {
   const auto arguments = std::make_shared<McapArguments>();
-  Command& command = line.add({"mcap", "make a log of a flight for Foxglove and Rerun",
-                               "understory mcap runs/forest-7", "the log is there",
-                               "it is there, but of another flight than the run's"});
+  Command& command =
+      line.add({"mcap", "make a log of a flight for Foxglove and Rerun", "understory mcap runs/forest-7",
+                "the log is there", "it is there, but of another flight than the run's"});
   add_again_options(command, *arguments, "the log (default: FOLDER/flight.mcap)");
   command.flag("--zstd", arguments->compress, "compress it");
   command.runs([arguments] { return run_mcap(*arguments); });

@@ -50,7 +50,8 @@ Judges judges_of(const TuneFile& file, const TuneArguments& arguments, const fs:
 
 /// What decides the trials: flights' identity, or the recordings and what looks at them.
 Identity identity_of(const TuneFile& file, RendererKind renderer) {
-  if (file.over == TuningData::flights) return understory::identity_of({file.scenario}, data_root() / "models", renderer);
+  if (file.over == TuningData::flights)
+    return understory::identity_of({file.scenario}, data_root() / "models", renderer);
   Identity identity{{"program", program_digest()}, {"libraries", mapped_libraries_digest()}};
   for (const auto* folders : {&file.training_folders, &file.validation_folders})
     for (const fs::path& folder : *folders)
@@ -63,9 +64,10 @@ void claim_tune_folder(FolderClaim& claim, const fs::path& folder, bool force) {
   if (fs::exists(folder / "tune.json", ignored)) {
     claim.adopt(tune_patterns);
   } else if (!force && claim.holds_other_files()) {
-    throw ScenarioError(fmt::format("{}: holds other files and no tuning: --out names another folder, --force writes "
-                                    "beside them",
-                                    folder.string()));
+    throw ScenarioError(
+        fmt::format("{}: holds other files and no tuning: --out names another folder, --force writes "
+                    "beside them",
+                    folder.string()));
   } else {
     claim.require_own(std::vector<std::string>{"flown/*"});
   }
@@ -88,7 +90,8 @@ int run_tune(const TuneArguments& arguments) {
   require_separate({folder}, others);
   require_not_within(folder, others);
   Judges judges;
-  if (file.over == TuningData::recordings) judges = bad_input_if_refused([&] { return judges_of(file, arguments, folder); });
+  if (file.over == TuningData::recordings)
+    judges = bad_input_if_refused([&] { return judges_of(file, arguments, folder); });
   FolderClaim claim(folder, "tuning", folder);
   claim_tune_folder(claim, folder, arguments.force);
   const Identity identity = identity_of(file, arguments.renderer);
@@ -131,7 +134,8 @@ void add_tune_command(CommandLine& line) {
   add_jobs_option(command, arguments->jobs, "flights or recordings");
   add_renderer_option(command, arguments->renderer);
   command.flag("--resume", arguments->resume, "go on with what the folder holds");
-  command.flag("--force", arguments->force, "write into a folder that holds other files; none of them is replaced");
+  command.flag("--force", arguments->force,
+               "write into a folder that holds other files; none of them is replaced");
   command.runs([arguments] { return run_tune(*arguments); });
 }
 

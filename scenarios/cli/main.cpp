@@ -25,7 +25,8 @@ using namespace understory;
 /// One line that a person can read, whatever a library or an argument has put into the message.
 void complain(std::string message) {
   constexpr std::size_t maximum = 5000, shown_end = 500;  // a path has 4096 bytes at most
-  std::ranges::replace_if(message, [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
+  std::ranges::replace_if(
+      message, [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
   while (!message.empty() && message.back() == ' ') message.pop_back();
   if (message.size() > maximum)
     message = message.substr(0, shown_end) + " ... " + message.substr(message.size() - shown_end);
@@ -38,7 +39,8 @@ void complain(std::string message) {
 int complain_of(const std::string& what, int error) {
   const std::string lacking = lacking_resource(error);
   complain(fmt::format("{}: {}", what, lacking.empty() ? std::strerror(error) : lacking));
-  const bool is_machine = !lacking.empty() || error == ENOSPC || error == EDQUOT || error == EIO || error == EPIPE;
+  const bool is_machine =
+      !lacking.empty() || error == ENOSPC || error == EDQUOT || error == EIO || error == EPIPE;
   return is_machine ? exit_machine_failed : exit_bad_input;
 }
 
@@ -47,7 +49,8 @@ void require_printed() {
   errno = 0;
   const bool is_flushed = std::fflush(stdout) == 0;
   if (is_flushed && std::ferror(stdout) == 0) return;
-  throw MachineError(fmt::format("standard output: {}", errno != 0 ? std::strerror(errno) : "what was printed is lost"));
+  throw MachineError(
+      fmt::format("standard output: {}", errno != 0 ? std::strerror(errno) : "what was printed is lost"));
 }
 
 std::string version() {

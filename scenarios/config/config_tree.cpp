@@ -79,7 +79,8 @@ ConfigNode parse_assignment(const std::string& assignment) {
   constexpr std::size_t maximum_shown = 200;
   constexpr std::ptrdiff_t maximum_levels = 16;  // as in a file
   const std::string origin =
-      "--set " + (assignment.size() <= maximum_shown ? assignment : assignment.substr(0, maximum_shown) + "...");
+      "--set " +
+      (assignment.size() <= maximum_shown ? assignment : assignment.substr(0, maximum_shown) + "...");
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0) {
     throw ScenarioError(fmt::format("{}: expected key=value, for instance forest.length_m=60", origin));

@@ -59,8 +59,8 @@ int whole_number_of(const ConfigNode& node, const std::string& key, int minimum,
 /// Files that are large are refused before: read_file(file, maximum_json_bytes).
 nlohmann::ordered_json parse_json(const std::string& text);
 
-/// A value as JSON text, in one line or with that indentation. Bytes that are not UTF-8, as names of files may have
-/// them, become U+FFFD.
+/// A value as JSON text, in one line or with that indentation. Bytes that are not UTF-8, as names of files
+/// may have them, become U+FFFD.
 std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
 
 }  // namespace understory

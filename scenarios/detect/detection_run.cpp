@@ -195,7 +195,10 @@ std::string depths_text(const DetectionResult& result) {
 
 /// What an earlier run left does not pass for this one's: OutputFolder removes it.
 FolderContents detection_contents() {
-  return {"detection", "", "", {"points.csv", "points.ply", "timings.csv", "map.ply", "overlay.mp4", "overlays/*.png"}};
+  return {"detection",
+          "",
+          "",
+          {"points.csv", "points.ply", "timings.csv", "map.ply", "overlay.mp4", "overlays/*.png"}};
 }
 
 }  // namespace

@@ -122,12 +122,14 @@ EvaluationFrame EvaluationRecording::frame(std::size_t index) {
     if (has_objects()) frame.truth.objects = read_16_bit_image(folder_ / "objects0/data" / name, rig());
     return 0;
   });
-  const cv::Size size = camera_.calibration ? cv::Size(camera_.calibration->width_px, camera_.calibration->height_px)
-                                            : cv::Size(rig().width_px, rig().height_px);
-  for (const auto& [file, image] : {std::pair(&files.left, &frame.pair.left), {&files.right, &frame.pair.right}})
+  const cv::Size size = camera_.calibration
+                            ? cv::Size(camera_.calibration->width_px, camera_.calibration->height_px)
+                            : cv::Size(rig().width_px, rig().height_px);
+  for (const auto& [file, image] :
+       {std::pair(&files.left, &frame.pair.left), {&files.right, &frame.pair.right}})
     if (image->size() != size)
-      throw ScenarioError(fmt::format("{}: expected {}x{} as the calibration has, found {}x{}", file->string(),
-                                      size.width, size.height, image->cols, image->rows));
+      throw ScenarioError(fmt::format("{}: expected {}x{} as the calibration has, found {}x{}",
+                                      file->string(), size.width, size.height, image->cols, image->rows));
   if (rectifier_) frame.pair = rectifier_->rectify(frame.pair);
   frame.mean_gray = cv::mean(frame.pair.left)[0];
   if (!has_poses()) return frame;

@@ -19,9 +19,9 @@ extern const std::vector<std::string> evaluation_patterns;
 
 /// Into `folder`: summary.md, evaluation.json (every figure), tables/*.csv, obstacles.csv,
 /// precision_recall.svg, distances.svg, response.svg, first_hits.svg, heat_map.png (ours),
-/// heat_map_paper.png, worst/, and report.html, a page of all that; what needs a truth that no recording has is
-/// left out. `data_root` holds scenarios/report/page. Throws ScenarioError or MachineError where it cannot be
-/// written.
+/// heat_map_paper.png, worst/, and report.html, a page of all that; what needs a truth that no recording has
+/// is left out. `data_root` holds scenarios/report/page. Throws ScenarioError or MachineError where it cannot
+/// be written.
 void write_evaluation(const Evaluation& evaluation, const std::filesystem::path& folder,
                       const std::filesystem::path& data_root);
 

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 /// A recording asked for, in the words of `understory record`.
 struct SuiteRecording {
   std::string origin;  ///< "suite.yaml:3"
-  std::string name;  ///< of its folder: the entry's name and the seed, "level-7"
+  std::string name;    ///< of its folder: the entry's name and the seed, "level-7"
   fs::path scenario;
   std::vector<std::string> settings;   ///< of --set, the seed among them
   std::vector<std::string> arguments;  ///< further ones: --path, --walk, --height
@@ -60,7 +60,8 @@ std::vector<SuiteRecording> recordings_of(const ConfigNode& entry, const ConfigN
   const std::string scenario = word(entry, "scenario", "a scenario");
   SuiteRecording recording;
   recording.origin = entry.origin;
-  recording.scenario = scenario_beside(folder / "suite", *find_child(entry, "scenario"), scenario, find_scenario);
+  recording.scenario =
+      scenario_beside(folder / "suite", *find_child(entry, "scenario"), scenario, find_scenario);
   if (find_child(entry, "path") != nullptr && find_child(entry, "walk_mps") != nullptr)
     refuse_key(*find_child(entry, "walk_mps"), "recordings.walk_mps", "either path or walk_mps");
   if (const ConfigNode* height = find_child(entry, "height_m"); height != nullptr) {
@@ -140,8 +141,8 @@ std::string fault_of(const fs::path& folder, const std::string& identity) {
 }
 
 std::vector<std::string> arguments_of(const SuiteRecording& recording, const fs::path& folder) {
-  std::vector<std::string> arguments{"record", recording.scenario.string(), "--quiet", "--force", "--out",
-                                     folder.string()};
+  std::vector<std::string> arguments{
+      "record", recording.scenario.string(), "--quiet", "--force", "--out", folder.string()};
   arguments.insert(arguments.end(), recording.arguments.begin(), recording.arguments.end());
   for (const std::string& setting : recording.settings) arguments.insert(arguments.end(), {"--set", setting});
   return arguments;
@@ -195,7 +196,8 @@ std::vector<fs::path> record_suite(const fs::path& file, const fs::path& folder,
       fmt::print("{}: recorded anew: {}\n", folders.back().string(), fault);
       fs::remove(folders.back() / identity_name, ignored);
     }
-    processes.start(folders.size() - 1, arguments_of(recording, folders.back()), processes_said / recording.name);
+    processes.start(folders.size() - 1, arguments_of(recording, folders.back()),
+                    processes_said / recording.name);
   }
   processes.wait_for_all();
   if (failed < all) {

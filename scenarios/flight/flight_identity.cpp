@@ -31,7 +31,8 @@ std::string digest_of_models(const fs::path& folder) {
 
 }  // namespace
 
-Identity identity_of(const std::vector<Scenario>& scenarios, const fs::path& models_folder, RendererKind renderer) {
+Identity identity_of(const std::vector<Scenario>& scenarios, const fs::path& models_folder,
+                     RendererKind renderer) {
   try {
     OffscreenContext context({renderer});
     context.make_current(16, 16);  // now everything that draws is mapped

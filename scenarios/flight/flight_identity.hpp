@@ -10,9 +10,9 @@
 
 namespace understory {
 
-/// Of flights that this program, as it is loaded, would fly: its file, the libraries it has mapped (the renderer's too,
-/// which is opened here), all of the models folder but its rigs, and each scenario's rig. Throws ScenarioError where a
-/// rig is missing, MachineError where nothing can be drawn.
+/// Of flights that this program, as it is loaded, would fly: its file, the libraries it has mapped (the
+/// renderer's too, which is opened here), all of the models folder but its rigs, and each scenario's rig.
+/// Throws ScenarioError where a rig is missing, MachineError where nothing can be drawn.
 Identity identity_of(const std::vector<Scenario>& scenarios, const std::filesystem::path& models_folder,
                      RendererKind renderer);
 

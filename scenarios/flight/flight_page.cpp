@@ -35,37 +35,46 @@ Json camera_of(const Flight& flight) {
   const Eigen::Matrix4d matrix = rig.T_body_camera.matrix();
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column) T_body_camera.push_back(matrix(row, column));
-  return {{"width_px", rig.width_px},     {"height_px", rig.height_px}, {"fx", rig.focal_px},
-          {"fy", rig.focal_px},           {"cx", rig.center_left_x_px}, {"cy", rig.center_y_px},
-          {"T_body_camera", T_body_camera}, {"depths_m", depths_of(flight)},       {"baseline_m", rig.baseline_m}};
+  return {{"width_px", rig.width_px},
+          {"height_px", rig.height_px},
+          {"fx", rig.focal_px},
+          {"fy", rig.focal_px},
+          {"cx", rig.center_left_x_px},
+          {"cy", rig.center_y_px},
+          {"T_body_camera", T_body_camera},
+          {"depths_m", depths_of(flight)},
+          {"baseline_m", rig.baseline_m}};
 }
 
 Json result_of(const FlightResult& result, const Flight& flight) {
   Json rows = Json::array();
   const auto add = [&](const char* name, const std::string& text) { rows.push_back({name, text}); };
   add("ending", std::string(word_for(result.ending)));
-  add("flown", fmt::format("{:.1f} m in {:.2f} s, {:.1f} m/s on average", result.distance_m, result.simulated_s,
-                           result.mean_speed_mps));
-  add("minimum clearance",
-      std::isfinite(result.min_clearance_m) ? fmt::format("{:.2f} m", result.min_clearance_m) : "no obstacles");
+  add("flown", fmt::format("{:.1f} m in {:.2f} s, {:.1f} m/s on average", result.distance_m,
+                           result.simulated_s, result.mean_speed_mps));
+  add("minimum clearance", std::isfinite(result.min_clearance_m)
+                               ? fmt::format("{:.2f} m", result.min_clearance_m)
+                               : "no obstacles");
   add("estimate's error", fmt::format("{:.2f} m on average, {:.2f} m at most", result.position_error_mean_m,
                                       result.position_error_max_m));
   add("detections", fmt::format("{} in {} frames", result.detections, result.frames));
   add("points remembered", fmt::format("{}", result.remembered_points));
   const PlannerCounts& planner = result.planner;
-  add("plans", fmt::format("{}: {} straight, {} solved, {} kept, {} fallback", planner.replans, planner.straight,
-                           planner.solved, planner.kept, planner.fallback));
-  add("detector", looks(flight.scenario().perception.detector)
-                      ? fmt::format("{}, looking {:.1f} m ahead", result.detector, fmt::join(depths_of(flight), " and "))
-                      : result.detector);
+  add("plans", fmt::format("{}: {} straight, {} solved, {} kept, {} fallback", planner.replans,
+                           planner.straight, planner.solved, planner.kept, planner.fallback));
+  add("detector",
+      looks(flight.scenario().perception.detector)
+          ? fmt::format("{}, looking {:.1f} m ahead", result.detector, fmt::join(depths_of(flight), " and "))
+          : result.detector);
   add("state", result.state_source);
   add("renderer", result.renderer.empty() ? "none: no images" : result.renderer);
   return rows;
 }
 
 /// Keys that say which numbers others start from.
-const std::vector<std::string> preset_keys{"name",  "rig", "sensors.grade", "perception.rule", "estimation.preset",
-                                           "autopilot.preset", "launch.", "airframe."};
+const std::vector<std::string> preset_keys{
+    "name",    "rig",      "sensors.grade", "perception.rule", "estimation.preset", "autopilot.preset",
+    "launch.", "airframe."};
 
 bool is_preset(const std::string& key) {
   return std::ranges::any_of(preset_keys, [&](const std::string& preset) {
@@ -107,14 +116,16 @@ std::string arguments_that_fly(const Scenario& scenario, const fs::path& data_ro
     if (settings.size() > maximum_settings) return "scenario.yaml";
   }
   try {
-    if (scenario_to_text(load_scenario(library, settings)) != scenario_to_text(scenario)) return "scenario.yaml";
+    if (scenario_to_text(load_scenario(library, settings)) != scenario_to_text(scenario))
+      return "scenario.yaml";
   } catch (const ScenarioError&) {  // a list's entry cannot be set by itself
     return "scenario.yaml";
   }
   std::string arguments = fmt::format("{} --seed {}", scenario.name, scenario.seed);
   for (std::size_t i = 1; i < settings.size(); ++i)
-    arguments += settings[i].find_first_of(" [\"") == std::string::npos ? fmt::format(" --set {}", settings[i])
-                                                                         : fmt::format(" --set '{}'", settings[i]);
+    arguments += settings[i].find_first_of(" [\"") == std::string::npos
+                     ? fmt::format(" --set {}", settings[i])
+                     : fmt::format(" --set '{}'", settings[i]);
   return arguments;
 }
 

@@ -77,7 +77,8 @@ const char* const trajectory_columns =
     "left_elevon_rad,right_elevon_rad,thrust_n,clearance_m\n";
 
 bool is_ending(std::string_view word) {
-  constexpr std::array all{Ending::goal, Ending::collision, Ending::ground, Ending::out_of_bounds, Ending::time};
+  constexpr std::array all{Ending::goal, Ending::collision, Ending::ground, Ending::out_of_bounds,
+                           Ending::time};
   return std::ranges::any_of(all, [&](Ending ending) { return word == word_for(ending); });
 }
 

@@ -40,7 +40,8 @@ class ProgressTeller : public FlightObserver {
 std::string warning_of(const FlightResult& result, const std::string& expected_digest) {
   if (expected_digest.empty() || expected_digest == result.digest) return "";
   return fmt::format(
-      "This page shows another flight than the run's: its digest is {}, the run's was {}. Another version of the "
+      "This page shows another flight than the run's: its digest is {}, the run's was {}. Another version of "
+      "the "
       "program, of a library or another machine flew it.",
       result.digest, expected_digest);
 }
@@ -53,7 +54,8 @@ void write_story(const Flight& flight, const FlightResult& result, const FlyOpti
   if (!options.report && !keeps_track) return;
   const FlightTrack track = recorder.finish(flight);
   const FlightStory story = story_of(flight, track);
-  if (keeps_track) write_whole_file(options.track, compact_flight(flight, result, track, story), Named::by_user);
+  if (keeps_track)
+    write_whole_file(options.track, compact_flight(flight, result, track, story), Named::by_user);
   if (!options.report) return;
   FlightPageExtras extras{root, warning_of(result, options.expected_digest)};
   if (film != nullptr) {

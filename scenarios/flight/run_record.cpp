@@ -36,8 +36,8 @@ void append(std::string& text, const Eigen::Isometry3d& pose, const Eigen::Vecto
 void append_tum(std::string& text, double t_s, const Eigen::Isometry3d& pose) {
   const Eigen::Vector3d& p = pose.translation();
   const Eigen::Quaterniond q(pose.linear());
-  fmt::format_to(std::back_inserter(text), "{:.6f} {:.4f} {:.4f} {:.4f} {:.6f} {:.6f} {:.6f} {:.6f}\n", t_s, p.x(),
-                 p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+  fmt::format_to(std::back_inserter(text), "{:.6f} {:.4f} {:.4f} {:.4f} {:.6f} {:.6f} {:.6f} {:.6f}\n", t_s,
+                 p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
 }
 
 std::string obstacles_csv(const std::vector<Obstacle>& obstacles) {
@@ -57,9 +57,9 @@ std::span<const std::byte> bytes_of(const cv::Mat& image) {
 
 }  // namespace
 
-const std::vector<std::string> run_patterns{"result.json", "scenario.yaml", "trajectory.csv", "map.ply",
-                                            "obstacles.csv", "truth.tum", "estimate.tum", "flight.mp4",
-                                            "still.png", "flight.mcap", "report.html"};
+const std::vector<std::string> run_patterns{"result.json",   "scenario.yaml", "trajectory.csv", "map.ply",
+                                            "obstacles.csv", "truth.tum",     "estimate.tum",   "flight.mp4",
+                                            "still.png",     "flight.mcap",   "report.html"};
 
 FolderContents run_contents(const Scenario& scenario) {
   return {"flight", "scenario.yaml", scenario_to_text(scenario), run_patterns};
@@ -165,8 +165,7 @@ FlightResult RunRecord::finish(const Flight& flight) {
       clearance_m(flight.truth().T_world_body, scenario.airframe, flight.obstacles());
   result_.min_clearance_m = std::min(result_.min_clearance_m, clearance_now_m);
   if (result_.ending == Ending::collision) {
-    const auto touched =
-        nearest_obstacle(flight.truth().T_world_body, scenario.airframe, flight.obstacles());
+    const auto touched = nearest_obstacle(flight.truth().T_world_body, scenario.airframe, flight.obstacles());
     if (touched) result_.touched = flight.obstacles()[*touched].name;
   }
   if (flight.obstacles().size() <= 8) count_points_on_obstacles(flight.obstacles());
@@ -182,9 +181,7 @@ FlightResult RunRecord::finish(const Flight& flight) {
 /// On a course of few named bars: the points seen on each.
 void RunRecord::count_points_on_obstacles(const std::vector<Obstacle>& obstacles) {
   for (const Obstacle& bar : obstacles) {
-    const auto near = [&](const Eigen::Vector3d& point_world) {
-      return belongs_to(point_world, bar);
-    };
+    const auto near = [&](const Eigen::Vector3d& point_world) { return belongs_to(point_world, bar); };
     result_.points_on_obstacles.emplace_back(bar.name, std::ranges::count_if(true_positions_world_, near));
   }
 }

@@ -93,7 +93,8 @@ class Stream {
   int descriptor_;
 };
 
-/// A new file, locked while it is open: what bears such a name and is not locked was left by a killed program.
+/// A new file, locked while it is open: what bears such a name and is not locked was left by a killed
+/// program.
 int made(const fs::path& part) {
   const auto lock = hold_outputs();
   const int descriptor = open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -139,7 +140,8 @@ fs::path unfinished_name_of(const fs::path& target, const fs::path& folder) {
 }
 
 bool is_at_work_on(const fs::path& unfinished) {
-  const std::string name = unfinished.filename().string(), ours = fmt::format("{}{}-", unfinished_prefix, host_name());
+  const std::string name = unfinished.filename().string(),
+                    ours = fmt::format("{}{}-", unfinished_prefix, host_name());
   int process = 0;
   if (!name.starts_with(ours)) return false;
   const auto parsed = std::from_chars(name.data() + ours.size(), name.data() + name.size(), process);
@@ -168,8 +170,9 @@ OutputFile::OutputFile(fs::path file, Named named) : state_(std::make_unique<Sta
   state.to = destination_of(state.name);
   if (state.to.is_stream) {
     std::fflush(stdout);  // what was printed before stands before
-    state.stream.emplace(state.to.descriptor >= 0 ? fcntl(state.to.descriptor, F_DUPFD_CLOEXEC, 0)
-                                                  : open(state.to.file.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC));
+    state.stream.emplace(state.to.descriptor >= 0
+                             ? fcntl(state.to.descriptor, F_DUPFD_CLOEXEC, 0)
+                             : open(state.to.file.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC));
   } else {
     const bool asks = named == Named::by_us && !lies_in_unfinished_folder(state.to.file);
     state.claim = asks ? claim_of(state.to.file) : nullptr;
@@ -192,7 +195,8 @@ void OutputFile::finish() {
   const bool lasts = !state.to.is_stream && !lies_in_unfinished_folder(file);
   struct stat former {};
   int error = 0;
-  if (state.part && stat(file.c_str(), &former) == 0) chmod(state.part->path().c_str(), former.st_mode & 07777);
+  if (state.part && stat(file.c_str(), &former) == 0)
+    chmod(state.part->path().c_str(), former.st_mode & 07777);
   if (lasts) error = state.stream->sync();
   if (error == 0 && state.claim != nullptr) state.claim->add(file);
   // Named before it is closed: until then its lock says that somebody is at work on it.
@@ -262,7 +266,8 @@ fs::path path_within(const fs::path& path, const fs::path& folder) {
 void require_separate(const std::vector<fs::path>& outputs, const std::vector<fs::path>& others) {
   const auto same = [](const fs::path& one, const fs::path& other) {
     std::error_code ignored;
-    if (one.empty() || other.empty() || (fs::exists(one, ignored) && !fs::is_directory(one, ignored) && is_stream(one)))
+    if (one.empty() || other.empty() ||
+        (fs::exists(one, ignored) && !fs::is_directory(one, ignored) && is_stream(one)))
       return false;
     return fs::equivalent(one, other, ignored) || fs::weakly_canonical(fs::absolute(one), ignored) ==
                                                       fs::weakly_canonical(fs::absolute(other), ignored);
@@ -272,8 +277,7 @@ void require_separate(const std::vector<fs::path>& outputs, const std::vector<fs
       if (same(outputs[i], other))
         refuse_other_use(outputs[i], "this file or folder is read, or holds another result");
     for (std::size_t j = 0; j < i; ++j)
-      if (same(outputs[i], outputs[j]))
-        refuse_other_use(outputs[i], "it is given twice");
+      if (same(outputs[i], outputs[j])) refuse_other_use(outputs[i], "it is given twice");
   }
 }
 
@@ -281,7 +285,8 @@ void require_outside(const std::vector<fs::path>& outputs, const fs::path& folde
                      const std::vector<std::string>& patterns) {
   for (const fs::path& output : outputs) {
     const fs::path within = output.empty() ? fs::path() : path_within(output, folder);
-    if (!within.empty() && matches(within, patterns)) refuse_other_use(output, "results are read or written there");
+    if (!within.empty() && matches(within, patterns))
+      refuse_other_use(output, "results are read or written there");
   }
 }
 

@@ -17,11 +17,11 @@ enum class Named {
   by_user  ///< an option's value: it replaces whatever has the name
 };
 
-/// A file being written. A regular file, or a new one, appears whole or not at all: it bears another name until
-/// finish(), which returns only when the file would outlive a power cut (in an UnfinishedFolder the folder sees to
-/// that). A device, a FIFO or a descriptor as /dev/stdout is written straight through. Symbolic links are followed.
-/// All throw MachineError where the disk is full or the reader is gone, ScenarioError where the file cannot be
-/// written.
+/// A file being written. A regular file, or a new one, appears whole or not at all: it bears another name
+/// until finish(), which returns only when the file would outlive a power cut (in an UnfinishedFolder the
+/// folder sees to that). A device, a FIFO or a descriptor as /dev/stdout is written straight through.
+/// Symbolic links are followed. All throw MachineError where the disk is full or the reader is gone,
+/// ScenarioError where the file cannot be written.
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path file, Named named = Named::by_us);
@@ -35,10 +35,12 @@ class OutputFile {
 };
 
 /// The same at once.
-void write_whole_file(const std::filesystem::path& file, std::string_view content, Named named = Named::by_us);
+void write_whole_file(const std::filesystem::path& file, std::string_view content,
+                      Named named = Named::by_us);
 
-/// Throws what writing would throw, as far as that can be known beforehand; for outputs that end the work, before it
-/// starts. Clears away what killed programs left unfinished beside it. An empty name means no output.
+/// Throws what writing would throw, as far as that can be known beforehand; for outputs that end the work,
+/// before it starts. Clears away what killed programs left unfinished beside it. An empty name means no
+/// output.
 void require_writable(const std::filesystem::path& file);
 
 /// Makes `folder` and proves that files can be written into it. Throws as writing does.
@@ -47,8 +49,8 @@ void prepare_output_folder(const std::filesystem::path& folder);
 /// Throws MachineError where fewer than `bytes` are free beside `file`: for writers that cannot tell (video).
 void require_free_space(const std::filesystem::path& file, std::uintmax_t bytes);
 
-/// Throws ScenarioError where one of `outputs` is also one of `others` or is given twice. Empty names mean nothing;
-/// devices and FIFOs may be given again and again.
+/// Throws ScenarioError where one of `outputs` is also one of `others` or is given twice. Empty names mean
+/// nothing; devices and FIFOs may be given again and again.
 void require_separate(const std::vector<std::filesystem::path>& outputs,
                       const std::vector<std::filesystem::path>& others);
 
@@ -56,16 +58,19 @@ void require_separate(const std::vector<std::filesystem::path>& outputs,
 void require_outside(const std::vector<std::filesystem::path>& outputs, const std::filesystem::path& folder,
                      const std::vector<std::string>& patterns);
 /// Throws ScenarioError where `folder` is one of `others` or lies within one.
-void require_not_within(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& others);
+void require_not_within(const std::filesystem::path& folder,
+                        const std::vector<std::filesystem::path>& others);
 
-/// Whether the name leads to a device, a FIFO or a descriptor of this process: what is there stays. Throws as writing.
+/// Whether the name leads to a device, a FIFO or a descriptor of this process: what is there stays. Throws as
+/// writing.
 bool is_stream(const std::filesystem::path& file);
 
 /// Whether a file or folder bears the name of something that a program is at work on.
 bool is_unfinished_name(const std::filesystem::path& path);
 /// Such a name in `folder`: for this process alone; for what will be called `target`, whoever makes it.
 std::filesystem::path unfinished_name_in(const std::filesystem::path& folder);
-std::filesystem::path unfinished_name_of(const std::filesystem::path& target, const std::filesystem::path& folder);
+std::filesystem::path unfinished_name_of(const std::filesystem::path& target,
+                                         const std::filesystem::path& folder);
 /// Whether the process that a name of the first kind tells of is alive on this machine.
 bool is_at_work_on(const std::filesystem::path& unfinished);
 

@@ -19,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view header = "Files that understory wrote here, each behind the kind of its results. It replaces no others.\n";
+constexpr std::string_view header =
+    "Files that understory wrote here, each behind the kind of its results. It replaces no others.\n";
 
 /// In the order in which they were made. The main thread changes it, under hold_outputs(); a signal's looks.
 std::vector<FolderClaim*>& claims = *new std::vector<FolderClaim*>;
@@ -75,7 +76,8 @@ std::vector<fs::path> make_folders(const fs::path& folder, const fs::path& name)
   std::error_code error, ignored;
   const fs::path whole = fs::absolute(folder).lexically_normal();
   for (fs::path above = whole.has_filename() ? whole : whole.parent_path();
-       !above.empty() && !fs::exists(above, ignored) && above != above.parent_path(); above = above.parent_path())
+       !above.empty() && !fs::exists(above, ignored) && above != above.parent_path();
+       above = above.parent_path())
     missing.insert(missing.begin(), above);
   const auto lock = hold_outputs();
   fs::create_directories(folder, error);
@@ -98,8 +100,10 @@ FolderClaim* claim_of(const fs::path& file) {
   FolderClaim* innermost = nullptr;
   for (FolderClaim* claim : claims) {
     const fs::path& folder = claim->folder();
-    const bool holds = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
-    const bool is_deeper = innermost == nullptr || folder.native().size() >= innermost->folder().native().size();
+    const bool holds =
+        std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
+    const bool is_deeper =
+        innermost == nullptr || folder.native().size() >= innermost->folder().native().size();
     if (holds && is_deeper) innermost = claim;
   }
   return innermost;
@@ -136,7 +140,8 @@ void FolderClaim::lock(const fs::path& name, Manner manner) {
   struct stat before {};
   is_new_ = lstat(file.c_str(), &before) != 0;
   if (!is_new_ && !S_ISREG(before.st_mode))
-    throw ScenarioError(fmt::format("{}: expected a file of understory's, this is none: move it away", file.string()));
+    throw ScenarioError(
+        fmt::format("{}: expected a file of understory's, this is none: move it away", file.string()));
   file_ = open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (file_ < 0 && errno == ENOENT) return;
   if (file_ < 0) refuse_output(name, errno);
@@ -157,7 +162,8 @@ void FolderClaim::read_list(const fs::path& name) {
   for (ssize_t count; (count = pread(file_, piece, sizeof piece, static_cast<off_t>(text.size()))) > 0;)
     text.append(piece, static_cast<std::size_t>(count));
   if (text.empty()) {
-    if (write(file_, header.data(), header.size()) != static_cast<ssize_t>(header.size())) refuse_output(name, errno);
+    if (write(file_, header.data(), header.size()) != static_cast<ssize_t>(header.size()))
+      refuse_output(name, errno);
     return;
   }
   if (!text.starts_with(header)) {
@@ -225,7 +231,8 @@ void FolderClaim::require_own(const std::vector<std::string>& patterns) const {
     const fs::file_status status = fs::symlink_status(within, ignored);
     if (!folder_in(pattern).empty() && fs::is_symlink(status))  // its files are not in this folder
       throw ScenarioError(fmt::format("{}: expected a folder, this is a link", within.string()));
-    if (!folder_in(pattern).empty() && fs::exists(status) && !fs::is_directory(status)) refuse_output(within, ENOTDIR);
+    if (!folder_in(pattern).empty() && fs::exists(status) && !fs::is_directory(status))
+      refuse_output(within, ENOTDIR);
     if (pattern.find('*') == std::string::npos && fs::is_directory(folder_ / pattern, ignored))
       refuse_output(folder_ / pattern, EISDIR);
   }
@@ -235,16 +242,18 @@ void FolderClaim::require_own(const std::vector<std::string>& patterns) const {
 void FolderClaim::require_own(const fs::path& file) const {
   std::error_code ignored;
   if (owns(file) || !fs::exists(fs::symlink_status(file, ignored))) return;
-  throw ScenarioError(fmt::format("{}: is there and is no {} of understory's: move it away, or name another folder with "
-                                  "--out",
-                                  file.string(), kind_));
+  throw ScenarioError(
+      fmt::format("{}: is there and is no {} of understory's: move it away, or name another folder with "
+                  "--out",
+                  file.string(), kind_));
 }
 
 void FolderClaim::note(const std::string& file) {
   if (const auto known = written_.find(file); known != written_.end() && known->second == kind_) return;
   if (!is_saved_) write_list();
   const std::string line = fmt::format("{} {}\n", kind_, file);
-  if (write(file_, line.data(), line.size()) != static_cast<ssize_t>(line.size())) refuse_output(folder_ / file, errno);
+  if (write(file_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
+    refuse_output(folder_ / file, errno);
   fdatasync(file_);  // whoever finds the file after a power cut must find whose it is
   written_[file] = kind_;
 }
@@ -262,7 +271,8 @@ void FolderClaim::remove_stale(const std::vector<std::string>& patterns) {
   std::error_code ignored;
   std::set<fs::path> folders;
   for (auto file = written_.begin(); file != written_.end();) {
-    const bool is_stale = file->second == kind_ && !added_.contains(file->first) && matches(file->first, patterns);
+    const bool is_stale =
+        file->second == kind_ && !added_.contains(file->first) && matches(file->first, patterns);
     if (is_stale) {
       fs::remove(folder_ / file->first, ignored);
       folders.insert((folder_ / file->first).parent_path());

@@ -8,13 +8,14 @@
 
 namespace understory {
 
-/// The file in a folder of results that lists what this program wrote there, and of which kind of results it is.
+/// The file in a folder of results that lists what this program wrote there, and of which kind of results it
+/// is.
 inline constexpr const char* claim_name = ".understory";
 
-/// A folder that this program writes into. The file ".understory" in it lists what the program wrote there: nothing
-/// else in the folder is ever replaced or removed. That file is locked, too, so that one program at a time writes
-/// there. Whatever writes a file (OutputFile) asks the claims that are alive. Each kind of results ("flight",
-/// "campaign") owns its files: a campaign does not replace those of a flight.
+/// A folder that this program writes into. The file ".understory" in it lists what the program wrote there:
+/// nothing else in the folder is ever replaced or removed. That file is locked, too, so that one program at a
+/// time writes there. Whatever writes a file (OutputFile) asks the claims that are alive. Each kind of
+/// results ("flight", "campaign") owns its files: a campaign does not replace those of a flight.
 class FolderClaim {
  public:
   enum class Manner {
@@ -37,11 +38,12 @@ class FolderClaim {
   bool holds_other_files() const;
   /// Whether the file, a path below the folder, is listed under our kind.
   bool owns(const std::filesystem::path& file) const;
-  /// Takes what is there and matches (fnmatch; '*' is no '/') for ours where nothing is listed yet: results of older
-  /// programs, or copies without their hidden files. The list says so from the first file on that is written.
+  /// Takes what is there and matches (fnmatch; '*' is no '/') for ours where nothing is listed yet: results
+  /// of older programs, or copies without their hidden files. The list says so from the first file on that is
+  /// written.
   void adopt(const std::vector<std::string>& patterns);
-  /// Throws ScenarioError where something matches one of `patterns` that is not ours, or where a file stands in place
-  /// of a folder that they need.
+  /// Throws ScenarioError where something matches one of `patterns` that is not ours, or where a file stands
+  /// in place of a folder that they need.
   void require_own(const std::vector<std::string>& patterns) const;
   /// The same of one file.
   void require_own(const std::filesystem::path& file) const;
@@ -78,9 +80,10 @@ FolderClaim* claim_of(const std::filesystem::path& file);
 /// Removes what programs left unfinished in `folder` that are alive no more.
 void clear_unfinished(const std::filesystem::path& folder);
 
-/// Makes a folder and those above it. Gives those that were not there before, outermost first. Throws as OutputFile,
-/// calling the folder by `name`.
-std::vector<std::filesystem::path> make_folders(const std::filesystem::path& folder, const std::filesystem::path& name);
+/// Makes a folder and those above it. Gives those that were not there before, outermost first. Throws as
+/// OutputFile, calling the folder by `name`.
+std::vector<std::filesystem::path> make_folders(const std::filesystem::path& folder,
+                                                const std::filesystem::path& name);
 
 /// Whether a relative path is what a pattern means (fnmatch; '*' is no '/').
 bool matches(const std::filesystem::path& file, const std::vector<std::string>& patterns);

@@ -14,7 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether it lies on a disk of its own, or nothing can be made beside it: then what is unfinished lies within.
+/// Whether it lies on a disk of its own, or nothing can be made beside it: then what is unfinished lies
+/// within.
 bool stands_alone(const fs::path& folder) {
   const fs::path parent = folder.parent_path();
   struct stat here {
@@ -27,7 +28,8 @@ bool stands_alone(const fs::path& folder) {
 fs::path resolved(const fs::path& folder) {
   std::error_code error, ignored;
   fs::path path = fs::weakly_canonical(fs::absolute(folder), error);
-  for (int links = 0; !error && fs::is_symlink(path, ignored) && links < 40; ++links)  // one that leads to nothing yet
+  for (int links = 0; !error && fs::is_symlink(path, ignored) && links < 40;
+       ++links)  // one that leads to nothing yet
     path = fs::weakly_canonical(path.parent_path() / fs::read_symlink(path, error), error);
   if (error) refuse_output(folder, error.value());
   return path.has_filename() ? path : path.parent_path();
@@ -62,16 +64,19 @@ UnfinishedFolder::UnfinishedFolder(const fs::path& target, const fs::path& name,
   const fs::path part = unfinished_name_of(target, above);
   const auto lock = hold_outputs();
   std::error_code ignored;
-  const bool is_foreign = fs::exists(fs::symlink_status(part, ignored)) && !fs::exists(part / claim_name, ignored) &&
+  const bool is_foreign = fs::exists(fs::symlink_status(part, ignored)) &&
+                          !fs::exists(part / claim_name, ignored) &&
                           !(fs::is_directory(part, ignored) && fs::is_empty(part, ignored));
   if (is_foreign)
-    throw ScenarioError(fmt::format("{}: expected nothing there, or what a killed understory left", part.string()));
+    throw ScenarioError(
+        fmt::format("{}: expected nothing there, or what a killed understory left", part.string()));
   claim_.emplace(part, "unfinished", name);
   part_.emplace(part);
   empty(part);
 }
 
-bool UnfinishedFolder::become(const fs::path& name, const std::string& kind, const std::vector<fs::path>& files) {
+bool UnfinishedFolder::become(const fs::path& name, const std::string& kind,
+                              const std::vector<fs::path>& files) {
   const auto lock = hold_outputs();
   claim_->list(kind, files);
   sync_file_system(path());

@@ -10,16 +10,17 @@
 
 namespace understory {
 
-/// A folder for what is not finished: made empty, gone with this object, whatever is in it. One program at a time
-/// works on `target`.
+/// A folder for what is not finished: made empty, gone with this object, whatever is in it. One program at a
+/// time works on `target`.
 class UnfinishedFolder {
  public:
-  /// `within`: in the target's folder itself, where nothing can be made beside it. Throws ScenarioError, which calls the
-  /// target by `name`, where another program works on it, or where it cannot be written.
-  UnfinishedFolder(const std::filesystem::path& target, const std::filesystem::path& name, bool within = false);
+  /// `within`: in the target's folder itself, where nothing can be made beside it. Throws ScenarioError,
+  /// which calls the target by `name`, where another program works on it, or where it cannot be written.
+  UnfinishedFolder(const std::filesystem::path& target, const std::filesystem::path& name,
+                   bool within = false);
   const std::filesystem::path& path() const { return part_->path(); }
-  /// Gives it its name, where that is free or an empty folder; false where something is in the way. From then on it
-  /// lists `files` under `kind`.
+  /// Gives it its name, where that is free or an empty folder; false where something is in the way. From then
+  /// on it lists `files` under `kind`.
   bool become(const std::filesystem::path& name, const std::string& kind,
               const std::vector<std::filesystem::path>& files);
 
@@ -31,7 +32,7 @@ class UnfinishedFolder {
 /// What a command may leave in its folder, and of what kind that is (FolderClaim).
 struct FolderContents {
   std::string kind;
-  std::string manifest;       ///< the file that says how the others came about: scenario.yaml; empty: none
+  std::string manifest;  ///< the file that says how the others came about: scenario.yaml; empty: none
   std::string manifest_text;
   /// Everything that may be there, by relative path, with '*': "overlays/*.png". The first says that all is
   /// there.
@@ -45,9 +46,9 @@ enum class Replace {
   anything  ///< --force
 };
 
-/// A folder of results that appear whole or not at all: they are written into an UnfinishedFolder and get their
-/// names in finish(), which returns when they would outlive a power cut. One program at a time writes into a folder.
-/// What is there already and is not of the kind stays.
+/// A folder of results that appear whole or not at all: they are written into an UnfinishedFolder and get
+/// their names in finish(), which returns when they would outlive a power cut. One program at a time writes
+/// into a folder. What is there already and is not of the kind stays.
 class OutputFolder {
  public:
   /// Throws ScenarioError in one line where the folder cannot be written, is being written by another

@@ -55,7 +55,8 @@ std::string mapped_libraries_digest() {
   std::ifstream maps("/proc/self/maps");
   for (std::string line; std::getline(maps, line);) {
     const std::size_t path = line.find('/');
-    if (path != std::string::npos && line.find(".so", path) != std::string::npos) files.insert(line.substr(path));
+    if (path != std::string::npos && line.find(".so", path) != std::string::npos)
+      files.insert(line.substr(path));
   }
   std::set<std::string> digests;  // wherever they lie
   for (const std::string& file : files) digests.insert(digest_of_file(file));

@@ -21,14 +21,15 @@ extern const char* const understory_commit;
 
 /// Of the program's file. Equal programs give equal results.
 std::string program_digest();
-/// Of the shared libraries that this process has mapped, by their files' contents: others may give other results.
+/// Of the shared libraries that this process has mapped, by their files' contents: others may give other
+/// results.
 std::string mapped_libraries_digest();
 /// Of bytes; of a file's contents, or of nothing where it cannot be read.
 std::string digest_of_text(std::string_view text);
 std::string digest_of_file(const std::filesystem::path& file);
-/// What decides flights beside their scenarios: names ("program", "libraries", "models", "rig long") with a digest of
-/// each. Equal identities on one machine fly equal flights. The processor is no part of it: the nodes of a cluster
-/// differ, and a campaign over them is still one (docs/decisions/010-campaigns.md).
+/// What decides flights beside their scenarios: names ("program", "libraries", "models", "rig long") with a
+/// digest of each. Equal identities on one machine fly equal flights. The processor is no part of it: the
+/// nodes of a cluster differ, and a campaign over them is still one (docs/decisions/010-campaigns.md).
 using Identity = std::vector<std::pair<std::string, std::string>>;
 
 /// The first name whose digest differs, or which only one has; empty where both are equal.
@@ -36,8 +37,8 @@ std::string difference_of(const Identity& one, const Identity& other);
 
 /// The model of this machine's processor, as its kernel calls it; empty where it does not.
 std::string processor_model();
-/// What goes wrong with a process's surroundings before main() can complain: standard descriptors that are not open,
-/// SIGCHLD ignored by the parent, SIGXFSZ, which would kill where a write can fail.
+/// What goes wrong with a process's surroundings before main() can complain: standard descriptors that are
+/// not open, SIGCHLD ignored by the parent, SIGXFSZ, which would kill where a write can fail.
 void repair_surroundings();
 
 /// A process that has ended.
@@ -73,7 +74,8 @@ class ProgramProcesses {
   /// Starts this program with `arguments` (without the program's name); first waits where all places are
   /// taken. Throws MachineError where it cannot be started.
   /// `log` as for start_this_program().
-  void start(std::uint64_t tag, const std::vector<std::string>& arguments, const std::filesystem::path& log = {});
+  void start(std::uint64_t tag, const std::vector<std::string>& arguments,
+             const std::filesystem::path& log = {});
   void wait_for_all();
 
  private:

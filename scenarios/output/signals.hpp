@@ -14,7 +14,8 @@ namespace understory {
 /// there is nobody to read it, and stays ignored where it was (nohup).
 void end_on_signals();
 
-/// `call` is made when a signal ends the program, after everything Unfinished is removed: the last one given first.
+/// `call` is made when a signal ends the program, after everything Unfinished is removed: the last one given
+/// first.
 void at_signal(const void* key, std::function<void()> call);
 void forget_at_signal(const void* key);
 

@@ -37,8 +37,10 @@ std::string as_tum(const std::vector<TableLine>& lines, const std::string& name)
   std::string text;
   int number = 1;
   const auto& head = lines.front().cells;
-  if (head.size() < trajectory_head.size() || !std::equal(trajectory_head.begin(), trajectory_head.end(), head.begin()))
-    fail_at_line(name, lines.front().number, "expected t_s,x_m,y_m,z_m,qw,qx,qy,qz and more, as a flight writes them");
+  if (head.size() < trajectory_head.size() ||
+      !std::equal(trajectory_head.begin(), trajectory_head.end(), head.begin()))
+    fail_at_line(name, lines.front().number,
+                 "expected t_s,x_m,y_m,z_m,qw,qx,qy,qz and more, as a flight writes them");
   for (std::size_t i = 1; i < lines.size(); ++i) {
     const auto& cell = lines[i].cells;
     if (cell.size() < 8)
@@ -101,14 +103,16 @@ std::vector<TimedPose> read_path(const std::filesystem::path& file) {
         fmt::format("{}: expected at least two poses to go between, found one", file.string()));
   const double span_s = static_cast<double>(poses.back().t_ns - poses.front().t_ns) * 1e-9;
   if (span_s > longest_s)
-    throw ScenarioError(fmt::format("{}: expected at most {} s from the first pose to the last, found {:.0f} s",
-                                    file.string(), longest_s, span_s));
+    throw ScenarioError(
+        fmt::format("{}: expected at most {} s from the first pose to the last, found {:.0f} s",
+                    file.string(), longest_s, span_s));
   for (std::size_t i = 1; i < poses.size(); ++i) {
     const Eigen::Isometry3d step = poses[i - 1].T_world_body.inverse() * poses[i].T_world_body;
     const double step_s = static_cast<double>(poses[i].t_ns - poses[i - 1].t_ns) * 1e-9;
     const auto fail_unless = [&](bool holds, const char* what) {
       if (!holds)
-        refuse_input(place_in(file.string(), line_of_pose(file, i)), "", fmt::format("expected {} from the pose before", what));
+        refuse_input(place_in(file.string(), line_of_pose(file, i)), "",
+                     fmt::format("expected {} from the pose before", what));
     };
     fail_unless(step.translation().norm() <= fastest_mps * step_s, "at most 100 m/s");
     fail_unless(Eigen::AngleAxisd(step.linear()).angle() <= widest_turn_rad, "at most a quarter turn");

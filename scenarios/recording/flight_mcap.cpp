@@ -42,7 +42,8 @@ struct FlightMcap::Implementation {
     file.add(topic, t_ns, message.SerializeAsString());
   }
 
-  Implementation(const std::filesystem::path& name, bool compress, Named named) : file(name, compress, named) {}
+  Implementation(const std::filesystem::path& name, bool compress, Named named)
+      : file(name, compress, named) {}
 
   std::uint16_t left_image = channel<foxglove::CompressedImage>("/camera/left/image");
   std::uint16_t right_image = channel<foxglove::CompressedImage>("/camera/right/image");
@@ -82,7 +83,8 @@ void FlightMcap::Implementation::begin(const Flight& flight) {
   put(transforms, t_ns, transform("aircraft", "left_rectified", rig.T_body_camera, t_ns));
   for (const bool is_left : {true, false})
     put(transforms, t_ns,
-        transform("aircraft", is_left ? "left_camera" : "right_camera", camera_pose(flight.rig(), is_left), t_ns));
+        transform("aircraft", is_left ? "left_camera" : "right_camera", camera_pose(flight.rig(), is_left),
+                  t_ns));
   put(left_calibration, t_ns, calibration_of(flight.rig(), true, t_ns));
   put(right_calibration, t_ns, calibration_of(flight.rig(), false, t_ns));
   put(obstacles, t_ns, cloud("world", surface_points(flight.obstacles()), t_ns));

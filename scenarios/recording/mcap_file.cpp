@@ -2,8 +2,8 @@
 
 #include <zstd.h>
 
-#include <boost/crc.hpp>
 #include <bit>
+#include <boost/crc.hpp>
 #include <cstring>
 #include <numeric>
 
@@ -43,7 +43,9 @@ std::string sized(std::string_view text) {
 }
 
 std::string record(Record kind, std::string_view content) {
-  return number(static_cast<std::uint8_t>(kind)).append(number(std::uint64_t{content.size()})).append(content);
+  return number(static_cast<std::uint8_t>(kind))
+      .append(number(std::uint64_t{content.size()}))
+      .append(content);
 }
 
 std::uint32_t crc_of(std::string_view bytes) {
@@ -78,13 +80,13 @@ std::uint16_t McapFile::add_channel(std::string_view topic, std::string_view sch
   auto known = schemas_.find(schema);
   if (known == schemas_.end()) {
     known = schemas_.emplace(schema, static_cast<std::uint16_t>(schemas_.size() + 1)).first;
-    schema_records_ += record(
-        schema_record, number(known->second) + sized(schema) + sized("protobuf") + sized(descriptors));
+    schema_records_ +=
+        record(schema_record, number(known->second) + sized(schema) + sized("protobuf") + sized(descriptors));
   }
   message_counts_.push_back(0);
   const auto channel = static_cast<std::uint16_t>(message_counts_.size());
-  channel_records_ +=
-      record(channel_record, number(channel) + number(known->second) + sized(topic) + sized("protobuf") + sized(""));
+  channel_records_ += record(
+      channel_record, number(channel) + number(known->second) + sized(topic) + sized("protobuf") + sized(""));
   return channel;
 }
 
@@ -96,7 +98,8 @@ void McapFile::add(std::uint16_t channel, std::int64_t t_ns, std::string_view me
     chunk_.from_ns = time_ns;
   }
   std::uint64_t& count = message_counts_[channel - 1u];
-  if (std::accumulate(message_counts_.begin(), message_counts_.end(), std::uint64_t{0}) == 0) first_ns_ = time_ns;
+  if (std::accumulate(message_counts_.begin(), message_counts_.end(), std::uint64_t{0}) == 0)
+    first_ns_ = time_ns;
   chunk_.index[channel].emplace_back(time_ns, chunk_.records.size());
   chunk_.from_ns = std::min(chunk_.from_ns, time_ns);
   chunk_.to_ns = std::max(chunk_.to_ns, time_ns);
@@ -114,9 +117,10 @@ void McapFile::end_chunk() {
   const std::string name = compress_ ? "zstd" : "";
   const std::string bytes = compress_ ? compressed(chunk_.records) : chunk_.records;
   const std::uint64_t size = chunk_.records.size(), start = position_;
-  write(record(chunk_record, (number(chunk_.from_ns) + number(chunk_.to_ns) + number(size) +
-                              number(crc_of(chunk_.records)) + sized(name) + number(std::uint64_t{bytes.size()}))
-                                 .append(bytes)));
+  write(record(chunk_record,
+               (number(chunk_.from_ns) + number(chunk_.to_ns) + number(size) +
+                number(crc_of(chunk_.records)) + sized(name) + number(std::uint64_t{bytes.size()}))
+                   .append(bytes)));
   const std::uint64_t length = position_ - start, indexes = position_;
   std::string offsets;
   for (const auto& [channel, entries] : chunk_.index) {
@@ -126,9 +130,9 @@ void McapFile::end_chunk() {
     write(record(message_index_record, number(channel) + sized(times)));
   }
   chunk_index_records_ +=
-      record(chunk_index_record,
-             number(chunk_.from_ns) + number(chunk_.to_ns) + number(start) + number(length) + sized(offsets) +
-                 number(position_ - indexes) + sized(name) + number(std::uint64_t{bytes.size()}) + number(size));
+      record(chunk_index_record, number(chunk_.from_ns) + number(chunk_.to_ns) + number(start) +
+                                     number(length) + sized(offsets) + number(position_ - indexes) +
+                                     sized(name) + number(std::uint64_t{bytes.size()}) + number(size));
   ++chunks_;
   chunk_ = {};
 }
@@ -142,9 +146,9 @@ std::string McapFile::statistics() const {
   }
   constexpr std::uint32_t none = 0;  // attachments, metadata
   return record(statistics_record, number(messages) + number(static_cast<std::uint16_t>(schemas_.size())) +
-                                       number(static_cast<std::uint32_t>(message_counts_.size())) + number(none) +
-                                       number(none) + number(chunks_) + number(first_ns_) + number(last_ns_) +
-                                       sized(counts));
+                                       number(static_cast<std::uint32_t>(message_counts_.size())) +
+                                       number(none) + number(none) + number(chunks_) + number(first_ns_) +
+                                       number(last_ns_) + sized(counts));
 }
 
 void McapFile::finish() {
@@ -152,7 +156,8 @@ void McapFile::finish() {
   write(record(data_end_record, number(std::uint32_t{0})));  // chunks bear their own checksums
   const std::uint64_t start = position_;
   std::string summary, offsets;
-  for (const auto& [kind, records] : {std::pair(schema_record, schema_records_), {channel_record, channel_records_},
+  for (const auto& [kind, records] : {std::pair(schema_record, schema_records_),
+                                      {channel_record, channel_records_},
                                       {statistics_record, statistics()},
                                       {chunk_index_record, chunk_index_records_}}) {
     if (records.empty()) continue;

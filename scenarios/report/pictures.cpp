@@ -44,8 +44,7 @@ void write_picture(const fs::path& file, const cv::Mat& picture, Named named) {
   write_whole_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, named);
 }
 
-VideoFile::VideoFile(fs::path file, double frames_per_s)
-    : file_(std::move(file)), rate_hz_(frames_per_s) {}
+VideoFile::VideoFile(fs::path file, double frames_per_s) : file_(std::move(file)), rate_hz_(frames_per_s) {}
 
 VideoFile::~VideoFile() = default;
 

@@ -60,7 +60,8 @@ struct OverlayMoment {
 /// altitude in feet at the right; the plan is a green line. BGR 8-bit.
 cv::Mat draw_overlay(const OverlayMoment& moment, const StereoRig& rig, int scale);
 
-/// Along the lower edge, as large as the picture's width has room for, where it is shown at half its size, too.
+/// Along the lower edge, as large as the picture's width has room for, where it is shown at half its size,
+/// too.
 void write_caption(cv::Mat& picture, const std::string& text);
 
 /// A cross in a ring, for what went wrong there.

@@ -61,7 +61,8 @@ std::string sheet_page(const std::filesystem::path& data_root, const std::string
   int arrays = 0;
   // A section of the page has one plot: further ones follow in sections without a title.
   const auto add_section = [&](const std::string& name) -> Json& {
-    facts["sections"].push_back({{"title", name}, {"text", ""}, {"plot", nullptr}, {"table", nullptr}, {"pictures", Json::array()}});
+    facts["sections"].push_back(
+        {{"title", name}, {"text", ""}, {"plot", nullptr}, {"table", nullptr}, {"pictures", Json::array()}});
     return facts["sections"].back();
   };
   for (const SheetSection& section : sections) {

@@ -52,15 +52,17 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
   expect(scenario.band.cruise_altitude_m > scenario.band.minimum_altitude_m &&
              scenario.band.cruise_altitude_m < scenario.band.maximum_altitude_m,
          "band.cruise_altitude_m: expected between band.minimum_altitude_m and band.maximum_altitude_m");
-  const double trees = scenario.forest.length_m * 2 * scenario.forest.half_width_m / scenario.forest.square_metres_per_tree;
+  const double trees =
+      scenario.forest.length_m * 2 * scenario.forest.half_width_m / scenario.forest.square_metres_per_tree;
   expect(scenario.course != Course::forest || trees <= maximum_obstacles,
-         fmt::format("forest.square_metres_per_tree: expected at most {} trees in the forest, it would have about {:.0f} "
+         fmt::format("forest.square_metres_per_tree: expected at most {} trees in the forest, it would have "
+                     "about {:.0f} "
                      "(length_m, half_width_m)",
                      maximum_obstacles, trees));
   const double palings = palings_of(scenario.fence, scenario.goal_x_m());
   expect(scenario.course != Course::fence || palings <= maximum_obstacles,
-         fmt::format("fence.spacing_m: expected at most {} palings, there would be about {:.0f}", maximum_obstacles,
-                     palings));
+         fmt::format("fence.spacing_m: expected at most {} palings, there would be about {:.0f}",
+                     maximum_obstacles, palings));
   expect(scenario.goalposts.pass_minimum_m <= scenario.goalposts.pass_maximum_m,
          "goalposts.pass_minimum_m: expected at most goalposts.pass_maximum_m");
   expect(scenario.fence.gate_m < 2 * scenario.fence.reach_m,

@@ -16,7 +16,8 @@ namespace understory {
 CalibratedRig rig_of(const Scenario& scenario, const std::filesystem::path& models_folder);
 
 /// The files that rig_of() reads. Throws as it does where there is no such rig.
-std::vector<std::filesystem::path> rig_files_of(const Scenario& scenario, const std::filesystem::path& models_folder);
+std::vector<std::filesystem::path> rig_files_of(const Scenario& scenario,
+                                                const std::filesystem::path& models_folder);
 
 /// Throws ScenarioError, one line, where the rule cannot look through the rig (fault_of). The line names the
 /// keys as the user writes them: `depths_key`, and the section of all others.

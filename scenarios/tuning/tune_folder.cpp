@@ -71,9 +71,9 @@ Json manifest_of(const TuneFile& file, const std::string& renderer, const Identi
 
 }  // namespace
 
-const std::vector<std::string> tune_patterns{"tune.json",  "trials.jsonl", "validation.jsonl", "sensitivity.jsonl",
-                                             "trials.csv", "pareto.csv",   "summary.md",       "tune.svg",
-                                             "best.yaml",  "report.html",  "front/*.yaml"};
+const std::vector<std::string> tune_patterns{
+    "tune.json",  "trials.jsonl", "validation.jsonl", "sensitivity.jsonl", "trials.csv",  "pareto.csv",
+    "summary.md", "tune.svg",     "best.yaml",        "report.html",       "front/*.yaml"};
 
 TrialLog::TrialLog(fs::path file, std::vector<std::string> parameters, std::vector<std::string> figures,
                    Measure measure)
@@ -123,10 +123,12 @@ void TrialLog::finish() const {
 void TrialLog::append(const Trial& trial) {
   const std::string line = line_of(trial, parameters_, figures_);
   std::error_code ignored;
-  if (FolderClaim* claim = claim_of(fs::weakly_canonical(file_, ignored))) claim->add(fs::weakly_canonical(file_));
+  if (FolderClaim* claim = claim_of(fs::weakly_canonical(file_, ignored)))
+    claim->add(fs::weakly_canonical(file_));
   const int file = open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  const bool is_written =
-      file >= 0 && write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size()) && fdatasync(file) == 0;
+  const bool is_written = file >= 0 &&
+                          write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size()) &&
+                          fdatasync(file) == 0;
   const int reason = errno;
   if (file >= 0) close(file);
   if (!is_written) refuse_output(file_, reason);
@@ -143,9 +145,10 @@ void prepare_tune_folder(const fs::path& folder, const TuneFile& file, const std
                       folder.string()));
     const Json held = parse_json(text_if_there(manifest_file).value_or(""));
     if (!held.is_object())
-      throw ScenarioError(fmt::format("{}: expected what `understory tune` writes there, this is no JSON object; --out "
-                                      "names another folder",
-                                      manifest_file.string()));
+      throw ScenarioError(
+          fmt::format("{}: expected what `understory tune` writes there, this is no JSON object; --out "
+                      "names another folder",
+                      manifest_file.string()));
     for (const auto& [key, value] : manifest.items())
       if (!held.contains(key) || held[key] != value)
         throw ScenarioError(

@@ -215,8 +215,9 @@ void write_tune_report(const std::filesystem::path& folder, const TuneFile& file
   const Table trials =
       trials_table(file, tuned.trials, {""}, [](const Trial& trial) { return Sides{&trial}; });
   const Table front =
-      trials_table(file, tuned.front, {"training_", "validation_"},
-                   [](const JudgedTrial& member) { return Sides{&member.training, &member.validation}; });
+      trials_table(file, tuned.front, {"training_", "validation_"}, [](const JudgedTrial& member) {
+        return Sides{&member.training, &member.validation};
+      });
   write_whole_file(folder / "trials.csv", to_csv(trials));
   write_whole_file(folder / "pareto.csv", to_csv(front));
   write_whole_file(folder / "summary.md", tune_summary(file, tuned));

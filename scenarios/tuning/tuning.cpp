@@ -95,8 +95,8 @@ std::vector<Trial> run_search(const TuneFile& file, Tuning& tuning, Judge& train
 }
 
 /// The search's best, numbered as in `trials`; where none keeps the limits, the one that misses them minimum.
-std::size_t choose_best(const TuneFile& file, const std::vector<Trial>& trials, const std::filesystem::path& folder,
-                        bool& keeps_limits) {
+std::size_t choose_best(const TuneFile& file, const std::vector<Trial>& trials,
+                        const std::filesystem::path& folder, bool& keeps_limits) {
   std::vector<Figures> figures = figures_of(trials);
   figures.front().clear();  // the scenario as it is stands beside, not in the search
   if (const auto best = best_of(file.objective, figures)) {

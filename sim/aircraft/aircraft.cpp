@@ -109,16 +109,15 @@ AircraftShape Aircraft::shape() const {
     if (model_.geom_bodyid[geom] != body_) continue;
     const Eigen::Vector3d centre(model_.geom_pos + 3 * geom);
     if (model_.geom_contype[geom] != 0)
-      shape.parts.push_back({model_.names + model_.name_geomadr[geom], centre,
-                             Eigen::Vector3d(model_.geom_size + 3 * geom)});
+      shape.parts.push_back(
+          {model_.names + model_.name_geomadr[geom], centre, Eigen::Vector3d(model_.geom_size + 3 * geom)});
     if (model_.geom_type[geom] != mjGEOM_MESH) continue;
     const mjtNum* turn = model_.geom_quat + 4 * geom;
     const Eigen::Quaterniond attitude(turn[0], turn[1], turn[2], turn[3]);
     const int mesh = model_.geom_dataid[geom], first = static_cast<int>(shape.vertices_body.size());
     const float* vertices = model_.mesh_vert + 3 * model_.mesh_vertadr[mesh];
     for (int i = 0; i < model_.mesh_vertnum[mesh]; ++i)
-      shape.vertices_body.push_back(centre +
-                                    attitude * Eigen::Vector3f(vertices + 3 * i).cast<double>());
+      shape.vertices_body.push_back(centre + attitude * Eigen::Vector3f(vertices + 3 * i).cast<double>());
     const int* faces = model_.mesh_face + 3 * model_.mesh_faceadr[mesh];
     for (int i = 0; i < model_.mesh_facenum[mesh]; ++i)
       shape.faces.emplace_back(Eigen::Vector3i(faces + 3 * i).array() + first);

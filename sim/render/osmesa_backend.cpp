@@ -24,8 +24,8 @@ void* open_library() {
   constexpr int mode = RTLD_NOW | RTLD_GLOBAL;
   if (const char* named = std::getenv("UNDERSTORY_OSMESA")) {
     if (void* library = dlopen(named, mode)) return library;
-    throw std::runtime_error(std::string("UNDERSTORY_OSMESA names ") + named +
-                             ", which cannot be opened (" + dlerror() + "): unset it and install Debian's libosmesa6");
+    throw std::runtime_error(std::string("UNDERSTORY_OSMESA names ") + named + ", which cannot be opened (" +
+                             dlerror() + "): unset it and install Debian's libosmesa6");
   }
   for (const char* name : {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"})
     if (void* library = dlopen(name, mode)) return library;

@@ -23,7 +23,8 @@ struct DeleteData {
 using ModelPointer = std::unique_ptr<mjModel_, DeleteModel>;
 using DataPointer = std::unique_ptr<mjData_, DeleteData>;
 
-/// MuJoCo refuses a model or cannot go on with it: the numbers of an aircraft or a world make no sense together.
+/// MuJoCo refuses a model or cannot go on with it: the numbers of an aircraft or a world make no sense
+/// together.
 struct SimulationError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

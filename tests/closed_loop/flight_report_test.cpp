@@ -33,8 +33,7 @@ Scenario library(const std::string& name, const std::vector<std::string>& settin
 
 /// A flight that ended, its track and its story.
 struct Told {
-  explicit Told(const Scenario& scenario)
-      : flight(scenario, {root / "models"}, {&record, &recorder}) {
+  explicit Told(const Scenario& scenario) : flight(scenario, {root / "models"}, {&record, &recorder}) {
     while (!flight.ending()) flight.step();
     result = record.finish(flight);
     track = recorder.finish(flight);
@@ -82,7 +81,8 @@ TEST(FlightStory, TellsWhenTheTrunkWasSeenAndWhereItWasRemembered) {
   const Told told(library("dense", {"seed=1000", "autopilot.planner.field.half_span_m=0.01",
                                     "autopilot.planner.trajectory.minimum_clearance_m=0.01"}));
   ASSERT_EQ(told.result.ending, Ending::collision);
-  const FlightEvent *seen = told.event("in_view"), *detected = told.event("detected"), *end = told.event("ending");
+  const FlightEvent *seen = told.event("in_view"), *detected = told.event("detected"),
+                    *end = told.event("ending");
   ASSERT_TRUE(seen != nullptr && detected != nullptr && end != nullptr);
   EXPECT_LE(seen->t_s, detected->t_s);
   EXPECT_LT(detected->t_s, end->t_s);
@@ -90,7 +90,8 @@ TEST(FlightStory, TellsWhenTheTrunkWasSeenAndWhereItWasRemembered) {
 }
 
 TEST(FlightStory, SaysWhichBoundWasLeftAndByHowMuch) {
-  const Told told(library("clear", {"seed=1000", "band.maximum_altitude_m=2.2", "band.cruise_altitude_m=2.1"}));
+  const Told told(
+      library("clear", {"seed=1000", "band.maximum_altitude_m=2.2", "band.cruise_altitude_m=2.1"}));
   ASSERT_EQ(told.result.ending, Ending::out_of_bounds);
   expect_part(told.story.ending, "upper bound of 2.2 m");
   expect_part(told.story.ending, fmt::format("{:.2f} m", told.flight.truth().T_world_body.translation().z()));
@@ -107,7 +108,8 @@ TEST(FlightTrack, IsTheFlight) {
   EXPECT_EQ(track.frames.back().first_hit + track.frames.back().hits, track.hits_world.size());
   // What the map holds at the end is what the track holds then.
   const double end_s = told.flight.clock().t_s();
-  const auto remembered = std::ranges::count_if(track.points, [&](const TrackPoint& point) { return point.to_s == end_s; });
+  const auto remembered =
+      std::ranges::count_if(track.points, [&](const TrackPoint& point) { return point.to_s == end_s; });
   EXPECT_EQ(remembered, static_cast<std::ptrdiff_t>(told.flight.map().points().size()));
   for (const TrackPoint& point : track.points) ASSERT_LE(point.from_s, point.to_s);
   ASSERT_FALSE(track.plans.empty());

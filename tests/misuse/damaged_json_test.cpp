@@ -10,8 +10,8 @@
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-/// Every JSON file that the program writes, damaged in drawn ways, and every command that reads it: none ends in an
-/// internal fault, a crash or more than one line.
+/// Every JSON file that the program writes, damaged in drawn ways, and every command that reads it: none ends
+/// in an internal fault, a crash or more than one line.
 namespace understory::support {
 namespace {
 
@@ -83,7 +83,8 @@ TEST(DamagedJson, OfEveryKindIsReadToOneLineAtMost) {
   const std::string at = fixtures.folder().string() + "/";
   const std::vector<Reader> readers{
       {"campaign/campaign.json",
-       {"collect " + at + "campaign", "report " + at + "campaign --quiet", "shard " + at + "campaign --number 0 --of 1",
+       {"collect " + at + "campaign", "report " + at + "campaign --quiet",
+        "shard " + at + "campaign --number 0 --of 1",
         "campaign " + at + "campaign.yaml --resume --print-tasks --out " + at + "campaign"}},
       {"campaign/flights/clear-short-1.json",
        {"collect " + at + "campaign", "report " + at + "campaign --quiet",
@@ -101,8 +102,10 @@ TEST(DamagedJson, OfEveryKindIsReadToOneLineAtMost) {
       for (const std::string& command : reader.commands) {
         std::ofstream(at + reader.file, std::ios::binary | std::ios::trunc) << text;
         const Outcome outcome = understory(command + " >/dev/null", "timeout 60");
-        EXPECT_TRUE(outcome.status >= 0 && outcome.status <= 3) << outcome.status << " " << command << "\n" << text;
-        EXPECT_EQ(outcome.text.find("internal fault"), std::string::npos) << command << "\n" << outcome.text << text;
+        EXPECT_TRUE(outcome.status >= 0 && outcome.status <= 3) << outcome.status << " " << command << "\n"
+                                                                << text;
+        EXPECT_EQ(outcome.text.find("internal fault"), std::string::npos) << command << "\n"
+                                                                          << outcome.text << text;
         EXPECT_LE(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1) << outcome.text;
       }
     }

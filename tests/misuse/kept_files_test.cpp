@@ -15,8 +15,8 @@
 #include "tests/misuse/misuse_table.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-/// Whatever a command does and however it ends, files of a user's in its folder are as they were; and what it said it
-/// wrote has reached the disk.
+/// Whatever a command does and however it ends, files of a user's in its folder are as they were; and what it
+/// said it wrote has reached the disk.
 namespace understory::support {
 namespace {
 
@@ -40,20 +40,33 @@ const std::map<std::string, std::string> commands{
     {"bench", "$U bench --pairs 1 --rounds 1 --json out/of_mine.json"}};
 
 /// Names that no command writes, and names that some do.
-const std::vector<std::string> neutral{"lock",        ".lock",          "notes.txt",       "thesis.tex",
-                                       "a.part",      "report.html.part", "flight.mcap.part", "overlays.part/1.png",
-                                       "run.part/x",  ".hidden",        "with blank",      "\xc3\xbcml\xc3\xa4ut",
-                                       "\xff\xfe",    "sub/of/mine",    ".understory-mine", "unfinished"};
-const std::vector<std::string> taken{"result.json",  "scenario.yaml", "map.ply",      "report.html",     "flight.mcap",
-                                     "flights.csv",  "summary.md",    "campaign.json", "best.yaml",      "tune.json",
-                                     "worst/a.png",  "points.csv",    "overlay.mp4",  "tables/mine.csv", "evaluation.json",
-                                     "overlays/000000.png", "conditions/mine.yaml", "flights/mine.json"};
+const std::vector<std::string> neutral{"lock",
+                                       ".lock",
+                                       "notes.txt",
+                                       "thesis.tex",
+                                       "a.part",
+                                       "report.html.part",
+                                       "flight.mcap.part",
+                                       "overlays.part/1.png",
+                                       "run.part/x",
+                                       ".hidden",
+                                       "with blank",
+                                       "\xc3\xbcml\xc3\xa4ut",
+                                       "\xff\xfe",
+                                       "sub/of/mine",
+                                       ".understory-mine",
+                                       "unfinished"};
+const std::vector<std::string> taken{
+    "result.json",         "scenario.yaml",        "map.ply",          "report.html",     "flight.mcap",
+    "flights.csv",         "summary.md",           "campaign.json",    "best.yaml",       "tune.json",
+    "worst/a.png",         "points.csv",           "overlay.mp4",      "tables/mine.csv", "evaluation.json",
+    "overlays/000000.png", "conditions/mine.yaml", "flights/mine.json"};
 
 struct Ending {
   std::string name;
-  bool neutral_names = true;   ///< none that a command writes: the command is to succeed
-  int signal = 0;              ///< sent after a drawn time
-  long long disk_bytes = -1;   ///< then the disk is full
+  bool neutral_names = true;  ///< none that a command writes: the command is to succeed
+  int signal = 0;             ///< sent after a drawn time
+  long long disk_bytes = -1;  ///< then the disk is full
 };
 
 void draw_files(const fs::path& folder, bool neutral_names, std::mt19937_64& generator) {
@@ -79,7 +92,8 @@ int run(const std::string& command, const fs::path& folder, const Fixtures& fixt
       setenv("FAILING_DISK_FOLDER", folder.c_str(), 1);
       setenv("FAILING_DISK_BYTES", std::to_string(ending.disk_bytes).c_str(), 1);
     }
-    const std::string script = "cd '" + folder.string() + "' && { " + command + "; } >/dev/null 2>'" + folder.string() + ".err'";
+    const std::string script =
+        "cd '" + folder.string() + "' && { " + command + "; } >/dev/null 2>'" + folder.string() + ".err'";
     execl("/bin/bash", "bash", "-c", script.c_str(), nullptr);
     _exit(127);
   }
@@ -117,12 +131,15 @@ TEST_P(KeptFiles, AreAsTheyWereAfterEveryCommand) {
     EXPECT_EQ(said.find("internal fault"), std::string::npos) << said;
     if (ending.signal == SIGKILL) continue;  // what is unfinished then goes with the next run
     for (const auto& [path, content] : after)
-      EXPECT_TRUE(before.contains(path) || path.find(".unfinished") == std::string::npos) << name << " left " << path;
+      EXPECT_TRUE(before.contains(path) || path.find(".unfinished") == std::string::npos)
+          << name << " left " << path;
     if (ending.name == "success") {
       EXPECT_EQ(status, 0) << name << "\n" << said;
     }
     if (ending.disk_bytes >= 0) {
-      EXPECT_TRUE(status == 3 || (status == 0 && ending.name == "disk_that_fills")) << name << " " << status << "\n" << said;
+      EXPECT_TRUE(status == 3 || (status == 0 && ending.name == "disk_that_fills"))
+          << name << " " << status << "\n"
+          << said;
     }
   }
   fs::remove_all(folder);
@@ -131,10 +148,12 @@ TEST_P(KeptFiles, AreAsTheyWereAfterEveryCommand) {
 INSTANTIATE_TEST_SUITE_P(Endings, KeptFiles,
                          testing::Values(Ending{"success"}, Ending{"refusal", false},
                                          Ending{"interrupted", true, SIGINT}, Ending{"killed", true, SIGKILL},
-                                         Ending{"full_disk", true, 0, 100}, Ending{"disk_that_fills", true, 0, 9000}),
+                                         Ending{"full_disk", true, 0, 100},
+                                         Ending{"disk_that_fills", true, 0, 9000}),
                          [](const auto& ending) { return ending.param.name; });
 
-/// Files by the names they have at last, and "in FOLDER" for names that changed there: whether each was synced since.
+/// Files by the names they have at last, and "in FOLDER" for names that changed there: whether each was
+/// synced since.
 std::map<std::string, bool> synced_by(const fs::path& diary) {
   std::map<std::string, bool> is_synced;
   std::ifstream lines(diary);
@@ -156,9 +175,11 @@ std::map<std::string, bool> synced_by(const fs::path& diary) {
       renamed[is_moved ? to + file.substr(path.size()) : file] = synced;
     }
     is_synced = renamed;
-    if (to.find(".unfinished/") == std::string::npos) is_synced["in " + fs::path(to).parent_path().string()] = false;
+    if (to.find(".unfinished/") == std::string::npos)
+      is_synced["in " + fs::path(to).parent_path().string()] = false;
   }
-  std::erase_if(is_synced, [](const auto& one) { return one.first.find(".unfinished") != std::string::npos; });
+  std::erase_if(is_synced,
+                [](const auto& one) { return one.first.find(".unfinished") != std::string::npos; });
   return is_synced;
 }
 
@@ -172,7 +193,8 @@ TEST(KeptFiles, WhatACommandSaysItWroteHasReachedTheDisk) {
     fs::create_directories(work / "out");
     setenv("FAILING_DISK_DIARY", diary.c_str(), 1);
     const Ending on_that_disk{name, true, 0, 1'000'000'000'000};
-    ASSERT_EQ(run(commands.at(name), work, fixtures, on_that_disk, {}), 0) << content_of(work.string() + ".err");
+    ASSERT_EQ(run(commands.at(name), work, fixtures, on_that_disk, {}), 0)
+        << content_of(work.string() + ".err");
     unsetenv("FAILING_DISK_DIARY");
     const std::map<std::string, bool> is_synced = synced_by(diary);
     EXPECT_FALSE(is_synced.empty()) << name;

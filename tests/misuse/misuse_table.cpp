@@ -35,9 +35,10 @@ std::vector<std::string> words_in(const std::string& text) {
 
 /// In `folder`, what it prints beside it.
 int shell(const std::string& text, const fs::path& folder, const fs::path& fixtures) {
-  const std::string script = "export U='" UNDERSTORY_BINARY "' F='" + fixtures.string() + "' SOURCE='" UNDERSTORY_SOURCE_DIR
-                             "'\ncd '" + folder.string() + "' || exit 99\n{ " + text + "\n} >'" + folder.string() +
-                             ".out' 2>'" + folder.string() + ".err'\n";
+  const std::string script = "export U='" UNDERSTORY_BINARY "' F='" + fixtures.string() +
+                             "' SOURCE='" UNDERSTORY_SOURCE_DIR "'\ncd '" + folder.string() +
+                             "' || exit 99\n{ " + text + "\n} >'" + folder.string() + ".out' 2>'" +
+                             folder.string() + ".err'\n";
   const fs::path file = folder.string() + ".sh";
   std::ofstream(file) << script;
   const int status = std::system(("exec timeout 60 bash '" + file.string() + "'").c_str());
@@ -45,8 +46,8 @@ int shell(const std::string& text, const fs::path& folder, const fs::path& fixtu
 }
 
 bool matches(const std::string& path, const std::vector<std::string>& patterns) {
-  return std::ranges::any_of(patterns,
-                             [&](const std::string& pattern) { return fnmatch(pattern.c_str(), path.c_str(), 0) == 0; });
+  return std::ranges::any_of(
+      patterns, [&](const std::string& pattern) { return fnmatch(pattern.c_str(), path.c_str(), 0) == 0; });
 }
 
 std::string changes_between(const std::map<std::string, std::string>& before,
@@ -71,8 +72,14 @@ std::vector<Misuse> read_misuses(const fs::path& file) {
     ++number;
     if (line.empty() || line[0] == '#') continue;
     const std::vector<std::string> parts = parts_of(line);
-    if (parts.size() < 3) throw std::runtime_error(file.string() + ":" + std::to_string(number) + ": too few columns");
-    Misuse misuse{file.filename().string() + ":" + std::to_string(number), parts[0], parts[1], std::stoi(parts[2]), {}, {}};
+    if (parts.size() < 3)
+      throw std::runtime_error(file.string() + ":" + std::to_string(number) + ": too few columns");
+    Misuse misuse{file.filename().string() + ":" + std::to_string(number),
+                  parts[0],
+                  parts[1],
+                  std::stoi(parts[2]),
+                  {},
+                  {}};
     if (parts.size() > 3) misuse.names = words_in(parts[3]);
     if (parts.size() > 4) misuse.changed = words_in(parts[4]);
     misuses.push_back(std::move(misuse));
@@ -96,20 +103,25 @@ void Fixtures::make_those_in(const std::string& text) {
   const std::pair<const char*, const char*> all[] = {
       {"run", "$U fly clear --set forest.length_m=1 --quiet --out run"},
       {"recording",
-       "printf '0 0 0 3 0 0 0 1\\n0.1 1 0 3 0 0 0 1\\n' > path.tum; $U record clear --path path.tum --quiet --out recording"},
+       "printf '0 0 0 3 0 0 0 1\\n0.1 1 0 3 0 0 0 1\\n' > path.tum; $U record clear --path path.tum --quiet "
+       "--out recording"},
       {"campaign",
-       "printf 'scenario: clear\\nseeds: 1..2\\noverrides: [{name: short, set: {forest.length_m: 1}}]\\n' > campaign.yaml; "
+       "printf 'scenario: clear\\nseeds: 1..2\\noverrides: [{name: short, set: {forest.length_m: 1}}]\\n' > "
+       "campaign.yaml; "
        "$U campaign campaign.yaml --out campaign"},
       {"tuning",
        "printf 'scenario: clear\\nparameters: {autopilot.flight_model.cruise_speed_mps: {from: 9, to: 12}}\\n"
-       "objective: {maximize: progress}\\nsearch: {method: random, trials: 1, sensitivity: 2}\\nover: flights\\n"
+       "objective: {maximize: progress}\\nsearch: {method: random, trials: 1, sensitivity: 2}\\nover: "
+       "flights\\n"
        "training: 1\\nvalidation: 2\\n' > tune.yaml; $U tune tune.yaml --out tuning"},
       {"evaluation", "$U evaluate recording --out evaluation"}};
   for (const auto& [name, how] : all) {
     if (text.find(std::string("$F/") + name) == std::string::npos || fs::exists(folder_ / name)) continue;
     if (name == std::string("evaluation")) make_those_in("$F/recording");
     const int status = shell(how, folder_, folder_);
-    if (status > 1) throw std::runtime_error(std::string(name) + " could not be made: " + content_of(folder_.string() + ".err"));
+    if (status > 1)
+      throw std::runtime_error(std::string(name) +
+                               " could not be made: " + content_of(folder_.string() + ".err"));
   }
 }
 
@@ -117,18 +129,22 @@ std::string fault_of(const Misuse& misuse, Fixtures& fixtures, const fs::path& f
   fs::remove_all(folder);
   fs::create_directories(folder);
   fixtures.make_those_in(misuse.setup + misuse.command);
-  if (const int status = shell(misuse.setup.empty() ? ":" : misuse.setup, folder, fixtures.folder()); status != 0)
+  if (const int status = shell(misuse.setup.empty() ? ":" : misuse.setup, folder, fixtures.folder());
+      status != 0)
     return "the setup ended with " + std::to_string(status) + ": " + content_of(folder.string() + ".err");
   const auto before = tree_of(folder);
   const int status = shell(misuse.command, folder, fixtures.folder());
   const std::string said = content_of(folder.string() + ".err");
-  const auto ended = [&](const std::string& how) { return how + "\n  " + misuse.command + "\n  " + said.substr(0, 2000); };
+  const auto ended = [&](const std::string& how) {
+    return how + "\n  " + misuse.command + "\n  " + said.substr(0, 2000);
+  };
   if (status != misuse.status)
     return ended("status " + std::to_string(status) + " instead of " + std::to_string(misuse.status));
   if (said.find("internal fault") != std::string::npos) return ended("an internal fault");
   const bool is_heard = misuse.command.find("2>") == std::string::npos;
   if (status >= 2 && is_heard) {
-    if (std::ranges::count(said, '\n') != 1 || !said.starts_with("understory: ")) return ended("not one line of the program's");
+    if (std::ranges::count(said, '\n') != 1 || !said.starts_with("understory: "))
+      return ended("not one line of the program's");
     if (said.size() > 6000) return ended("a line of " + std::to_string(said.size()) + " characters");
   }
   for (const std::string& name : misuse.names)

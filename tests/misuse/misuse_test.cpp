@@ -7,8 +7,8 @@
 
 #include "tests/misuse/misuse_table.hpp"
 
-/// What hostile and unlucky users do, row by row (tables/*.txt). Nothing here knows the program's wording: a refusal is
-/// one line that names file, line and key, has the right status, and leaves everything as it was.
+/// What hostile and unlucky users do, row by row (tables/*.txt). Nothing here knows the program's wording: a
+/// refusal is one line that names file, line and key, has the right status, and leaves everything as it was.
 namespace understory::support {
 namespace {
 
@@ -37,7 +37,8 @@ TEST_P(MisuseTable, EndsAsItMust) {
   fs::remove_all(folder);
 }
 
-INSTANTIATE_TEST_SUITE_P(Rows, MisuseTable, testing::ValuesIn(table_names()), [](const auto& table) { return table.param; });
+INSTANTIATE_TEST_SUITE_P(Rows, MisuseTable, testing::ValuesIn(table_names()),
+                         [](const auto& table) { return table.param; });
 
 TEST(MisuseTables, HoldAtLeast350Rows) {
   std::size_t rows = 0;

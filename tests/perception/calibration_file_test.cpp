@@ -237,7 +237,7 @@ TEST_F(RigFile, NamesFileLineAndKeyOfEveryFault) {
   expect_complaint("[0.1, 0.2, 0.3]", "[0.1, 0.2]", "10: left_camera_body_m", "3 numbers");
   expect_complaint("name: test", "name: [a]", "1: name", "text");
   expect_complaint("detection_depth_m: 4.8", "detection_depth_m: 900", "9: detection_depth_m", "infinity");
-  expect_complaint("height_px: 240", "height_px: [240", "4: expected a ]", "sequence");
+  expect_complaint("height_px: 240", "height_px: [240", "3", "closes");
 }
 
 TEST_F(RigFile, SaysWhenThereIsNothingToRead) {

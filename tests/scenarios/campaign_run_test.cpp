@@ -57,7 +57,8 @@ class CampaignRun : public testing::Test {
     for (int look = 0; look < 2000; ++look) {
       for (const auto& process : fs::directory_iterator("/proc")) {
         const std::string command = content_of(process.path() / "cmdline");
-        if (command.find(path.string()) != std::string::npos && command.find("/" + id + ".json") != std::string::npos)
+        if (command.find(path.string()) != std::string::npos &&
+            command.find("/" + id + ".json") != std::string::npos)
           return std::stoi(process.path().filename().string());
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(2));

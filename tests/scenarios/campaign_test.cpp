@@ -105,7 +105,7 @@ TEST_F(CampaignFile, RefusesBadFilesInOneLineWithFileLineAndKey) {
       {"scenario: forest\nseeds: 1\ngrid:\n  forest.length_m: 30\n",
        "speed.yaml:4: grid.forest.length_m: expected a list"},
       {"scenario: forest\nseeds: 1\ngrid:\n  forest.lenght_m: [30]\n",
-       "speed.yaml:4: forest.lenght_m: expected a known key (did you mean length_m?)"},
+       "speed.yaml:4: grid.forest.lenght_m: expected a known key (did you mean forest.length_m?)"},
       {"scenario: forest\nseeds: 1\ngrid:\n  forest.length_m: [30, -1]\n", "speed.yaml:4: forest.length_m"},
       {"scenario: forest\nseeds: 1\ntimeout_s: soon\n", "speed.yaml:3: timeout_s: expected a number from 1"},
       {"scenario: forest\nseeds: 1\nseeds: 2\n", "speed.yaml:3: seeds: expected each key once"},
@@ -147,6 +147,9 @@ TEST_F(CampaignFolders, OfAnotherFormatIsRefused) {
 
 FlightRow flown(double clearance_m) {
   FlightRow row;
+  row.id = "forest-1";
+  row.condition = "forest";
+  row.seed = 1;
   row.status = RunStatus::flown;
   row.outcome = "goal";
   row.progress_m = 75.125;

@@ -168,7 +168,8 @@ TEST(CliOutput, ASignalStopsACampaignThatGoesOnLater) {
   EXPECT_EQ(stopped.status, 143);
   EXPECT_NE(stopped.text.find("stopped with 0 of 3 flights over; --resume goes on\n"), std::string::npos)
       << stopped.text;
-  for (const std::string& name : names_in(folder.path())) EXPECT_EQ(name.find("unfinished"), std::string::npos) << name;
+  for (const std::string& name : names_in(folder.path()))
+    EXPECT_EQ(name.find("unfinished"), std::string::npos) << name;
 }
 
 TEST(CliOutput, ASignalStopsTheRecordersOfAnEvaluation) {
@@ -199,7 +200,10 @@ TEST(CliOutput, AFullDiskIsOneLineAndAFilmThatDoesNotFitLosesNoResult) {
   const Outcome film = on_small_disk("fly clear --set forest.length_m=10 --quiet --video --out run",
                                      folder.path(), "300k", "ls -A . run");
   EXPECT_NE(film.text.find("No space left on device\nstatus 3\n"), std::string::npos) << film.text;
-  EXPECT_NE(film.text.find("run:\n.understory\nestimate.tum\nmap.ply\nobstacles.csv\nresult.json\nscenario.yaml\n"), std::string::npos) << film.text;
+  EXPECT_NE(
+      film.text.find("run:\n.understory\nestimate.tum\nmap.ply\nobstacles.csv\nresult.json\nscenario.yaml\n"),
+      std::string::npos)
+      << film.text;
   EXPECT_EQ(film.text.find("unfinished", film.text.find("status 3")), std::string::npos) << film.text;
 }
 
@@ -207,7 +211,10 @@ TEST(CliOutput, AFolderThatIsADiskOfItsOwnIsWrittenWithin) {
   if (!mounts_disks()) GTEST_SKIP() << "only root may mount a small disk";
   const TemporaryFolder folder;
   const Outcome flown = on_small_disk(short_flight + "--out .", folder.path(), "1m", "ls -A");
-  EXPECT_EQ(flown.text, "status 0\n.understory\nestimate.tum\nmap.ply\nobstacles.csv\nresult.json\nscenario.yaml\ntrajectory.csv\ntruth.tum\n");
+  EXPECT_EQ(flown.text,
+            "status "
+            "0\n.understory\nestimate.tum\nmap.ply\nobstacles.csv\nresult.json\nscenario.yaml\ntrajectory."
+            "csv\ntruth.tum\n");
 }
 
 #endif

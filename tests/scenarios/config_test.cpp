@@ -140,7 +140,7 @@ TEST(Config, RefusesNumbersThatAreNot) {
 }
 
 TEST(Config, RefusesBrokenOrEmptyYaml) {
-  EXPECT_EQ(refusal("a: [1\nb: 2\n").substr(0, 9), "a.yaml:2:");
+  EXPECT_EQ(refusal("a: [1\nb: 2\n").substr(0, 9), "a.yaml:1:");
   EXPECT_EQ(refusal(""), "a.yaml:1: expected one YAML document with keys and values");
   EXPECT_EQ(refusal("just words\n"), "a.yaml:1: expected one YAML document with keys and values");
   EXPECT_EQ(refusal("on: true\n---\non: true\n"),

@@ -95,7 +95,10 @@ TEST_F(Output, AnUnwritableFolderIsBadInput) {
 }
 
 FolderContents contents(const std::string& configuration) {
-  return {"flight", "scenario.yaml", configuration, {"result.json", "scenario.yaml", "film.mp4", "pictures/*.png"}};
+  return {"flight",
+          "scenario.yaml",
+          configuration,
+          {"result.json", "scenario.yaml", "film.mp4", "pictures/*.png"}};
 }
 
 /// A run of that configuration, as a command leaves it.
@@ -116,7 +119,7 @@ TEST_F(OutputFolderTest, BearsItsNameOnlyWhenItIsWhole) {
     write_whole_file(broken_off.path() / "result.json", "half");
     EXPECT_FALSE(fs::exists(run));
   }
-  EXPECT_TRUE(fs::is_empty(folder.path() / "runs"));
+  EXPECT_FALSE(fs::exists(folder.path() / "runs"));
   run_into(run, "a", Replace::same, true);
   EXPECT_EQ(content_of(run / "scenario.yaml"), "a");
   EXPECT_EQ(std::distance(fs::directory_iterator(run), {}), 5);  // and the list of them

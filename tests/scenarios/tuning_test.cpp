@@ -101,7 +101,8 @@ TEST_F(TuningTest, RecommendsNothingWhereTheScenarioIsAsGoodAsItsBestTrial) {
   TuneFile file = load(tuning_text());
   const auto summary = [&](const fs::path& where) {
     ClosedForm training(0.2), validation(0.2);
-    write_tune_report(where, file, tune(file, training, validation, {.folder = where}), UNDERSTORY_SOURCE_DIR);
+    write_tune_report(where, file, tune(file, training, validation, {.folder = where}),
+                      UNDERSTORY_SOURCE_DIR);
     return content_of(where / "summary.md");
   };
   expect_no_part(summary(results("r")), "leave it so");

@@ -1,8 +1,9 @@
-// Preloaded (LD_PRELOAD): a disk that fills up, and a diary of what reached it. For the tests of a program that cannot
-// mount one.
+// Preloaded (LD_PRELOAD): a disk that fills up, and a diary of what reached it. For the tests of a program
+// that cannot mount one.
 //   FAILING_DISK_FOLDER   files below it are on the disk
 //   FAILING_DISK_BYTES    so many may be written to them, then ENOSPC; absent: any number
-//   FAILING_DISK_DIARY    gets a line for each "write PATH", "sync PATH", "syncfs", "rename FROM TO", "say" (descriptor 1)
+//   FAILING_DISK_DIARY    gets a line for each "write PATH", "sync PATH", "syncfs", "rename FROM TO", "say"
+//   (descriptor 1)
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/uio.h>
