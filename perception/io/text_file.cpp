@@ -55,7 +55,7 @@ std::string lacking_resource(int error) {
   if (error == ENFILE) return "too many open files on this machine";
   if (error == EFBIG)
     return "too large, this program's limit is " + limit(RLIMIT_FSIZE) + " bytes a file (ulimit -f)";
-  if (error == ENOMEM || error == EAGAIN)
+  if (error == ENOMEM)
     return "not enough memory, this program's limit is " + limit(RLIMIT_AS) + " bytes (ulimit -v)";
   return "";
 }

@@ -46,25 +46,24 @@ YamlFault likely_fault(const std::string& text) {
     char mark;
     int line;
   };
+  constexpr std::string_view before_value = ":[{,-\n";
   std::vector<Open> open;
-  int line = 1;
+  int line = 1, quote_line = 0;
   bool is_indentation = true, is_comment = false;
-  char quote = 0, before = '\n';
-  int quote_line = 0;
+  char quote = 0, before = '\n', last_word = '\n';  // the character before, and the last one that is no blank
   for (const char c : text) {
+    const bool begins_value = before_value.find(last_word) != std::string_view::npos;
     if (quote != 0) {
-      if (c == quote && before != '\\') quote = 0;
+      if (c == quote && (quote == '\'' || before != '\\')) quote = 0;
     } else if (!is_comment) {
       if (is_indentation && c == '\t' && open.empty())
         return {line, "expected blanks, found a tab before the key"};
-      const bool begins_value =
-          before == ' ' || before == '\n' || before == '[' || before == '{' || before == ',';
       if (c == '#' && (before == ' ' || before == '\n' || before == '\t')) is_comment = true;
       if ((c == '"' || c == '\'') && begins_value) {
         quote = c;
         quote_line = line;
       }
-      if ((c == '[' || c == '{') && (begins_value || before == ':')) open.push_back({c, line});
+      if ((c == '[' || c == '{') && begins_value) open.push_back({c, line});
       if ((c == ']' || c == '}') && !open.empty()) open.pop_back();
     }
     is_indentation = c == '\n' || (is_indentation && (c == ' ' || c == '\t'));
@@ -73,6 +72,7 @@ YamlFault likely_fault(const std::string& text) {
       is_comment = false;
     }
     before = c;
+    if (!is_comment && c != ' ' && c != '\t') last_word = c;
   }
   if (quote != 0) return {quote_line, std::string("expected a second ") + quote + " that ends the text"};
   if (open.empty()) return {};

@@ -46,10 +46,10 @@ std::vector<CampaignTask> in_flying_order(const Campaign& campaign);
 ///     campaign.json          what is flown, by which program
 ///     conditions/NAME.yaml   each condition's effective scenario
 ///     flights/ID.json        a flight's file, there once it is over; written whole or not at all
-///     tracks/ID.track        a lost flight for the page: compact_flight() of
-///     scenarios/flight/flight_page.hpp logs/ID.txt            what a flight that was not flown said on
-///     standard error flights.csv .jsonl     every row, in the campaign's order; costs.csv: wall time and
-///     memory
+///     tracks/ID.track        a lost flight for the page: compact_flight() of flight_page.hpp
+///     logs/ID.txt            what a flight that was not flown said on standard error
+///     flights.csv .jsonl     every row, in the campaign's order
+///     costs.csv              wall time and memory
 ///
 /// A flight's file is all that says that it is over, so nothing has to be undone after a kill or a power cut,
 /// and two programs that fly the same flight write the same.

@@ -70,7 +70,12 @@ class Flights {
   Flights(const CampaignFolder& folder, const Campaign& campaign, const LocalEngineConfig& config,
           const StopSignals& stop_signals)
       : folder_(folder), campaign_(campaign), config_(config), stop_signals_(stop_signals) {}
-  ~Flights() { stop(); }
+  ~Flights() {
+    try {
+      stop();
+    } catch (const std::exception&) {  // of what the flights left: the next run sees to it
+    }
+  }
   Flights(const Flights&) = delete;
   Flights& operator=(const Flights&) = delete;
 

@@ -84,10 +84,17 @@ struct AgainOutput {
         require_outside({file}, read, patterns);
         require_separate({file}, with_folder(read, patterns));
       }
-    if (!arguments.out.empty()) return;
+    std::error_code ignored;
+    const bool is_elsewhere = fs::weakly_canonical(fs::absolute(file), ignored) !=
+                              fs::weakly_canonical(fs::absolute(folder / name), ignored);
+    if (is_elsewhere) return;
     named = Named::by_us;
-    claim.emplace(folder, kind, folder, FolderClaim::Manner::beside_others);
-    claim->adopt(kind == std::string("campaign") ? campaign_patterns : run_patterns);
+    // A run must not be replaced while it is flown again: the result would pass for the new one's. A campaign
+    // goes on.
+    const bool is_campaign = kind == std::string("campaign");
+    claim.emplace(folder, kind, folder,
+                  is_campaign ? FolderClaim::Manner::beside_others : FolderClaim::Manner::alone);
+    if (is_campaign) claim->adopt(campaign_patterns);
     claim->require_own(std::vector<std::string>{name});
   }
 };
@@ -128,7 +135,7 @@ int run_report(const ReportArguments& arguments) {
   const fs::path beside = is_stream(output.file)
                               ? fs::temp_directory_path() / fmt::format("report-{}", getpid())
                               : fs::weakly_canonical(fs::absolute(output.file));
-  const UnfinishedFolder flown(beside, output.file);
+  const UnfinishedFolder flown(beside, "flight", output.file);
   options.output_folder = flown.path();
   return fly_again(scenario, arguments, options, output.file, [&] {
     write_whole_file(output.file, read_file(flown.path() / "report.html", maximum_image_bytes), output.named);

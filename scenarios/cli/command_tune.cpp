@@ -69,7 +69,7 @@ void claim_tune_folder(FolderClaim& claim, const fs::path& folder, bool force) {
                     "beside them",
                     folder.string()));
   } else {
-    claim.require_own(std::vector<std::string>{"flown/*"});
+    claim.require_own(std::vector<std::string>{"flown/*", "flown/*/*", "flown/*/*/*"});
   }
   claim.require_own(tune_patterns);
 }
@@ -94,7 +94,13 @@ int run_tune(const TuneArguments& arguments) {
     judges = bad_input_if_refused([&] { return judges_of(file, arguments, folder); });
   FolderClaim claim(folder, "tuning", folder);
   claim_tune_folder(claim, folder, arguments.force);
-  const Identity identity = identity_of(file, arguments.renderer);
+  const Identity identity = [&] {
+    try {
+      return identity_of(file, arguments.renderer);
+    } catch (const ScenarioError& error) {
+      throw ScenarioError(fmt::format("{}: {}", file.scenario_file.string(), error.what()));
+    }
+  }();
   prepare_tune_folder(folder, file, std::string(word_for(arguments.renderer)), arguments.resume, identity);
   if (file.over == TuningData::flights) judges = judges_of(file, arguments, folder);
   const StopSignals stop_signals;

@@ -115,10 +115,13 @@ std::vector<SuiteRecording> load_suite(const fs::path& file, const FindScenario&
 
 /// What decides a recording, as text: its scenario, how the cameras are carried, and what flies and draws it.
 std::string identity_text(const SuiteRecording& recording, const Scenario& scenario, Identity identity) {
+  const std::string rig = rig_name_in_identity(scenario);
+  std::erase_if(identity,
+                [&](const auto& entry) { return entry.first.starts_with("rig ") && entry.first != rig; });
   identity.emplace_back("scenario", digest_of_text(scenario_to_text(scenario)));
-  for (const std::string& argument : recording.arguments) {
-    std::error_code ignored;
-    identity.emplace_back(argument, fs::is_regular_file(argument, ignored) ? digest_of_file(argument) : "");
+  for (std::size_t i = 0; i < recording.arguments.size(); ++i) {
+    const bool is_path = i > 0 && recording.arguments[i - 1] == "--path";
+    identity.emplace_back(recording.arguments[i], is_path ? digest_of_file(recording.arguments[i]) : "");
   }
   std::string text;
   for (const auto& [name, digest] : identity) text += fmt::format("{}: {}\n", name, digest);
@@ -169,7 +172,7 @@ std::vector<fs::path> record_suite(const fs::path& file, const fs::path& folder,
   std::size_t failed = all, done = 0, here = 0;
   int failed_with = 0;
   std::string reason;
-  const UnfinishedFolder said(folder / "said", folder, false);
+  const UnfinishedFolder said(folder / "said", "evaluation", folder);
   const fs::path processes_said = said.path();
   ProgressLine line;
   ProgramProcesses processes(jobs, [&](std::uint64_t tag, int status, const EndedProcess&) {
@@ -194,8 +197,8 @@ std::vector<fs::path> record_suite(const fs::path& file, const fs::path& folder,
       }
       line.clear();
       fmt::print("{}: recorded anew: {}\n", folders.back().string(), fault);
-      fs::remove(folders.back() / identity_name, ignored);
     }
+    fs::remove(folders.back() / identity_name, ignored);  // from here on it is no recording of anything
     processes.start(folders.size() - 1, arguments_of(recording, folders.back()),
                     processes_said / recording.name);
   }

@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 
 std::vector<fs::path> files_below(const fs::path& folder) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
+  for (const auto& entry :
+       fs::recursive_directory_iterator(folder, fs::directory_options::follow_directory_symlink))
     if (entry.is_regular_file()) files.push_back(entry.path().lexically_relative(folder));
   std::ranges::sort(files);
   return files;
@@ -46,10 +47,14 @@ Identity identity_of(const std::vector<Scenario>& scenarios, const fs::path& mod
   for (const Scenario& scenario : scenarios) {
     std::string all;
     for (const fs::path& file : rig_files_of(scenario, models_folder)) all += digest_of_file(file) + '\n';
-    const std::string name = "rig " + scenario.rig + (scenario.cameras.raw ? ", raw" : "");
+    const std::string name = rig_name_in_identity(scenario);
     if (rigs.insert(name).second) identity.emplace_back(name, digest_of_text(all));
   }
   return identity;
+}
+
+std::string rig_name_in_identity(const Scenario& scenario) {
+  return "rig " + scenario.rig + (scenario.cameras.raw ? ", raw" : "");
 }
 
 std::string digest_of_recording(const fs::path& folder) {

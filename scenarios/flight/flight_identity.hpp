@@ -16,6 +16,9 @@ namespace understory {
 Identity identity_of(const std::vector<Scenario>& scenarios, const std::filesystem::path& models_folder,
                      RendererKind renderer);
 
+/// The name of a scenario's rig there.
+std::string rig_name_in_identity(const Scenario& scenario);
+
 /// Of everything in a recording's folder: names and sizes of its files, contents of its tables.
 std::string digest_of_recording(const std::filesystem::path& folder);
 

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fnmatch.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -97,6 +98,8 @@ class Stream {
 /// program.
 int made(const fs::path& part) {
   const auto lock = hold_outputs();
+  // The name is this process's own: what bears it was left by another one of the same number.
+  std::remove(part.c_str());
   const int descriptor = open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor >= 0) flock(descriptor, LOCK_EX | LOCK_NB);
   return descriptor;
@@ -128,6 +131,10 @@ bool is_unfinished_name(const fs::path& path) {
   return name.starts_with(unfinished_prefix) && name.ends_with(unfinished_suffix);
 }
 
+bool is_unfinished_file_name(const fs::path& path) {
+  return fnmatch(".understory-*-[0-9]*-[0-9]*.unfinished", path.filename().c_str(), 0) == 0;
+}
+
 fs::path unfinished_name_in(const fs::path& folder) {
   static std::atomic<int> count = 0;
   // Programs on two machines may write into one folder.
@@ -145,7 +152,8 @@ bool is_at_work_on(const fs::path& unfinished) {
   int process = 0;
   if (!name.starts_with(ours)) return false;
   const auto parsed = std::from_chars(name.data() + ours.size(), name.data() + name.size(), process);
-  return parsed.ec == std::errc() && *parsed.ptr == '-' && (kill(process, 0) == 0 || errno == EPERM);
+  return parsed.ec == std::errc() && *parsed.ptr == '-' && process != getpid() &&
+         (kill(process, 0) == 0 || errno == EPERM);
 }
 
 void refuse_output(const fs::path& file, int error) {
@@ -198,7 +206,7 @@ void OutputFile::finish() {
   if (state.part && stat(file.c_str(), &former) == 0)
     chmod(state.part->path().c_str(), former.st_mode & 07777);
   if (lasts) error = state.stream->sync();
-  if (error == 0 && state.claim != nullptr) state.claim->add(file);
+  if (error == 0 && state.claim != nullptr) state.claim->add({file});
   // Named before it is closed: until then its lock says that somebody is at work on it.
   if (error == 0 && state.part) state.part->become(file);
   if (const int last = state.stream->close(); error == 0) error = last;
@@ -213,7 +221,10 @@ void write_whole_file(const fs::path& file, std::string_view content, Named name
 }
 
 void sync_folder(const fs::path& folder) {
-  Stream(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)).sync();
+  Stream stream(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const int error = stream.is_open() ? stream.sync() : errno;
+  if (error != 0 && error != EINVAL)
+    refuse_output(folder, error);  // EINVAL: its file system knows no such thing
 }
 
 void sync_file_system(const fs::path& folder) {
@@ -252,8 +263,10 @@ namespace {
 /// `path` below `folder`; empty where it is not.
 fs::path path_within(const fs::path& path, const fs::path& folder) {
   std::error_code ignored;
-  const fs::path relative = fs::weakly_canonical(fs::absolute(path), ignored)
-                                .lexically_relative(fs::weakly_canonical(fs::absolute(folder), ignored));
+  const fs::path whole = fs::weakly_canonical(fs::absolute(path), ignored);
+  const fs::path whole_folder = fs::weakly_canonical(fs::absolute(folder), ignored);
+  if (whole.empty() || whole_folder.empty()) return {};
+  const fs::path relative = whole.lexically_relative(whole_folder);
   return relative.empty() || *relative.begin() == ".." ? fs::path() : relative;
 }
 
@@ -269,8 +282,9 @@ void require_separate(const std::vector<fs::path>& outputs, const std::vector<fs
     if (one.empty() || other.empty() ||
         (fs::exists(one, ignored) && !fs::is_directory(one, ignored) && is_stream(one)))
       return false;
-    return fs::equivalent(one, other, ignored) || fs::weakly_canonical(fs::absolute(one), ignored) ==
-                                                      fs::weakly_canonical(fs::absolute(other), ignored);
+    const fs::path whole = fs::weakly_canonical(fs::absolute(one), ignored);  // empty where it cannot be told
+    return fs::equivalent(one, other, ignored) ||
+           (!whole.empty() && whole == fs::weakly_canonical(fs::absolute(other), ignored));
   };
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     for (const fs::path& other : others)

@@ -67,6 +67,8 @@ bool is_stream(const std::filesystem::path& file);
 
 /// Whether a file or folder bears the name of something that a program is at work on.
 bool is_unfinished_name(const std::filesystem::path& path);
+/// Whether it is one that unfinished_name_in() gives to files.
+bool is_unfinished_file_name(const std::filesystem::path& path);
 /// Such a name in `folder`: for this process alone; for what will be called `target`, whoever makes it.
 std::filesystem::path unfinished_name_in(const std::filesystem::path& folder);
 std::filesystem::path unfinished_name_of(const std::filesystem::path& target,

@@ -22,6 +22,9 @@ namespace fs = std::filesystem;
 constexpr std::string_view header =
     "Files that understory wrote here, each behind the kind of its results. It replaces no others.\n";
 
+/// In place of a kind: the file was removed. The list only grows, so that a kill leaves what it said before.
+constexpr std::string_view gone = "gone";
+
 /// In the order in which they were made. The main thread changes it, under hold_outputs(); a signal's looks.
 std::vector<FolderClaim*>& claims = *new std::vector<FolderClaim*>;
 
@@ -39,16 +42,21 @@ std::string folder_in(const std::string& pattern) {
   return slash == std::string::npos ? "" : pattern.substr(0, slash);
 }
 
-/// Whether another program is at work on `path`: each holds a lock on what it has not finished.
-bool is_held(const fs::path& path) {
-  if (is_at_work_on(path)) return true;  // perhaps about to take its lock
+/// Whether a program that is alive no more left what bears an unfinished name. Each holds a lock on what it
+/// has not finished; a folder without our list is somebody else's, unless the program ended before it made
+/// one.
+bool is_left_over(const fs::path& path) {
+  if (is_at_work_on(path)) return false;  // perhaps about to take its lock
   std::error_code ignored;
-  const fs::path file = fs::is_directory(path, ignored) ? path / claim_name : path;
+  const bool is_folder = fs::is_directory(fs::symlink_status(path, ignored));
+  if (is_folder && !fs::exists(path / claim_name, ignored)) return fs::is_empty(path, ignored);
+  if (!is_folder && !is_unfinished_file_name(path)) return false;
+  const fs::path file = is_folder ? path / claim_name : path;
   const int descriptor = open(file.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
-  if (descriptor < 0) return errno != ENOENT || file == path;
+  if (descriptor < 0) return false;
   const bool is_free = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
   close(descriptor);
-  return !is_free;
+  return is_free;
 }
 
 }  // namespace
@@ -59,14 +67,49 @@ bool matches(const fs::path& file, const std::vector<std::string>& patterns) {
   });
 }
 
+namespace {
+
+/// "mav0/*" of "mav0/*/*.csv" for a folder of two parts; empty where the pattern means nothing below such a
+/// folder.
+std::string beginning_of(const std::string& pattern, std::size_t parts) {
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < parts; ++i) {
+    end = pattern.find('/', end + (i == 0 ? 0 : 1));
+    if (end == std::string::npos) return "";
+  }
+  return pattern.substr(0, end);
+}
+
+/// Adds what lies in `folder / below`. Goes into no folder that the patterns do not name: it may be
+/// somebody's home.
+void add_files(const fs::path& folder, const fs::path& below, const std::vector<std::string>& patterns,
+               std::vector<fs::path>& files) {
+  std::error_code error;
+  fs::directory_iterator entry(folder / below, error);
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    const fs::path file = below / entry->path().filename();
+    std::error_code ignored;
+    if (!fs::is_directory(entry->symlink_status(ignored))) {
+      if (matches(file, patterns)) files.push_back(file);
+      continue;
+    }
+    const auto parts = static_cast<std::size_t>(std::distance(file.begin(), file.end()));
+    const auto leads_there = [&](const std::string& pattern) {
+      const std::string beginning = beginning_of(pattern, parts);
+      return !beginning.empty() && fnmatch(beginning.c_str(), file.c_str(), FNM_PATHNAME) == 0;
+    };
+    if (std::ranges::any_of(patterns, leads_there)) add_files(folder, file, patterns, files);
+  }
+  // What cannot be looked at may be anybody's.
+  const bool is_none = error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory;
+  if (error && !is_none) refuse_output(folder / below, error.value());
+}
+
+}  // namespace
+
 std::vector<fs::path> files_of(const fs::path& folder, const std::vector<std::string>& patterns) {
   std::vector<fs::path> files;
-  std::error_code ignored;
-  for (auto entry = fs::recursive_directory_iterator(folder, ignored);
-       entry != fs::recursive_directory_iterator(); entry.increment(ignored)) {
-    const fs::path file = entry->path().lexically_relative(folder);
-    if (!fs::is_directory(entry->symlink_status(ignored)) && matches(file, patterns)) files.push_back(file);
-  }
+  add_files(folder, "", patterns, files);
   std::ranges::sort(files);
   return files;
 }
@@ -90,8 +133,9 @@ void clear_unfinished(const fs::path& folder) {
   std::error_code ignored;
   const auto lock = hold_outputs();
   std::vector<fs::path> left;
-  for (const auto& entry : fs::directory_iterator(folder, ignored))
-    if (is_unfinished_name(entry.path()) && !is_held(entry.path())) left.push_back(entry.path());
+  fs::directory_iterator entry(folder, ignored);
+  for (; !ignored && entry != fs::directory_iterator(); entry.increment(ignored))
+    if (is_unfinished_name(entry->path()) && is_left_over(entry->path())) left.push_back(entry->path());
   for (const fs::path& path : left) fs::remove_all(path, ignored);
 }
 
@@ -122,7 +166,7 @@ FolderClaim::FolderClaim(const fs::path& folder, std::string kind, const fs::pat
       lock(name, manner);
       if (file_ >= 0) break;  // else another program removed it meanwhile
     }
-    read_list(name);
+    read_list();
   } catch (const InputError&) {
     let_go();
     throw;
@@ -156,14 +200,13 @@ void FolderClaim::lock(const fs::path& name, Manner manner) {
   }
 }
 
-void FolderClaim::read_list(const fs::path& name) {
+void FolderClaim::read_list() {
   std::string text;
   char piece[65536];
   for (ssize_t count; (count = pread(file_, piece, sizeof piece, static_cast<off_t>(text.size()))) > 0;)
     text.append(piece, static_cast<std::size_t>(count));
   if (text.empty()) {
-    if (write(file_, header.data(), header.size()) != static_cast<ssize_t>(header.size()))
-      refuse_output(name, errno);
+    append(std::string(header));
     return;
   }
   if (!text.starts_with(header)) {
@@ -176,11 +219,21 @@ void FolderClaim::read_list(const fs::path& name) {
     const std::string line = text.substr(begin, end - begin);
     const std::size_t blank = line.find(' ');
     if (blank == std::string::npos) continue;
-    const fs::path path = line.substr(blank + 1);
+    const std::string kind = line.substr(0, blank), file = line.substr(blank + 1);
+    const fs::path path = file;
     const bool lies_within = path.is_relative() && std::ranges::find(path, "..") == path.end();
-    if (lies_within) written_[path.string()] = line.substr(0, blank);
+    if (kind == gone)
+      written_.erase(file);
+    else if (lies_within)
+      written_[file] = kind;
   }
-  if (begin < text.size() && write(file_, "\n", 1) != 1) refuse_output(name, errno);  // torn by a power cut
+  is_listed_ = !written_.empty();
+  if (begin < text.size()) append("\n");  // torn by a power cut
+}
+
+void FolderClaim::append(const std::string& lines) {
+  if (write(file_, lines.data(), lines.size()) != static_cast<ssize_t>(lines.size()))
+    refuse_output(folder_ / claim_name, errno);
 }
 
 FolderClaim::~FolderClaim() {
@@ -193,7 +246,7 @@ FolderClaim::~FolderClaim() {
 void FolderClaim::let_go() {
   const auto hold = hold_outputs();
   const fs::path file = folder_ / claim_name;
-  const bool is_empty = written_.empty() || !is_saved_;  // in the file
+  const bool is_empty = !is_listed_;
   if (file_ >= 0 && is_new_ && is_locked_ && is_empty && is_file(file_, file)) ::unlink(file.c_str());
   if (file_ >= 0) close(file_);
   file_ = -1;
@@ -202,29 +255,28 @@ void FolderClaim::let_go() {
 }
 
 bool FolderClaim::holds_other_files() const {
-  std::error_code ignored;
-  for (const auto& entry : fs::recursive_directory_iterator(folder_, ignored)) {
-    const std::string file = entry.path().lexically_relative(folder_).string();
-    const bool is_ours = file == claim_name || owns(entry.path());
-    if (!is_ours && !fs::is_directory(entry.symlink_status(ignored))) return true;
+  std::error_code error, ignored;
+  fs::recursive_directory_iterator entry(folder_, error);
+  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+    const std::string file = entry->path().lexically_relative(folder_).string();
+    const bool is_ours = file == claim_name || owns(entry->path());
+    if (!is_ours && !fs::is_directory(entry->symlink_status(ignored))) return true;
   }
-  return false;
+  return static_cast<bool>(error);  // what cannot be looked at is somebody's
 }
 
 bool FolderClaim::owns(const fs::path& file) const {
-  const auto found = written_.find(file.lexically_relative(folder_).string());
-  return found != written_.end() && found->second == kind_;
+  const std::string relative = file.lexically_relative(folder_).string();
+  const auto found = written_.find(relative);
+  return (found != written_.end() && found->second == kind_) || adopted_.contains(relative);
 }
 
 void FolderClaim::adopt(const std::vector<std::string>& patterns) {
   if (!written_.empty()) return;
-  for (const fs::path& file : files_of(folder_, patterns)) {
-    written_[file.string()] = kind_;
-    is_saved_ = false;
-  }
+  for (const fs::path& file : files_of(folder_, patterns)) adopted_.insert(file.string());
 }
 
-void FolderClaim::require_own(const std::vector<std::string>& patterns) const {
+void FolderClaim::require_own(const std::vector<std::string>& patterns) {
   std::error_code ignored;
   for (const std::string& pattern : patterns) {
     const fs::path within = folder_ / folder_in(pattern);
@@ -239,63 +291,58 @@ void FolderClaim::require_own(const std::vector<std::string>& patterns) const {
   for (const fs::path& file : files_of(folder_, patterns)) require_own(folder_ / file);
 }
 
-void FolderClaim::require_own(const fs::path& file) const {
+void FolderClaim::require_own(const fs::path& file) {
   std::error_code ignored;
   if (owns(file) || !fs::exists(fs::symlink_status(file, ignored))) return;
-  throw ScenarioError(
-      fmt::format("{}: is there and is no {} of understory's: move it away, or name another folder with "
-                  "--out",
-                  file.string(), kind_));
-}
-
-void FolderClaim::note(const std::string& file) {
-  if (const auto known = written_.find(file); known != written_.end() && known->second == kind_) return;
-  if (!is_saved_) write_list();
-  const std::string line = fmt::format("{} {}\n", kind_, file);
-  if (write(file_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
-    refuse_output(folder_ / file, errno);
-  fdatasync(file_);  // whoever finds the file after a power cut must find whose it is
-  written_[file] = kind_;
-}
-
-void FolderClaim::add(const fs::path& file) {
   const auto hold = hold_outputs();
-  const std::string relative = file.lexically_relative(folder_).string();
-  require_own(file);
-  note(relative);
-  added_.insert(relative);
+  read_list();  // whoever writes beside us may have added it
+  if (owns(file)) return;
+  throw ScenarioError(fmt::format(
+      "{}: is there and is no {} of understory's: move it away, or name another folder with --out",
+      file.string(), kind_));
+}
+
+void FolderClaim::add(const std::vector<fs::path>& files) {
+  const auto hold = hold_outputs();
+  for (const fs::path& file : files) require_own(file);
+  std::string lines;
+  for (const std::string& file : adopted_) lines += fmt::format("{} {}\n", kind_, file);
+  for (const fs::path& file : files) {
+    const std::string relative = file.lexically_relative(folder_).string();
+    added_.insert(relative);
+    const auto known = written_.find(relative);
+    const bool is_new = known == written_.end() || known->second != kind_;
+    if (is_new && !adopted_.contains(relative)) lines += fmt::format("{} {}\n", kind_, relative);
+    written_[relative] = kind_;
+  }
+  for (const std::string& file : adopted_) written_[file] = kind_;
+  adopted_.clear();
+  if (lines.empty()) return;
+  append(lines);
+  is_listed_ = true;
+  fdatasync(file_);  // whoever finds a file after a power cut must find whose it is
 }
 
 void FolderClaim::remove_stale(const std::vector<std::string>& patterns) {
   const auto hold = hold_outputs();
   std::error_code ignored;
   std::set<fs::path> folders;
+  std::string lines;
   for (auto file = written_.begin(); file != written_.end();) {
     const bool is_stale =
         file->second == kind_ && !added_.contains(file->first) && matches(file->first, patterns);
     if (is_stale) {
       fs::remove(folder_ / file->first, ignored);
       folders.insert((folder_ / file->first).parent_path());
+      lines += fmt::format("{} {}\n", gone, file->first);
     }
     file = is_stale ? written_.erase(file) : std::next(file);
   }
   for (const fs::path& folder : folders)
     if (folder != folder_) ::rmdir(folder.c_str());  // where it is empty
-  write_list();
-}
-
-void FolderClaim::write_list() {
-  is_saved_ = true;
-  std::string text(header);
-  for (const auto& [file, kind] : written_) text += fmt::format("{} {}\n", kind, file);
-  if (ftruncate(file_, 0) != 0 || write(file_, text.data(), text.size()) != static_cast<ssize_t>(text.size()))
-    refuse_output(folder_, errno);
-}
-
-void FolderClaim::list(const std::string& kind, const std::vector<fs::path>& files) {
-  written_.clear();
-  for (const fs::path& file : files) written_[file.string()] = kind;
-  write_list();
+  if (lines.empty()) return;
+  append(lines);
+  fdatasync(file_);
 }
 
 void FolderClaim::made_folders(const std::vector<fs::path>& folders) {

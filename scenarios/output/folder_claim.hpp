@@ -44,23 +44,20 @@ class FolderClaim {
   void adopt(const std::vector<std::string>& patterns);
   /// Throws ScenarioError where something matches one of `patterns` that is not ours, or where a file stands
   /// in place of a folder that they need.
-  void require_own(const std::vector<std::string>& patterns) const;
+  void require_own(const std::vector<std::string>& patterns);
   /// The same of one file.
-  void require_own(const std::filesystem::path& file) const;
-  /// Lists a file that will be written now. Throws as require_own().
-  void add(const std::filesystem::path& file);
+  void require_own(const std::filesystem::path& file);
+  /// Lists files that will be written now. Throws as require_own().
+  void add(const std::vector<std::filesystem::path>& files);
   /// Removes what is ours, matches one of `patterns` and was not added by this object.
   void remove_stale(const std::vector<std::string>& patterns);
-  /// The list becomes `files`, by relative path, of that kind.
-  void list(const std::string& kind, const std::vector<std::filesystem::path>& files);
   /// Folders were made in it: they go with those that it made itself.
   void made_folders(const std::vector<std::filesystem::path>& folders);
 
  private:
   void lock(const std::filesystem::path& name, Manner manner);
-  void read_list(const std::filesystem::path& name);
-  void note(const std::string& file);
-  void write_list();
+  void read_list();
+  void append(const std::string& lines);
   void let_go();
 
   std::filesystem::path folder_;  ///< canonical
@@ -68,8 +65,9 @@ class FolderClaim {
   int file_ = -1;
   bool is_locked_ = false;
   bool is_new_ = false;                         ///< we made ".understory"
-  bool is_saved_ = true;                        ///< the list is in the file as it is here
+  bool is_listed_ = false;                      ///< the file lists something
   std::map<std::string, std::string> written_;  ///< path to kind, of all kinds
+  std::set<std::string> adopted_;               ///< of our kind, and not in the file yet
   std::set<std::string> added_;                 ///< by this object
   std::vector<std::filesystem::path> made_;     ///< folders, outermost first
 };

@@ -1,7 +1,7 @@
 #include "scenarios/output/output_folder.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,14 +14,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether it lies on a disk of its own, or nothing can be made beside it: then what is unfinished lies
-/// within.
+/// Whether nothing can be made beside the folder and moved into it, which a mount in between prevents, too:
+/// then what is unfinished lies within.
 bool stands_alone(const fs::path& folder) {
-  const fs::path parent = folder.parent_path();
-  struct stat here {
-  }, above{};
-  if (stat(folder.c_str(), &here) != 0 || stat(parent.c_str(), &above) != 0) return false;
-  return here.st_dev != above.st_dev || access(parent.c_str(), W_OK) != 0;
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored)) return false;
+  const Unfinished beside(unfinished_name_in(folder.parent_path())), within(unfinished_name_in(folder));
+  const int file = open(beside.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (file < 0) return true;
+  close(file);
+  return std::rename(beside.path().c_str(), within.path().c_str()) != 0;
 }
 
 /// With every symbolic link followed, so that the links stay.
@@ -59,7 +61,8 @@ void refuse_to_replace(const fs::path& folder, const fs::path& given, const Fold
 
 }  // namespace
 
-UnfinishedFolder::UnfinishedFolder(const fs::path& target, const fs::path& name, bool within) {
+UnfinishedFolder::UnfinishedFolder(const fs::path& target, const std::string& kind, const fs::path& name,
+                                   bool within) {
   const fs::path above = within ? target : target.parent_path();
   const fs::path part = unfinished_name_of(target, above);
   const auto lock = hold_outputs();
@@ -70,18 +73,19 @@ UnfinishedFolder::UnfinishedFolder(const fs::path& target, const fs::path& name,
   if (is_foreign)
     throw ScenarioError(
         fmt::format("{}: expected nothing there, or what a killed understory left", part.string()));
-  claim_.emplace(part, "unfinished", name);
+  claim_.emplace(part, kind, name);
   part_.emplace(part);
   empty(part);
 }
 
-bool UnfinishedFolder::become(const fs::path& name, const std::string& kind,
-                              const std::vector<fs::path>& files) {
+bool UnfinishedFolder::become(const fs::path& name, const std::vector<std::string>& patterns) {
   const auto lock = hold_outputs();
-  claim_->list(kind, files);
+  claim_->adopt(patterns);
+  claim_->add({});
   sync_file_system(path());
   if (std::rename(path().c_str(), name.c_str()) == 0) {
     part_->keep();
+    sync_folder(name.parent_path());
     return true;
   }
   if (errno != ENOTEMPTY && errno != EEXIST) refuse_output(name, errno);
@@ -89,10 +93,10 @@ bool UnfinishedFolder::become(const fs::path& name, const std::string& kind,
 }
 
 OutputFolder::OutputFolder(fs::path folder, FolderContents contents, Replace replace)
-    : folder_(resolved(folder)), contents_(std::move(contents)) {
+    : folder_(resolved(folder)), contents_(std::move(contents)), replace_(replace) {
   std::error_code ignored;
   if (fs::exists(folder_, ignored) && !fs::is_directory(folder_, ignored)) refuse_output(folder, ENOTDIR);
-  part_.emplace(folder_, folder, stands_alone(folder_));
+  part_.emplace(folder_, contents_.kind, folder, stands_alone(folder_));
   if (fs::exists(folder_, ignored)) {
     there_.emplace(folder_, contents_.kind, folder);
     there_->require_own(contents_.patterns);
@@ -104,21 +108,20 @@ OutputFolder::OutputFolder(fs::path folder, FolderContents contents, Replace rep
 void OutputFolder::finish() {
   const auto lock = hold_outputs();  // no signal comes between
   const std::vector<fs::path> written = files_of(path(), contents_.patterns);
-  std::error_code ignored;
-  if (!there_) {
-    if (part_->become(folder_, contents_.kind, written)) {
-      sync_folder(folder_.parent_path());
-      return;
-    }
-  }
+  if (!there_ && part_->become(folder_, contents_.patterns)) return;
   sync_file_system(path());
-  if (!there_) there_.emplace(folder_, contents_.kind, folder_, FolderClaim::Manner::beside_others);
+  if (!there_) {  // somebody made it meanwhile
+    there_.emplace(folder_, contents_.kind, folder_, FolderClaim::Manner::beside_others);
+    refuse_to_replace(folder_, folder_, contents_, replace_);
+  }
   FolderClaim& there = *there_;
   there.require_own(contents_.patterns);
   // While it is replaced, the file that says that all is there is not.
   const fs::path mark = contents_.patterns.front();
+  std::vector<fs::path> files;
+  for (const fs::path& file : written) files.push_back(folder_ / file);
+  there.add(files);
   if (there.owns(folder_ / mark)) fs::remove(folder_ / mark);
-  for (const fs::path& file : written) there.add(folder_ / file);
   const auto place = [&](const fs::path& file) {
     fs::create_directories((folder_ / file).parent_path());
     fs::rename(path() / file, folder_ / file);

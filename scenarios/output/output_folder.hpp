@@ -14,15 +14,15 @@ namespace understory {
 /// time works on `target`.
 class UnfinishedFolder {
  public:
-  /// `within`: in the target's folder itself, where nothing can be made beside it. Throws ScenarioError,
-  /// which calls the target by `name`, where another program works on it, or where it cannot be written.
-  UnfinishedFolder(const std::filesystem::path& target, const std::filesystem::path& name,
-                   bool within = false);
+  /// `kind`: of what is made. `within`: in the target's folder itself, where nothing can be made beside it.
+  /// Throws ScenarioError, which calls the target by `name`, where another program works on it, or where it
+  /// cannot be written.
+  UnfinishedFolder(const std::filesystem::path& target, const std::string& kind,
+                   const std::filesystem::path& name, bool within = false);
   const std::filesystem::path& path() const { return part_->path(); }
-  /// Gives it its name, where that is free or an empty folder; false where something is in the way. From then
-  /// on it lists `files` under `kind`.
-  bool become(const std::filesystem::path& name, const std::string& kind,
-              const std::vector<std::filesystem::path>& files);
+  /// Lists what `patterns` mean, and gives it its name where that is free or an empty folder; false where
+  /// something is in the way. From then on it outlives a power cut.
+  bool become(const std::filesystem::path& name, const std::vector<std::string>& patterns);
 
  private:
   std::optional<FolderClaim> claim_;
@@ -63,6 +63,7 @@ class OutputFolder {
  private:
   std::filesystem::path folder_;
   FolderContents contents_;
+  Replace replace_;
   std::optional<FolderClaim> there_;  ///< of the folder that was there already
   std::optional<UnfinishedFolder> part_;
 };

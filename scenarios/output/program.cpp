@@ -95,7 +95,9 @@ pid_t start_this_program(const std::vector<std::string>& arguments, int at_our_e
                          const std::filesystem::path& log) {
   const pid_t parent = getpid();
   const pid_t child = fork();
-  if (child < 0) throw MachineError(fmt::format("cannot start a flight: {}", std::strerror(errno)));
+  if (child < 0)
+    throw MachineError(
+        fmt::format("cannot start another process: {} (ulimit -u, ulimit -v)", std::strerror(errno)));
   if (child != 0) return child;
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, at_our_end);

@@ -85,7 +85,7 @@ void say(int descriptor, std::string_view text) {
 
 void end_on_signals() {
   if (pipe2(wake_pipe.data(), O_CLOEXEC) != 0)
-    throw MachineError(fmt::format("no pipe to be had: {}", std::strerror(errno)));
+    throw MachineError(fmt::format("no pipe to be had: {}", lacking_resource(errno)));
   last_words = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
   Actions former;
   set_actions(

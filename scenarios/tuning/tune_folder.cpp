@@ -124,7 +124,7 @@ void TrialLog::append(const Trial& trial) {
   const std::string line = line_of(trial, parameters_, figures_);
   std::error_code ignored;
   if (FolderClaim* claim = claim_of(fs::weakly_canonical(file_, ignored)))
-    claim->add(fs::weakly_canonical(file_));
+    claim->add({fs::weakly_canonical(file_)});
   const int file = open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   const bool is_written = file >= 0 &&
                           write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size()) &&

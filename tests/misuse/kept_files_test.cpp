@@ -55,6 +55,8 @@ const std::vector<std::string> neutral{"lock",
                                        "\xff\xfe",
                                        "sub/of/mine",
                                        ".understory-mine",
+                                       ".understory-mine.unfinished",
+                                       ".understory-theirs.unfinished/x",
                                        "unfinished"};
 const std::vector<std::string> taken{
     "result.json",         "scenario.yaml",        "map.ply",          "report.html",     "flight.mcap",
