@@ -18,6 +18,7 @@ void inject(State& state, const ErrorVector& error, FilterModel model) {
   state.gust_world_mps += error.segment<2>(gust_block);
   state.pitot_bias_mps += error[pitot_bias_block];
   state.barometer_offset_m += error[barometer_offset_block];
+  state.barometer_wash_m_per_n += error[barometer_wash_block];
 }
 
 }  // namespace understory

@@ -11,6 +11,7 @@ namespace {
 
 /// Long enough for the way between two detection depths: 5 m in the slowest flight.
 constexpr std::int64_t history_length_ns = 1'000'000'000;
+constexpr double turn_s = 0.3;  // how long the aircraft rolls in a dodge
 
 State starting_state(const FilterConfig& config) {
   const StartConfig& start = config.start;
@@ -32,7 +33,8 @@ State starting_state(const FilterConfig& config) {
       Eigen::Vector3d::Constant(prior(extra.accelerometer_bias, extra.accelerometer_bias_sigma_mps2)),
       Eigen::Vector2d::Constant(prior(extra.wind, extra.wind_sigma_mps)),
       Eigen::Vector2d::Constant(prior(extra.gust, extra.gust_sigma_mps)),
-      prior(extra.pitot_bias, extra.pitot_bias_sigma_mps), config.altitude.offset_sigma_m;
+      prior(extra.pitot_bias, extra.pitot_bias_sigma_mps), config.altitude.offset_sigma_m,
+      config.altitude.wash_sigma_m_per_n;
   state.covariance = sigma.cwiseAbs2().asDiagonal();
   return state;
 }
@@ -70,6 +72,7 @@ Filter::Filter(const FilterConfig& config)
     : config_(config),
       state_(starting_state(config)),
       history_(history_length_ns),
+      rest_window_(config.rest, config.gravity_mps2),
       launch_detector_(config.rest.launch_threshold_mps2),
       altitude_drift_(config.altitude) {
   const DistrustConfig& distrust = config.distrust;
@@ -110,11 +113,10 @@ void Filter::start(const ImuSample& sample) {
   state_.t_ns = sample.t_ns;
   state_.angular_rate_body_radps = sample.angular_rate_body_radps;
   state_.specific_force_body_mps2 = sample.specific_force_body_mps2;
-  if (config_.start.in_flight) {
+  if (config_.start.in_flight)
     launch_t_ns_ = sample.t_ns;
-  } else if (looks_at_rest(sample, config_.gravity_mps2, config_.rest)) {
-    state_.T_world_body.linear() = levelled(sample.specific_force_body_mps2, config_.start.yaw_rad);
-  }
+  else
+    rest_window_.rests_with(sample);
   history_.clear();
   history_.record(state_);
 }
@@ -136,19 +138,26 @@ void Filter::propagate(const ImuSample& sample, double dt_s) {
                                              previous_.specific_force_body_mps2) -
       state_.accelerometer_bias_mps2;
   const StepDerivatives by = advance(state_, step, config_.gravity_mps2, config_.model);
-  const ProcessNoise noise = process_noise(dt_s);
+  const ProcessNoise noise = process_noise(step);
   understory::propagate(state_.covariance, by, noise, dt_s, config_.model);
   state_.gust_world_mps *= std::exp(-dt_s / noise.gust_time_s);
   state_.t_ns = sample.t_ns;
   if (launched() && dt_s > config_.distrust.imu_gap_s) ++imu_gaps_;
 }
 
-ProcessNoise Filter::process_noise(double dt_s) const {
+ProcessNoise Filter::process_noise(const InertialStep& step) const {
+  const double dt_s = step.dt_s;
   const ExtraStatesConfig& extra = config_.states;
   const bool rate_is_state = config_.model == FilterModel::angular_rate;
   ProcessNoise noise;
-  noise.gyro_radps_rthz = config_.gyro_noise_radps_rthz;
-  noise.accelerometer_mps2_rthz = config_.accelerometer_noise_mps2_rthz;
+  // An error of a constant share keeps its sign for as long as a turn or a pull-up lasts.
+  const double root_of_turn = std::sqrt(turn_s);
+  noise.gyro_radps_rthz = std::hypot(config_.gyro_noise_radps_rthz,
+                                     config_.gyro_scale * step.angular_rate_body_radps.norm() * root_of_turn);
+  noise.accelerometer_mps2_rthz =
+      std::hypot(config_.accelerometer_noise_mps2_rthz,
+                 config_.accelerometer_scale * root_of_turn *
+                     (step.specific_force_body_mps2.norm() - config_.gravity_mps2));
   noise.rate_block_rthz = rate_is_state ? config_.rate_walk_rthz : config_.gyro_bias_walk_rthz;
   if (extra.accelerometer_bias) noise.accelerometer_bias_walk_rthz = extra.accelerometer_bias_walk_rthz;
   if (extra.wind) noise.wind_walk_rthz = extra.wind_walk_rthz;
@@ -181,15 +190,38 @@ void Filter::take_rates(const ImuSample& sample, double dt_s) {
   correct(state_, gyro, config_.model, FrameGain::held);
 }
 
+/// Takes attitude and gyro bias from the window's means: the aircraft has rested for some samples, in which
+/// nothing was corrected.
+void Filter::settle(double dt_s) {
+  const State start = starting_state(config_);
+  const ImuSample& mean = rest_window_.mean();
+  const double root = std::sqrt(rest_window_.size());
+  state_.covariance = start.covariance;
+  state_.velocity_body_mps.setZero();
+  state_.T_world_body.translation() = start.T_world_body.translation();
+  state_.T_world_body.linear() = levelled(mean.specific_force_body_mps2, config_.start.yaw_rad);
+  correct(state_,
+          gravity_direction(state_, mean.specific_force_body_mps2, config_.gravity_mps2,
+                            config_.rest.force_sigma_mps2 / root),
+          config_.model, FrameGain::free);
+  if (config_.model != FilterModel::gyro_bias) return;
+  const double sigma = std::max(config_.gyro_noise_radps_rthz, 1e-6) / std::sqrt(dt_s) / root;
+  correct(state_, zero_rate(state_, mean.angular_rate_body_radps, sigma), config_.model, FrameGain::free);
+}
+
 void Filter::on_catapult(const ImuSample& sample, double dt_s) {
-  at_rest_ = looks_at_rest(sample, config_.gravity_mps2, config_.rest);
-  if (at_rest_) {
+  const bool rested = at_rest_;
+  at_rest_ = rest_window_.rests_with(sample);
+  if (at_rest_ && !rested) {
+    settle(dt_s);
+  } else if (at_rest_) {
     const FilterModel model = config_.model;
     correct(state_, zero_velocity(state_, config_.rest), model, FrameGain::free);
     correct(state_, known_position(state_, config_.start.position_world_m, config_.rest), model,
             FrameGain::free);
     correct(state_,
-            gravity_direction(state_, sample.specific_force_body_mps2, config_.gravity_mps2, config_.rest),
+            gravity_direction(state_, sample.specific_force_body_mps2, config_.gravity_mps2,
+                              config_.rest.force_sigma_mps2),
             model, FrameGain::free);
     if (model == FilterModel::gyro_bias) {
       const double sigma = std::max(config_.gyro_noise_radps_rthz, 1e-6) / std::sqrt(dt_s);
@@ -219,12 +251,27 @@ void Filter::in_flight(const ImuSample& sample) {
   on_rail_ = sample.specific_force_body_mps2.x() > 0.5 * config_.rest.launch_threshold_mps2;
   if (on_rail_ || state_.velocity_body_mps.x() < config_.airspeed.usable_mps) return;
   if (config_.sideslip.model != SideslipModel::off)
-    fuse(Aid::sideslip,
-         sideslip(state_, sample.specific_force_body_mps2.y(), config_.sideslip, config_.model), sample.t_ns);
+    fuse_force(Aid::sideslip,
+               sideslip(state_, sample.specific_force_body_mps2.y(), config_.sideslip, config_.model),
+               sample.t_ns);
   if (config_.angle_of_attack.enabled)
-    fuse(Aid::angle_of_attack,
-         angle_of_attack(state_, sample.specific_force_body_mps2.z(), config_.angle_of_attack, config_.model),
-         sample.t_ns);
+    fuse_force(
+        Aid::angle_of_attack,
+        angle_of_attack(state_, sample.specific_force_body_mps2.z(), config_.angle_of_attack, config_.model),
+        sample.t_ns);
+}
+
+void Filter::fuse_force(Aid aid, Measurement<1> measurement, std::int64_t t_ns) {
+  ForceSum& sum = aid == Aid::sideslip ? lateral_force_ : normal_force_;
+  sum.innovation += measurement.innovation[0];
+  if (++sum.samples < config_.force_samples) return;
+  const double samples = sum.samples;
+  // Over some turns of the propeller a vibration adds up to about its amplitude.
+  const double vibration_mps2 = config_.vibration_mps2pn * thrust_n_ / samples;
+  measurement.innovation[0] = sum.innovation / samples;
+  measurement.noise(0, 0) = measurement.noise(0, 0) / samples + 0.5 * vibration_mps2 * vibration_mps2;
+  sum = {};
+  fuse(aid, measurement, t_ns);
 }
 
 void Filter::on(const PitotSample& sample) {
@@ -239,10 +286,12 @@ void Filter::on(const PitotSample& sample) {
 void Filter::on(const BarometerSample& sample) {
   if (!std::isfinite(sample.altitude_m)) return;
   if (!launched() && !at_rest_) return;
-  if (!fuse(Aid::altitude, altitude(state_, sample, config_.altitude), sample.t_ns)) return;
+  if (!fuse(Aid::altitude, altitude(state_, sample, thrust_n_, config_.altitude), sample.t_ns)) return;
   // The offset found at rest. The filter's estimate of it in flight is correlated with the drift.
   if (launched())
-    altitude_drift_.observe(sample.altitude_m - resting_offset_m_ - state_.T_world_body.translation().z());
+    altitude_drift_.observe(sample.altitude_m - resting_offset_m_ -
+                            state_.barometer_wash_m_per_n * thrust_n_ -
+                            state_.T_world_body.translation().z());
   else
     resting_offset_m_ = state_.barometer_offset_m;
   state_.altitude_m = state_.T_world_body.translation().z() + altitude_drift_.value_m();
@@ -268,6 +317,10 @@ void Filter::on(const ResightingSample& sample) {
   if (earlier.t_ns != sample.earlier_ns || later.t_ns != sample.t_ns) return;  // older than the history
   if (fuse(Aid::resighting, ground_displacement(state_, earlier, later, sample), state_.t_ns))
     history_.record(state_);
+}
+
+void Filter::on(const ThrustSample& sample) {
+  if (std::isfinite(sample.thrust_n)) thrust_n_ = sample.thrust_n;
 }
 
 template <int M>

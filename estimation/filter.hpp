@@ -34,6 +34,7 @@ class Filter : public StateSource {
   void on(const MagnetometerSample& sample) override;
   void on(const GpsSample& sample) override;
   void on(const ResightingSample& sample) override;
+  void on(const ThrustSample& sample) override;
   const State& state() const override { return state_; }
   State state_at(std::int64_t t_ns) const override { return history_.at(t_ns); }
 
@@ -52,26 +53,36 @@ class Filter : public StateSource {
   void propagate(const ImuSample& sample, double dt_s);
   void take_rates(const ImuSample& sample, double dt_s);
   void on_catapult(const ImuSample& sample, double dt_s);
+  void settle(double dt_s);
   void in_flight(const ImuSample& sample);
   void launch(std::int64_t t_ns);
-  ProcessNoise process_noise(double dt_s) const;
+  ProcessNoise process_noise(const InertialStep& step) const;
   /// Corrects where the aid's gate admits the measurement.
   template <int M>
   bool fuse(Aid aid, const Measurement<M>& measurement, std::int64_t t_ns);
+  /// Corrects with the mean innovation of FilterConfig::force_samples calls.
+  void fuse_force(Aid aid, Measurement<1> measurement, std::int64_t t_ns);
 
   FilterConfig config_;
   State state_;
   History history_;
   ImuSample previous_;  ///< the newest IMU sample taken, clamped
   bool started_ = false;
+  RestWindow rest_window_;
   bool at_rest_ = false;
   bool on_rail_ = false;  ///< launched, and the catapult still pushes
   std::optional<std::int64_t> launch_t_ns_;
   std::int64_t imu_gaps_ = 0;
   LaunchDetector launch_detector_;
   double resting_offset_m_ = 0;
+  double thrust_n_ = 0;  ///< commanded
   AltitudeDrift altitude_drift_;
   std::vector<Gate> gates_;  ///< one for each Aid
+  struct ForceSum {
+    double innovation = 0;
+    int samples = 0;
+  };
+  ForceSum lateral_force_, normal_force_;  ///< since they last corrected
 };
 
 }  // namespace understory

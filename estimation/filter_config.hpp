@@ -101,11 +101,15 @@ void visit_fields(Visitor& visit, AngleOfAttackConfig& config) {
 }
 
 /// The barometer measures world z plus an offset. The offset is a state; it is observed on the catapult,
-/// where the altitude is known.
+/// where the altitude is known. The propeller's suction lowers the static pressure in proportion to the
+/// thrust, so that the barometer reads too high by metres per newton: another state, where wash_sigma_m_per_n
+/// is not zero.
 struct AltitudeConfig {
   double sigma_m = 0.4;             ///< m, 0.01..100: of one reading; a consumer barometer's noise is 0.3 m
   double offset_sigma_m = 0.3;      ///< m, 0..10: spread of the offset before the readings at rest
-  double offset_walk_m_rts = 0.09;  ///< m/sqrt(s), 0..10: weather, heat and wash: 0.5 m in a minute
+  double offset_walk_m_rts = 0.09;  ///< m/sqrt(s), 0..10: weather and heat: 0.5 m in a minute
+  /// m/N, 0..10: what is expected of the barometer's error per newton of thrust; 0: the state is off.
+  double wash_sigma_m_per_n = 0;
   double noise_m = 0.3;           ///< m, 0.01..100: of one reading about its slow error (consumer barometer)
   double drift_walk_m_rts = 0.1;  ///< m/sqrt(s), 0..10: how fast odometry and altitude may part
 };
@@ -115,6 +119,7 @@ void visit_fields(Visitor& visit, AltitudeConfig& config) {
   visit("sigma_m", config.sigma_m, 0.01, 100.0);
   visit("offset_sigma_m", config.offset_sigma_m, 0.0, 10.0);
   visit("offset_walk_m_rts", config.offset_walk_m_rts, 0.0, 10.0);
+  visit("wash_sigma_m_per_n", config.wash_sigma_m_per_n, 0.0, 10.0);
   visit("noise_m", config.noise_m, 0.01, 100.0);
   visit("drift_walk_m_rts", config.drift_walk_m_rts, 0.0, 10.0);
 }
@@ -153,9 +158,15 @@ void visit_fields(Visitor& visit, GroundVelocityConfig& config) {
 /// On the catapult the aircraft stands still at a known place: velocity and rate are zero, the specific force
 /// is gravity.
 struct RestConfig {
-  double force_tolerance_mps2 = 0.6;  ///< m/s^2, 0.01..10: specific force this near gravity, and
-  double rate_tolerance_radps =
-      0.05;  ///< rad/s, 0.001..5: rates this near zero (bias 0.5 deg/s included) are rest
+  double window_s = 0.1;  ///< s, 0.01..1: over which samples must not vary
+  /// m/s^2, 0.01..10: standard deviation of an axis of the specific force at rest, at most; five times the
+  /// noise of one reading.
+  double force_deviation_mps2 = 0.25;
+  double rate_deviation_radps = 0.012;  ///< rad/s, 1e-4..1: the same of an axis of the angular rate
+  /// m/s^2, 0.01..10: difference between gravity and the mean specific force at rest, at most.
+  double force_tolerance_mps2 = 0.6;
+  /// rad/s, 0.001..5: mean angular rate at rest, at most; six times a bias of 0.5 deg/s.
+  double rate_tolerance_radps = 0.05;
   double velocity_sigma_mps = 0.02;       ///< m/s, 1e-4..1: of zero velocity at rest
   double position_sigma_m = 0.01;         ///< m, 1e-4..1: of the place at rest
   double force_sigma_mps2 = 0.1;          ///< m/s^2, 0.001..10: one reading's noise as a level
@@ -170,6 +181,9 @@ struct RestConfig {
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, RestConfig& config) {
+  visit("window_s", config.window_s, 0.01, 1.0);
+  visit("force_deviation_mps2", config.force_deviation_mps2, 0.01, 10.0);
+  visit("rate_deviation_radps", config.rate_deviation_radps, 1e-4, 1.0);
   visit("force_tolerance_mps2", config.force_tolerance_mps2, 0.01, 10.0);
   visit("rate_tolerance_radps", config.rate_tolerance_radps, 0.001, 5.0);
   visit("velocity_sigma_mps", config.velocity_sigma_mps, 1e-4, 1.0);
@@ -187,7 +201,7 @@ struct StartConfig {
   Eigen::Vector3d position_world_m{-1.470, 0.0, 1.202};
   double yaw_rad = 0.0;  ///< rad, -3.15..3.15: left of world x
   double pitch_rad =
-      0.20;  ///< rad, -1.5..1.5: nose up; replaced by the accelerometer's where the first sample is rest
+      0.398;  ///< rad, -1.5..1.5: nose up; replaced by the accelerometer's once the aircraft rests
   double roll_rad = 0.0;                       ///< rad, -3.15..3.15: left wing up; replaced as the pitch is
   bool in_flight = false;                      ///< no catapult: already flying, at the velocity below
   Eigen::Vector3d velocity_body_mps{0, 0, 0};  ///< m/s, -50..50: where in_flight
@@ -239,6 +253,16 @@ struct FilterConfig {
   double gyro_noise_radps_rthz = 3.5e-4;
   /// m/s^2/sqrt(Hz), 0..10. Noise alone is 0.0035 (0.05 m/s^2 at 200 Hz); scale and vibration come on top.
   double accelerometer_noise_mps2_rthz = 0.01;
+  /// 0..1: share of an angular rate that the gyro reads wrongly (scale, misalignment). The error lasts as
+  /// long as a turn, so it counts as noise that grows with the rate.
+  double gyro_scale = 0;
+  /// 0..1: the same of the accelerometer, for what the specific force differs from gravity.
+  double accelerometer_scale = 0;
+  /// m/s^2 per N, 0..100: amplitude by which the propeller shakes the accelerometer.
+  double vibration_mps2pn = 0;
+  /// 1..100: IMU samples over which lateral and normal force are averaged before they correct. A vibration
+  /// that is averaged no longer turns a product of two shaken numbers into a bias of the airspeed.
+  int force_samples = 1;
   double gyro_bias_walk_rthz = 1e-5;  ///< rad/s^2/sqrt(Hz), 0..1: a flight is too short for the bias to move
   /// rad/s^2/sqrt(Hz), 0..1000, angular_rate only: how freely the rate moves between gyro samples. The wing's
   /// roll accelerates at up to 50 rad/s^2 for 0.1 s.
@@ -323,6 +347,10 @@ void visit_fields(Visitor& visit, FilterConfig& config) {
   visit("gravity_mps2", config.gravity_mps2, 1.0, 20.0);
   visit("gyro_noise_radps_rthz", config.gyro_noise_radps_rthz, 0.0, 1.0);
   visit("accelerometer_noise_mps2_rthz", config.accelerometer_noise_mps2_rthz, 0.0, 10.0);
+  visit("gyro_scale", config.gyro_scale, 0.0, 1.0);
+  visit("accelerometer_scale", config.accelerometer_scale, 0.0, 1.0);
+  visit("vibration_mps2pn", config.vibration_mps2pn, 0.0, 100.0);
+  visit("force_samples", config.force_samples, 1, 100);
   visit("gyro_bias_walk_rthz", config.gyro_bias_walk_rthz, 0.0, 1.0);
   visit("rate_walk_rthz", config.rate_walk_rthz, 0.0, 1000.0);
   visit("smooth_frame", config.smooth_frame);

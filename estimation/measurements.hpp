@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "estimation/error_state.hpp"
 #include "estimation/filter_config.hpp"
@@ -44,7 +45,11 @@ class AltitudeDrift {
   double variance_m2_ = 0;
 };
 
-Measurement<1> altitude(const State& state, const BarometerSample& sample, const AltitudeConfig& config);
+/// What the barometer reads too high: its offset, and what the propeller takes from the static pressure.
+double barometer_excess_m(const State& state, double thrust_n);
+
+Measurement<1> altitude(const State& state, const BarometerSample& sample, double thrust_n,
+                        const AltitudeConfig& config);
 
 /// Horizontal strength of the field under the estimated attitude, microtesla.
 double horizontal_field_ut(const State& state, const MagnetometerSample& sample);
@@ -64,13 +69,30 @@ Measurement<3> ground_velocity(const State& now, const State& then, const GpsSam
 Measurement<2> ground_displacement(const State& now, const State& earlier, const State& later,
                                    const ResightingSample& sample);
 
-bool looks_at_rest(const ImuSample& sample, double gravity_mps2, const RestConfig& config);
+/// The newest IMU samples before the launch. The aircraft rests where they hardly vary and their means are a
+/// gyro's bias and gravity. A constant bias is no motion.
+class RestWindow {
+ public:
+  RestWindow(const RestConfig& config, double gravity_mps2) : config_(config), gravity_mps2_(gravity_mps2) {}
+  /// Whether the aircraft rests, this sample included. Never in the first samples, which tell no variance.
+  bool rests_with(const ImuSample& sample);
+  /// The window's mean at its newest time.
+  const ImuSample& mean() const { return mean_; }
+  double size() const { return static_cast<double>(samples_.size()); }
+
+ private:
+  RestConfig config_;
+  double gravity_mps2_;
+  std::vector<ImuSample> samples_;
+  ImuSample mean_;
+};
 
 Measurement<3> zero_velocity(const State& state, const RestConfig& config);
 Measurement<3> known_position(const State& state, const Eigen::Vector3d& position_world_m,
                               const RestConfig& config);
+/// `sigma_mps2`: of the force that was measured.
 Measurement<3> gravity_direction(const State& state, const Eigen::Vector3d& specific_force_body_mps2,
-                                 double gravity_mps2, const RestConfig& config);
+                                 double gravity_mps2, double sigma_mps2);
 /// At rest a gyro reading is the gyro's bias. `sigma_radps`: noise of one reading.
 Measurement<3> zero_rate(const State& state, const Eigen::Vector3d& gyro_radps, double sigma_radps);
 

@@ -1,14 +1,33 @@
 #include "estimation/measurements.hpp"
 
 #include <cmath>
+#include <vector>
 
 #include "estimation/so3.hpp"
 
 namespace understory {
 
-bool looks_at_rest(const ImuSample& sample, double gravity_mps2, const RestConfig& config) {
-  return std::abs(sample.specific_force_body_mps2.norm() - gravity_mps2) < config.force_tolerance_mps2 &&
-         sample.angular_rate_body_radps.norm() < config.rate_tolerance_radps;
+bool RestWindow::rests_with(const ImuSample& sample) {
+  constexpr std::size_t fewest = 5;
+  const std::int64_t window_ns = std::llround(config_.window_s * 1e9);
+  std::erase_if(samples_, [&](const ImuSample& old) { return old.t_ns <= sample.t_ns - window_ns; });
+  samples_.push_back(sample);
+  if (samples_.size() < fewest) return false;
+  const double share = 1 / size();
+  mean_ = {sample.t_ns, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  for (const ImuSample& one : samples_) {
+    mean_.angular_rate_body_radps += share * one.angular_rate_body_radps;
+    mean_.specific_force_body_mps2 += share * one.specific_force_body_mps2;
+  }
+  Eigen::Vector3d rate_variance = Eigen::Vector3d::Zero(), force_variance = Eigen::Vector3d::Zero();
+  for (const ImuSample& one : samples_) {
+    rate_variance += share * (one.angular_rate_body_radps - mean_.angular_rate_body_radps).cwiseAbs2();
+    force_variance += share * (one.specific_force_body_mps2 - mean_.specific_force_body_mps2).cwiseAbs2();
+  }
+  return std::sqrt(rate_variance.maxCoeff()) < config_.rate_deviation_radps &&
+         std::sqrt(force_variance.maxCoeff()) < config_.force_deviation_mps2 &&
+         mean_.angular_rate_body_radps.norm() < config_.rate_tolerance_radps &&
+         std::abs(mean_.specific_force_body_mps2.norm() - gravity_mps2_) < config_.force_tolerance_mps2;
 }
 
 Measurement<3> zero_velocity(const State& state, const RestConfig& config) {
@@ -29,14 +48,14 @@ Measurement<3> known_position(const State& state, const Eigen::Vector3d& positio
 }
 
 Measurement<3> gravity_direction(const State& state, const Eigen::Vector3d& specific_force_body_mps2,
-                                 double gravity_mps2, const RestConfig& config) {
+                                 double gravity_mps2, double sigma_mps2) {
   const Eigen::Vector3d up_body =
       state.T_world_body.linear().transpose() * Eigen::Vector3d(0, 0, gravity_mps2);
   Measurement<3> measurement;
   measurement.innovation = specific_force_body_mps2 - state.accelerometer_bias_mps2 - up_body;
   measurement.jacobian.middleCols<3>(attitude_block) = so3::skew(up_body);
   measurement.jacobian.middleCols<3>(accelerometer_bias_block).setIdentity();
-  measurement.noise *= config.force_sigma_mps2 * config.force_sigma_mps2;
+  measurement.noise *= sigma_mps2 * sigma_mps2;
   return measurement;
 }
 

@@ -37,6 +37,12 @@ struct GpsSample {
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();
 };
 
+/// The thrust that the autopilot commands from t_ns on.
+struct ThrustSample {
+  std::int64_t t_ns = 0;
+  double thrust_n = 0;
+};
+
 /// An obstacle seen at one depth and, later, at a nearer one: how far its place in the odometry frame has
 /// moved in between, level. The aircraft's estimate has drifted by the opposite.
 struct ResightingSample {

@@ -6,7 +6,7 @@
 namespace understory {
 
 /// First row of each block of the filter's error states, in the order of State::covariance: twelve of motion
-/// and gyro, the barometer's offset, and eight that can be switched off by kind. Rows and columns of a kind
+/// and gyro, the barometer's offset, and nine that can be switched off by kind. Rows and columns of a kind
 /// that is off are exactly zero.
 enum ErrorBlock {
   attitude_block = 0,             ///< body-frame rotation vector, rad
@@ -18,7 +18,8 @@ enum ErrorBlock {
   gust_block = 17,                ///< world x and y, m/s: the part that changes within some tens of metres
   pitot_bias_block = 19,          ///< m/s
   barometer_offset_block = 20,    ///< m
-  error_states = 21
+  barometer_wash_block = 21,      ///< m per N of thrust
+  error_states = 22
 };
 
 using ErrorVector = Eigen::Matrix<double, error_states, 1>;
@@ -39,7 +40,8 @@ struct State {
   Eigen::Vector2d wind_world_mps = Eigen::Vector2d::Zero();  ///< the air's velocity, the gust not included
   Eigen::Vector2d gust_world_mps = Eigen::Vector2d::Zero();
   double pitot_bias_mps = 0;
-  double barometer_offset_m = 0;  ///< the barometer reads too high by this
+  double barometer_offset_m = 0;      ///< the barometer reads too high by this
+  double barometer_wash_m_per_n = 0;  ///< and by this for each newton of thrust
   double altitude_m = 0;  ///< above the launch point's ground: the odometry's z with its drift taken out
   ErrorCovariance covariance = ErrorCovariance::Zero();  ///< order of ErrorBlock
   /// Dead reckoning by inertial sensors alone, world axes. Its increments relate a late measurement of an

@@ -18,6 +18,7 @@ class StateSource {
   virtual void on(const MagnetometerSample& sample) = 0;
   virtual void on(const GpsSample& sample) = 0;
   virtual void on(const ResightingSample& sample) = 0;
+  virtual void on(const ThrustSample& sample) = 0;
   /// Newest state (its t_ns is that of the newest IMU sample).
   virtual const State& state() const = 0;
   /// State at an earlier moment, interpolated from the recorded history (1 s is kept); the nearest end of

@@ -54,31 +54,33 @@ struct PushbroomConfig {
 
 /// The paper's rule as the original's code has it: its hits, their order and their scores, wherever the
 /// original stays inside the images. Hits lie half a pixel up and left of its points.
-PushbroomConfig paper_rule();
+PushbroomConfig original_pushbroom();
 /// Uniqueness instead of the invariance filter, gentler thresholds, 3 points within 1 m: on rendered forests
 /// its precision is 0.94 where the paper's thresholds give 0.37 (computed with one prototype;
 /// docs/benchmarks.md).
-PushbroomConfig robust_rule();
+PushbroomConfig robust_pushbroom();
 /// The robust rule with the numbers tuned for a rig of models/rigs by its name, `long` or `paper`: most
-/// recall at a precision of 0.985 (docs/tuning.md). Rigs that nobody has tuned for get robust_rule().
-PushbroomConfig tuned_rule(std::string_view rig);
+/// recall at a precision of 0.985 (docs/tuning.md). Rigs that nobody has tuned for get robust_pushbroom().
+PushbroomConfig tuned_pushbroom(std::string_view rig);
 
-enum class RulePreset { robust, tuned, paper };  ///< which numbers a pushbroom detector starts from
+enum class PushbroomPreset { robust, tuned, original };  ///< which numbers a pushbroom detector starts from
 
-inline constexpr std::array<std::pair<std::string_view, RulePreset>, 3> rule_names{
-    {{"robust", RulePreset::robust}, {"tuned", RulePreset::tuned}, {"paper", RulePreset::paper}}};
+inline constexpr std::array<std::pair<std::string_view, PushbroomPreset>, 3> pushbroom_preset_names{
+    {{"robust", PushbroomPreset::robust},
+     {"tuned", PushbroomPreset::tuned},
+     {"original", PushbroomPreset::original}}};
 
 /// The numbers that a preset stands for with a rig of this name.
-inline PushbroomConfig rule_of(RulePreset preset, std::string_view rig) {
+inline PushbroomConfig pushbroom_of(PushbroomPreset preset, std::string_view rig) {
   switch (preset) {
-    case RulePreset::tuned:
-      return tuned_rule(rig);
-    case RulePreset::robust:
-      return robust_rule();
-    case RulePreset::paper:
+    case PushbroomPreset::tuned:
+      return tuned_pushbroom(rig);
+    case PushbroomPreset::robust:
+      return robust_pushbroom();
+    case PushbroomPreset::original:
       break;
   }
-  return paper_rule();
+  return original_pushbroom();
 }
 
 template <typename Visitor>

@@ -101,7 +101,10 @@ Controls Autopilot::controls(std::int64_t t_ns) {
     next_plan_due_ns_ = -1;
   }
   const std::int64_t effective_ns = t_ns + nanoseconds(model_.airframe().input_delay_s);
-  return follow(model_, config_.follower, command_at(plan_, effective_ns), state_source_.state());
+  const Controls controls =
+      follow(model_, config_.follower, command_at(plan_, effective_ns), state_source_.state());
+  state_source_.on(ThrustSample{t_ns, controls.thrust_n});
+  return controls;
 }
 
 }  // namespace understory

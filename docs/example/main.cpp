@@ -16,7 +16,7 @@ using namespace understory;
 int main(int argc, char** argv) try {
   if (argc < 3) throw std::runtime_error("usage: example CALIBRATION RECORDING...");
   const CalibratedRig rig = read_calibrated_rig(argv[1], {.detection_depth_m = 10});
-  PushbroomStereo detector(rig, robust_rule());
+  PushbroomStereo detector(rig, robust_pushbroom());
   Filter filter((FilterConfig()));
   LocalMap map((LocalMapConfig()));
 

@@ -113,9 +113,9 @@ std::string fault_of(const PushbroomConfig& config, const StereoRig& rig) {
   return "";
 }
 
-PushbroomConfig paper_rule() { return {}; }
+PushbroomConfig original_pushbroom() { return {}; }
 
-PushbroomConfig robust_rule() {
+PushbroomConfig robust_pushbroom() {
   PushbroomConfig config;
   config.last_row_px = 205;
   config.right_margin_px = 0;
@@ -127,8 +127,8 @@ PushbroomConfig robust_rule() {
   return config;
 }
 
-PushbroomConfig tuned_rule(std::string_view rig) {
-  PushbroomConfig config = robust_rule();
+PushbroomConfig tuned_pushbroom(std::string_view rig) {
+  PushbroomConfig config = robust_pushbroom();
   if (rig == "long") {
     config.minimum_edge_sum = 398;
     config.score_limit = 0.126899;

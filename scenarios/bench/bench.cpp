@@ -85,7 +85,7 @@ void add_detectors(const CalibratedRig& rig, const std::vector<StereoFrame>& raw
                        detector.detect(raw[i]);
                      }});
   };
-  const PushbroomConfig paper = paper_rule(), ours = robust_rule();
+  const PushbroomConfig paper = original_pushbroom(), ours = robust_pushbroom();
   PushbroomConfig two_threads = paper, dense = paper, four = paper;
   two_threads.threads = 2;
   dense.every_pixel = true;

@@ -112,7 +112,7 @@ Json survival_of(const Campaign& campaign, const std::vector<ConditionSummary>& 
   return list;
 }
 
-const std::vector<std::string> endings{"goal", "collision", "ground", "out_of_bounds", "time", "not_flown"};
+const std::vector<std::string> outcomes{"goal", "collision", "ground", "out_of_bounds", "time", "not_flown"};
 
 struct Column {
   const char *name, *label, *unit;
@@ -121,7 +121,8 @@ struct Column {
 constexpr Column columns[] = {
     {"progress_m", "progress", "m", [](const FlightRow& row) { return row.progress_m; }},
     {"mean_speed_mps", "mean speed", "m/s", [](const FlightRow& row) { return row.mean_speed_mps; }},
-    {"min_clearance_m", "minimum clearance", "m", [](const FlightRow& row) { return row.min_clearance_m; }},
+    {"minimum_clearance_m", "minimum clearance", "m",
+     [](const FlightRow& row) { return row.minimum_clearance_m; }},
     {"position_error_max_m", "maximum position error", "m",
      [](const FlightRow& row) { return row.position_error_max_m; }},
     {"detections", "hits", "", [](const FlightRow& row) { return static_cast<double>(row.detections); }},
@@ -142,7 +143,7 @@ void add_rows(const CampaignFolder& folder, const Campaign& campaign, const std:
   std::map<std::string, std::size_t> number;
   for (std::size_t i = 0; i < campaign.conditions.size(); ++i) number[campaign.conditions[i].name] = i;
   std::vector<std::uint16_t> condition_of_row;
-  std::vector<std::uint8_t> ending_of_row;
+  std::vector<std::uint8_t> outcome_of_row;
   Json texts;
   for (const char* const name : {"ids", "seeds", "reasons", "touched", "commands"})
     texts[name] = Json::array();
@@ -152,8 +153,8 @@ void add_rows(const CampaignFolder& folder, const Campaign& campaign, const std:
     const FlightRow& row = rows[i];
     const std::size_t condition = number.at(row.condition);
     condition_of_row.push_back(static_cast<std::uint16_t>(condition));
-    const auto ending = std::ranges::find(endings, row.flown() ? row.outcome : "not_flown");
-    ending_of_row.push_back(static_cast<std::uint8_t>(ending - endings.begin()));
+    const auto outcome = std::ranges::find(outcomes, row.flown() ? row.outcome : "not_flown");
+    outcome_of_row.push_back(static_cast<std::uint8_t>(outcome - outcomes.begin()));
     texts["ids"].push_back(row.id);
     texts["seeds"].push_back(fmt::format("{}", row.seed));
     texts["reasons"].push_back(row.reason);
@@ -176,7 +177,7 @@ void add_rows(const CampaignFolder& folder, const Campaign& campaign, const std:
     facts["tracks"][fmt::format("{}", i)] = name;
   }
   page.arrays.add("row_condition", 1, condition_of_row);
-  page.arrays.add("row_ending", 1, ending_of_row);
+  page.arrays.add("row_outcome", 1, outcome_of_row);
   facts["columns"] = Json::array();
   for (const Column& column : columns) {
     std::vector<float> values;
@@ -192,14 +193,14 @@ void add_rows(const CampaignFolder& folder, const Campaign& campaign, const std:
                                    maximum_tracks);
 }
 
-std::string ending_of(const FlightRow& row) { return row.flown() ? row.outcome : "not flown"; }
+std::string outcome_of(const FlightRow& row) { return row.flown() ? row.outcome : "not flown"; }
 
 Json gate_of(const GatedCampaign& gated, const std::string& candidate) {
   Json pairs = Json::array();
   for (const ConditionComparison& condition : gated.comparison.conditions)
     for (const FlightPair& pair : condition.pairs)
-      pairs.push_back({condition.condition, fmt::format("{}", pair.baseline.seed), ending_of(pair.baseline),
-                       ending_of(pair.candidate)});
+      pairs.push_back({condition.condition, fmt::format("{}", pair.baseline.seed), outcome_of(pair.baseline),
+                       outcome_of(pair.candidate)});
   return {{"verdict", gated.verdict.passes() ? "passes" : "fails"},
           {"baseline", gated.baseline},
           {"candidate", candidate},
@@ -232,7 +233,7 @@ std::string campaign_page(const CampaignFolder& folder, const Campaign& campaign
                     rows.size() - static_cast<std::size_t>(flown), collected.missing);
   facts["conditions"] = conditions_of(campaign, conditions, keys, summaries);
   facts["grid_keys"] = keys;
-  facts["endings"] = endings;
+  facts["outcomes"] = outcomes;
   facts["survival"] = survival_of(campaign, summaries, page.arrays);
   add_rows(folder, campaign, rows, conditions, page, facts);
   facts["gate"] = gated ? gate_of(*gated, campaign.name) : Json();

@@ -15,7 +15,7 @@ struct ConditionSummary {
   std::string condition;
   int flown = 0;
   int goals = 0;
-  int collision = 0, ground = 0, out_of_bounds = 0, time = 0;  ///< the other endings
+  int collision = 0, ground = 0, out_of_bounds = 0, time = 0;  ///< the other outcomes
   int failed_to_run = 0;
   Interval success;           ///< 95 %, Wilson's
   double mean_speed_mps = 0;  ///< mean over flights; NaN without any, as the next
@@ -51,8 +51,8 @@ LinePlot success_over_density(const std::vector<FlightRow>& rows);
 /// The same side by side: a place per condition, which bears its name.
 LinePlot success_by_condition(const std::vector<FlightRow>& rows);
 
-/// Share of flights that get beyond each distance (m of progress): Kaplan and Meier's steps with 95 % bands, at
-/// most six conditions to a panel; of more than six, those of one scenario, which the title names.
+/// Share of flights that get beyond each distance (m of progress): Kaplan and Meier's steps with 95 % bands,
+/// at most six conditions to a panel; of more than six, those of one scenario, which the title names.
 std::vector<LinePlot> survival_curves(const std::vector<FlightRow>& rows);
 
 /// One SVG: success over speed and over density, each where conditions differ in nothing else, or else by

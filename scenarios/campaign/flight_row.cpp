@@ -40,12 +40,12 @@ void visit_columns(Row& row, Visit&& visit) {
   visit("distance_m", row.distance_m);
   visit("progress_m", row.progress_m);
   visit("mean_speed_mps", row.mean_speed_mps);
-  visit("min_clearance_m", row.min_clearance_m);
+  visit("minimum_clearance_m", row.minimum_clearance_m);
   visit("position_error_mean_m", row.position_error_mean_m);
   visit("position_error_max_m", row.position_error_max_m);
   visit("detections", row.detections);
   visit("remembered_points", row.remembered_points);
-  visit("minimum_points_on_a_bar", row.minimum_points_on_a_bar);
+  visit("minimum_points_on_an_obstacle", row.minimum_points_on_an_obstacle);
   visit_fields(visit, row.planner);
   visit("simulated_s", row.simulated_s);
   visit("digest", row.digest);
@@ -105,13 +105,13 @@ bool take(const std::string& text, Value& value) {
 /// A row's text, column by column, as `text_of(name)` has it; false where a value is none.
 template <typename TextOf>
 bool take_row(FlightRow& row, TextOf&& text_of) {
-  row.min_clearance_m = std::numeric_limits<double>::infinity();
+  row.minimum_clearance_m = std::numeric_limits<double>::infinity();
   bool is_whole = true, is_measured = false;
   visit_columns(row, [&](std::string_view name, auto& value) {
     is_measured = is_measured || name == "outcome";
     const std::string text = text_of(name);
-    constexpr std::array<std::string_view, 4> optional{"reason", "min_clearance_m", "minimum_points_on_a_bar",
-                                                       "digest"};
+    constexpr std::array<std::string_view, 4> optional{"reason", "minimum_clearance_m",
+                                                       "minimum_points_on_an_obstacle", "digest"};
     const bool may_be_empty =
         (is_measured && !row.flown()) || std::ranges::find(optional, name) != optional.end();
     is_whole = (text.empty() ? may_be_empty : take(text, value)) && is_whole;
@@ -137,18 +137,18 @@ FlightRow flown_row(const std::string& condition, const Scenario& scenario, cons
   row.goal_m = scenario.goal_x_m();
   row.seed = result.seed;
   row.status = RunStatus::flown;
-  row.outcome = word_for(result.ending);
+  row.outcome = word_for(result.outcome);
   row.distance_m = result.distance_m;
   row.progress_m = result.progress_m;
   row.mean_speed_mps = result.mean_speed_mps;
-  row.min_clearance_m = result.min_clearance_m;
+  row.minimum_clearance_m = result.minimum_clearance_m;
   row.position_error_mean_m = result.position_error_mean_m;
   row.position_error_max_m = result.position_error_max_m;
   row.detections = result.detections;
   row.remembered_points = result.remembered_points;
-  for (const auto& [bar, points] : result.points_on_obstacles)
-    if (row.minimum_points_on_a_bar < 0 || points < row.minimum_points_on_a_bar)
-      row.minimum_points_on_a_bar = points;
+  for (const auto& [obstacle, points] : result.points_on_obstacles)
+    if (row.minimum_points_on_an_obstacle < 0 || points < row.minimum_points_on_an_obstacle)
+      row.minimum_points_on_an_obstacle = points;
   row.planner = result.planner;
   row.simulated_s = result.simulated_s;
   row.digest = result.digest;

@@ -17,7 +17,7 @@ inline constexpr int results_format = 1;
 
 /// What became of one flight of a campaign.
 enum class RunStatus {
-  flown,    ///< to an ending, good or bad
+  flown,    ///< to an outcome, good or bad
   crashed,  ///< the program broke: a signal of its own, or status 3
   hung,     ///< took longer than the campaign allows, and was stopped
   killed,   ///< by somebody else (SIGKILL, SIGTERM)
@@ -32,19 +32,19 @@ struct FlightRow {
   std::uint64_t seed = 0;                 ///< of course and sensors
   RunStatus status = RunStatus::refused;  ///< flown, crashed, hung, killed or refused
   std::string reason;                     ///< why it was not flown, one line; empty for a flown one
-  std::string outcome;                    ///< flight_result.hpp's word for its ending; empty unless flown
+  std::string outcome;                    ///< flight_result.hpp's word for its outcome; empty unless flown
   double cruise_speed_mps = 0;            ///< asked, as the next two
   double square_metres_per_tree = 0;      ///< of the forest
   double goal_m = 0;                      ///< x of the goal plane
   double distance_m = 0;                  ///< flown: true path length since release
   double progress_m = 0;                  ///< maximum true x reached
   double mean_speed_mps = 0;              ///< true, over ground
-  double min_clearance_m = 0;             ///< true; +infinity (empty in CSV, null in JSON) without obstacles
+  double minimum_clearance_m = 0;         ///< true; +infinity (empty in CSV, null in JSON) without obstacles
   double position_error_mean_m = 0;       ///< estimate against truth, since release
   double position_error_max_m = 0;        ///< the largest
   std::int64_t detections = 0;            ///< hits, all frames
   std::int64_t remembered_points = 0;     ///< points ever taken into the map
-  std::int64_t minimum_points_on_a_bar = -1;  ///< -1 (empty, null): not counted on this course
+  std::int64_t minimum_points_on_an_obstacle = -1;  ///< -1 (empty, null): not counted on this course
   PlannerCounts planner;
   double simulated_s = 0;  ///< since the start at rest
   std::string digest;      ///< of the flight, bit for bit (RunDigest)
@@ -65,7 +65,7 @@ struct FlightFile {
   FlightCost cost;
 };
 
-/// The row of a flight that came to an ending: a condition's name and the seed are its id.
+/// The row of a flight that came to an outcome: a condition's name and the seed are its id.
 FlightRow flown_row(const std::string& condition, const Scenario& scenario, const FlightResult& result);
 
 /// One line of JSON without its newline; numbers in full precision, null where there is nothing to say.

@@ -19,7 +19,7 @@ struct Metric {
   double FlightRow::*value;
 };
 constexpr Metric metrics[]{{"mean_speed_mps", &FlightRow::mean_speed_mps},
-                           {"min_clearance_m", &FlightRow::min_clearance_m},
+                           {"minimum_clearance_m", &FlightRow::minimum_clearance_m},
                            {"position_error_mean_m", &FlightRow::position_error_mean_m},
                            {"progress_m", &FlightRow::progress_m}};
 
@@ -206,7 +206,7 @@ bool dropped_too_far(const ConditionComparison& condition, const GateRule& rule)
   return lost > rule.max_drop * condition.goals.pairs() + 1e-9;  // the product is not exact, the count is
 }
 
-GateVerdict judge(const Comparison& comparison, const GateRule& rule) {
+GateVerdict verdict_on(const Comparison& comparison, const GateRule& rule) {
   GateVerdict verdict;
   for (const ConditionComparison& condition : comparison.conditions)
     if (dropped_too_far(condition, rule))

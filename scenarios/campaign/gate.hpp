@@ -82,7 +82,7 @@ struct GateVerdict {
   bool passes() const { return reasons.empty(); }
 };
 
-GateVerdict judge(const Comparison& comparison, const GateRule& rule = {});
+GateVerdict verdict_on(const Comparison& comparison, const GateRule& rule = {});
 
 /// Whether this condition fell by more than the rule allows; exact at the edge: 5 of 100 are not more than
 /// 0.05.

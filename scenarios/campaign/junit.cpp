@@ -103,11 +103,11 @@ std::string to_junit(const std::string& name, const std::vector<TestCase>& cases
   return text.str();
 }
 
-std::string ending_of(const FlightRow& row) {
+std::string outcome_of(const FlightRow& row) {
   return fmt::format("{} at {:.1f} m of {:.1f} m", row.outcome, row.progress_m, row.goal_m);
 }
 
-/// A flight that was flown passes, whatever its ending.
+/// A flight that was flown passes, whatever its outcome.
 TestCase case_of(const FlightRow& row) {
   TestCase test{row.condition, fmt::format("{}", row.seed), row.simulated_s};
   if (row.flown()) return test;
@@ -136,7 +136,7 @@ std::string campaign_junit(const std::vector<FlightRow>& rows) {
     TestCase& test = cases.emplace_back(case_of(row));
     if (!row.flown() || row.reached_goal()) continue;
     test.fault = "failure";
-    test.message = ending_of(row);
+    test.message = outcome_of(row);
   }
   return to_junit("campaign", cases);
 }
@@ -150,7 +150,7 @@ std::string gate_junit(const Comparison& comparison, const GateRule& rule) {
       TestCase& test = cases.emplace_back(case_of(pair.candidate));
       if (!pair.got_worse()) continue;
       test.fault = "failure";
-      test.message = ending_of(pair.candidate) + "; reached its goal in the baseline";
+      test.message = outcome_of(pair.candidate) + "; reached its goal in the baseline";
     }
   for (const FlightRow& row : comparison.missing)
     cases.push_back({row.condition, fmt::format("{}", row.seed), 0, "error",

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds look_every{10};  ///< a flight takes seconds
+constexpr std::chrono::milliseconds checked_every{10};  ///< a flight takes seconds
 /// exit_bad_input and exit_machine_failed of the command line.
 constexpr int status_refused = 2, status_machine_failed = 3;
 
@@ -132,9 +132,10 @@ class Flights {
   /// killed.
   void stop() {
     for (const auto& [child, flight] : air_) kill(child, SIGTERM);
-    for (int look = 0;
-         look < 50 && !std::ranges::all_of(air_, [](const auto& one) { return is_over(one.first); }); ++look)
-      std::this_thread::sleep_for(look_every);
+    for (int attempt = 0;
+         attempt < 50 && !std::ranges::all_of(air_, [](const auto& one) { return is_over(one.first); });
+         ++attempt)
+      std::this_thread::sleep_for(checked_every);
     for (const auto& [child, flight] : air_) kill(child, SIGKILL);
     for (const auto& [child, flight] : air_) {
       waitpid(child, nullptr, 0);
@@ -201,7 +202,7 @@ bool fly_locally(const CampaignFolder& folder, const Campaign& campaign,
   while (next < left.size() || !flights.empty()) {
     if (stop_signals.asked()) return false;
     while (next < left.size() && !flights.full()) flights.launch(*left[next++]);
-    std::this_thread::sleep_for(look_every);
+    std::this_thread::sleep_for(checked_every);
     flights.land([&](const FlightRow& row) {
       count(row, progress);
       if (on_progress) on_progress(progress);

@@ -92,7 +92,7 @@ void add_with_option(Command& command, std::vector<std::string>& with) {
 }
 
 void add_vision_options(Command& command, VisionConfigSources& sources) {
-  command.choice("--rule", sources.rule, rule_names,
+  command.choice("--preset", sources.preset, pushbroom_preset_names,
                  "the thresholds of the pushbroom detector; tuned: those of the recordings' rig");
   add_with_option(command, sources.with);
   command.texts("--set", "KEY=VALUE", sources.settings,

@@ -18,7 +18,7 @@ struct VisionConfigSources;
 void add_settings_option(Command& command, std::vector<std::string>& settings);
 /// --with alone.
 void add_with_option(Command& command, std::vector<std::string>& with);
-/// --rule, --with and --set, as commands that look at recordings have them.
+/// --preset, --with and --set, as commands that look at recordings have them.
 void add_vision_options(Command& command, VisionConfigSources& sources);
 /// --renderer, as every command that draws has it.
 void add_renderer_option(Command& command, RendererKind& renderer);

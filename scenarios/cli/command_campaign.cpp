@@ -204,9 +204,10 @@ int run_shard(const ShardArguments& arguments) {
 
 void add_campaign_command(CommandLine& line) {
   const auto arguments = std::make_shared<CampaignArguments>();
-  Command& command = line.add({"campaign", "fly many seeds in many conditions, a process each",
-                               "understory campaign scenarios/campaigns/gate.yaml --out results/gate",
-                               "every flight was flown, whatever its ending", "a flight could not be flown"});
+  Command& command =
+      line.add({"campaign", "fly many seeds in many conditions, a process each",
+                "understory campaign scenarios/campaigns/gate.yaml --out results/gate",
+                "every flight was flown, whatever its outcome", "a flight could not be flown"});
   command.text("file", "FILE", arguments->file, "what to fly: see docs/campaigns.md").required();
   command.text("--out", "FOLDER", arguments->out, "results folder (default: results/NAME)");
   add_jobs_option(command, arguments->jobs, "flights");

@@ -29,7 +29,7 @@ int run_gate(const GateArguments& arguments) {
   require_writable(arguments.junit);
   const Comparison comparison =
       compare_campaigns(read_campaign_rows(arguments.baseline), read_campaign_rows(arguments.candidate));
-  const GateVerdict verdict = judge(comparison, arguments.rule);
+  const GateVerdict verdict = verdict_on(comparison, arguments.rule);
   if (!arguments.junit.empty())
     write_whole_file(arguments.junit, gate_junit(comparison, arguments.rule), Named::by_user);
   fmt::print("{}", to_report(comparison, verdict, arguments.rule));

@@ -42,8 +42,9 @@ struct FlightArguments {
 };
 
 void show(ProgressLine& line, const FlightProgress& progress) {
-  const std::string clearance =
-      std::isfinite(progress.min_clearance_m) ? fmt::format("{:.2f} m", progress.min_clearance_m) : "-";
+  const std::string clearance = std::isfinite(progress.minimum_clearance_m)
+                                    ? fmt::format("{:.2f} m", progress.minimum_clearance_m)
+                                    : "-";
   line.show(
       fmt::format("{:5.2f} s  {:5.1f} of {:.0f} m  {:4.1f} m/s  minimum clearance {}  {:.2f} x real time",
                   progress.simulated_s, progress.progress_m, progress.goal_m, progress.speed_mps, clearance,
@@ -197,7 +198,7 @@ int run_fly(const FlyArguments& arguments) {
     if (options.video) fmt::print("  {:<18}{}\n", "video", (folder / "flight.mp4").string());
     if (options.report) fmt::print("  {:<18}{}\n", "report", (folder / "report.html").string());
   }
-  return result.ending == Ending::goal ? exit_goal : exit_not_goal;
+  return result.outcome == Outcome::goal ? exit_goal : exit_not_goal;
 }
 
 struct RecordArguments : FlightArguments {

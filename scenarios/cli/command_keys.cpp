@@ -36,7 +36,7 @@ std::vector<Key> result_keys() {
   for (const auto& [name, value] : result.items()) {
     if (name == "versions") continue;
     if (!value.is_object()) {
-      keys.push_back(key_of_field("FlightResult", name == "outcome" ? "ending" : name));
+      keys.push_back(key_of_field("FlightResult", name == "outcome" ? "outcome" : name));
       keys.back().name = name;
       continue;
     }

@@ -34,7 +34,7 @@ struct AgainArguments {
 
 struct ReportArguments : AgainArguments {
   std::string baseline;
-  bool no_film = false;
+  bool no_video = false;
 };
 
 struct McapArguments : AgainArguments {
@@ -128,7 +128,7 @@ int run_report(const ReportArguments& arguments) {
   FlyOptions options;
   options.expected_digest = digest_of(run);
   options.report = true;
-  options.video = !arguments.no_film;
+  options.video = !arguments.no_video;
   const AgainOutput output(arguments, "flight", "report.html");
   require_writable(output.file);
   // The film, too, is made as a file first: beside the page, or where that is a device.
@@ -152,7 +152,7 @@ int report_campaign(const ReportArguments& arguments) {
   if (!arguments.baseline.empty()) {
     const fs::path baseline = arguments.baseline;
     const Comparison comparison = compare_campaigns(read_campaign_rows(baseline), collected.rows);
-    gated = GatedCampaign{baseline.filename().string(), comparison, judge(comparison)};
+    gated = GatedCampaign{baseline.filename().string(), comparison, verdict_on(comparison)};
   }
   require_writable(output.file);
   write_whole_file(output.file, campaign_page(folder, campaign, collected, data_root(), gated), output.named);
@@ -195,7 +195,7 @@ void add_report_command(CommandLine& line) {
                                "it is there, but shows another flight than the run's, or the gate fails"});
   add_again_options(command, *arguments, "the page (default: FOLDER/report.html)");
   command.text("--baseline", "FOLDER", arguments->baseline, "of a campaign: the one it is gated against");
-  command.flag("--no-film", arguments->no_film, "leave the film out: a smaller page, made sooner");
+  command.flag("--no-video", arguments->no_video, "leave the film out: a smaller page, made sooner");
   command.runs([arguments] { return run_report_of_either(*arguments); });
 }
 

@@ -29,7 +29,7 @@ void add_bench_command(CommandLine& line);
 void add_keys_command(CommandLine& line);
 
 /// Prints what a campaign came to and leaves summary.md and campaign.svg in its folder, and with a name of a
-/// file there JUnit XML. Gives the exit status: 0 where every flight was flown, whatever its ending; 1 where
+/// file there JUnit XML. Gives the exit status: 0 where every flight was flown, whatever its outcome; 1 where
 /// one was not.
 int report(const CampaignFolder& folder, const Collected& collected, const std::filesystem::path& junit = {});
 

@@ -73,15 +73,15 @@ class ConfigReader {
                   const std::array<std::pair<std::string_view, T>, N>& names) {
     const ConfigNode* node = take(name);
     if (node == nullptr) return;
-    std::string expected;
+    std::vector<std::string> words;
     for (const auto& [word, value] : names) {
       if (node->kind == ConfigNode::Kind::scalar && node->text == word) {
         field = value;
         return;
       }
-      expected += (expected.empty() ? "" : " | ") + std::string(word);
+      words.emplace_back(word);
     }
-    refuse(*node, name, expected);
+    refuse(*node, name, fmt::format("{}", fmt::join(words, " | ")), did_you_mean(node->text, words));
   }
 
   /// To be called after the last visit.
@@ -126,12 +126,13 @@ class ConfigReader {
     return *value;
   }
 
-  [[noreturn]] void refuse(const ConfigNode& node, std::string_view name, std::string_view expected) const {
+  [[noreturn]] void refuse(const ConfigNode& node, std::string_view name, std::string_view expected,
+                           std::string_view hint = "") const {
     std::string got = node.text;
     if (node.kind == ConfigNode::Kind::nothing) got = "nothing";
     if (node.kind == ConfigNode::Kind::list) got = fmt::format("a list of {}", node.children.size());
     if (node.kind == ConfigNode::Kind::map) got = "a group of keys";
-    refuse_input(node.origin, full(name), fmt::format("expected {}, got {}", expected, got));
+    refuse_input(node.origin, full(name), fmt::format("expected {}, got {}{}", expected, got, hint));
   }
 
   const ConfigNode& map_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -12,11 +13,17 @@
 namespace understory {
 namespace {
 
-/// `key` with the words that keys have had since version 0.2, so that older files learn the new name.
-std::string renamed_key(std::string key) {
+/// `name` as it is called now, where it has changed since version 0.1: keys, options and values.
+std::string renamed(std::string name) {
+  static const std::map<std::string, std::string, std::less<>> whole{
+      {"rule", "preset"},   {"--rule", "--preset"},  {"paper", "original"},
+      {"plain", "nominal"}, {"gate_m", "opening_m"}, {"--no-film", "--no-video"},
+  };
+  if (const auto found = whole.find(name); found != whole.end()) return found->second;
   for (const auto& [before, now] : {std::pair{"least", "minimum"}, std::pair{"greatest", "maximum"}})
-    if (const auto at = key.find(before); at != std::string::npos) key.replace(at, std::strlen(before), now);
-  return key;
+    if (const auto at = name.find(before); at != std::string::npos)
+      name.replace(at, std::strlen(before), now);
+  return name;
 }
 
 /// The child that a word of a path names: "launch", or "faults[2]" for an entry of a list. None: null.
@@ -116,9 +123,8 @@ std::string origin_of(const std::vector<ConfigNode>& sources, std::string_view p
 }
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known) {
-  const std::string renamed = renamed_key(std::string(word));
-  std::string best;
-  if (std::ranges::find(known, renamed) != known.end()) best = renamed;
+  std::string best = renamed(std::string(word));
+  if (std::ranges::find(known, best) == known.end()) best.clear();
   std::size_t best_distance = !best.empty() ? 0 : std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string& name : known) {  // Levenshtein, one row at a time
     std::vector<std::size_t> row(name.size() + 1);

@@ -44,15 +44,15 @@ std::vector<Obstacle> goalposts(const GoalpostsConfig& config, std::uint64_t see
   const double far_y = near_y - side * between_axes_m * std::cos(config.turn_rad);
   const double near_x = config.ahead_m;
   const double far_x = near_x + between_axes_m * std::sin(config.turn_rad);
-  const double bar_z = config.crossbar_top_m - config.radius_m;
-  std::vector<Obstacle> bars{
+  const double crossbar_z = config.crossbar_top_m - config.radius_m;
+  std::vector<Obstacle> obstacles{
       {"near_upright", {near_x, near_y, 0}, {near_x, near_y, config.height_m}, config.radius_m, 0.7, 0.1},
       {"far_upright", {far_x, far_y, 0}, {far_x, far_y, config.height_m}, config.radius_m, 2.9, 0.6},
-      {"crossbar", {near_x, near_y, bar_z}, {far_x, far_y, bar_z}, config.radius_m, 4.3, 0.4},
+      {"crossbar", {near_x, near_y, crossbar_z}, {far_x, far_y, crossbar_z}, config.radius_m, 4.3, 0.4},
   };
-  bars[0].kind = bars[1].kind = ObstacleKind::post;
-  bars[2].kind = ObstacleKind::crossbar;
-  return bars;
+  obstacles[0].kind = obstacles[1].kind = ObstacleKind::post;
+  obstacles[2].kind = ObstacleKind::crossbar;
+  return obstacles;
 }
 
 std::vector<Obstacle> windows(const WindowsConfig& config, double goal_x_m) {
@@ -70,7 +70,7 @@ namespace {
 
 /// A straight piece on the ground from `from` to `to`.
 void add_piece(const FenceConfig& config, const std::string& name, const Eigen::Vector3d& from,
-               const Eigen::Vector3d& to, std::vector<Obstacle>& bars) {
+               const Eigen::Vector3d& to, std::vector<Obstacle>& obstacles) {
   const double length_m = (to - from).norm();
   const Eigen::Vector3d along = (to - from) / length_m;
   const int palings = static_cast<int>(std::floor(length_m / config.spacing_m)) + 1;
@@ -79,30 +79,30 @@ void add_piece(const FenceConfig& config, const std::string& name, const Eigen::
     Obstacle paling{fmt::format("{}_paling_{:03}", name, i), foot, foot, config.paling_radius_m};
     paling.to_world.z() = config.height_m;
     paling.kind = ObstacleKind::post;
-    bars.push_back(paling);
+    obstacles.push_back(paling);
   }
   for (const double share : {0.2, 0.8}) {
     const Eigen::Vector3d up(0, 0, share * config.height_m);
     Obstacle rail{fmt::format("{}_{}_rail", name, share < 0.5 ? "lower" : "upper"), from + up, to + up,
                   config.rail_radius_m};
     rail.kind = ObstacleKind::rail;
-    bars.push_back(rail);
+    obstacles.push_back(rail);
   }
 }
 
 }  // namespace
 
 std::vector<Obstacle> fence(const FenceConfig& config, double goal_x_m) {
-  std::vector<Obstacle> bars;
+  std::vector<Obstacle> obstacles;
   int number = 1;
   for (double x = config.first_across_m; x < goal_x_m; x += config.across_apart_m, ++number)
     for (const double side : {1.0, -1.0})
       add_piece(config, fmt::format("across_{}_{}", number, side > 0 ? "left" : "right"),
-                {x, side * 0.5 * config.gate_m, 0}, {x, side * config.reach_m, 0}, bars);
+                {x, side * 0.5 * config.opening_m, 0}, {x, side * config.reach_m, 0}, obstacles);
   const double from_x = config.first_across_m + config.spacing_m;  // two palings must not stand in one place
   if (from_x < goal_x_m)
-    add_piece(config, "beside", {from_x, config.beside_m, 0}, {goal_x_m, config.beside_m, 0}, bars);
-  return bars;
+    add_piece(config, "beside", {from_x, config.beside_m, 0}, {goal_x_m, config.beside_m, 0}, obstacles);
+  return obstacles;
 }
 
 }  // namespace understory

@@ -51,7 +51,7 @@ struct GoalpostsConfig {
   double turn_rad = 0.7;
   double height_m = 9.144;        ///< top of the uprights
   double crossbar_top_m = 3.048;  ///< top of the crossbar
-  double radius_m = 0.084;        ///< of every bar; a crossbar is 6 5/8 in wide
+  double radius_m = 0.084;        ///< of every post and crossbar; a crossbar is 6 5/8 in wide
   double pass_minimum_m =
       0.5;  ///< the seed draws how far beside the course the near upright's surface stands
   double pass_maximum_m = 2.0;  ///< at most so far
@@ -103,7 +103,7 @@ struct FenceConfig {
   double first_across_m = 30;     ///< x of the first across
   double across_apart_m = 25;     ///< and from it to the next, up to the goal
   double reach_m = 15;            ///< those across end at this |y|
-  double gate_m = 3;              ///< the gap in them
+  double opening_m = 3;           ///< the gap in them
 };
 
 template <typename Visitor>
@@ -116,7 +116,7 @@ void visit_fields(Visitor& visit, FenceConfig& config) {
   visit("first_across_m", config.first_across_m, 1.0, 1000.0);
   visit("across_apart_m", config.across_apart_m, 5.0, 1000.0);
   visit("reach_m", config.reach_m, 2.0, 100.0);
-  visit("gate_m", config.gate_m, 0.5, 4.0);
+  visit("opening_m", config.opening_m, 0.5, 4.0);
 }
 
 /// All palings (kind post) and rails, fence by fence.

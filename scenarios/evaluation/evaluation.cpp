@@ -51,7 +51,7 @@ void EvaluationSum::add(const EvaluationSum& other) {
   }
   for (std::size_t i = 0; i < computed_count; ++i) {
     append(cost_ms[i], other.cost_ms[i]);
-    paced[i].looks += other.paced[i].looks;
+    paced[i].frames += other.paced[i].frames;
     append(paced[i].sightings, other.paced[i].sightings);
   }
   for (std::size_t i = 0; i < published.size(); ++i) published[i].add(other.published[i]);

@@ -75,7 +75,7 @@ struct WorstFrame {
 struct RecordingEvaluation {
   std::filesystem::path folder;
   StereoRig rig;
-  LookedAtDepth looked_at;  ///< the first depth
+  DetectionDepth detection_depth;  ///< the first depth
   bool has_depth = false, has_objects = false, has_poses = false;
   std::vector<RecordedObject> objects;
   EvaluationSum sum;              ///< named as the folder without its seed: recordings of one scene add up

@@ -24,7 +24,8 @@ std::string heading(const Evaluation& evaluation) {
   return fmt::format(
       "{} recordings, {} frames, {:.1f} s; rig {}, looking {:.2f} m ahead, one pixel is {:.2f} to {:.2f} m\n",
       evaluation.recordings.size(), evaluation.all.frames, evaluation.all.seconds, first.rig.name,
-      first.looked_at.depth_m, first.looked_at.one_pixel.near_m, first.looked_at.one_pixel.far_m);
+      first.detection_depth.depth_m, first.detection_depth.one_pixel.near_m,
+      first.detection_depth.one_pixel.far_m);
 }
 
 Json to_json(const Share& share) {
@@ -72,7 +73,7 @@ Json sum_json(const EvaluationSum& sum) {
   for (std::size_t i = 0; i < algorithm_count; ++i) json["algorithms"].push_back(algorithm_json(sum, i));
   for (std::size_t i = 0; i < computed_count; ++i)
     json["computer"].push_back({{"name", algorithm_names[i]},
-                                {"looks", sum.paced[i].looks},
+                                {"frames", sum.paced[i].frames},
                                 {"found_within_1_m", to_json(found_within(sum.paced[i].sightings, 1))},
                                 {"found_within_3_m", to_json(found_within(sum.paced[i].sightings, 3))}});
   for (std::size_t i = 0; i < published_algorithms.size(); ++i)
@@ -98,8 +99,8 @@ Json sum_json(const EvaluationSum& sum) {
 std::string evaluation_json(const Evaluation& evaluation) {
   const RecordingEvaluation& first = evaluation.recordings.front();
   Json json{{"rig", first.rig.name},
-            {"detection_depth_m", first.looked_at.depth_m},
-            {"one_pixel_m", {first.looked_at.one_pixel.near_m, first.looked_at.one_pixel.far_m}},
+            {"detection_depth_m", first.detection_depth.depth_m},
+            {"one_pixel_m", {first.detection_depth.one_pixel.near_m, first.detection_depth.one_pixel.far_m}},
             {"all", sum_json(evaluation.all)}};
   for (const EvaluationSum& scene : evaluation.scenes) json["scenes"].push_back(sum_json(scene));
   return json_text(json, 1) + "\n";

@@ -113,7 +113,7 @@ cv::Mat annotated_frame(const EvaluationFrame& frame, const StereoRig& rig, cons
          missed_colour, 1);
   }
   for (const StereoHit& hit : hits) {
-    const bool is_true = judge(hit, frame.truth, grid)[one_pixel];
+    const bool is_true = true_within(hit, frame.truth, grid)[one_pixel];
     false_positives += !is_true;
     draw(hit.column_px, hit.row_px, is_true ? true_positive_colour : false_positive_colour, 2);
   }
@@ -135,7 +135,8 @@ std::vector<WorstPicture> worst_pictures(const Evaluation& evaluation) {
     EvaluationRecording source(recording->folder);
     cv::Mat picture =
         annotated_frame(source.frame(worst.index), recording->rig, evaluation.settings.pushbroom);
-    const std::string caption = fmt::format("{}, frame {}", recording->folder.filename().string(), worst.index);
+    const std::string caption =
+        fmt::format("{}, frame {}", recording->folder.filename().string(), worst.index);
     write_line(picture, caption, {8, 18});
     pictures.push_back({fmt::format("{}: {} false hits", caption, worst.false_hits), picture});
   }
@@ -144,7 +145,7 @@ std::vector<WorstPicture> worst_pictures(const Evaluation& evaluation) {
 
 LinePlot precision_recall_plot(const Evaluation& evaluation) {
   LinePlot plot;
-  const LookedAtDepth& depth = evaluation.recordings.front().looked_at;
+  const DetectionDepth& depth = evaluation.recordings.front().detection_depth;
   plot.title =
       fmt::format("Blocks at {:.2f} m, within one pixel ({:.2f} to {:.2f} m), {} frames", depth.depth_m,
                   depth.one_pixel.near_m, depth.one_pixel.far_m, evaluation.all.frames);
@@ -190,7 +191,7 @@ LinePlot response_plot(const Evaluation& evaluation) {
     }
     plot.series.push_back(series);
   }
-  plot.references.push_back({evaluation.recordings.front().looked_at.depth_m, "detection depth", true});
+  plot.references.push_back({evaluation.recordings.front().detection_depth.depth_m, "detection depth", true});
   return plot;
 }
 

@@ -152,13 +152,13 @@ EvaluationTable scenes_table(const Evaluation& evaluation) {
 }
 
 EvaluationTable computer_table(const Evaluation& evaluation) {
-  Table table{{"algorithm", "looks/s", "precision", "found within 1 m", "found within 3 m"}};
+  Table table{{"algorithm", "frames/s", "precision", "found within 1 m", "found within 3 m"}};
   const EvaluationSum& all = evaluation.all;
   for (std::size_t i = 0; i < computed_count; ++i) {
     const PacedResult& paced = all.paced[i];
     table.rows.push_back(
         {algorithm_names[i],
-         number_text(all.seconds > 0 ? static_cast<double>(paced.looks) / all.seconds : 0, 1),
+         number_text(all.seconds > 0 ? static_cast<double>(paced.frames) / all.seconds : 0, 1),
          share_text(all.tallies[i].at_one_pixel().precision), wilson_text(found_within(paced.sightings, 1)),
          wilson_text(found_within(paced.sightings, 3))});
   }

@@ -78,7 +78,7 @@ BlockContent content_between(const TrueImages& truth, int column_px, int row_px,
   return content;
 }
 
-LookedAtDepth looked_at_depth(const StereoRig& rig, double asked_m) {
+DetectionDepth detection_depth(const StereoRig& rig, double asked_m) {
   const int px = static_cast<int>(std::lround(rig.disparity_px(asked_m)));
   return {px,
           rig.depth_m(px),
@@ -90,7 +90,7 @@ DetectionGrid::DetectionGrid(const StereoRig& rig, std::vector<double> depths_m,
     : columns(rig.width_px / truth_block_px),
       rows(std::min(rig.height_px / truth_block_px, rig.scaled_row_px(last_row_px) / truth_block_px + 1)) {
   if (depths_m.empty()) depths_m.push_back(rig.detection_depth_m);
-  for (const double asked_m : depths_m) depths.push_back(looked_at_depth(rig, asked_m));
+  for (const double asked_m : depths_m) depths.push_back(detection_depth(rig, asked_m));
 }
 
 int DetectionGrid::first_column(std::size_t depth) const {
@@ -106,7 +106,7 @@ int DetectionGrid::block_of(const StereoHit& hit) const {
 }
 
 std::size_t DetectionGrid::depth_of(const StereoHit& hit) const {
-  const auto nearest = std::ranges::min_element(depths, {}, [&](const LookedAtDepth& depth) {
+  const auto nearest = std::ranges::min_element(depths, {}, [&](const DetectionDepth& depth) {
     return std::abs(depth.disparity_px - hit.disparity_px);
   });
   return static_cast<std::size_t>(nearest - depths.begin());
@@ -139,7 +139,7 @@ std::vector<ExpectedBlock> expected_blocks(const TrueImages& truth, const Detect
   return blocks;
 }
 
-StereoHit hit_on_block(const StereoRig& rig, const LookedAtDepth& depth, int column_px, int row_px) {
+StereoHit hit_on_block(const StereoRig& rig, const DetectionDepth& depth, int column_px, int row_px) {
   constexpr double center_px = 0.5 * (truth_block_px - 1);
   StereoHit hit;
   hit.column_px = column_px;

@@ -26,7 +26,7 @@ struct TrueImages {
   cv::Mat shared_depth_mm;
 };
 
-/// A thing of objects.csv: a bar between two points (world frame, m); the ground has no geometry.
+/// A thing of objects.csv: a obstacle between two points (world frame, m); the ground has no geometry.
 struct RecordedObject {
   int number = 0;  ///< its pixels' value
   std::string name;
@@ -80,7 +80,7 @@ BlockContent content_between(const TrueImages& truth, int column_px, int row_px,
                              Surfaces surfaces);
 
 /// A depth that is looked at: that of the whole disparity nearest to what was asked for.
-struct LookedAtDepth {
+struct DetectionDepth {
   int disparity_px = 0;
   double depth_m = 0;
   DepthInterval one_pixel;
@@ -88,7 +88,7 @@ struct LookedAtDepth {
 };
 
 /// As PushbroomStereo looks. Depths whose disparity lies within a pixel of infinity assert there.
-LookedAtDepth looked_at_depth(const StereoRig& rig, double asked_m);
+DetectionDepth detection_depth(const StereoRig& rig, double asked_m);
 
 /// Where something is to be found: blocks of 5x5 px side by side, down to the last row looked at, and only
 /// columns whose partner at the disparity lies in the right image. The same for every algorithm.
@@ -96,7 +96,7 @@ struct DetectionGrid {
   /// `last_row_px`: as PushbroomConfig's.
   DetectionGrid(const StereoRig& rig, std::vector<double> depths_m, int last_row_px);
 
-  std::vector<LookedAtDepth> depths;
+  std::vector<DetectionDepth> depths;
   int columns = 0;  ///< of blocks
   int rows = 0;
 
@@ -128,7 +128,7 @@ std::vector<ExpectedBlock> expected_blocks(const TrueImages& truth, const Detect
                                            std::optional<double> tolerance_m = {});
 
 /// A hit on the grid's block at a depth looked at: as a detector would put it.
-StereoHit hit_on_block(const StereoRig& rig, const LookedAtDepth& depth, int column_px, int row_px);
+StereoHit hit_on_block(const StereoRig& rig, const DetectionDepth& depth, int column_px, int row_px);
 
 /// What a detector that knows the truth would say: a hit on every block of the grid that holds any surface,
 /// ground too, within one pixel of a depth looked at.

@@ -66,11 +66,11 @@ std::vector<ObstacleSighting> ObstacleSightings::passed() const {
   if (path_world_.size() < 2) return sightings;
   for (const RecordedObject& object : objects_) {
     if (!object.is_obstacle()) continue;
-    const Segment bar{object.from_world, object.to_world};
+    const Segment obstacle{object.from_world, object.to_world};
     double minimum_m = std::numeric_limits<double>::infinity();
     std::size_t nearest = 0;
     for (std::size_t i = 0; i + 1 < path_world_.size(); ++i) {
-      const double distance_m = segment_distance_m({path_world_[i], path_world_[i + 1]}, bar);
+      const double distance_m = segment_distance_m({path_world_[i], path_world_[i + 1]}, obstacle);
       if (distance_m >= minimum_m) continue;
       minimum_m = distance_m;
       nearest = i;
@@ -95,7 +95,7 @@ PacedSightings::PacedSightings(std::vector<RecordedObject> objects, double basel
 void PacedSightings::add(const EvaluationFrame& frame, std::int64_t next_t_ns, const DetectionGrid& grid,
                          const std::vector<ExpectedBlock>& expected, const std::vector<StereoHit>& hits) {
   const bool looked = computer_.will_take(frame.pair.t_ns, next_t_ns);
-  if (looked) ++looks_;
+  if (looked) ++frames_;
   sightings_.add(frame, grid, expected, looked ? hits : std::vector<StereoHit>());
 }
 

@@ -58,7 +58,7 @@ class ObstacleSightings {
 
 /// What became of the obstacles where an algorithm looks only as often as the aircraft's computer lets it.
 struct PacedResult {
-  std::int64_t looks = 0;
+  std::int64_t frames = 0;
   std::vector<ObstacleSighting> sightings;
 };
 
@@ -73,12 +73,12 @@ class PacedSightings {
   /// `next_t_ns`: the moment of the frame after this one.
   void add(const EvaluationFrame& frame, std::int64_t next_t_ns, const DetectionGrid& grid,
            const std::vector<ExpectedBlock>& expected, const std::vector<StereoHit>& hits);
-  PacedResult result() const { return {looks_, sightings_.passed()}; }
+  PacedResult result() const { return {frames_, sightings_.passed()}; }
 
  private:
   FlightComputer computer_;
   ObstacleSightings sightings_;
-  std::int64_t looks_ = 0;
+  std::int64_t frames_ = 0;
 };
 
 }  // namespace understory

@@ -42,7 +42,7 @@ double cost_s(std::size_t algorithm, const ComputeConfig& compute) {
 
 /// The paper's rule, and full stereo's crop, looking where `rule` does.
 PushbroomConfig papers_rule_beside(const PushbroomConfig& rule) {
-  PushbroomConfig paper = paper_rule();
+  PushbroomConfig paper = original_pushbroom();
   paper.depths_m = rule.depths_m;
   paper.disparities_px = rule.disparities_px;
   paper.last_row_px = rule.last_row_px;
@@ -144,7 +144,7 @@ class Evaluator {
 
     result_.folder = folder;
     result_.rig = rig;
-    result_.looked_at = grid_.depths[0];
+    result_.detection_depth = grid_.depths[0];
     result_.has_depth = recording_.has_depth();
     result_.has_objects = recording_.has_objects();
     result_.has_poses = recording_.has_poses();
@@ -196,7 +196,7 @@ class Evaluator {
     constexpr std::size_t apart = 30;
     int false_positives = 0;
     for (const StereoHit& hit : hits_[our_rule])
-      false_positives += !judge(hit, frame.truth, grid_)[one_pixel];
+      false_positives += !true_within(hit, frame.truth, grid_)[one_pixel];
     if (false_positives == 0) return;
     std::vector<WorstFrame>& bad = result_.worst;
     if (bad.empty() || index - bad.back().index >= apart)

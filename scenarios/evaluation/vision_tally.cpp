@@ -24,7 +24,7 @@ std::string bin_name(double value, const std::vector<double>& edges, const char*
 
 /// Quarters of the one-pixel interval, in disparity.
 std::string distance_name(const ExpectedBlock& block, const DetectionGrid& grid, const StereoRig& rig) {
-  const LookedAtDepth& depth = grid.depths[block.depth];
+  const DetectionDepth& depth = grid.depths[block.depth];
   const double off_px = depth.disparity_px - rig.disparity_px(block.mean_depth_m);  // farther: positive
   const int quarter = std::clamp(static_cast<int>(std::floor(2 * off_px)), -2, 1);
   return fmt::format("{}{} {:.2f} to {:.2f} m", block.depth, quarter + 2,
@@ -61,7 +61,7 @@ struct FrameTally {
 
   void add_hits(const std::vector<StereoHit>& hits, const std::array<Rates*, 3>& parts) {
     for (const StereoHit& hit : hits) {
-      const auto is_true = judge(hit, frame.truth, grid);
+      const auto is_true = true_within(hit, frame.truth, grid);
       for (std::size_t i = 0; i < tolerance_count; ++i) to.rates[i].precision.count(is_true[i]);
       for (Rates* part : parts) part->precision.count(is_true[one_pixel]);
       const int block = grid.block_of(hit);
@@ -119,8 +119,8 @@ DueBlocks due_blocks(const TrueImages& truth, const DetectionGrid& grid) {
   return due;
 }
 
-std::array<bool, tolerance_count> judge(const StereoHit& hit, const TrueImages& truth,
-                                        const DetectionGrid& grid) {
+std::array<bool, tolerance_count> true_within(const StereoHit& hit, const TrueImages& truth,
+                                              const DetectionGrid& grid) {
   const auto borne_out = [&](DepthInterval depths) {
     return content_between(truth, hit.column_px, hit.row_px, depths, Surfaces::any).holds();
   };

@@ -33,8 +33,8 @@ using DueBlocks = std::array<std::vector<ExpectedBlock>, tolerance_count>;
 DueBlocks due_blocks(const TrueImages& truth, const DetectionGrid& grid);
 
 /// Whether the truth in a hit's block bears it out, at each tolerance. Ground counts: it is there.
-std::array<bool, tolerance_count> judge(const StereoHit& hit, const TrueImages& truth,
-                                        const DetectionGrid& grid);
+std::array<bool, tolerance_count> true_within(const StereoHit& hit, const TrueImages& truth,
+                                              const DetectionGrid& grid);
 
 /// What a false hit lies on: "sky", "ground", "trunk, nearer", "edge of trunk" (its block holds an obstacle
 /// and something at least a metre farther). `kinds`: by object number; "surface" where nobody says.

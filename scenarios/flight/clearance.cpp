@@ -75,13 +75,14 @@ double clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airfra
   for (const Segment& part : parts) around.extend(part.from).extend(part.to);
   constexpr double rounding_m = 1e-9;
   double minimum = std::numeric_limits<double>::infinity();
-  for (const Obstacle& bar : obstacles) {
-    // The distance of bounding boxes excludes most bars of a forest.
-    Eigen::AlignedBox3d box(bar.from_world.cwiseMin(bar.to_world), bar.from_world.cwiseMax(bar.to_world));
-    const double matters_m = minimum + bar.radius_m + rounding_m;
+  for (const Obstacle& obstacle : obstacles) {
+    // The distance of bounding boxes excludes most obstacles of a forest.
+    Eigen::AlignedBox3d box(obstacle.from_world.cwiseMin(obstacle.to_world),
+                            obstacle.from_world.cwiseMax(obstacle.to_world));
+    const double matters_m = minimum + obstacle.radius_m + rounding_m;
     if (matters_m < 0 || around.squaredExteriorDistance(box) > matters_m * matters_m) continue;
     for (const Segment& part : parts) {
-      minimum = std::min(minimum, obstacle_distance_m(part, bar));
+      minimum = std::min(minimum, obstacle_distance_m(part, obstacle));
     }
   }
   return minimum;

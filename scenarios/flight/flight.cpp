@@ -16,7 +16,7 @@ std::int64_t nanoseconds(double seconds) { return static_cast<std::int64_t>(seco
 
 /// An image that nobody looks at is not rendered: rendering is most of a flight's cost.
 bool needs_images(const Scenario& scenario, const std::vector<FlightObserver*>& observers) {
-  return looks(scenario.perception.detector) ||
+  return uses_images(scenario.perception.detector) ||
          std::ranges::any_of(observers, [](const auto* observer) { return observer->needs_images(); });
 }
 
@@ -44,15 +44,15 @@ Flight::Flight(const Scenario& scenario, const FlightMachine& machine, std::vect
       clock_(scenario) {}
 
 void Flight::step() {
-  if (ending_) return;
+  if (outcome_) return;
   history_.observe(truth());
   sense();
   expose();
-  while (std::optional<StereoFrame> frame = computer_.looked_at(clock_.t_ns())) look_at(std::move(*frame));
+  while (std::optional<StereoFrame> frame = computer_.next_frame(clock_.t_ns())) process(std::move(*frame));
   act();
   tell(&FlightObserver::on_step);
-  ending_ = referee_.judge(truth(), aircraft_.contact(), launched());
-  if (ending_)
+  outcome_ = referee_.outcome_at(truth(), aircraft_.contact(), launched());
+  if (outcome_)
     tell(&FlightObserver::on_end);
   else
     advance();
@@ -81,7 +81,7 @@ void Flight::expose() {
   if (sensors_.faults().pass(frame)) computer_.send(std::move(frame), arrival_ns);
 }
 
-void Flight::look_at(StereoFrame frame) {
+void Flight::process(StereoFrame frame) {
   frame_ = std::move(frame);
   {
     const auto timed = stopwatch_.time("detect");

@@ -73,7 +73,7 @@ class Flight {
   /// The time of truth(). After step() it is the next step, for which nothing has been done yet.
   const FlightClock& clock() const { return clock_; }
   bool launched() const { return aircraft_.launched(); }  ///< has left the catapult
-  const std::optional<Ending>& ending() const { return ending_; }
+  const std::optional<Outcome>& outcome() const { return outcome_; }
 
   const Truth& truth() const { return aircraft_.truth(); }
   Touch touch() const { return aircraft_.touch(); }  ///< what the aircraft touches at truth()
@@ -105,7 +105,7 @@ class Flight {
  private:
   void sense();
   void expose();
-  void look_at(StereoFrame frame);
+  void process(StereoFrame frame);
   void act();
   void tell(void (FlightObserver::*event)(const Flight&));
   void advance();
@@ -129,7 +129,7 @@ class Flight {
   FlightClock clock_;
   StereoFrame frame_;
   Controls controls_;
-  std::optional<Ending> ending_;
+  std::optional<Outcome> outcome_;
 };
 
 // Makes the parts of a flight from a scenario. All throw in one line.

@@ -16,7 +16,7 @@ void FlightComputer::send(StereoFrame frame, std::int64_t arrival_ns) {
   arrivals_.push_back({std::move(frame), arrival_ns});
 }
 
-std::optional<StereoFrame> FlightComputer::looked_at(std::int64_t t_ns) {
+std::optional<StereoFrame> FlightComputer::next_frame(std::int64_t t_ns) {
   if (!busy_) {
     if (arrivals_.empty()) return std::nullopt;
     const std::int64_t start_ns = std::max(free_ns_, arrivals_.front().t_ns);

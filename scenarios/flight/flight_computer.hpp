@@ -26,7 +26,7 @@ class FlightComputer {
   void send(StereoFrame frame, std::int64_t arrival_ns);
   /// The next frame that has been looked at by t_ns; to be called until there is none. t_ns never decreases,
   /// and frames that arrived by then have been sent.
-  std::optional<StereoFrame> looked_at(std::int64_t t_ns);
+  std::optional<StereoFrame> next_frame(std::int64_t t_ns);
 
  private:
   struct Arrival {

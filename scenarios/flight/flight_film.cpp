@@ -18,11 +18,10 @@ double seconds(std::int64_t t_ns) { return static_cast<double>(t_ns) * 1e-9; }
 
 std::string caption_of(const Flight& flight, const Truth& truth) {
   const Plan& plan = flight.plan();
-  const std::string planned =
-      plan.points.empty() ? "none"
-      : std::isfinite(plan.clearance_m)
-          ? fmt::format("{}, {:.2f} m clear", word_for(plan.origin), plan.clearance_m)
-          : fmt::format("{}, nothing near", word_for(plan.origin));
+  const std::string planned = plan.points.empty() ? "none"
+                              : std::isfinite(plan.clearance_m)
+                                  ? fmt::format("{}, {:.2f} m clear", word_for(plan.origin), plan.clearance_m)
+                                  : fmt::format("{}, nothing near", word_for(plan.origin));
   return fmt::format("{:.3f} s   {:.1f} m/s   {:.1f} m high   plan: {}", seconds(truth.t_ns),
                      truth.velocity_world_mps.norm(), truth.T_world_body.translation().z(), planned);
 }
@@ -88,21 +87,21 @@ void FlightFilm::on_frame(const Flight& flight) {
 }
 
 void FlightFilm::finish(const Flight& flight) {
-  const bool is_lost = flight.ending() != Ending::goal;
+  const bool is_lost = flight.outcome() != Outcome::goal;
   for (Moment& moment : recent_)
     if (is_lost || moment.number % every_ == 0) add(flight, moment);
   if (is_lost && !recent_.empty()) {
     Moment& end = recent_.back();
     end.truth = flight.truth();  // a little after the last frame
-    end.caption = fmt::format("{:.3f} s   {}", flight.clock().t_s(), word_for(*flight.ending()));
+    end.caption = fmt::format("{:.3f} s   {}", flight.clock().t_s(), word_for(*flight.outcome()));
     last_ = draw(flight, end);
     const Touch touch = flight.touch();
     if (touch.with != Contact::none) {
       const int width_px = last_.cols / 2;
       const Eye left = eyes_of(flight.rig().rig, end.truth.T_world_body)[0];
       mark(last_.colRange(0, width_px), left, touch.position_world, scale);
-      mark(last_.colRange(width_px, last_.cols),
-           chase_eye(end.truth.T_world_body, width_px, last_.rows), touch.position_world, 1);
+      mark(last_.colRange(width_px, last_.cols), chase_eye(end.truth.T_world_body, width_px, last_.rows),
+           touch.position_world, 1);
     }
     for (int i = 0; i < film_rate_hz; ++i) {
       video_.add(last_);

@@ -49,11 +49,11 @@ Json camera_of(const Flight& flight) {
 Json result_of(const FlightResult& result, const Flight& flight) {
   Json rows = Json::array();
   const auto add = [&](const char* name, const std::string& text) { rows.push_back({name, text}); };
-  add("ending", std::string(word_for(result.ending)));
+  add("outcome", std::string(word_for(result.outcome)));
   add("flown", fmt::format("{:.1f} m in {:.2f} s, {:.1f} m/s on average", result.distance_m,
                            result.simulated_s, result.mean_speed_mps));
-  add("minimum clearance", std::isfinite(result.min_clearance_m)
-                               ? fmt::format("{:.2f} m", result.min_clearance_m)
+  add("minimum clearance", std::isfinite(result.minimum_clearance_m)
+                               ? fmt::format("{:.2f} m", result.minimum_clearance_m)
                                : "no obstacles");
   add("estimate's error", fmt::format("{:.2f} m on average, {:.2f} m at most", result.position_error_mean_m,
                                       result.position_error_max_m));
@@ -63,7 +63,7 @@ Json result_of(const FlightResult& result, const Flight& flight) {
   add("plans", fmt::format("{}: {} straight, {} solved, {} kept, {} fallback", planner.replans,
                            planner.straight, planner.solved, planner.kept, planner.fallback));
   add("detector",
-      looks(flight.scenario().perception.detector)
+      uses_images(flight.scenario().perception.detector)
           ? fmt::format("{}, looking {:.1f} m ahead", result.detector, fmt::join(depths_of(flight), " and "))
           : result.detector);
   add("state", result.state_source);
@@ -73,7 +73,7 @@ Json result_of(const FlightResult& result, const Flight& flight) {
 
 /// Keys that say which numbers others start from.
 const std::vector<std::string> preset_keys{
-    "name",    "rig",      "sensors.grade", "perception.rule", "estimation.preset", "autopilot.preset",
+    "name",    "rig",      "sensors.grade", "perception.preset", "estimation.preset", "autopilot.preset",
     "launch.", "airframe."};
 
 bool is_preset(const std::string& key) {
@@ -138,8 +138,8 @@ Json facts_of(const Flight& flight, const FlightResult& result, const FlightTrac
   Json facts{{"kind", "flight"},
              {"title", fmt::format("{}, seed {}", scenario.name, scenario.seed)},
              {"program", fmt::format("understory {} ({})", understory_version, understory_commit)},
-             {"ending", word_for(result.ending)},
-             {"sentence", story.ending},
+             {"outcome", word_for(result.outcome)},
+             {"sentence", story.outcome},
              {"story", story.before},
              {"digest", result.digest},
              {"t_end_s", flight.clock().t_s()},
@@ -154,7 +154,7 @@ Json facts_of(const Flight& flight, const FlightResult& result, const FlightTrac
     const Eigen::Vector3d& place = *story.impact_world;
     facts["impact"] = {{"position", {place.x(), place.y(), place.z()}}, {"part", story.part}};
   }
-  facts["camera"] = looks(scenario.perception.detector) ? camera_of(flight) : Json();
+  facts["camera"] = uses_images(scenario.perception.detector) ? camera_of(flight) : Json();
   facts["events"] = Json::array();
   for (const FlightEvent& event : story.events)
     facts["events"].push_back({{"t_s", event.t_s}, {"kind", event.kind}, {"text", event.text}});
@@ -168,7 +168,7 @@ std::string flight_page(const Flight& flight, const FlightResult& result, const 
                         const FlightStory& story, const FlightPageExtras& extras) {
   const Scenario& scenario = flight.scenario();
   PageContent page;
-  page.title = fmt::format("{}, seed {}: {}", scenario.name, scenario.seed, word_for(result.ending));
+  page.title = fmt::format("{}, seed {}: {}", scenario.name, scenario.seed, word_for(result.outcome));
   Json facts = facts_of(flight, result, track, story);
   facts["command"] = "understory fly " + arguments_that_fly(scenario, extras.data_root);
   facts["warning"] = extras.warning;

@@ -77,22 +77,22 @@ const char* const trajectory_columns =
     "left_elevon_rad,right_elevon_rad,thrust_n,clearance_m\n";
 
 bool is_ending(std::string_view word) {
-  constexpr std::array all{Ending::goal, Ending::collision, Ending::ground, Ending::out_of_bounds,
-                           Ending::time};
-  return std::ranges::any_of(all, [&](Ending ending) { return word == word_for(ending); });
+  constexpr std::array all{Outcome::goal, Outcome::collision, Outcome::ground, Outcome::out_of_bounds,
+                           Outcome::time};
+  return std::ranges::any_of(all, [&](Outcome outcome) { return word == word_for(outcome); });
 }
 
-std::string_view word_for(Ending ending) {
-  switch (ending) {
-    case Ending::goal:
+std::string_view word_for(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::goal:
       return "goal";
-    case Ending::collision:
+    case Outcome::collision:
       return "collision";
-    case Ending::ground:
+    case Outcome::ground:
       return "ground";
-    case Ending::out_of_bounds:
+    case Outcome::out_of_bounds:
       return "out_of_bounds";
-    case Ending::time:
+    case Outcome::time:
       return "time";
   }
   return "unknown";
@@ -100,7 +100,7 @@ std::string_view word_for(Ending ending) {
 
 std::string to_json(const FlightResult& result) {
   Json json;
-  json["outcome"] = word_for(result.ending);
+  json["outcome"] = word_for(result.outcome);
   json["scenario"] = result.scenario;
   json["seed"] = result.seed;
   json["sensor_seed"] = result.sensor_seed;
@@ -112,7 +112,7 @@ std::string to_json(const FlightResult& result) {
   json["distance_m"] = result.distance_m;
   json["progress_m"] = result.progress_m;
   json["mean_speed_mps"] = result.mean_speed_mps;
-  json["min_clearance_m"] = number(result.min_clearance_m);
+  json["minimum_clearance_m"] = number(result.minimum_clearance_m);
   json["estimation"] = {{"position_error_mean_m", result.position_error_mean_m},
                         {"position_error_max_m", result.position_error_max_m},
                         {"position_error_end_m", result.position_error_end_m},
@@ -147,12 +147,12 @@ std::string to_report(const FlightResult& result) {
   const auto line = [&](std::string_view name, const std::string& value) {
     text += fmt::format("  {:<18}{}\n", name, value);
   };
-  text += fmt::format("{} (scenario {}, seed {}, {}, {})\n", word_for(result.ending), result.scenario,
+  text += fmt::format("{} (scenario {}, seed {}, {}, {})\n", word_for(result.outcome), result.scenario,
                       result.seed, result.detector, result.state_source);
   if (!result.touched.empty()) line("touched", result.touched);
   line("flown", fmt::format("{:.1f} m in {:.2f} s, {:.1f} m/s on average", result.distance_m,
                             result.simulated_s, result.mean_speed_mps));
-  line("minimum clearance", clearance_text(result.min_clearance_m));
+  line("minimum clearance", clearance_text(result.minimum_clearance_m));
   line("estimator error",
        fmt::format("{:.2f} m on average, {:.2f} m at most, {:.1f} deg at most", result.position_error_mean_m,
                    result.position_error_max_m, result.attitude_error_max_rad * 57.29577951308232));

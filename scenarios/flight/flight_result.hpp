@@ -30,7 +30,7 @@ class RunDigest {
 };
 
 /// How a flight ended.
-enum class Ending {
+enum class Outcome {
   goal,           ///< passed the goal plane
   collision,      ///< touched an obstacle (MuJoCo's own contact)
   ground,         ///< touched the ground
@@ -38,8 +38,8 @@ enum class Ending {
   time            ///< ran out of simulated time
 };
 
-std::string_view word_for(Ending ending);
-/// Whether an ending is called so.
+std::string_view word_for(Outcome outcome);
+/// Whether an outcome is called so.
 bool is_ending(std::string_view word);
 
 /// Wall time of one stage of the loop, for people. It decides nothing.
@@ -52,20 +52,20 @@ struct StageTiming {
 
 /// One flight in numbers: what result.json holds.
 struct FlightResult {
-  std::string scenario;           ///< its name
-  std::uint64_t seed = 0;         ///< of the course
-  std::uint64_t sensor_seed = 0;  ///< of the sensors' noise
-  std::string detector;           ///< perception.detector
-  std::string state_source;       ///< estimation.source
-  Ending ending = Ending::time;   ///< goal, collision, ground, out_of_bounds or time
-  std::string touched;            ///< name of the nearest obstacle at a collision
-  double simulated_s = 0;         ///< since the start at rest
-  double wall_s = 0;              ///< that the flight took on its machine
-  double distance_m = 0;          ///< true path length since release
-  double progress_m = 0;          ///< maximum true x reached
-  double mean_speed_mps = 0;      ///< true, over ground, since release
+  std::string scenario;             ///< its name
+  std::uint64_t seed = 0;           ///< of the course
+  std::uint64_t sensor_seed = 0;    ///< of the sensors' noise
+  std::string detector;             ///< perception.detector
+  std::string state_source;         ///< estimation.source
+  Outcome outcome = Outcome::time;  ///< goal, collision, ground, out_of_bounds or time
+  std::string touched;              ///< name of the nearest obstacle at a collision
+  double simulated_s = 0;           ///< since the start at rest
+  double wall_s = 0;                ///< that the flight took on its machine
+  double distance_m = 0;            ///< true path length since release
+  double progress_m = 0;            ///< maximum true x reached
+  double mean_speed_mps = 0;        ///< true, over ground, since release
   /// True; +infinity without obstacles (null in JSON).
-  double min_clearance_m = std::numeric_limits<double>::infinity();
+  double minimum_clearance_m = std::numeric_limits<double>::infinity();
   double position_error_mean_m = 0;    ///< estimate against truth, since release
   double position_error_max_m = 0;     ///< the largest
   double position_error_end_m = 0;     ///< at the end

@@ -39,24 +39,25 @@ double distance_m(const Eigen::Vector3d& point_world, const Obstacle& obstacle) 
   return obstacle_distance_m({point_world, point_world}, obstacle);
 }
 
-std::string ending_sentence(const Flight& flight, const FlightStory& story) {
+std::string outcome_sentence(const Flight& flight, const FlightStory& story) {
   const Eigen::Vector3d& place = flight.truth().T_world_body.translation();
   const Scenario& scenario = flight.scenario();
-  const std::string when = fmt::format("at {:.2f} s, {:.1f} m from the launch", flight.clock().t_s(), place.x());
-  switch (flight.ending().value()) {
-    case Ending::goal:
+  const std::string when =
+      fmt::format("at {:.2f} s, {:.1f} m from the launch", flight.clock().t_s(), place.x());
+  switch (flight.outcome().value()) {
+    case Outcome::goal:
       return fmt::format("It passed the goal plane at {:.0f} m after {:.2f} s.", scenario.goal_x_m(),
                          flight.clock().t_s());
-    case Ending::collision:
+    case Outcome::collision:
       return fmt::format("{} touched {} {}, {:.1f} m above the ground.", words_of_part(story.part),
                          story.touched ? flight.obstacles()[*story.touched].name : "an obstacle", when,
                          place.z());
-    case Ending::ground:
+    case Outcome::ground:
       return fmt::format("{} touched the ground {}.", words_of_part(story.part), when);
-    case Ending::time:
+    case Outcome::time:
       return fmt::format("Its {:.1f} s were over, {:.1f} m before the goal plane.", scenario.time_limit_s,
                          scenario.goal_x_m() - place.x());
-    case Ending::out_of_bounds:
+    case Outcome::out_of_bounds:
       break;
   }
   const auto beyond = [&](const char* bound, double limit_m, double at_m) {
@@ -99,8 +100,8 @@ void tell_of_obstacle(const Flight& flight, const FlightTrack& track, FlightStor
       track.moments.back().T_world_true * track.moments.back().T_world_estimated.inverse();
   const auto first_s = first_in_view_s(flight, track, *story.touched);
   if (first_s) {
-    const std::string text = fmt::format("{} came into view {:.2f} s before the end, {:.1f} m away", obstacle.name,
-                                         end_s - *first_s, ahead_m(track, *first_s, obstacle));
+    const std::string text = fmt::format("{} came into view {:.2f} s before the end, {:.1f} m away",
+                                         obstacle.name, end_s - *first_s, ahead_m(track, *first_s, obstacle));
     story.events.push_back({*first_s, "in_view", text});
     story.before.push_back(text + ".");
   } else if (flight.cameras() != nullptr) {
@@ -112,16 +113,16 @@ void tell_of_obstacle(const Flight& flight, const FlightTrack& track, FlightStor
   double first_hit_s = 0;
   for (const TrackFrame& frame : track.frames) {
     const auto begin = track.hits_world.begin() + static_cast<std::ptrdiff_t>(frame.first_hit);
-    const auto on_it = std::count_if(begin, begin + static_cast<std::ptrdiff_t>(frame.hits), [&](const Eigen::Vector3d& hit_world) {
-      return belongs_to(hit_world, obstacle);
-    });
+    const auto on_it =
+        std::count_if(begin, begin + static_cast<std::ptrdiff_t>(frame.hits),
+                      [&](const Eigen::Vector3d& hit_world) { return belongs_to(hit_world, obstacle); });
     if (on_it > 0 && frames++ == 0) first_hit_s = seconds(frame.t_ns);
     hits += on_it;
   }
   if (frames > 0) {
     const std::string text =
-        fmt::format("{} was first detected {:.2f} s before the end, {:.1f} m away", obstacle.name, end_s - first_hit_s,
-                    ahead_m(track, first_hit_s, obstacle));
+        fmt::format("{} was first detected {:.2f} s before the end, {:.1f} m away", obstacle.name,
+                    end_s - first_hit_s, ahead_m(track, first_hit_s, obstacle));
     story.events.push_back({first_hit_s, "detected", text});
     story.before.push_back(fmt::format("{}; {} hits in {} frames.", text, hits, frames));
   } else {
@@ -143,21 +144,23 @@ void tell_of_obstacle(const Flight& flight, const FlightTrack& track, FlightStor
     sum_world += place_world;
   }
   if (points == 0) {
-    story.before.push_back(fmt::format("At the end the map held no point within {:.0f} m of it", 2 * belongs_within_m));
+    story.before.push_back(
+        fmt::format("At the end the map held no point within {:.0f} m of it", 2 * belongs_within_m));
     if (forgotten_s > 0) {
       story.before.back() += fmt::format(": it had lost the last one {:.2f} s before", end_s - forgotten_s);
-      story.events.push_back({forgotten_s, "forgotten", fmt::format("the map lost its last point of {}", obstacle.name)});
+      story.events.push_back(
+          {forgotten_s, "forgotten", fmt::format("the map lost its last point of {}", obstacle.name)});
     }
     story.before.back() += ".";
     return;
   }
   const Eigen::Vector3d off_world = sum_world / points - obstacle.from_world;
-  story.before.push_back(
-      fmt::format("At the end the map held {} points for it, the nearest {:.2f} m from its surface; their middle "
-                  "lay {:.2f} m {} and {:.2f} m {} its axis.",
-                  points, std::max(0.0, nearest_m), std::abs(off_world.y()),
-                  off_world.y() > 0 ? "to the left" : "to the right", std::abs(off_world.x()),
-                  off_world.x() > 0 ? "behind" : "before"));
+  story.before.push_back(fmt::format(
+      "At the end the map held {} points for it, the nearest {:.2f} m from its surface; their middle "
+      "lay {:.2f} m {} and {:.2f} m {} its axis.",
+      points, std::max(0.0, nearest_m), std::abs(off_world.y()),
+      off_world.y() > 0 ? "to the left" : "to the right", std::abs(off_world.x()),
+      off_world.x() > 0 ? "behind" : "before"));
 }
 
 /// Frames that did not come; an estimate that no longer knows how wrong it is.
@@ -165,7 +168,9 @@ void tell_of_senses(const FlightTrack& track, double end_s, FlightStory& story) 
   double before_s = track.frames.empty() ? end_s : seconds(track.frames.front().t_ns);
   const auto tell_gap = [&](double until_s) {
     if (until_s - before_s > gap_s)
-      story.events.push_back({before_s, "blind", fmt::format("no picture reached the autopilot for {:.2f} s", until_s - before_s)});
+      story.events.push_back(
+          {before_s, "blind",
+           fmt::format("no picture reached the autopilot for {:.2f} s", until_s - before_s)});
   };
   for (const TrackFrame& frame : track.frames) {
     tell_gap(seconds(frame.t_ns));
@@ -177,8 +182,9 @@ void tell_of_senses(const FlightTrack& track, double end_s, FlightStory& story) 
     return (error_m > wrong_m && error_m > 3 * moment.position_sigma_world.array()).any();
   });
   if (lost != track.moments.end())
-    story.events.push_back({lost->t_s, "estimate",
-                            fmt::format("the estimate's error left its 3 sigma: {:.2f} m", lost->position_error_world.norm())});
+    story.events.push_back(
+        {lost->t_s, "estimate",
+         fmt::format("the estimate's error left its 3 sigma: {:.2f} m", lost->position_error_world.norm())});
 }
 
 /// Of an aircraft that left its band: how it moved in the last second, and what it knew of that.
@@ -189,13 +195,14 @@ void tell_of_motion(const FlightTrack& track, FlightStory& story) {
   const auto banked = std::ranges::max_element(
       first, track.moments.end(), {}, [](const TrackMoment& moment) { return std::abs(moment.bank_rad); });
   const double risen_m = end.T_world_true.translation().z() - first->T_world_true.translation().z();
-  std::string text =
-      fmt::format("In the last {:.1f} s it {} {:.1f} m", end.t_s - first->t_s, risen_m < 0 ? "sank" : "climbed", std::abs(risen_m));
+  std::string text = fmt::format("In the last {:.1f} s it {} {:.1f} m", end.t_s - first->t_s,
+                                 risen_m < 0 ? "sank" : "climbed", std::abs(risen_m));
   if (std::abs(banked->bank_rad) > level_rad)
     text += fmt::format(", banked up to {:.0f} degrees to the {} ({:.0f} were commanded)",
                         degrees * std::abs(banked->bank_rad), banked->bank_rad > 0 ? "right" : "left",
                         degrees * std::abs(banked->commanded_bank_rad));
-  story.before.push_back(fmt::format("{}, and its speed went from {:.1f} to {:.1f} m/s.", text, first->speed_mps, end.speed_mps));
+  story.before.push_back(fmt::format("{}, and its speed went from {:.1f} to {:.1f} m/s.", text,
+                                     first->speed_mps, end.speed_mps));
   double lowest_m = std::numeric_limits<double>::infinity(), highest_m = -lowest_m;
   for (const TrackPlan& plan : track.plans)
     if (plan.from_s >= end.t_s - told_s)
@@ -244,23 +251,26 @@ FlightStory story_of(const Flight& flight, const FlightTrack& track) {
     story.part = touch.part;
     story.impact_world = touch.position_world;
   }
-  if (flight.ending() == Ending::collision)
-    story.touched = nearest_obstacle(flight.truth().T_world_body, flight.scenario().airframe, flight.obstacles());
-  story.ending = ending_sentence(flight, story);
-  if (!story.ending.empty()) story.ending.front() = static_cast<char>(std::toupper(story.ending.front()));
+  if (flight.outcome() == Outcome::collision)
+    story.touched =
+        nearest_obstacle(flight.truth().T_world_body, flight.scenario().airframe, flight.obstacles());
+  story.outcome = outcome_sentence(flight, story);
+  if (!story.outcome.empty()) story.outcome.front() = static_cast<char>(std::toupper(story.outcome.front()));
   if (track.launch_s > 0) story.events.push_back({track.launch_s, "launch", "left the catapult"});
   for (const FaultConfig& fault : flight.scenario().faults)
     if (fault.at_s <= end_s)
-      story.events.push_back({fault.at_s, "fault",
-                              fmt::format("fault: {} {}", faulty_sensor_names[static_cast<std::size_t>(fault.sensor)].first,
-                                          fault_kind_names[static_cast<std::size_t>(fault.kind)].first)});
+      story.events.push_back(
+          {fault.at_s, "fault",
+           fmt::format("fault: {} {}", faulty_sensor_names[static_cast<std::size_t>(fault.sensor)].first,
+                       fault_kind_names[static_cast<std::size_t>(fault.kind)].first)});
   if (story.touched) tell_of_obstacle(flight, track, story);
   tell_of_senses(track, end_s, story);
-  if (flight.ending() == Ending::out_of_bounds || flight.ending() == Ending::ground) tell_of_motion(track, story);
-  if (flight.ending() != Ending::goal) tell_of_plans(track, story);
-  std::string ending(word_for(flight.ending().value()));
-  std::ranges::replace(ending, '_', ' ');
-  story.events.push_back({end_s, "ending", ending});
+  if (flight.outcome() == Outcome::out_of_bounds || flight.outcome() == Outcome::ground)
+    tell_of_motion(track, story);
+  if (flight.outcome() != Outcome::goal) tell_of_plans(track, story);
+  std::string outcome(word_for(flight.outcome().value()));
+  std::ranges::replace(outcome, '_', ' ');
+  story.events.push_back({end_s, "outcome", outcome});
   std::ranges::stable_sort(story.events, {}, &FlightEvent::t_s);
   return story;
 }

@@ -12,17 +12,17 @@ namespace understory {
 /// Something that happened at one moment.
 struct FlightEvent {
   double t_s = 0;
-  std::string kind;  ///< launch, in_view, detected, forgotten, blind, estimate, fallback, fault, ending
+  std::string kind;  ///< launch, in_view, detected, forgotten, blind, estimate, fallback, fault, outcome
   std::string text;
 };
 
 /// How a flight ended, in words, and what led to it.
 struct FlightStory {
-  std::string ending;                    ///< one sentence: what, when, by how much
-  std::vector<std::string> before;       ///< what was seen and remembered of the obstacle that was hit
-  std::vector<FlightEvent> events;       ///< in order of time
-  std::optional<std::size_t> touched;    ///< index of the obstacle that was hit
-  std::string part;                      ///< of the aircraft that touched it or the ground
+  std::string outcome;                 ///< one sentence: what, when, by how much
+  std::vector<std::string> before;     ///< what was seen and remembered of the obstacle that was hit
+  std::vector<FlightEvent> events;     ///< in order of time
+  std::optional<std::size_t> touched;  ///< index of the obstacle that was hit
+  std::string part;                    ///< of the aircraft that touched it or the ground
   std::optional<Eigen::Vector3d> impact_world;
 };
 

@@ -29,7 +29,8 @@ class ProgressTeller : public FlightObserver {
     if (flight.clock().step() % progress_every_steps != 0) return;
     const FlightResult& so_far = record_.so_far();
     tell_({flight.clock().t_s(), flight.stopwatch().elapsed_s(), so_far.progress_m,
-           flight.scenario().goal_x_m(), flight.truth().velocity_world_mps.norm(), so_far.min_clearance_m});
+           flight.scenario().goal_x_m(), flight.truth().velocity_world_mps.norm(),
+           so_far.minimum_clearance_m});
   }
 
  private:
@@ -50,7 +51,7 @@ std::string warning_of(const FlightResult& result, const std::string& expected_d
 void write_story(const Flight& flight, const FlightResult& result, const FlyOptions& options,
                  TrackRecorder& recorder, const FlightFilm* film) {
   const fs::path root = options.models_folder.parent_path();
-  const bool keeps_track = !options.track.empty() && result.ending != Ending::goal;
+  const bool keeps_track = !options.track.empty() && result.outcome != Outcome::goal;
   if (!options.report && !keeps_track) return;
   const FlightTrack track = recorder.finish(flight);
   const FlightStory story = story_of(flight, track);
@@ -80,7 +81,7 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   observers.insert(observers.end(), options.observers.begin(), options.observers.end());
 
   Flight flight(scenario, {options.models_folder, options.renderer}, std::move(observers));
-  while (!flight.ending()) flight.step();
+  while (!flight.outcome()) flight.step();
 
   const FlightResult result = record.finish(flight);
   std::string lost;

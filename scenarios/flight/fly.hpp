@@ -21,7 +21,7 @@ struct FlightProgress {
   double progress_m = 0;
   double goal_m = 0;
   double speed_mps = 0;
-  double min_clearance_m = 0;
+  double minimum_clearance_m = 0;
 };
 
 struct FlyOptions {

@@ -13,8 +13,8 @@ constexpr int block_px = 5;
 constexpr int last_row_of_240 = 205;  // about where the original detector ends (docs/sources.md [2])
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A bar in the left camera's frame.
-struct SeenBar {
+/// A round obstacle in the left camera's frame.
+struct SeenObstacle {
   Eigen::Vector3d from = Eigen::Vector3d::Zero();
   Eigen::Vector3d to = Eigen::Vector3d::Zero();
   double radius_m = 0;
@@ -59,8 +59,8 @@ State TrueState::state_at(std::int64_t t_ns) const {
   return then;
 }
 
-double ray_meets_bar(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-                     const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius_m) {
+double ray_meets_round_obstacle(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                                const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius_m) {
   const double length_m = (to - from).norm();
   const Eigen::Vector3d axis = (to - from) / length_m;
   const Eigen::Vector3d offset = origin - from;
@@ -115,30 +115,32 @@ const std::vector<StereoHit>& TrueDepth::detect(const StereoFrame& frame) {
   const double corner_y = std::max(rig_.center_y_px, rig_.height_px - rig_.center_y_px) / rig_.focal_px;
   const double reach_m = maximum_depth_m_ * std::sqrt(1 + corner_x * corner_x + corner_y * corner_y);
   const Eigen::Isometry3d T_world_camera = T_camera_world.inverse();
-  std::vector<SeenBar> bars;
+  std::vector<SeenObstacle> round_obstacles;
   std::vector<Obstacle> walls;
-  for (const Obstacle& bar : obstacles_) {
-    if (bar.kind == ObstacleKind::wall) {
-      walls.push_back(bar);
+  for (const Obstacle& obstacle : obstacles_) {
+    if (obstacle.kind == ObstacleKind::wall) {
+      walls.push_back(obstacle);
       continue;
     }
-    const SeenBar seen{T_camera_world * bar.from_world, T_camera_world * bar.to_world, bar.radius_m};
+    const SeenObstacle seen{T_camera_world * obstacle.from_world, T_camera_world * obstacle.to_world,
+                            obstacle.radius_m};
     const Eigen::Vector3d along = seen.to - seen.from;
     const double nearest = std::clamp(-seen.from.dot(along) / along.squaredNorm(), 0.0, 1.0);
-    const bool is_ahead = std::max(seen.from.z(), seen.to.z()) + bar.radius_m > 0;
-    if (is_ahead && (seen.from + nearest * along).norm() < reach_m + bar.radius_m) bars.push_back(seen);
+    const bool is_ahead = std::max(seen.from.z(), seen.to.z()) + obstacle.radius_m > 0;
+    if (is_ahead && (seen.from + nearest * along).norm() < reach_m + obstacle.radius_m)
+      round_obstacles.push_back(seen);
   }
   hits_.clear();
-  if (bars.empty() && walls.empty()) return hits_;
+  if (round_obstacles.empty() && walls.empty()) return hits_;
   const int last_row_px = rig_.scaled_row_px(last_row_of_240);
   for (int row = 0; row <= last_row_px && row + block_px <= rig_.height_px; row += block_px) {
     for (int column = 0; column + block_px <= rig_.width_px; column += block_px) {
       const Eigen::Vector3d ray((column + 2 - rig_.center_left_x_px) / rig_.focal_px,
                                 (row + 2 - rig_.center_y_px) / rig_.focal_px, 1);
       double depth_m = infinity;  // the ray's z is 1, so multiples of it are depths
-      for (const SeenBar& bar : bars) {
-        depth_m =
-            std::min(depth_m, ray_meets_bar(Eigen::Vector3d::Zero(), ray, bar.from, bar.to, bar.radius_m));
+      for (const SeenObstacle& obstacle : round_obstacles) {
+        depth_m = std::min(depth_m, ray_meets_round_obstacle(Eigen::Vector3d::Zero(), ray, obstacle.from,
+                                                             obstacle.to, obstacle.radius_m));
       }
       for (const Obstacle& wall : walls) {
         depth_m = std::min(depth_m,

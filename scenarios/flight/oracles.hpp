@@ -34,6 +34,7 @@ class TrueState : public StateSource {
   void on(const MagnetometerSample&) override {}
   void on(const GpsSample&) override {}
   void on(const ResightingSample&) override {}
+  void on(const ThrustSample&) override {}
   const State& state() const override { return state_; }
   State state_at(std::int64_t t_ns) const override;
 
@@ -55,9 +56,9 @@ class NoDetector : public ObstacleDetector {
 };
 
 /// Perfect detection at the pushbroom's depth: a hit for every 5x5 block of the left image (rows 0..205, as
-/// the original detector) whose centre ray first meets a bar or wall within one pixel of disparity of the
-/// detection depth. The depth is analytic (ray against round bar or box); images are not used. Hits carry the
-/// true point.
+/// the original detector) whose centre ray first meets a obstacle or wall within one pixel of disparity of
+/// the detection depth. The depth is analytic (ray against round obstacle or box); images are not used. Hits
+/// carry the true point.
 class TrueDepth : public ObstacleDetector {
  public:
   /// Keeps a reference to the history, which must cover the time of every frame.
@@ -77,13 +78,13 @@ class TrueDepth : public ObstacleDetector {
   std::vector<StereoHit> hits_;
 };
 
-/// Where a ray first meets a wall, world frame, as for bars below.
+/// Where a ray first meets a wall, world frame, as for round obstacles below.
 double ray_meets_wall(const Eigen::Vector3d& origin_world, const Eigen::Vector3d& direction_world,
                       const Obstacle& wall);
 
-/// Where a ray first meets a bar's side: the multiple of `direction` from `origin`; +infinity where it does
-/// not. All in one frame. From inside the bar the answer is +infinity.
-double ray_meets_bar(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-                     const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius_m);
+/// Where a ray first meets a obstacle's side: the multiple of `direction` from `origin`; +infinity where it
+/// does not. All in one frame. From inside the obstacle the answer is +infinity.
+double ray_meets_round_obstacle(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                                const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius_m);
 
 }  // namespace understory

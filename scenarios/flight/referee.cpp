@@ -4,19 +4,19 @@
 
 namespace understory {
 
-std::optional<Ending> Referee::judge(const Truth& truth, Contact contact, bool released) {
-  if (static_cast<double>(truth.t_ns) * 1e-9 >= scenario_.time_limit_s) return Ending::time;
+std::optional<Outcome> Referee::outcome_at(const Truth& truth, Contact contact, bool released) {
+  if (static_cast<double>(truth.t_ns) * 1e-9 >= scenario_.time_limit_s) return Outcome::time;
   if (!released) return std::nullopt;
-  if (contact == Contact::obstacle) return Ending::collision;
-  if (contact == Contact::ground) return Ending::ground;
+  if (contact == Contact::obstacle) return Outcome::collision;
+  if (contact == Contact::ground) return Outcome::ground;
   const Eigen::Vector3d& place = truth.T_world_body.translation();
-  if (place.x() >= scenario_.goal_x_m()) return Ending::goal;
+  if (place.x() >= scenario_.goal_x_m()) return Outcome::goal;
   climbed_ = climbed_ || place.z() >= scenario_.band.minimum_altitude_m;
   const bool is_low = climbed_ && place.z() < scenario_.band.minimum_altitude_m;
   const bool is_high = place.z() > scenario_.band.maximum_altitude_m;
   const bool is_aside = std::abs(place.y()) > scenario_.forest.half_width_m;
   const bool is_back = place.x() < -scenario_.forest.half_width_m;
-  if (is_low || is_high || is_aside || is_back) return Ending::out_of_bounds;
+  if (is_low || is_high || is_aside || is_back) return Outcome::out_of_bounds;
   return std::nullopt;
 }
 

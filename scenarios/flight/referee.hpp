@@ -14,7 +14,7 @@ class Referee {
   explicit Referee(const Scenario& scenario) : scenario_(scenario) {}
 
   /// Once per physics step; a value ends the flight.
-  std::optional<Ending> judge(const Truth& truth, Contact contact, bool released);
+  std::optional<Outcome> outcome_at(const Truth& truth, Contact contact, bool released);
 
  private:
   Scenario scenario_;

@@ -70,9 +70,9 @@ void RunRecord::on_frame(const Flight& flight) {
   const std::size_t hits = flight.hits().size();
   digest_.add(static_cast<std::uint64_t>(frame.t_ns));
   // Images that are rendered for an observer alone must not change the digest.
-  const bool looked_at = looks(flight.scenario().perception.detector);
-  digest_.add(looked_at ? bytes_of(frame.left) : std::span<const std::byte>());
-  digest_.add(looked_at ? bytes_of(frame.right) : std::span<const std::byte>());
+  const bool detected_in = uses_images(flight.scenario().perception.detector);
+  digest_.add(detected_in ? bytes_of(frame.left) : std::span<const std::byte>());
+  digest_.add(detected_in ? bytes_of(frame.right) : std::span<const std::byte>());
   digest_.add(static_cast<std::uint64_t>(hits));
   result_.frames += 1;
   result_.detections += static_cast<std::int64_t>(hits);
@@ -118,7 +118,7 @@ void RunRecord::add_row(const Flight& flight) {
   digest_.add(controls.thrust_n);
   const double clearance_now_m =
       clearance_m(truth.T_world_body, flight.scenario().airframe, flight.obstacles());
-  result_.min_clearance_m = std::min(result_.min_clearance_m, clearance_now_m);
+  result_.minimum_clearance_m = std::min(result_.minimum_clearance_m, clearance_now_m);
   fmt::format_to(std::back_inserter(trajectory_), "{:.6f}", flight.clock().t_s());
   append(trajectory_, truth.T_world_body, truth.velocity_world_mps, truth.angular_rate_body_radps);
   append(trajectory_, state.T_world_body, state.T_world_body.linear() * state.velocity_body_mps,
@@ -153,7 +153,7 @@ FlightResult RunRecord::finish(const Flight& flight) {
   result_.sensor_seed = scenario.sensor_seed();
   result_.detector = word_for(scenario.perception.detector);
   result_.state_source = word_for(scenario.estimation.source);
-  result_.ending = flight.ending().value();
+  result_.outcome = flight.outcome().value();
   result_.simulated_s = flight.clock().t_s();
   const double flown_s = released_ns_ ? result_.simulated_s - static_cast<double>(*released_ns_) * 1e-9 : 0;
   if (flown_s > 0) result_.mean_speed_mps = result_.distance_m / flown_s;
@@ -163,8 +163,8 @@ FlightResult RunRecord::finish(const Flight& flight) {
   }
   const double clearance_now_m =
       clearance_m(flight.truth().T_world_body, scenario.airframe, flight.obstacles());
-  result_.min_clearance_m = std::min(result_.min_clearance_m, clearance_now_m);
-  if (result_.ending == Ending::collision) {
+  result_.minimum_clearance_m = std::min(result_.minimum_clearance_m, clearance_now_m);
+  if (result_.outcome == Outcome::collision) {
     const auto touched = nearest_obstacle(flight.truth().T_world_body, scenario.airframe, flight.obstacles());
     if (touched) result_.touched = flight.obstacles()[*touched].name;
   }
@@ -178,11 +178,12 @@ FlightResult RunRecord::finish(const Flight& flight) {
   return result_;
 }
 
-/// On a course of few named bars: the points seen on each.
+/// On a course of few named obstacles: the points seen on each.
 void RunRecord::count_points_on_obstacles(const std::vector<Obstacle>& obstacles) {
-  for (const Obstacle& bar : obstacles) {
-    const auto near = [&](const Eigen::Vector3d& point_world) { return belongs_to(point_world, bar); };
-    result_.points_on_obstacles.emplace_back(bar.name, std::ranges::count_if(true_positions_world_, near));
+  for (const Obstacle& obstacle : obstacles) {
+    const auto near = [&](const Eigen::Vector3d& point_world) { return belongs_to(point_world, obstacle); };
+    result_.points_on_obstacles.emplace_back(obstacle.name,
+                                             std::ranges::count_if(true_positions_world_, near));
   }
 }
 

@@ -66,7 +66,7 @@ constexpr double degree = pi / 180;
 
 double room_beside(const Segment& lane, const std::vector<Obstacle>& obstacles) {
   double room_m = std::numeric_limits<double>::infinity();
-  for (const Obstacle& bar : obstacles) room_m = std::min(room_m, obstacle_distance_m(lane, bar));
+  for (const Obstacle& obstacle : obstacles) room_m = std::min(room_m, obstacle_distance_m(lane, obstacle));
   return room_m;
 }
 
@@ -199,8 +199,8 @@ WalkPath walk_path(const WalkConfig& config, const Scenario& scenario, const Ste
   double first_x_m = before_m;
   if (!obstacles.empty()) {
     first_x_m = std::numeric_limits<double>::infinity();
-    for (const Obstacle& bar : obstacles)
-      first_x_m = std::min({first_x_m, bar.from_world.x(), bar.to_world.x()});
+    for (const Obstacle& obstacle : obstacles)
+      first_x_m = std::min({first_x_m, obstacle.from_world.x(), obstacle.to_world.x()});
   }
   path.from_x_m = std::clamp(first_x_m - before_m, 0.0, scenario.goal_x_m() - 1);
   const Eigen::Vector3d gaze_body = rig.T_body_camera.linear().col(2);

@@ -124,10 +124,10 @@ std::string imu_line(const ImuSample& sample) {
 
 std::string objects_text(const std::vector<Obstacle>& obstacles) {
   std::string text = objects_header;
-  const auto add = [&](std::size_t number, std::string_view name, std::string_view kind, const Obstacle& bar,
-                       double radius_m) {
-    text += fmt::format("{},{},{}{}{},{:.6f}\n", number, name, kind, vector_text(bar.from_world, 6),
-                        vector_text(bar.to_world, 6), radius_m);
+  const auto add = [&](std::size_t number, std::string_view name, std::string_view kind,
+                       const Obstacle& obstacle, double radius_m) {
+    text += fmt::format("{},{},{}{}{},{:.6f}\n", number, name, kind, vector_text(obstacle.from_world, 6),
+                        vector_text(obstacle.to_world, 6), radius_m);
   };
   add(object_ground, "ground", "ground", Obstacle{}, 0);
   for (std::size_t i = 0; i < obstacles.size(); ++i)

@@ -178,9 +178,9 @@ void FlightMcap::on_step(const Flight& flight) {
 void FlightMcap::on_end(const Flight& flight) {
   Implementation& to = *implementation_;
   to.put_moment(flight);
-  const Ending ending = flight.ending().value();
-  to.say(flight.clock().t_ns(), ending == Ending::goal ? foxglove::Log::INFO : foxglove::Log::ERROR,
-         std::string(word_for(ending)));
+  const Outcome outcome = flight.outcome().value();
+  to.say(flight.clock().t_ns(), outcome == Outcome::goal ? foxglove::Log::INFO : foxglove::Log::ERROR,
+         std::string(word_for(outcome)));
   to.file.finish();
 }
 

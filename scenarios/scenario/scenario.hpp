@@ -50,7 +50,7 @@ inline constexpr std::array<std::pair<std::string_view, PlanningPreset>, 2> plan
     {{"thorough", PlanningPreset::thorough}, {"economical", PlanningPreset::economical}}};
 inline constexpr std::array<std::pair<std::string_view, SensorGrade>, 4> sensor_grade_names{
     {{"ideal", SensorGrade::ideal},
-     {"plain", SensorGrade::plain},
+     {"nominal", SensorGrade::nominal},
      {"consumer", SensorGrade::consumer},
      {"rough", SensorGrade::rough}}};
 
@@ -59,7 +59,7 @@ inline std::string_view word_for(DetectorKind kind) {
   return detector_names[static_cast<std::size_t>(kind)].first;
 }
 /// Whether a detector looks at images. Oracles and the blind aircraft do not.
-inline bool looks(DetectorKind kind) {
+inline bool uses_images(DetectorKind kind) {
   return kind != DetectorKind::true_depth && kind != DetectorKind::none;
 }
 inline std::string_view word_for(StateKind kind) { return state_names[static_cast<std::size_t>(kind)].first; }
@@ -108,7 +108,7 @@ struct CameraSection {
 
 struct SensorSection {
   std::uint64_t seed = 0;  ///< of every sensor's noise, the cameras' too; 0: the scenario's seed
-  SensorGrade grade = SensorGrade::plain;  ///< what the keys beside it start from (docs/sensors.md)
+  SensorGrade grade = SensorGrade::nominal;  ///< what the keys beside it start from (docs/sensors.md)
   SensorsConfig sensors;
 };
 
@@ -136,8 +136,8 @@ void visit_fields(Visitor& visit, ComputeConfig& config) {
 
 struct PerceptionSection {
   DetectorKind detector = DetectorKind::pushbroom;  ///< true_depth and none look at no image
-  RulePreset rule = RulePreset::tuned;              ///< keys given under pushbroom win over it
-  PushbroomConfig pushbroom = tuned_rule("long");
+  PushbroomPreset preset = PushbroomPreset::tuned;  ///< keys given under pushbroom win over it
+  PushbroomConfig pushbroom = tuned_pushbroom("long");
   StereoBmConfig stereo_bm;
   StereoSgbmConfig stereo_sgbm;
   FullStereoCrop full_stereo;  ///< what of either's depths becomes hits
@@ -266,7 +266,7 @@ void visit_fields(Visitor& visit, SensorSection& section) {
 template <typename Visitor>
 void visit_fields(Visitor& visit, PerceptionSection& section) {
   visit("detector", section.detector, detector_names);
-  visit("rule", section.rule, rule_names);
+  visit("preset", section.preset, pushbroom_preset_names);
   visit("depths_m", section.pushbroom.depths_m, 0.1, 1000.0);  // to look at; empty: the rig's own
   visit("pushbroom", section.pushbroom);
   visit("stereo_bm", section.stereo_bm);

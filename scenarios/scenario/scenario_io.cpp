@@ -11,6 +11,8 @@
 #include "scenarios/config/config_reader.hpp"
 #include "scenarios/config/config_writer.hpp"
 #include "scenarios/config/keys.hpp"
+#include "scenarios/scenario/filter_for_sensors.hpp"
+#include "sim/aircraft/aerodynamics.hpp"
 #include "sim/scene/world_config.hpp"
 
 namespace understory {
@@ -32,7 +34,7 @@ constexpr int maximum_obstacles = 20'000;
 
 double palings_of(const FenceConfig& fence, double goal_x_m) {
   const double fences = std::max(0.0, std::ceil((goal_x_m - fence.first_across_m) / fence.across_apart_m));
-  const double across_m = fences * 2 * (fence.reach_m - 0.5 * fence.gate_m);
+  const double across_m = fences * 2 * (fence.reach_m - 0.5 * fence.opening_m);
   return (across_m + std::max(0.0, goal_x_m - fence.first_across_m)) / fence.spacing_m;
 }
 
@@ -65,8 +67,8 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
                      maximum_obstacles, palings));
   expect(scenario.goalposts.pass_minimum_m <= scenario.goalposts.pass_maximum_m,
          "goalposts.pass_minimum_m: expected at most goalposts.pass_maximum_m");
-  expect(scenario.fence.gate_m < 2 * scenario.fence.reach_m,
-         "fence.gate_m: expected less than twice fence.reach_m");
+  expect(scenario.fence.opening_m < 2 * scenario.fence.reach_m,
+         "fence.opening_m: expected less than twice fence.reach_m");
   expect(scenario.actuators.pitch_speed_mps == 0 ||
              scenario.actuators.pitch_speed_mps > scenario.actuators.thrust_speed_mps,
          "actuators.pitch_speed_mps: expected 0 or more than actuators.thrust_speed_mps");
@@ -168,13 +170,18 @@ Scenario compose(const Sources& sources, const std::string& name) {
   read_all(sources, first);
   Scenario scenario;
   scenario.sensors.sensors = sensors_of_grade(first.sensors.grade);
-  scenario.perception.pushbroom = rule_of(first.perception.rule, first.rig);
+  scenario.perception.pushbroom = pushbroom_of(first.perception.preset, first.rig);
   if (first.estimation.preset == FilterPreset::original) scenario.estimation.filter = original_filter();
   if (first.estimation.preset == FilterPreset::windy) scenario.estimation.filter = windy_filter();
+  // The original's filter knew nothing of its sensors; ideal sensors leave the nominal ones' margins.
+  if (first.estimation.preset != FilterPreset::original && first.sensors.grade != SensorGrade::ideal)
+    scenario.estimation.filter =
+        filter_for_sensors(scenario.estimation.filter, sensors_of_grade(first.sensors.grade));
   if (first.autopilot.preset == PlanningPreset::economical) scenario.autopilot = economical_planning();
   scenario.estimation.filter.distrust.imu_gap_s = 1.5 / first.sensors.sensors.imu_rate_hz;
   scenario.estimation.filter.start.position_world_m = rail_start_world(first.launch);
-  scenario.estimation.filter.start.pitch_rad = first.launch.climb_angle_rad;
+  scenario.estimation.filter.start.pitch_rad =
+      first.launch.climb_angle_rad + release_angle_of_attack_rad(first.airframe, first.launch.speed_mps);
   take_airframe(first.airframe, scenario);
   read_all(sources, scenario);
   scenario.rig = rig_file(scenario.rig, origin_of(sources, "rig"));
@@ -239,7 +246,7 @@ struct AutopilotKeys {
 };
 template <typename Visitor>
 void visit_fields(Visitor& visit, PerceptionKeys& perception) {
-  visit("rule", perception.config.rule, rule_names);
+  visit("preset", perception.config.preset, pushbroom_preset_names);
   visit("depths_m", perception.config.pushbroom.depths_m, 0.1, 1000.0);
   visit("pushbroom", perception.config.pushbroom);
   visit("stereo_bm", perception.config.stereo_bm);
@@ -263,12 +270,12 @@ VisionConfig read_vision_config(const VisionConfigSources& sources, std::string_
   for (const std::string& file : sources.with) trees.push_back(parse_config_file(file));
   for (const std::string& setting : sources.settings) trees.push_back(parse_assignment(setting));
   VisionConfig first;  // says which rule the others go over
-  first.rule = sources.rule;
+  first.preset = sources.preset;
   for (const ConfigNode& tree : trees) read_config(tree, first);
   VisionConfig config;
-  config.pushbroom = rule_of(first.rule, rig);
+  config.pushbroom = pushbroom_of(first.preset, rig);
   for (const ConfigNode& tree : trees) read_config(tree, config);
-  config.rule = first.rule;
+  config.preset = first.preset;
   return config;
 }
 

@@ -41,10 +41,10 @@ std::string scenario_to_text(const Scenario& scenario);
 std::vector<Obstacle> course_obstacles(const Scenario& scenario);
 
 /// What a scenario says of seeing, for commands that look at recordings: the detectors' and the map's numbers
-/// under a scenario's own keys (perception.rule, perception.depths_m, perception.pushbroom.X, ...,
+/// under a scenario's own keys (perception.preset, perception.depths_m, perception.pushbroom.X, ...,
 /// autopilot.map.X), so that a file of keys means the same in `fly`, `detect` and `evaluate`.
 struct VisionConfig {
-  RulePreset rule = RulePreset::tuned;
+  PushbroomPreset preset = PushbroomPreset::tuned;
   PushbroomConfig pushbroom;
   StereoBmConfig stereo_bm;
   StereoSgbmConfig stereo_sgbm;
@@ -54,9 +54,9 @@ struct VisionConfig {
 
 /// Where its keys come from.
 struct VisionConfigSources {
-  RulePreset rule = RulePreset::tuned;     ///< where no key names one
-  std::vector<std::string> with = {};      ///< files of keys
-  std::vector<std::string> settings = {};  ///< key=value, over the files
+  PushbroomPreset preset = PushbroomPreset::tuned;  ///< where no key names one
+  std::vector<std::string> with = {};               ///< files of keys
+  std::vector<std::string> settings = {};           ///< key=value, over the files
 };
 
 /// The keys over the numbers that their rule has for a rig of this name. Throws ScenarioError, one line that

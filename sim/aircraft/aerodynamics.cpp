@@ -144,4 +144,12 @@ std::optional<Trim> straight_trim(const Airframe& airframe, double airspeed_mps,
   return std::nullopt;
 }
 
+double release_angle_of_attack_rad(const Airframe& airframe, double speed_mps) {
+  constexpr double identified_trim_rad = 0.1915;  // 10.97 deg at 12.27 m/s
+  Airframe strong = airframe;
+  strong.max_thrust_n = 1e6;
+  const std::optional<Trim> trim = straight_trim(strong, speed_mps);
+  return trim ? trim->angle_of_attack_rad : identified_trim_rad;
+}
+
 }  // namespace understory

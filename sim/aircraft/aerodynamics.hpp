@@ -58,4 +58,8 @@ struct Trim {
 std::optional<Trim> straight_trim(const Airframe& airframe, double airspeed_mps, double climb_angle_rad = 0,
                                   double max_angle_of_attack_rad = 0.5236);
 
+/// Angle of attack at which the catapult holds and releases the aircraft: that of level flight at the release
+/// speed, even if the motor could not hold that speed.
+double release_angle_of_attack_rad(const Airframe& airframe, double speed_mps);
+
 }  // namespace understory

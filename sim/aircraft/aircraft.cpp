@@ -14,15 +14,6 @@ namespace {
 
 Eigen::Map<Eigen::Vector3d> vector_at(mjtNum* numbers) { return Eigen::Map<Eigen::Vector3d>(numbers); }
 
-/// Angle of attack of level flight at the release speed, even if the motor could not hold that speed.
-double release_angle_of_attack_rad(const Airframe& airframe, double speed_mps) {
-  constexpr double identified_trim_rad = 0.1915;  // 10.97 deg at 12.27 m/s
-  Airframe strong = airframe;
-  strong.max_thrust_n = 1e6;
-  const std::optional<Trim> trim = straight_trim(strong, speed_mps);
-  return trim ? trim->angle_of_attack_rad : identified_trim_rad;
-}
-
 /// Nose up turns about body -y.
 Eigen::Quaterniond pitched_up(double pitch_rad) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(-pitch_rad, Eigen::Vector3d::UnitY()));
@@ -96,9 +87,10 @@ void Aircraft::read_outline() {
       const Eigen::Vector3d axis =
           Eigen::Quaterniond(turn[0], turn[1], turn[2], turn[3]) * Eigen::Vector3d::UnitZ();
       const mjtNum* size = model_.geom_size + 3 * geom;  // radius, half length
-      bars_.push_back({centre, axis, size[1], size[0]});
+      obstacles_.push_back({centre, axis, size[1], size[0]});
     } else if (model_.geom_type[geom] == mjGEOM_BOX && model_.geom_conaffinity[geom] != 0) {
-      bars_.push_back({centre, Eigen::Vector3d::UnitZ(), 0, model_.geom_rbound[geom]});  // a wall: its sphere
+      obstacles_.push_back(
+          {centre, Eigen::Vector3d::UnitZ(), 0, model_.geom_rbound[geom]});  // a wall: its sphere
     }
   }
 }
@@ -128,11 +120,12 @@ AircraftShape Aircraft::shape() const {
 bool Aircraft::anything_near() const {
   const Eigen::Map<const Eigen::Vector3d> centre(data_->qpos);
   if (centre.z() < reach_m_) return true;
-  return std::any_of(bars_.begin(), bars_.end(), [&](const Bar& bar) {
-    const Eigen::Vector3d offset = centre - bar.centre_world;
-    const double along_m = std::clamp(offset.dot(bar.axis_world), -bar.half_length_m, bar.half_length_m);
-    const double near_m = reach_m_ + bar.radius_m;
-    return (offset - along_m * bar.axis_world).squaredNorm() < near_m * near_m;
+  return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const NearObstacle& obstacle) {
+    const Eigen::Vector3d offset = centre - obstacle.centre_world;
+    const double along_m =
+        std::clamp(offset.dot(obstacle.axis_world), -obstacle.half_length_m, obstacle.half_length_m);
+    const double near_m = reach_m_ + obstacle.radius_m;
+    return (offset - along_m * obstacle.axis_world).squaredNorm() < near_m * near_m;
   });
 }
 

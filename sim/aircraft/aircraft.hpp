@@ -76,7 +76,7 @@ class Aircraft {
 
  private:
   /// An obstacle's collision capsule.
-  struct Bar {
+  struct NearObstacle {
     Eigen::Vector3d centre_world;
     Eigen::Vector3d axis_world;
     double half_length_m;
@@ -112,7 +112,7 @@ class Aircraft {
   int body_ = 0;
   int ground_geom_ = 0;
   double reach_m_ = 0;  ///< from the centre of mass to the farthest corner of the collision boxes
-  std::vector<Bar> bars_;
+  std::vector<NearObstacle> obstacles_;
   Truth truth_;
 };
 

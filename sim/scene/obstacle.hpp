@@ -23,7 +23,7 @@ inline constexpr std::uint16_t object_nothing = 0;
 inline constexpr std::uint16_t object_ground = 1;
 inline constexpr std::uint16_t object_first_obstacle = 2;
 
-/// A round bar between two points (trunk, goal post, crossbar), or a wall: an upright rectangle with its
+/// A round obstacle between two points (trunk, goal post, crossbar), or a wall: an upright rectangle with its
 /// diagonal between the points, twice the radius thick. World frame, m.
 struct Obstacle {
   std::string name;

@@ -62,14 +62,14 @@ void write_wall(std::ostream& xml, std::size_t number, const Obstacle& wall) {
 /// cylinder.
 void write_collisions(std::ostream& xml, const std::vector<Obstacle>& obstacles) {
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    const Obstacle& bar = obstacles[i];
-    if (bar.kind == ObstacleKind::wall) {
-      write_wall(xml, i, bar);
+    const Obstacle& obstacle = obstacles[i];
+    if (obstacle.kind == ObstacleKind::wall) {
+      write_wall(xml, i, obstacle);
       continue;
     }
     xml << "<geom name='obstacle_" << i << "' type='capsule' group='3' contype='0' conaffinity='1' condim='1'"
-        << " rgba='.4 .3 .2 1' size='" << bar.radius_m << "' fromto='" << bar.from_world.transpose() << ' '
-        << bar.to_world.transpose() << "'/>\n";
+        << " rgba='.4 .3 .2 1' size='" << obstacle.radius_m << "' fromto='" << obstacle.from_world.transpose()
+        << ' ' << obstacle.to_world.transpose() << "'/>\n";
   }
 }
 

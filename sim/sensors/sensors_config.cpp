@@ -38,7 +38,7 @@ SensorsConfig consumer() {
   sensors.imu = mpu_6000();
   sensors.pitot.dead_zone_pa = 4;  // 2.6 m/s; this and the rest typical
   sensors.pitot.recovery_loss = 2;
-  sensors.barometer.wash_m_per_n = 0.26;
+  sensors.barometer.wash_m_per_n = 0.13;  // 0.2 m before the propeller
   sensors.magnetometer.soft_iron = 0.01;
   return sensors;
 }
@@ -78,7 +78,7 @@ SensorsConfig sensors_of_grade(SensorGrade grade) {
   switch (grade) {
     case SensorGrade::ideal:
       return ideal();
-    case SensorGrade::plain:
+    case SensorGrade::nominal:
       break;
     case SensorGrade::consumer:
       return consumer();

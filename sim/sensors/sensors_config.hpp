@@ -98,9 +98,10 @@ struct BarometerConfig {
   double step_m = 0.1;         ///< resolution
   double drift_m = 0.5;        ///< stationary sigma of the wandering offset
   double drift_time_s = 60.0;  ///< its time constant: weather, heat, airframe pressure
-  /// Altitude error from the propeller's wash, per newton of thrust. An 8 inch propeller's disc (0.032 m^2)
-  /// raises the dynamic pressure by 31 Pa per newton, 2.6 m of altitude (momentum theory); a port inside the
-  /// fuselage feels a part of it, here a tenth (typical), and reads too high.
+  /// Altitude read too high per newton of thrust. The propeller's suction lowers the static pressure before
+  /// it (momentum theory, sharpest at the disc): T / 2A times 1 - x / sqrt(x^2 + R^2) at a distance x. An 8
+  /// inch disc (A = 0.032 m^2) has 15.4 Pa per newton or 1.3 m of altitude at the disc, 0.39 m at x = 0.1 m
+  /// and 0.14 m at 0.2 m, with 11.8 Pa per metre.
   double wash_m_per_n = 0;
 };
 
@@ -196,7 +197,7 @@ void visit_fields(Visitor& visit, SensorsConfig& config) {
 /// number and its source. GPS is off in every grade.
 enum class SensorGrade {
   ideal,     ///< no errors at all; ranges, rates and delays stay
-  plain,     ///< white noise and constants only: the defaults of the structs
+  nominal,   ///< white noise and constants only: the defaults of the structs
   consumer,  ///< every error of a part of this class, from data sheets and published measurements
   rough,     ///< every error three times the consumer grade's
 };

@@ -36,6 +36,7 @@ class Tape : public StateSource {
   void on(const MagnetometerSample& sample) override { flight.back().magnetometer = sample; }
   void on(const GpsSample&) override {}
   void on(const ResightingSample&) override {}
+  void on(const ThrustSample&) override {}
   const State& state() const override { return none_; }
   State state_at(std::int64_t) const override { return none_; }
   Flight flight;

@@ -24,6 +24,7 @@ class Listener : public StateSource {
   void on(const BarometerSample&) override { ++altitudes; }
   void on(const MagnetometerSample&) override {}
   void on(const ResightingSample&) override {}
+  void on(const ThrustSample&) override {}
   void on(const GpsSample& fix) override {
     fixes.push_back(fix);
     ages_ns.push_back(now_ns - fix.t_ns);

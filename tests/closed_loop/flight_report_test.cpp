@@ -34,7 +34,7 @@ Scenario library(const std::string& name, const std::vector<std::string>& settin
 /// A flight that ended, its track and its story.
 struct Told {
   explicit Told(const Scenario& scenario) : flight(scenario, {root / "models"}, {&record, &recorder}) {
-    while (!flight.ending()) flight.step();
+    while (!flight.outcome()) flight.step();
     result = record.finish(flight);
     track = recorder.finish(flight);
     story = story_of(flight, track);
@@ -57,12 +57,12 @@ const std::vector<std::string> blind{"seed=1000", "perception.detector=none"};
 
 TEST(FlightStory, NamesTrunkPartAndPlaceOfACollision) {
   const Told told(library("dense", blind));
-  ASSERT_EQ(told.result.ending, Ending::collision);
+  ASSERT_EQ(told.result.outcome, Outcome::collision);
   ASSERT_TRUE(told.story.touched);
   const Obstacle& touched = told.flight.obstacles()[*told.story.touched];
   EXPECT_EQ(touched.name, told.result.touched);
-  expect_part(told.story.ending, touched.name);
-  expect_part(told.story.ending, fmt::format("{:.2f} s", told.flight.clock().t_s()));
+  expect_part(told.story.outcome, touched.name);
+  expect_part(told.story.outcome, fmt::format("{:.2f} s", told.flight.clock().t_s()));
   // The place lies on the trunk and on the part that is named, but for the step that MuJoCo allows.
   ASSERT_TRUE(told.story.impact_world);
   const Eigen::Vector3d impact_world = *told.story.impact_world;
@@ -78,11 +78,11 @@ TEST(FlightStory, NamesTrunkPartAndPlaceOfACollision) {
 
 TEST(FlightStory, TellsWhenTheTrunkWasSeenAndWhereItWasRemembered) {
   // A planner that may only just touch: it flies into a tree that it has seen.
-  const Told told(library("dense", {"seed=1000", "autopilot.planner.field.half_span_m=0.01",
+  const Told told(library("dense", {"seed=1005", "autopilot.planner.field.half_span_m=0.01",
                                     "autopilot.planner.trajectory.minimum_clearance_m=0.01"}));
-  ASSERT_EQ(told.result.ending, Ending::collision);
+  ASSERT_EQ(told.result.outcome, Outcome::collision);
   const FlightEvent *seen = told.event("in_view"), *detected = told.event("detected"),
-                    *end = told.event("ending");
+                    *end = told.event("outcome");
   ASSERT_TRUE(seen != nullptr && detected != nullptr && end != nullptr);
   EXPECT_LE(seen->t_s, detected->t_s);
   EXPECT_LT(detected->t_s, end->t_s);
@@ -92,9 +92,10 @@ TEST(FlightStory, TellsWhenTheTrunkWasSeenAndWhereItWasRemembered) {
 TEST(FlightStory, SaysWhichBoundWasLeftAndByHowMuch) {
   const Told told(
       library("clear", {"seed=1000", "band.maximum_altitude_m=2.2", "band.cruise_altitude_m=2.1"}));
-  ASSERT_EQ(told.result.ending, Ending::out_of_bounds);
-  expect_part(told.story.ending, "upper bound of 2.2 m");
-  expect_part(told.story.ending, fmt::format("{:.2f} m", told.flight.truth().T_world_body.translation().z()));
+  ASSERT_EQ(told.result.outcome, Outcome::out_of_bounds);
+  expect_part(told.story.outcome, "upper bound of 2.2 m");
+  expect_part(told.story.outcome,
+              fmt::format("{:.2f} m", told.flight.truth().T_world_body.translation().z()));
 }
 
 TEST(FlightTrack, IsTheFlight) {
@@ -140,7 +141,7 @@ class ReportCommand : public testing::Test {
 TEST_F(ReportCommand, MakesAPageFromARunAndLeavesTheRest) {
   fly_briefly();
   const std::string before = file("run/result.json");
-  const support::Outcome outcome = here("report run --no-film");
+  const support::Outcome outcome = here("report run --no-video");
   EXPECT_EQ(outcome.status, 0);
   expect_part(outcome.text, "flown again, with the run's digest");
   EXPECT_EQ(file("run/result.json"), before);
@@ -153,7 +154,7 @@ TEST_F(ReportCommand, MakesAPageFromARunAndLeavesTheRest) {
 TEST_F(ReportCommand, GivesACommandThatFliesTheSameScenario) {
   for (const std::vector<std::string>& settings :
        std::vector<std::vector<std::string>>{{"seed=7"},
-                                             {"perception.rule=paper", "forest.length_m=30"},
+                                             {"perception.preset=original", "forest.length_m=30"},
                                              {"sensors.grade=rough", "perception.depths_m=[5, 9]"}}) {
     std::vector<std::string> brief = settings;
     brief.push_back("time_limit_s=0.1");
@@ -171,7 +172,7 @@ TEST_F(ReportCommand, GivesACommandThatFliesTheSameScenario) {
 TEST_F(ReportCommand, WarnsWhereTheFlightIsAnother) {
   fly_briefly();
   folder.write("run/result.json", R"({"digest": "0123456789abcdef"})");
-  const support::Outcome outcome = here("report run --no-film");
+  const support::Outcome outcome = here("report run --no-video");
   EXPECT_EQ(outcome.status, 1);
   expect_part(outcome.text, "another digest");
   expect_part(file("run/report.html"), "This page shows another flight");
@@ -181,7 +182,7 @@ TEST_F(ReportCommand, TakesARunWithoutAResultAndRefusesWhatIsNoRun) {
   fly_briefly();
   fs::remove(folder.path() / "run/result.json");
   fs::remove(folder.path() / "run/trajectory.csv");
-  EXPECT_EQ(here("report run --no-film --out page.html").status, 0);
+  EXPECT_EQ(here("report run --no-video --out page.html").status, 0);
   expect_part(file("page.html"), "id=\"facts\"");
   folder.write("run/result.json", "{");
   refused("report run", "run/result.json: expected");

@@ -33,7 +33,7 @@ struct Recorded {
     return observers;
   }
   FlightResult flown() {
-    while (!flight.ending()) flight.step();
+    while (!flight.outcome()) flight.step();
     return record.finish(flight);
   }
 
@@ -50,7 +50,7 @@ TEST(Flight, TheSecondOfAProcessIsAsInAFreshOne) {
 
 TEST(Flight, TwoOpenAtOnceAreAsAlone) {
   Recorded one(forest(1000)), other(forest(1001));
-  while (!one.flight.ending() || !other.flight.ending()) {
+  while (!one.flight.outcome() || !other.flight.outcome()) {
     one.flight.step();
     other.flight.step();
   }
@@ -90,7 +90,7 @@ struct Asking : FlightObserver {
       EXPECT_EQ(flight.state().t_ns, flight.clock().t_ns());
     }
     EXPECT_FALSE(flight.newest<GpsSample>());  // it has none
-    EXPECT_FALSE(flight.ending());
+    EXPECT_FALSE(flight.outcome());
   }
   std::int64_t frames = 0, hits = 0, steps = 0;
 };

@@ -19,7 +19,7 @@ struct Flown {
   std::string trajectory;  ///< the whole csv
 
   std::string outcome() const { return result.at("outcome"); }
-  double min_clearance_m() const { return result.at("min_clearance_m"); }
+  double minimum_clearance_m() const { return result.at("minimum_clearance_m"); }
   long detections() const { return result.at("detections"); }
   long remembered_points() const { return result.at("remembered_points"); }
   std::string digest() const { return result.at("digest"); }

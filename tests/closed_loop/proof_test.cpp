@@ -44,9 +44,9 @@ TEST(Proof, AnIntangibleForestIsAvoidedAllTheSame) {
   for (const int seed : seeds) {
     const Flown blind_flight = flown("forest", seed, with(harmless, blind));
     EXPECT_EQ(blind_flight.outcome(), "goal") << "seed " << seed;  // it went right through them
-    EXPECT_LT(blind_flight.min_clearance_m(), 0.05) << "seed " << seed;
+    EXPECT_LT(blind_flight.minimum_clearance_m(), 0.05) << "seed " << seed;
     const Flown seeing = flown("forest", seed, harmless);
-    avoided += seeing.outcome() == "goal" && seeing.min_clearance_m() > 0.1;
+    avoided += seeing.outcome() == "goal" && seeing.minimum_clearance_m() > 0.1;
   }
   EXPECT_GE(avoided, 2);
 }

@@ -30,6 +30,7 @@ struct Tampered : StateSource {
   void on(const MagnetometerSample& sample) override { filter.on(sample); }
   void on(const GpsSample& sample) override { filter.on(sample); }
   void on(const ResightingSample& sample) override { filter.on(sample); }
+  void on(const ThrustSample& sample) override { filter.on(sample); }
   const State& state() const override { return filter.state(); }
   State state_at(std::int64_t t_ns) const override { return filter.state_at(t_ns); }
 

@@ -65,7 +65,7 @@ TEST_P(EitherModel, OfTheMeasurements) {
   const MagnetometerSample magnetometer{
       0, somewhere().T_world_body.linear().transpose() * Eigen::Vector3d(0, 19, -44)};
   expect_jacobian<1>([&](const State& s) { return airspeed(s, pitot, {}); }, model);
-  expect_jacobian<1>([&](const State& s) { return altitude(s, barometer, {}); }, model);
+  expect_jacobian<1>([&](const State& s) { return altitude(s, barometer, 2.0, {}); }, model);
   expect_jacobian<1>([&](const State& s) { return heading(s, magnetometer, {}); }, model);
   expect_jacobian<1>([&](const State& s) { return sideslip(s, -1.0, {}, model); }, model);
   SideslipConfig zero;
@@ -161,8 +161,8 @@ TEST_P(EitherModel, TheCovarianceStepIsTheFullProduct) {
   walk.middleRows<3>(rate_block).setIdentity();
   expected += noise.rate_block_rthz * noise.rate_block_rthz * dt * walk * walk.transpose();
   const double added[] = {0.16 * dt, 0.25 * dt, (1 - kept * kept) * 0.49, 0.36 * dt, 0.64 * dt};
-  const int blocks[] = {accelerometer_bias_block, wind_block,  gust_block, pitot_bias_block,
-                        barometer_offset_block,   error_states};
+  const int blocks[] = {accelerometer_bias_block, wind_block,           gust_block,  pitot_bias_block,
+                        barometer_offset_block,   barometer_wash_block, error_states};
   for (int i = 0; i < 5; ++i)
     expected.diagonal().segment(blocks[i], blocks[i + 1] - blocks[i]).array() += added[i];
 

@@ -89,7 +89,7 @@ TEST(DamagedJson, OfEveryKindIsReadToOneLineAtMost) {
       {"campaign/flights/clear-short-1.json",
        {"collect " + at + "campaign", "report " + at + "campaign --quiet",
         "campaign " + at + "campaign.yaml --resume --print-tasks --out " + at + "campaign"}},
-      {"run/result.json", {"report " + at + "run --no-film --quiet"}},
+      {"run/result.json", {"report " + at + "run --no-video --quiet"}},
       {"tuning/tune.json", {"tune " + at + "tune.yaml --resume --out " + at + "tuning"}},
       {"tuning/trials.jsonl", {"tune " + at + "tune.yaml --resume --out " + at + "tuning"}},
   };

@@ -27,7 +27,7 @@ const std::map<std::string, std::string> commands{
     {"fly", "$U fly clear --set forest.length_m=1 --quiet --out out"},
     {"film", "$U fly clear --set forest.length_m=1 --quiet --video --mcap --out out"},
     {"record", "$U record clear --path $F/path.tum --quiet --out out"},
-    {"report", "cp -rn $F/run/. out/; $U report out --no-film --quiet"},
+    {"report", "cp -rn $F/run/. out/; $U report out --no-video --quiet"},
     {"mcap", "cp -rn $F/run/. out/; $U mcap out --quiet"},
     {"row", "$U fly clear --set forest.length_m=1 --quiet --row out/of_mine.json"},
     {"detect", "$U detect $F/recording --out out"},

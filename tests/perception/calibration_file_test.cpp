@@ -39,7 +39,7 @@ TEST_F(CalibrationFile, ThePapersRigLooksWhereItsRecordsSay) {
   EXPECT_NEAR(read.rig.center_y_px, 101.0, 0.03);
   EXPECT_EQ(read.calibration->left.distortion.size(), 8u);
   EXPECT_EQ(read.calibration->right.distortion.size(), 8u);
-  const PushbroomStereo detector(read.rig, paper_rule());
+  const PushbroomStereo detector(read.rig, original_pushbroom());
   EXPECT_NEAR(detector.detection_depth_m(), 4.81, 0.005);
   EXPECT_NEAR(detector.one_pixel_interval().near_m, 4.47, 0.005);
   EXPECT_NEAR(detector.one_pixel_interval().far_m, 5.20, 0.005);
@@ -51,7 +51,7 @@ TEST_F(CalibrationFile, TheLaterRigLooksWhereItsRecordsSay) {
   EXPECT_NEAR(read.rig.baseline_m, 0.334, 5e-4);
   EXPECT_NEAR(read.calibration->left.camera_matrix(0, 0), 321, 0.5);
   EXPECT_EQ(read.calibration->left.distortion.size(), 5u);
-  const PushbroomStereo detector(read.rig, paper_rule());
+  const PushbroomStereo detector(read.rig, original_pushbroom());
   EXPECT_NEAR(detector.detection_depth_m(), 10.14, 0.005);
   EXPECT_NEAR(detector.one_pixel_interval().near_m, 9.40, 0.005);
   EXPECT_NEAR(detector.one_pixel_interval().far_m, 11.0, 0.05);

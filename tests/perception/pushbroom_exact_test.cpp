@@ -121,7 +121,7 @@ class ExactRule : public testing::TestWithParam<Case> {
 };
 
 TEST_P(ExactRule, PaperRuleEqualsTheReference) {
-  PushbroomStereo detector(rig, stated(paper_rule()));
+  PushbroomStereo detector(rig, stated(original_pushbroom()));
   std::size_t found = 0, rejected = 0;
   for (const StereoFrame& frame : frames(rig, disparity, infinity)) {
     const Reference reference(frame, disparity, infinity);
@@ -144,7 +144,7 @@ TEST_P(ExactRule, PaperRuleEqualsTheReference) {
 }
 
 TEST_P(ExactRule, UniquenessEqualsTheReference) {
-  PushbroomConfig config = stated(robust_rule());
+  PushbroomConfig config = stated(robust_pushbroom());
   config.isolation = false;
   PushbroomStereo detector(rig, config);
   const int maximum = static_cast<int>(std::floor(rig.disparity_px(config.uniqueness_minimum_depth_m)));

@@ -80,7 +80,7 @@ Pair pair_of(int width_px, int height_px, Texture texture, int disparity_px, std
   return pair;
 }
 
-BlockRule rule_of(int width_px, int height_px, std::vector<int> disparities) {
+BlockRule pushbroom_of(int width_px, int height_px, std::vector<int> disparities) {
   BlockRule rule;
   rule.width_px = width_px;
   rule.height_px = height_px;
@@ -115,7 +115,7 @@ TEST(PushbroomKernel, EqualsThePlainRuleOnEveryTextureAndInstructionSet) {
   for (const Texture texture : {Texture::noise, Texture::saturated, Texture::flat, Texture::stripes,
                                 Texture::smooth, Texture::sparse}) {
     const Pair pair = pair_of(376, 240, texture, 33, 7);
-    BlockRule rule = rule_of(376, 240, {33});
+    BlockRule rule = pushbroom_of(376, 240, {33});
     bare += expect_equal(rule, pair);
     rule.horizontal_invariance = true;
     with_invariance += expect_equal(rule, pair);
@@ -143,7 +143,7 @@ TEST(Recordings, GiveTheKernelTheMatchesOfThePlainRule) {
     pair.left.assign(frame.left.datastart, frame.left.dataend);
     pair.right.assign(frame.right.datastart, frame.right.dataend);
     for (const int variant : {0, 1, 2}) {
-      BlockRule rule = rule_of(width, height, {22, 16});
+      BlockRule rule = pushbroom_of(width, height, {22, 16});
       rule.horizontal_invariance = variant == 0;
       rule.uniqueness = variant == 1;
       rule.every_pixel = variant == 2;
@@ -156,7 +156,7 @@ TEST(Recordings, GiveTheKernelTheMatchesOfThePlainRule) {
 
 TEST(PushbroomKernel, EqualsThePlainRuleWithSeveralDisparitiesAndBands) {
   const Pair pair = pair_of(376, 240, Texture::noise, 33, 8);
-  BlockRule rule = rule_of(376, 240, {33, 28, 0, -17, 46});
+  BlockRule rule = pushbroom_of(376, 240, {33, 28, 0, -17, 46});
   rule.horizontal_invariance = true;
   for (const int bands : {1, 2, 3, 50}) EXPECT_GT(expect_equal(rule, pair, bands), 100u);
 }
@@ -166,7 +166,7 @@ TEST(PushbroomKernel, EqualsThePlainRuleAtEveryPixel) {
   for (const Texture texture :
        {Texture::noise, Texture::saturated, Texture::flat, Texture::stripes, Texture::smooth}) {
     const Pair pair = pair_of(376, 240, texture, 33, 8);
-    BlockRule rule = rule_of(376, 240, {33, 28});
+    BlockRule rule = pushbroom_of(376, 240, {33, 28});
     rule.every_pixel = true;
     rule.last_row_px = 203;  // not a whole number of cells
     bare += expect_equal(rule, pair, 3);
@@ -184,7 +184,7 @@ TEST(PushbroomKernel, EqualsThePlainRuleOnOddAndTinyImages) {
       if (std::abs(disparity) + block_px > width) continue;
       const Pair pair = pair_of(width, height, Texture::noise, disparity, 9);
       for (const int filters : {0, 1, 2, 3}) {
-        BlockRule rule = rule_of(width, height, {disparity});
+        BlockRule rule = pushbroom_of(width, height, {disparity});
         rule.horizontal_invariance = (filters & 1) != 0;
         rule.uniqueness = (filters & 2) != 0;
         rule.every_pixel = filters == 0 && width % 3 == 0;
@@ -201,7 +201,7 @@ TEST(PushbroomKernel, EqualsThePlainRuleForRulesDrawnAtRandom) {
     const auto texture = static_cast<Texture>(*rc::gen::inRange(0, 6));
     const int disparity = *rc::gen::inRange(-(width - 5), width - 4);
     const Pair pair = pair_of(width, height, texture, disparity, *rc::gen::inRange<std::uint64_t>(1, 1000));
-    BlockRule rule = rule_of(width, height, {disparity});
+    BlockRule rule = pushbroom_of(width, height, {disparity});
     if (*rc::gen::arbitrary<bool>())
       rule.disparities.push_back({*rc::gen::inRange(-(width - 5), width - 4), 0, score_limit_units(10)});
     int largest_px = 0;
@@ -232,16 +232,16 @@ TEST(PushbroomKernel, EqualsThePlainRuleForRulesDrawnAtRandom) {
 }
 
 TEST(PushbroomKernel, RefusesRulesThatCannotBeMeant) {
-  BlockRule rule = rule_of(100, 50, {10});
+  BlockRule rule = pushbroom_of(100, 50, {10});
   EXPECT_NO_THROW(PushbroomKernel{rule});
   rule.disparities.front().disparity_px = 96;
   EXPECT_THROW(PushbroomKernel{rule}, std::logic_error);
-  rule = rule_of(100, 4, {10});
+  rule = pushbroom_of(100, 4, {10});
   EXPECT_THROW(PushbroomKernel{rule}, std::logic_error);
-  rule = rule_of(100, 50, {10});
+  rule = pushbroom_of(100, 50, {10});
   rule.right_margin_px = 86;
   EXPECT_THROW(PushbroomKernel{rule}, std::logic_error);
-  rule = rule_of(100, 50, {10});
+  rule = pushbroom_of(100, 50, {10});
   rule.stride_px = 0;
   EXPECT_THROW(PushbroomKernel{rule}, std::logic_error);
 }

@@ -70,7 +70,7 @@ void PrintTo(const Case& test, std::ostream* out) {
 class OnPlanes : public testing::TestWithParam<Case> {
  protected:
   StereoRig rig = house_rig(GetParam().rig);
-  PushbroomConfig config = GetParam().robust ? robust_rule() : paper_rule();
+  PushbroomConfig config = GetParam().robust ? robust_pushbroom() : original_pushbroom();
 };
 
 TEST_P(OnPlanes, HitsAtTheDetectionDistanceAndNowhereElse) {
@@ -141,11 +141,11 @@ INSTANTIATE_TEST_SUITE_P(RigsAndRules, OnPlanes,
 TEST(PushbroomStereo, DerivesTheRecordedDepthsFromTheRigs) {
   // Flight records: the paper's rig looks at 4.81 m (4.47 to 5.20), the later one at 10.14 m (9.40 to 11.0).
   // The paper's principal points are printed to a tenth of a pixel, which leaves 0.02 m open.
-  const PushbroomStereo paper(house_rig("paper.yaml"), paper_rule());
+  const PushbroomStereo paper(house_rig("paper.yaml"), original_pushbroom());
   EXPECT_NEAR(paper.detection_depth_m(), 4.81, 0.02);
   EXPECT_NEAR(paper.one_pixel_interval().near_m, 4.47, 0.02);
   EXPECT_NEAR(paper.one_pixel_interval().far_m, 5.20, 0.03);
-  const PushbroomStereo later(house_rig("long.yaml"), paper_rule());
+  const PushbroomStereo later(house_rig("long.yaml"), original_pushbroom());
   EXPECT_NEAR(later.detection_depth_m(), 10.14, 0.005);
   EXPECT_NEAR(later.one_pixel_interval().near_m, 9.40, 0.005);
   EXPECT_NEAR(later.one_pixel_interval().far_m, 11.0, 0.01);
@@ -192,10 +192,10 @@ TEST(PushbroomStereo, RawPairsGiveTheHitsOfRectifiedOnesWithAnyNumberOfThreads) 
     const double depth_m = PushbroomStereo(rig, {}).detection_depth_m();
     const StereoFrame raw = raw_of(render_plane(rig, {.depth_m = depth_m}), calibration);
     const StereoFrame rectified = Rectifier(calibration, Interpolation::nearest).rectify(raw);
-    PushbroomConfig everything = robust_rule();
+    PushbroomConfig everything = robust_pushbroom();
     everything.horizontal_invariance = everything.subpixel = true;
     everything.depths_m = {depth_m, 0.9 * depth_m};
-    for (PushbroomConfig config : {paper_rule(), robust_rule(), everything})
+    for (PushbroomConfig config : {original_pushbroom(), robust_pushbroom(), everything})
       for (const bool every_pixel : {false, true}) {
         config.every_pixel = every_pixel;
         config.threads = 1;
@@ -217,7 +217,7 @@ TEST(PushbroomStereo, SeveralDepthsFindWhatEachWouldFindAlone) {
   const std::vector<double> depths_m{10.1, 7.0, 5.0};
   for (const double depth_m : depths_m) {
     const StereoFrame frame = render_plane(rig, {.depth_m = depth_m});
-    PushbroomConfig config = robust_rule();
+    PushbroomConfig config = robust_pushbroom();
     config.isolation = false;
     config.depths_m = depths_m;
     std::vector<StereoHit> together = PushbroomStereo(rig, config).detect(frame), alone;
@@ -259,7 +259,7 @@ double disparity_error_px(const StereoRig& rig, const PushbroomConfig& config) {
 
 TEST(PushbroomStereo, AParabolaTakesAThirdOfTheErrorInDisparityAway) {
   for (const char* name : {"paper.yaml", "long.yaml"})
-    for (PushbroomConfig config : {paper_rule(), robust_rule()}) {
+    for (PushbroomConfig config : {original_pushbroom(), robust_pushbroom()}) {
       const double whole_px = disparity_error_px(house_rig(name), config);
       config.subpixel = true;
       const double parabola_px = disparity_error_px(house_rig(name), config);
@@ -270,7 +270,7 @@ TEST(PushbroomStereo, AParabolaTakesAThirdOfTheErrorInDisparityAway) {
 TEST(PushbroomStereo, EachDepthHasItsOwnThresholdsWhereTheyAreGiven) {
   const StereoRig rig = house_rig("long.yaml");
   const StereoFrame frame = render_plane(rig, {.depth_m = 7});
-  PushbroomConfig config = robust_rule();
+  PushbroomConfig config = robust_pushbroom();
   config.isolation = false;
   config.depths_m = {10.1, 7.0};
   const auto hits_at_7 = [&](const PushbroomConfig& some) {
@@ -297,7 +297,8 @@ TEST(PushbroomStereo, LooksAsFarDownTallerImages) {
   StereoRig rig = house_rig("long.yaml");
   rig.height_px = 480;
   rig.center_y_px = 240;
-  for (const auto& [config, last_row_px] : {std::pair(paper_rule(), 400), std::pair(robust_rule(), 410)}) {
+  for (const auto& [config, last_row_px] :
+       {std::pair(original_pushbroom(), 400), std::pair(robust_pushbroom(), 410)}) {
     PushbroomStereo detector(rig, config);
     int lowest_px = 0;
     for (const StereoHit& hit : detector.detect(render_plane(rig, {.depth_m = detector.detection_depth_m()})))
@@ -309,12 +310,12 @@ TEST(PushbroomStereo, LooksAsFarDownTallerImages) {
 TEST(PushbroomStereo, RefusesRulesThatCannotBeMeant) {
   const StereoRig rig = house_rig("long.yaml");
   const auto expect_fault = [&](const std::string& fault, const auto& change) {
-    PushbroomConfig config = robust_rule();
+    PushbroomConfig config = robust_pushbroom();
     change(config);
     EXPECT_EQ(fault_of(config, rig), fault);
     EXPECT_THROW(PushbroomStereo(rig, config), std::invalid_argument);
   };
-  EXPECT_EQ(fault_of(robust_rule(), rig), "");
+  EXPECT_EQ(fault_of(robust_pushbroom(), rig), "");
   for (const int threads : {0, -1, 65})
     expect_fault("threads: expected 1 to 64, found " + std::to_string(threads),
                  [&](PushbroomConfig& config) { config.threads = threads; });
@@ -338,7 +339,7 @@ TEST(PushbroomStereo, RefusesRulesThatCannotBeMeant) {
 
 TEST(PushbroomStereo, RefusesImagesOfAnotherSizeOrKind) {
   const StereoRig rig = house_rig("paper.yaml");
-  PushbroomStereo detector(rig, paper_rule());
+  PushbroomStereo detector(rig, original_pushbroom());
   const cv::Mat right_size(240, 376, CV_8UC1, cv::Scalar(0)), small(120, 188, CV_8UC1, cv::Scalar(0));
   EXPECT_THROW(detector.detect({0, right_size, small}), std::logic_error);
   EXPECT_THROW(detector.detect({0, cv::Mat(240, 376, CV_8UC3, cv::Scalar()), right_size}), std::logic_error);

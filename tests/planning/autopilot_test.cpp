@@ -39,6 +39,7 @@ class LevelFlight : public StateSource {
   void on(const MagnetometerSample&) override {}
   void on(const GpsSample&) override {}
   void on(const ResightingSample&) override {}
+  void on(const ThrustSample&) override {}
 
  private:
   State state_;

@@ -21,7 +21,7 @@ CalibratedRig long_rig() {
 TEST(StereoScenes, ShowTextureAtTheDetectionDepthAndNeverTheSameTwice) {
   const CalibratedRig rig = long_rig();
   const std::vector<StereoFrame> frames = stereo_scenes(rig, 4, 1);
-  PushbroomConfig config = robust_rule();
+  PushbroomConfig config = robust_pushbroom();
   PushbroomStereo detector(rig, config);
   std::size_t hits = 0;
   for (const StereoFrame& frame : frames) hits += detector.detect(frame).size();

@@ -54,7 +54,7 @@ class CampaignRun : public testing::Test {
   }
   /// The process that flies `id`, once it does.
   pid_t process_of(const std::string& id) const {  // ours: other tests fly flights of that name beside us
-    for (int look = 0; look < 2000; ++look) {
+    for (int attempt = 0; attempt < 2000; ++attempt) {
       for (const auto& process : fs::directory_iterator("/proc")) {
         const std::string command = content_of(process.path() / "cmdline");
         if (command.find(path.string()) != std::string::npos &&
@@ -125,7 +125,7 @@ TEST_F(CampaignRun, FlightsDieWithTheirCampaign) {
   kill(flight, SIGSTOP);
   kill(child, SIGKILL);
   wait_for(child);
-  for (int look = 0; look < 1000 && fs::exists("/proc/" + std::to_string(flight)); ++look)
+  for (int attempt = 0; attempt < 1000 && fs::exists("/proc/" + std::to_string(flight)); ++attempt)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   EXPECT_FALSE(fs::exists("/proc/" + std::to_string(flight)));
 }

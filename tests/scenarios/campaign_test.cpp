@@ -153,7 +153,7 @@ FlightRow flown(double clearance_m) {
   row.status = RunStatus::flown;
   row.outcome = "goal";
   row.progress_m = 75.125;
-  row.min_clearance_m = clearance_m;
+  row.minimum_clearance_m = clearance_m;
   row.detections = 12345678;
   row.digest = "00ff";
   return row;
@@ -183,17 +183,17 @@ TEST_F(CampaignFolders, CollectsWholeFlightsInTheCampaignsOrder) {
   EXPECT_EQ(rows[1].condition, "clear");
   EXPECT_TRUE(rows[1].reached_goal());
   EXPECT_EQ(rows[1].progress_m, 75.125);
-  EXPECT_EQ(rows[1].min_clearance_m, 0.5);
+  EXPECT_EQ(rows[1].minimum_clearance_m, 0.5);
   EXPECT_EQ(rows[1].detections, 12345678);
-  EXPECT_EQ(rows[1].minimum_points_on_a_bar, -1);
+  EXPECT_EQ(rows[1].minimum_points_on_an_obstacle, -1);
   EXPECT_EQ(rows[1].digest, "00ff");
 }
 
 TEST(FlightRow, SaysNothingOfWhatWasNotMeasured) {
   const double infinite = std::numeric_limits<double>::infinity();
   const std::string csv = to_csv({flown(infinite)});
-  EXPECT_EQ(rows_from_csv(csv, "flights.csv")[0].min_clearance_m, infinite);
-  expect_part(to_json_line(flown(infinite)), "\"min_clearance_m\":null");
+  EXPECT_EQ(rows_from_csv(csv, "flights.csv")[0].minimum_clearance_m, infinite);
+  expect_part(to_json_line(flown(infinite)), "\"minimum_clearance_m\":null");
   FlightRow crashed;
   crashed.status = RunStatus::crashed;
   expect_part(to_json_line(crashed), "\"outcome\":null");

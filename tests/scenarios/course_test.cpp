@@ -75,16 +75,16 @@ TEST(Goalposts, ArePassedWithinTheirDistances) {
   const GoalpostsConfig config;
   int left = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    const auto bars = goalposts(config, seed);
-    ASSERT_EQ(bars.size(), 3u);
-    const double near_y = bars[0].from_world.y();
-    const double far_y = bars[1].from_world.y();
+    const auto obstacles = goalposts(config, seed);
+    ASSERT_EQ(obstacles.size(), 3u);
+    const double near_y = obstacles[0].from_world.y();
+    const double far_y = obstacles[1].from_world.y();
     EXPECT_GE(std::abs(near_y) - config.radius_m, 0.5);
     EXPECT_LE(std::abs(near_y) - config.radius_m, 2.0);
     EXPECT_LT(near_y * far_y, 0);  // the course runs between the uprights
-    const double between_axes_m = (bars[0].from_world - bars[1].from_world).norm();
+    const double between_axes_m = (obstacles[0].from_world - obstacles[1].from_world).norm();
     EXPECT_NEAR(between_axes_m - 2 * config.radius_m, 5.639, 1e-12);  // 18 ft 6 in
-    EXPECT_NEAR(bars[2].from_world.z() + bars[2].radius_m, 3.048, 1e-12);
+    EXPECT_NEAR(obstacles[2].from_world.z() + obstacles[2].radius_m, 3.048, 1e-12);
     left += near_y > 0;
   }
   EXPECT_NEAR(left, 100, 30);
@@ -102,33 +102,33 @@ TEST(Windows, StandBehindTheGoal) {
 TEST(Fence, PalingsStandInRowsWithGates) {
   const FenceConfig config;
   int across = 0, beside = 0, rails = 0;
-  for (const Obstacle& bar : fence(config, 75)) {
-    if (bar.kind == ObstacleKind::rail) {
+  for (const Obstacle& obstacle : fence(config, 75)) {
+    if (obstacle.kind == ObstacleKind::rail) {
       ++rails;
-      EXPECT_NEAR(bar.from_world.z(), bar.to_world.z(), 1e-12);
-      EXPECT_GT(std::abs(bar.from_world.y()), 1.49);
+      EXPECT_NEAR(obstacle.from_world.z(), obstacle.to_world.z(), 1e-12);
+      EXPECT_GT(std::abs(obstacle.from_world.y()), 1.49);
       continue;
     }
-    EXPECT_EQ(bar.kind, ObstacleKind::post);
-    EXPECT_EQ(bar.from_world.z(), 0);
-    EXPECT_EQ(bar.to_world.z(), config.height_m);
-    const bool is_across = bar.name.rfind("across", 0) == 0;
+    EXPECT_EQ(obstacle.kind, ObstacleKind::post);
+    EXPECT_EQ(obstacle.from_world.z(), 0);
+    EXPECT_EQ(obstacle.to_world.z(), config.height_m);
+    const bool is_across = obstacle.name.rfind("across", 0) == 0;
     (is_across ? across : beside) += 1;
-    EXPECT_GE(std::abs(bar.from_world.y()), 0.5 * config.gate_m - 1e-12);
-    EXPECT_LE(std::abs(bar.from_world.y()), config.reach_m + 1e-12);
+    EXPECT_GE(std::abs(obstacle.from_world.y()), 0.5 * config.opening_m - 1e-12);
+    EXPECT_LE(std::abs(obstacle.from_world.y()), config.reach_m + 1e-12);
     if (is_across)
-      EXPECT_TRUE(bar.from_world.x() == 30 || bar.from_world.x() == 55) << bar.name;
+      EXPECT_TRUE(obstacle.from_world.x() == 30 || obstacle.from_world.x() == 55) << obstacle.name;
     else
-      EXPECT_NEAR(bar.from_world.y(), 3.5, 1e-12);
+      EXPECT_NEAR(obstacle.from_world.y(), 3.5, 1e-12);
   }
   EXPECT_EQ(across, 2 * 2 * 34);  // 13.5 m in steps of 0.4 m, at both ends
   EXPECT_EQ(beside, 112);         // 44.6 m
   EXPECT_EQ(rails, 2 * 5);
-  const auto bars = fence(config, 75);
+  const auto obstacles = fence(config, 75);
   double closest_m = 10;
-  for (std::size_t i = 0; i < bars.size(); ++i)
+  for (std::size_t i = 0; i < obstacles.size(); ++i)
     for (std::size_t k = 0; k < i; ++k)
-      closest_m = std::min(closest_m, (bars[i].from_world - bars[k].from_world).norm());
+      closest_m = std::min(closest_m, (obstacles[i].from_world - obstacles[k].from_world).norm());
   EXPECT_GT(closest_m, 2 * config.paling_radius_m);  // no two in one place
 }
 

@@ -71,7 +71,7 @@ TEST_F(DetectReal, HitsLieWhereDenseMatchingPutsThem) {
     return agreement(support::content_of(out + "/points.csv"), disparities);
   };
   // Where a checkerboard stands. A fifth of the dense pixels lie within a pixel of this depth.
-  const Agreement robust = detect(" --depth 2.2"), paper = detect(" --depth 2.2 --rule paper");
+  const Agreement robust = detect(" --depth 2.2"), paper = detect(" --depth 2.2 --preset original");
   EXPECT_GT(robust.hits, 100);
   EXPECT_GT(robust.within_a_pixel, 0.9 * robust.hits);
   const Agreement smooth = detect(" --depth 2.2 --rectify bilinear");

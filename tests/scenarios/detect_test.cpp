@@ -65,9 +65,9 @@ TEST_F(Detect, FoldersGiveTheHitsThatThePairsGiveInMemory) {
   support::write_pairs(folder.path(), frames, {"1", "2", "10"});
   // The rule, its default and its keys are those of a flight with this rig.
   for (const auto& [arguments, rule] :
-       {std::pair("", tuned_rule("paper")), std::pair(" --rule paper", paper_rule()),
-        std::pair(" --set perception.rule=paper", paper_rule()),
-        std::pair(" --rule robust", robust_rule())}) {
+       {std::pair("", tuned_pushbroom("paper")), std::pair(" --preset original", original_pushbroom()),
+        std::pair(" --set perception.preset=original", original_pushbroom()),
+        std::pair(" --preset robust", robust_pushbroom())}) {
     const auto hits = expected(frames, rule);
     ASSERT_GT(count_of(hits), 100u) << arguments;
     const Outcome outcome = expect_success(std::string("detect ") + folders() + to_out() + arguments);
@@ -78,7 +78,7 @@ TEST_F(Detect, FoldersGiveTheHitsThatThePairsGiveInMemory) {
     EXPECT_FALSE(fs::exists(fs::path(out) / "map.ply"));
   }
   expect_success("detect " + left + "/2.png " + right + "/2.png" + to_out());
-  EXPECT_EQ(found("points.csv"), hits_to_csv(expected({frames[1]}, tuned_rule("paper"))));
+  EXPECT_EQ(found("points.csv"), hits_to_csv(expected({frames[1]}, tuned_pushbroom("paper"))));
   EXPECT_FALSE(fs::exists(fs::path(out) / "overlays/000001.png"));  // of the run before
 }
 
@@ -90,7 +90,7 @@ TEST_F(Detect, AFileOfKeysMeansWhatItMeansToAFlight) {
                                       "perception: {pushbroom: {minimum_edge_sum: 700}}\n"
                                       "autopilot: {map: {voxel_m: 0}}\n")
                                .string();
-  PushbroomConfig rule = tuned_rule("paper");
+  PushbroomConfig rule = tuned_pushbroom("paper");
   rule.minimum_edge_sum = 700;
   expect_success("detect " + folders() + to_out() + " --with " + keys);
   EXPECT_EQ(found("points.csv"), hits_to_csv(expected(frames, rule)));
@@ -116,7 +116,7 @@ TEST_F(Detect, IsTheFlightsOwnDetector) {
 TEST_F(Detect, SeveralDepthsGiveTheHitsOfEach) {
   const std::vector<StereoFrame> frames = support::planes(rig, 2);
   support::write_pairs(folder.path(), frames, {"1", "2"});
-  PushbroomConfig rule = tuned_rule("paper");
+  PushbroomConfig rule = tuned_pushbroom("paper");
   rule.depths_m = {rig.detection_depth_m, 4.0};
   rule.depths_score_limit = {0.25, 0.2};
   const Outcome outcome = expect_success("detect " + folders() + to_out() +
@@ -142,7 +142,7 @@ TEST_F(Detect, AVideoGivesTheSameHitsAtItsTimes) {
   }
   writer.release();
   expect_success("detect " + video + " --video" + to_out());
-  EXPECT_EQ(found("points.csv"), hits_to_csv(expected(frames, tuned_rule("paper"))));
+  EXPECT_EQ(found("points.csv"), hits_to_csv(expected(frames, tuned_pushbroom("paper"))));
   cv::VideoCapture film((fs::path(out) / "overlay.mp4").string(), cv::CAP_FFMPEG);
   EXPECT_EQ(film.get(cv::CAP_PROP_FRAME_COUNT), 3);
   EXPECT_EQ(film.get(cv::CAP_PROP_FRAME_WIDTH), 2 * rig.width_px);
@@ -164,9 +164,9 @@ TEST_F(Detect, PosesCarryHitsIntoTheWorld) {
       expect_success("detect " + folders() + to_out() + " --set autopilot.map.voxel_m=0 --poses " +
                      folder.write("poses.txt", poses.str()).string());
   const std::vector<Eigen::Vector3d> points = positions_in(found("map.ply"));
-  const auto hits = expected(frames, tuned_rule("paper"));
+  const auto hits = expected(frames, tuned_pushbroom("paper"));
   ASSERT_EQ(points.size(), count_of(hits));
-  const double depth_m = PushbroomStereo(rig, robust_rule()).detection_depth_m();
+  const double depth_m = PushbroomStereo(rig, robust_pushbroom()).detection_depth_m();
   const Eigen::Vector3d camera = q * Eigen::Vector3d(0.10, 0.1765, 0);  // the paper rig's left camera
   std::size_t i = 0;
   for (const FrameHits& frame : hits) {
@@ -188,7 +188,7 @@ TEST_F(Detect, FramesOutsideThePosesAreReportedAndLeftOutOfTheMap) {
   const Outcome outcome =
       expect_success("detect " + folders() + to_out() + " --set autopilot.map.voxel_m=0 --poses " + poses);
   expect_part(outcome.text, "frames outside the poses' time, left out: 2");
-  EXPECT_EQ(positions_in(found("map.ply")).size(), expected(frames, tuned_rule("paper"))[1].hits.size());
+  EXPECT_EQ(positions_in(found("map.ply")).size(), expected(frames, tuned_pushbroom("paper"))[1].hits.size());
   const std::string later = folder.write("later.csv", "9500000000,0,0,0,1,0,0,0\n").string();
   support::expect_refusal("detect " + folders() + to_out() + " --poses " + later,
                           "later.csv: expected poses at the images' time, 1.000 to 3.000 s, found 9.500");
@@ -205,7 +205,7 @@ TEST_F(Detect, BadInputIsOneLineAndLeavesNoResult) {
   refuse("detect " + folders() + " --rig none --out " + out, "none: expected a rig file");
   refuse(detect + " --size 752", "--size 752: expected WIDTHxHEIGHT");
   refuse(detect + " --depth 4000", "depth");
-  refuse(detect + " --rule best", "--rule");
+  refuse(detect + " --preset best", "--preset");
   refuse(detect + " --rectify cubic", "--rectify");
   refuse(detect + " --unit inch", "--unit");
   refuse(detect + " --set perception.pushbroom.edges=3", "perception.pushbroom.edges: expected a known key");

@@ -36,7 +36,7 @@ struct Plane {
   DetectionGrid grid;
   EvaluationFrame frame;
   Plane(const char* name, double beyond_m)
-      : rig(support::house_rig(name)), grid(rig, {}, robust_rule().last_row_px) {
+      : rig(support::house_rig(name)), grid(rig, {}, robust_pushbroom().last_row_px) {
     support::SyntheticPlane plane;
     plane.depth_m = grid.depths[0].depth_m + beyond_m;
     frame.pair = support::render_plane(rig, plane);
@@ -53,7 +53,7 @@ struct Plane {
 TEST(Evaluation, APlaneAtTheDetectionDepthHasPrecisionOne) {
   for (const char* name : {"long.yaml", "paper.yaml"}) {
     Plane plane(name, 0);
-    for (const PushbroomConfig& rule : {paper_rule(), robust_rule()}) {
+    for (const PushbroomConfig& rule : {original_pushbroom(), robust_pushbroom()}) {
       PushbroomStereo detector(plane.rig, rule);
       const auto& hits = detector.detect(plane.frame.pair);
       ASSERT_GT(hits.size(), 200u);  // the rest is saturated or plain
@@ -264,7 +264,7 @@ TEST(Evaluation, ASlowComputerLosesWhatPassesBetweenItsLooks) {
     paced.add(frame, frame.pair.t_ns + 8'000'000, flight.grid, due, hits);
   });
   const PacedResult result = paced.result();
-  EXPECT_EQ(result.looks, 76);
+  EXPECT_EQ(result.frames, 76);
   ASSERT_EQ(result.sightings.size(), 2u);
   EXPECT_EQ(result.sightings[0].hits, 1);
   EXPECT_FALSE(result.sightings[0].found());
@@ -301,8 +301,8 @@ TEST(Evaluation, HistogramsCountEdgesToTheNearerBin) {
 TEST(Evaluation, LooksWhereTheDetectorLooks) {
   for (const char* name : {"long.yaml", "paper.yaml"}) {
     const StereoRig rig = support::house_rig(name);
-    const PushbroomStereo detector(rig, robust_rule());
-    const LookedAtDepth depth = looked_at_depth(rig, rig.detection_depth_m);
+    const PushbroomStereo detector(rig, robust_pushbroom());
+    const DetectionDepth depth = detection_depth(rig, rig.detection_depth_m);
     EXPECT_EQ(depth.disparity_px, detector.detection_disparity_px());
     EXPECT_EQ(depth.depth_m, detector.detection_depth_m());
     EXPECT_EQ(depth.one_pixel.near_m, detector.one_pixel_interval().near_m);

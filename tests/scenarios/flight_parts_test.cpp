@@ -32,7 +32,7 @@ std::vector<Result> a_second(std::int64_t cost_ns, std::int64_t latency_ns) {
   for (std::int64_t step = 0; step < 1200; ++step) {
     const std::int64_t now_ns = frame_ns(step, 1200);
     if (step % 10 == 0) computer.send({now_ns, {}, {}}, now_ns + latency_ns);
-    while (const auto frame = computer.looked_at(now_ns)) results.push_back({frame->t_ns, now_ns});
+    while (const auto frame = computer.next_frame(now_ns)) results.push_back({frame->t_ns, now_ns});
   }
   return results;
 }
@@ -73,14 +73,14 @@ TEST(FlightComputer, ThirtyMillisecondsAFrameGiveTheNewestThirtyThreeTimesASecon
 
 TEST(FlightComputer, WaitsWhereNothingArrives) {
   FlightComputer computer(10);
-  EXPECT_FALSE(computer.looked_at(100));
+  EXPECT_FALSE(computer.next_frame(100));
   computer.send({1, {}, {}}, 105);
-  EXPECT_FALSE(computer.looked_at(104));
-  EXPECT_FALSE(computer.looked_at(114));
-  const auto frame = computer.looked_at(115);
+  EXPECT_FALSE(computer.next_frame(104));
+  EXPECT_FALSE(computer.next_frame(114));
+  const auto frame = computer.next_frame(115);
   ASSERT_TRUE(frame);
   EXPECT_EQ(frame->t_ns, 1);
-  EXPECT_FALSE(computer.looked_at(1000));
+  EXPECT_FALSE(computer.next_frame(1000));
 }
 
 TEST(FlightComputer, ForeseesWhichFramesItWillTake) {
@@ -97,7 +97,7 @@ TEST(FlightComputer, ForeseesWhichFramesItWillTake) {
           foreseen.push_back(now_ns);
         computer.send({now_ns, {}, {}}, now_ns + latency_ns);
       }
-      while (const auto frame = computer.looked_at(now_ns)) taken.push_back(frame->t_ns);
+      while (const auto frame = computer.next_frame(now_ns)) taken.push_back(frame->t_ns);
     }
     ASSERT_LE(taken.size(), foreseen.size());
     foreseen.resize(taken.size());  // the rest is still on its way
@@ -165,14 +165,14 @@ TEST(RunDigest, EveryBitAndTheOrderCount) {
 
 TEST(FlightResult, JsonSaysWhatHappened) {
   FlightResult result;
-  result.ending = Ending::collision;
+  result.outcome = Outcome::collision;
   result.seed = 12;
-  result.min_clearance_m = std::numeric_limits<double>::infinity();
+  result.minimum_clearance_m = std::numeric_limits<double>::infinity();
   result.timings = {{"detect", 2, 0.004, 0.003}};
   const auto json = nlohmann::json::parse(to_json(result));
   EXPECT_EQ(json["outcome"], "collision");
   EXPECT_EQ(json["seed"], 12);
-  EXPECT_TRUE(json["min_clearance_m"].is_null());
+  EXPECT_TRUE(json["minimum_clearance_m"].is_null());
   EXPECT_NEAR(json["timings"]["detect"]["mean_ms"].get<double>(), 2.0, 1e-12);
   EXPECT_EQ(json["replans"]["solved"], 0);
 }

@@ -77,13 +77,13 @@ TEST(Comparison, MeansArePaired) {
     candidate.push_back(baseline.back());
     candidate.back().mean_speed_mps += 0.5;
   }
-  baseline[7].min_clearance_m = std::numeric_limits<double>::infinity();
+  baseline[7].minimum_clearance_m = std::numeric_limits<double>::infinity();
   const ConditionComparison& all = compare_campaigns(baseline, candidate).all;
   // Speeds spread over 30 m/s, differences not at all: only a paired comparison knows half a metre a second.
   EXPECT_EQ(all.metrics[0].name, "mean_speed_mps");
   EXPECT_NEAR(all.metrics[0].difference.value, 0.5, 1e-12);
   EXPECT_NEAR(all.metrics[0].difference.interval.minimum, 0.5, 1e-12);
-  EXPECT_EQ(all.metrics[1].name, "min_clearance_m");
+  EXPECT_EQ(all.metrics[1].name, "minimum_clearance_m");
   EXPECT_EQ(all.metrics[1].pairs, 29);
   EXPECT_EQ(all.bit_for_bit, 30);
 }
@@ -114,14 +114,14 @@ std::vector<FlightRow> hundred(std::uint64_t first, std::uint64_t last,
 
 std::vector<std::string> reasons(const std::vector<FlightRow>& baseline,
                                  const std::vector<FlightRow>& candidate, double max_drop = 0.05) {
-  return judge(compare_campaigns(baseline, candidate), {max_drop}).reasons;
+  return verdict_on(compare_campaigns(baseline, candidate), {max_drop}).reasons;
 }
 
 TEST(Gate, TheSameFlightsPass) { EXPECT_TRUE(reasons(hundred(1, 30), hundred(1, 30), 0).empty()); }
 
 TEST(Gate, UnchangedFlightsAreSaidToBeUnchanged) {
   const Comparison same = compare_campaigns(hundred(1, 30), hundred(1, 30));
-  const std::string report = to_report(same, judge(same), {});
+  const std::string report = to_report(same, verdict_on(same), {});
   expect_part(report, "bit for bit");
   expect_no_part(report, "mean_speed_mps");
 }
@@ -170,7 +170,7 @@ TEST(Gate, WhatTheBaselineLacksDecidesNothing) {
 
 TEST(Gate, TheReportNamesSeedsAndNumbers) {
   const Comparison comparison = compare_campaigns(hundred(1, 3), hundred(3, 9));
-  const GateVerdict verdict = judge(comparison, {});
+  const GateVerdict verdict = verdict_on(comparison, {});
   const std::string report = to_report(comparison, verdict, {});
   for (const char* part :
        {"97 (91.5 to 99.0)", "93 (86.3 to 96.6)", "-4.0", "0.289",
@@ -179,7 +179,7 @@ TEST(Gate, TheReportNamesSeedsAndNumbers) {
         "better: forest: seed 1 (collision at 33.0 m), 2 (",
         "passed: 100 flights compared, no condition lost more than 5.0 percentage points\n"})
     expect_part(report, part);
-  const GateVerdict strict = judge(comparison, {0.02});
+  const GateVerdict strict = verdict_on(comparison, {0.02});
   expect_part(to_report(comparison, strict, {0.02}), "FAILED: forest: success fell by 4.0");
 }
 

@@ -53,7 +53,7 @@ std::vector<Object> read_objects(const fs::path& file) {
 
 /// Side or end of a bar: rails show theirs at a gate.
 double ray_meets_closed_bar(const Eigen::Vector3d& eye, const Eigen::Vector3d& ray, const Object& bar) {
-  double nearest = ray_meets_bar(eye, ray, bar.from_world, bar.to_world, bar.radius_m);
+  double nearest = ray_meets_round_obstacle(eye, ray, bar.from_world, bar.to_world, bar.radius_m);
   const Eigen::Vector3d axis = (bar.to_world - bar.from_world).normalized();
   for (const Eigen::Vector3d& end : {bar.from_world, bar.to_world}) {
     const double reach = (end - eye).dot(axis) / ray.dot(axis);

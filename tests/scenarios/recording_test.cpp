@@ -118,7 +118,7 @@ void expect_same_hits(const Flown& flight, const fs::path& recorded, const fs::p
                                            (recorded / "mav0/state_groundtruth_estimate0/data.csv").string() +
                                            " --out " + out.string());
   ASSERT_EQ(outcome.status, 0) << outcome.text;
-  PushbroomStereo detector(flight.rig, robust_rule());
+  PushbroomStereo detector(flight.rig, robust_pushbroom());
   std::vector<FrameHits> expected;
   std::size_t hits = 0;
   for (const StereoFrame& frame : flight.frames) {

@@ -142,15 +142,15 @@ TEST(Scenario, ARuleIsTheRigsOwnUnderTheKeysBesideIt) {
   const auto rule = [](const char* text) {
     return scenario_from_text(text, "rule.yaml").perception.pushbroom;
   };
-  EXPECT_EQ(rule("name: a").minimum_edge_sum, tuned_rule("long").minimum_edge_sum);
-  EXPECT_EQ(rule("perception: {rule: robust}").minimum_edge_sum, robust_rule().minimum_edge_sum);
-  EXPECT_EQ(rule("perception: {rule: paper}").minimum_edge_sum, paper_rule().minimum_edge_sum);
+  EXPECT_EQ(rule("name: a").minimum_edge_sum, tuned_pushbroom("long").minimum_edge_sum);
+  EXPECT_EQ(rule("perception: {preset: robust}").minimum_edge_sum, robust_pushbroom().minimum_edge_sum);
+  EXPECT_EQ(rule("perception: {preset: original}").minimum_edge_sum, original_pushbroom().minimum_edge_sum);
   const PushbroomConfig tuned =
-      rule("{rig: paper, perception: {rule: tuned, pushbroom: {score_limit: 0.2}}}");
-  EXPECT_EQ(tuned.minimum_edge_sum, tuned_rule("paper").minimum_edge_sum);
+      rule("{rig: paper, perception: {preset: tuned, pushbroom: {score_limit: 0.2}}}");
+  EXPECT_EQ(tuned.minimum_edge_sum, tuned_pushbroom("paper").minimum_edge_sum);
   EXPECT_EQ(tuned.score_limit, 0.2);
-  EXPECT_NE(tuned.minimum_edge_sum, rule("{rig: long, perception: {rule: tuned}}").minimum_edge_sum);
-  EXPECT_EQ(tuned_rule("somebody's").minimum_edge_sum, robust_rule().minimum_edge_sum);
+  EXPECT_NE(tuned.minimum_edge_sum, rule("{rig: long, perception: {preset: tuned}}").minimum_edge_sum);
+  EXPECT_EQ(tuned_pushbroom("somebody's").minimum_edge_sum, robust_pushbroom().minimum_edge_sum);
 }
 
 TEST(Scenario, FaultsAreReadWrittenAndChecked) {

@@ -54,7 +54,7 @@ class Cluster {
   Cluster& operator=(const Cluster&) = delete;
 
   bool is_idle() const {
-    for (int look = 0; look < 100; ++look) {
+    for (int attempt = 0; attempt < 100; ++attempt) {
       if (std::system("sinfo --noheader --format=%T 2>/dev/null | grep -qx idle") == 0) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(200));
     }
@@ -159,12 +159,12 @@ TEST(Slurm, ACampaignOutlivesOneOfItsNodes) {
   ASSERT_TRUE(cluster.is_idle());
   expect_success("campaign " + campaign + " --out " + there.string() +
                  " --engine slurm --shards 4 --no-wait");
-  for (int look = 0; look < 600 && count_flights(there) < 10; ++look)
+  for (int attempt = 0; attempt < 600 && count_flights(there) < 10; ++attempt)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   ASSERT_GE(count_flights(there), 10);
   cluster.kill_node("n2");
   EXPECT_LT(count_flights(there), 60) << "too late to mean anything";
-  for (int look = 0; look < 900 && count_flights(there) < 60; ++look)
+  for (int attempt = 0; attempt < 900 && count_flights(there) < 60; ++attempt)
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   expect_success("collect " + there.string());
   EXPECT_EQ(content_of(there / "flights.csv"), content_of(here / "flights.csv"));

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <random>
 
-#include "scenarios/flight/clearance.hpp"
 #include "scenarios/course/courses.hpp"
+#include "scenarios/flight/clearance.hpp"
 
 namespace understory {
 namespace {
@@ -67,13 +67,14 @@ TEST(TrueDepth, AWallIsSeenWhereItStands) {
 
 TEST(RayMeetsBar, ClosedForms) {
   const Vector3d x = Vector3d::UnitX();
-  EXPECT_NEAR(ray_meets_bar({0, 0, 1}, x, {5, 0, 0}, {5, 0, 9}, 0.2), 4.8, 1e-12);
-  EXPECT_NEAR(ray_meets_bar({0, 0.12, 1}, x, {5, 0, 0}, {5, 0, 9}, 0.2), 5 - std::sqrt(0.04 - 0.0144), 1e-12);
+  EXPECT_NEAR(ray_meets_round_obstacle({0, 0, 1}, x, {5, 0, 0}, {5, 0, 9}, 0.2), 4.8, 1e-12);
+  EXPECT_NEAR(ray_meets_round_obstacle({0, 0.12, 1}, x, {5, 0, 0}, {5, 0, 9}, 0.2),
+              5 - std::sqrt(0.04 - 0.0144), 1e-12);
   const double miss = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(ray_meets_bar({0, 0.21, 1}, x, {5, 0, 0}, {5, 0, 9}, 0.2), miss);
-  EXPECT_EQ(ray_meets_bar({0, 0, 10}, x, {5, 0, 0}, {5, 0, 9}, 0.2), miss);  // above its top
-  EXPECT_EQ(ray_meets_bar({9, 0, 1}, x, {5, 0, 0}, {5, 0, 9}, 0.2), miss);   // behind
-  EXPECT_NEAR(ray_meets_bar({0, 0, 1}, 2 * x, {5, -3, 1}, {5, 3, 1}, 0.2), 2.4,
+  EXPECT_EQ(ray_meets_round_obstacle({0, 0.21, 1}, x, {5, 0, 0}, {5, 0, 9}, 0.2), miss);
+  EXPECT_EQ(ray_meets_round_obstacle({0, 0, 10}, x, {5, 0, 0}, {5, 0, 9}, 0.2), miss);  // above its top
+  EXPECT_EQ(ray_meets_round_obstacle({9, 0, 1}, x, {5, 0, 0}, {5, 0, 9}, 0.2), miss);   // behind
+  EXPECT_NEAR(ray_meets_round_obstacle({0, 0, 1}, 2 * x, {5, -3, 1}, {5, 3, 1}, 0.2), 2.4,
               1e-12);  // multiples, a level bar
 }
 

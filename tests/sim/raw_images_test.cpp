@@ -108,7 +108,7 @@ TEST_P(RawImages, RectifiedTheyAreTheIdealPair) {
 
 TEST_P(RawImages, TheDetectorFindsAWallAtItsDepthInThem) {
   const CalibratedRig cameras = calibrated();
-  PushbroomStereo detector(cameras, robust_rule());
+  PushbroomStereo detector(cameras, robust_pushbroom());
   const World world = forest_world(false);
   // Straight down from the detection depth onto the textured ground.
   StereoCameras eyes(world, cameras.rig, {.noise_gray = 2}, {1, 1}, cameras.calibration);

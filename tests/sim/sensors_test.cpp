@@ -47,10 +47,10 @@ TEST(Sensors, SamplesCarryTheTruthsMoment) {
 }
 
 TEST(SensorGrades, PlainIsTheDefaultsAndGpsIsOffInAll) {
-  const SensorsConfig plain = sensors_of_grade(SensorGrade::plain);
+  const SensorsConfig plain = sensors_of_grade(SensorGrade::nominal);
   EXPECT_EQ(plain.imu.gyro_noise_radps, ImuConfig{}.gyro_noise_radps);
   for (const SensorGrade grade :
-       {SensorGrade::ideal, SensorGrade::plain, SensorGrade::consumer, SensorGrade::rough})
+       {SensorGrade::ideal, SensorGrade::nominal, SensorGrade::consumer, SensorGrade::rough})
     EXPECT_FALSE(sensors_of_grade(grade).gps.enabled);
 }
 

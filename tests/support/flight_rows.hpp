@@ -23,7 +23,7 @@ inline FlightRow flown_row(const std::string& condition, std::uint64_t seed, con
   row.progress_m = progress_m;
   row.goal_m = 75;
   row.mean_speed_mps = 11.8;
-  row.min_clearance_m = 0.7;
+  row.minimum_clearance_m = 0.7;
   row.position_error_mean_m = 0.25;
   row.simulated_s = 6.9;
   row.digest = fmt::format("{}-{}", seed, outcome);

@@ -98,7 +98,7 @@ FlightTrace traced_flight(Scenario scenario, StateKind flown_on) {
   RunRecord record;
   Flight flight(scenario, {UNDERSTORY_SOURCE_DIR "/models"}, {&record});
   FlightTrace trace{scenario, flight.rig().rig, flight.obstacles()};
-  while (!flight.ending()) {
+  while (!flight.outcome()) {
     if (!flight.launched()) ++trace.release_step;
     trace.truths.push_back(flight.truth());
     flight.step();
@@ -201,6 +201,7 @@ std::vector<TrialMoment> run_trial(const FlightTrace& flight, const TrialConfig&
   for (; clock.step() < static_cast<std::int64_t>(flight.truths.size()); clock.advance()) {
     const Truth& truth = truth_now();
     sensors.deliver(clock, truth, filter);
+    filter.on(ThrustSample{truth.t_ns, truth.thrust_n});
     sighting.step(truth.t_ns, filter);
     if (!clock.imu()) continue;
     TrialMoment& moment = moments.emplace_back();

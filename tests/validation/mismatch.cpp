@@ -105,10 +105,10 @@ LinePlot by_filter(const std::vector<FlownCondition>& all, const std::string& wh
 
 std::string text_of_failures(const FlightTally& tally) {
   std::string text;
-  for (const Ending ending : {Ending::collision, Ending::ground, Ending::out_of_bounds, Ending::time})
-    if (const int count = tally.count(ending); count > 0)
+  for (const Outcome outcome : {Outcome::collision, Outcome::ground, Outcome::out_of_bounds, Outcome::time})
+    if (const int count = tally.count(outcome); count > 0)
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count,
-                          ending == Ending::out_of_bounds ? "out of bounds" : word_for(ending));
+                          outcome == Outcome::out_of_bounds ? "out of bounds" : word_for(outcome));
   return text;
 }
 
@@ -219,8 +219,8 @@ std::vector<MismatchCondition> mismatch_conditions() {
   return conditions;
 }
 
-int FlightTally::count(Ending ending) const {
-  return static_cast<int>(std::count(endings.begin(), endings.end(), ending));
+int FlightTally::count(Outcome outcome) const {
+  return static_cast<int>(std::count(outcomes.begin(), outcomes.end(), outcome));
 }
 
 FlightTally fly_seeds(Scenario scenario, const std::vector<FilterConfig>& others, const Seeds& seeds) {
@@ -229,7 +229,7 @@ FlightTally fly_seeds(Scenario scenario, const std::vector<FilterConfig>& others
   for (int i = 0; i < seeds.count; ++i) {
     scenario.seed = seeds.first + static_cast<std::uint64_t>(i);
     const FlightTrace flight = traced_flight(scenario, StateKind::filter);
-    tally.endings.push_back(flight.result.ending);
+    tally.outcomes.push_back(flight.result.outcome);
     tally.speed_sum_mps += flight.result.mean_speed_mps;
     tally.drift.add(drifts_with(scenario.estimation.filter, flight));
     for (std::size_t other = 0; other < others.size(); ++other)

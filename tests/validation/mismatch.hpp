@@ -26,14 +26,14 @@ std::vector<MismatchCondition> mismatch_conditions();
 
 /// What flights over several seeds came to.
 struct FlightTally {
-  std::vector<Ending> endings;     ///< one a flight
+  std::vector<Outcome> outcomes;   ///< one a flight
   double speed_sum_mps = 0;        ///< of each flight's mean, over ground
   DriftTally drift;                ///< of the estimate that flew
   std::vector<DriftTally> others;  ///< of other filters along the same flights
 
-  int flights() const { return static_cast<int>(endings.size()); }
-  int count(Ending ending) const;
-  int goals() const { return count(Ending::goal); }
+  int flights() const { return static_cast<int>(outcomes.size()); }
+  int count(Outcome outcome) const;
+  int goals() const { return count(Outcome::goal); }
   Interval success() const { return wilson_interval(goals(), flights()); }
   double mean_speed_mps() const { return speed_sum_mps / flights(); }
 };

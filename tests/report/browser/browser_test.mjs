@@ -51,7 +51,7 @@ async function check_flight(file, name) {
   const at_s = () => page.evaluate(() => understory.time());
   const start_s = await at_s();
   const end_s = await page.evaluate(() => Number(document.querySelector(".scrub input").max));
-  const expected_s = facts.ending === "goal" ? null : Math.max(end_s - 1, 0);
+  const expected_s = facts.outcome === "goal" ? null : Math.max(end_s - 1, 0);
   check(`${name}: paused, a lost flight 1 s before its end`, !(await page.evaluate(() => understory.playing())) && (expected_s === null || Math.abs(start_s - expected_s) < 0.01), start_s);
   check(`${name}: says how it ended`, (await page.evaluate(() => document.body.innerText)).includes(facts.sentence));
 
@@ -231,9 +231,9 @@ function variants() {
     f.arrays[0].values = [0];
     f.facts.t_end_s = 0;
   });
-  add("nothing but facts", (f) => { f.arrays = []; Object.assign(f.facts, { charts: [], events: [], course: null, camera: null, impact: null, touched: null, story: [], result: [], keys: [], decimation: [], ending: "aborted", t_end_s: 0, warning: "The flight was broken off." }); });
+  add("nothing but facts", (f) => { f.arrays = []; Object.assign(f.facts, { charts: [], events: [], course: null, camera: null, impact: null, touched: null, story: [], result: [], keys: [], decimation: [], outcome: "aborted", t_end_s: 0, warning: "The flight was broken off." }); });
   add("unknown estimate", (f) => { const estimate = f.arrays.find((array) => array.name === "estimate"); estimate.values = estimate.values.map((v, i) => (i < 700 ? NaN : v)); });
-  add("goal", (f) => { f.facts.ending = "goal"; });
+  add("goal", (f) => { f.facts.outcome = "goal"; });
   return list;
 }
 

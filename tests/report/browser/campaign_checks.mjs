@@ -70,7 +70,7 @@ async function check_map(page, facts) {
   check("campaign: and turns the map", (await texts(page, ".map tr:nth-child(3) td:nth-child(2)"))[0].includes(`${found.goals}/${found.flown}`));
 }
 
-async function check_table(page, facts, endings, progress) {
+async function check_table(page, facts, outcomes, progress) {
   const table = ".flights .sorted";
   const total = facts.rows.ids.length;
   const told = () => text(page, ".flights .pages output");
@@ -86,16 +86,16 @@ async function check_table(page, facts, endings, progress) {
   check("campaign: the greatest first, the unknown last", (await column(page, table, "progress"))[0] === finite.at(-1).toFixed(1));
   await page.keyboard.press("Enter");
   check("campaign: Enter on the heading sorts", (await column(page, table, "progress"))[0] === finite[0].toFixed(1));
-  for (const heading of ["condition", "seed", "ending", "time", "touched", "how it ended", "again"]) await sort_by(page, table, heading);
+  for (const heading of ["condition", "seed", "outcome", "time", "touched", "how it ended", "again"]) await sort_by(page, table, heading);
   check("campaign: flights with a replay first", (await column(page, table, "again")).slice(0, 20).every((each) => each.startsWith("replay")));
 
-  const lost = endings.filter((ending) => ending === 1).length;
-  await page.select('.flights select[name="ending"]', "1");
-  check("campaign: filters by ending", (await told()).endsWith(` ${lost}`) && (await column(page, table, "ending")).every((each) => each === "collision"), await told());
+  const lost = outcomes.filter((outcome) => outcome === 1).length;
+  await page.select('.flights select[name="outcome"]', "1");
+  check("campaign: filters by outcome", (await told()).endsWith(` ${lost}`) && (await column(page, table, "outcome")).every((each) => each === "collision"), await told());
   const [label, seeds] = [facts.conditions[3].label, facts.conditions[3].flights];
   await page.select('.flights select[name="condition"]', "3");
   check("campaign: filters by condition", (await column(page, table, "condition")).every((each) => each === label));
-  await page.select('.flights select[name="ending"]', "");
+  await page.select('.flights select[name="outcome"]', "");
   await page.click(".share:nth-child(4)");
   check("campaign: a condition's line shows its flights", (await told()).endsWith(` ${seeds}`), await told());
   await page.select('.flights select[name="condition"]', "");
@@ -180,7 +180,7 @@ export async function check_campaign() {
   await check_gate(page, facts);
   await check_charts(page, facts);
   await check_map(page, facts);
-  await check_table(page, facts, values("row_ending"), values("column_progress_m"));
+  await check_table(page, facts, values("row_outcome"), values("column_progress_m"));
   await check_replays(opened, facts);
   const theme = () => page.evaluate(() => document.documentElement.dataset.theme);
   const before = await theme();
@@ -205,7 +205,7 @@ export async function check_campaign() {
     return performance.now() - begin_ms;
   });
   check("1,000 flights: sorted in 0.2 s", sorted_ms < 200, `${sorted_ms.toFixed(0)} ms`);
-  await slow.page.select('.flights select[name="ending"]', "1");
+  await slow.page.select('.flights select[name="outcome"]', "1");
   await slow.page.type(".flights input", large.facts.rows.touched.find(Boolean));
   await slow.page.evaluate((row) => document.querySelector(`[aria-label="Replay ${row}"]`).click(), large.facts.rows.ids[Number(Object.keys(large.facts.tracks)[0])]);
   check("a damaged replay: says so", (await text(slow.page, ".panel")).includes("damaged"));

@@ -115,7 +115,7 @@ export function sample_flight({ trunks = 150, end_s = 7.31 } = {}) {
   ];
   const series = (name, array, color, more = {}) => ({ name, array, component: 0, color, ...more });
   const facts = {
-    kind: "flight", title: "forest, seed 3", program: "understory 0.0.0 (sample)", ending: "collision",
+    kind: "flight", title: "forest, seed 3", program: "understory 0.0.0 (sample)", outcome: "collision",
     sentence: "The outer left wing touched tree_17 at 7.31 s, 77.9 m from the launch, 3.1 m high.",
     warning: "", story: [
       "tree_17 came into view 1.2 s before the end, at 14 m; the first hit on it followed 0.5 s later, at 6.2 m.",
@@ -141,7 +141,7 @@ export function sample_flight({ trunks = 150, end_s = 7.31 } = {}) {
     events: [
       { t_s: 0.6, kind: "launch", text: "The catapult let go." }, { t_s: end_s - 1.21, kind: "in_view", text: "tree_17 came into view." },
       { t_s: end_s - 0.69, kind: "detected", text: "First hit on tree_17, at 6.2 m." }, { t_s: end_s - 0.45, kind: "fallback", text: "No free manoeuvre found: fallback." },
-      { t_s: end_s, kind: "ending", text: "The outer left wing touched tree_17." },
+      { t_s: end_s, kind: "outcome", text: "The outer left wing touched tree_17." },
     ],
     decimation: ["moments: all of them"], film: null,
   };
@@ -184,20 +184,20 @@ function pack_track({ facts, arrays }) {
 export function sample_campaign({ seeds = 50, tracks = 20, gate = true } = {}) {
   const random = make_random(11);
   const [speed_key, trees_key] = ["autopilot.flight_model.cruise_speed_mps", "forest.square_metres_per_tree"];
-  const endings = ["goal", "collision", "ground", "out_of_bounds", "time", "not_flown"];
+  const outcomes = ["goal", "collision", "ground", "out_of_bounds", "time", "not_flown"];
   const conditions = [], flights = [], arrays = [], survival = [];
   for (const [speed, trees, chance] of [["8", "49", 0.97], ["8", "20", 0.85], ["12", "49", 0.9], ["12", "20", 0.55]]) {
     const own = [];
     for (let seed = 1; seed <= seeds; ++seed) {
-      const ending = random() < 0.01 ? 5 : random() < chance ? 0 : [1, 1, 1, 2, 3, 4][Math.floor(random() * 6)];
-      const progress = ending === 5 ? NaN : ending === 0 ? 75 : 5 + 68 * random();
-      own.push({ condition: conditions.length, seed, ending, progress, time: progress / Number(speed), clearance: ending === 1 ? 0 : 0.1 + random() });
+      const outcome = random() < 0.01 ? 5 : random() < chance ? 0 : [1, 1, 1, 2, 3, 4][Math.floor(random() * 6)];
+      const progress = outcome === 5 ? NaN : outcome === 0 ? 75 : 5 + 68 * random();
+      own.push({ condition: conditions.length, seed, outcome, progress, time: progress / Number(speed), clearance: outcome === 1 ? 0 : 0.1 + random() });
     }
     flights.push(...own);
-    const flown = own.filter((each) => each.ending !== 5);
-    const goals = own.filter((each) => each.ending === 0).length;
+    const flown = own.filter((each) => each.outcome !== 5);
+    const goals = own.filter((each) => each.outcome === 0).length;
     const steps = [[0, 0]];
-    for (const { progress } of flown.filter((each) => each.ending !== 0).sort((a, b) => a.progress - b.progress)) steps.push([progress, steps.length]);
+    for (const { progress } of flown.filter((each) => each.outcome !== 0).sort((a, b) => a.progress - b.progress)) steps.push([progress, steps.length]);
     steps.push([75, steps.length - 1]);
     arrays.push(array(`survival_${conditions.length}`, "f32", 4, steps.flatMap(([distance, lost]) => {
       const { share, lower, upper } = share_of(flown.length - lost, flown.length);
@@ -207,10 +207,10 @@ export function sample_campaign({ seeds = 50, tracks = 20, gate = true } = {}) {
     conditions.push({ name: `v${speed}_t${trees}`, label: `${speed} m/s, ${trees} m² per tree`, keys: { [speed_key]: speed, [trees_key]: trees }, flights: seeds, flown: flown.length, goals, ...share_of(goals, flown.length) });
   }
   const column = (name, values) => array(`column_${name}`, "f32", 1, values);
-  arrays.push(array("row_condition", "u16", 1, flights.map((each) => each.condition)), array("row_ending", "u8", 1, flights.map((each) => each.ending)),
+  arrays.push(array("row_condition", "u16", 1, flights.map((each) => each.condition)), array("row_outcome", "u8", 1, flights.map((each) => each.outcome)),
     column("progress_m", flights.map((each) => each.progress)), column("time_s", flights.map((each) => each.time)), column("clearance_m", flights.map((each) => each.clearance)));
   const id = ({ condition, seed }) => `${conditions[condition].name}/seed-${seed}`;
-  const lost = [...flights.keys()].filter((row) => flights[row].ending >= 1 && flights[row].ending <= 4).slice(0, tracks);
+  const lost = [...flights.keys()].filter((row) => flights[row].outcome >= 1 && flights[row].outcome <= 4).slice(0, tracks);
   const blocks = {};
   for (const row of lost) {
     const flight = sample_flight({ trunks: 60, end_s: 3 + (row % 5) });
@@ -222,17 +222,17 @@ export function sample_campaign({ seeds = 50, tracks = 20, gate = true } = {}) {
   const reasons = ["", "touched a tree", "flew into the ground", "left the course", "the time was over", "no room for the launch"];
   const facts = {
     kind: "campaign", title: "gate", program: "understory 0.0.0 (sample)", warning: "", sentence: `${goals} of ${flown} flights reached the goal.`,
-    conditions, grid_keys: [speed_key, trees_key], endings, survival,
+    conditions, grid_keys: [speed_key, trees_key], outcomes, survival,
     columns: [{ name: "progress_m", label: "progress", unit: "m" }, { name: "time_s", label: "time", unit: "s" }, { name: "clearance_m", label: "smallest clearance", unit: "m" }],
     rows: {
-      ids: flights.map(id), seeds: flights.map((each) => String(each.seed)), reasons: flights.map((each) => reasons[each.ending]),
-      touched: flights.map((each, row) => (each.ending === 1 ? `tree_${String((row * 37) % 150).padStart(4, "0")}` : "")),
+      ids: flights.map(id), seeds: flights.map((each) => String(each.seed)), reasons: flights.map((each) => reasons[each.outcome]),
+      touched: flights.map((each, row) => (each.outcome === 1 ? `tree_${String((row * 37) % 150).padStart(4, "0")}` : "")),
       commands: flights.map((each) => `understory fly forest --seed ${each.seed} --set ${speed_key}=${conditions[each.condition].keys[speed_key]}`),
     },
     tracks: Object.fromEntries(lost.map((row) => [row, `track-${row}`])),
     gate: gate ? {
       verdict: "fails", baseline: "version 0.1", candidate: "this version", lines: ["7 seeds became worse, 3 became better: p = 0.17.", "Goals fell from 84 % to 80 %; allowed: 2 %."],
-      pairs: flights.map((each) => [conditions[each.condition].label, each.seed, endings[random() < 0.95 ? each.ending : 0], endings[each.ending]]),
+      pairs: flights.map((each) => [conditions[each.condition].label, each.seed, outcomes[random() < 0.95 ? each.outcome : 0], outcomes[each.outcome]]),
     } : null,
   };
   return { facts, arrays, blocks };

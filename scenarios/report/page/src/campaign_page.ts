@@ -4,13 +4,13 @@ import { add_map, add_shares } from "./campaign_charts";
 import { array_of, floats_of, read_track, type Arrays } from "./data";
 import { copy_text, find, hide_section, lay_out, make, make_button, show_heading, show_text } from "./elements";
 import type { CampaignFacts, GateFact } from "./facts";
-import { endings, show_flight } from "./flight_page";
+import { outcomes, show_flight } from "./flight_page";
 import { add_plot, type Series } from "./plot";
 import { add_table, type Column } from "./table";
 
-function make_ending(ending: string): HTMLElement {
-  const kind = ending === "goal" ? "" : ending === "not_flown" ? "unknown" : "lost";
-  return make("span", endings[ending] ?? ending, `ending ${kind}`);
+function make_outcome(outcome: string): HTMLElement {
+  const kind = outcome === "goal" ? "" : outcome === "not_flown" ? "unknown" : "lost";
+  return make("span", outcomes[outcome] ?? outcome, `outcome ${kind}`);
 }
 
 function show_gate(root: HTMLElement, gate: GateFact | null | undefined): void {
@@ -22,13 +22,13 @@ function show_gate(root: HTMLElement, gate: GateFact | null | undefined): void {
   for (const line of gate.lines ?? []) find(place, "ul").append(make("li", line));
   const pairs = gate.pairs ?? [];
   const differing = [...pairs.keys()].filter((i) => pairs[i][2] !== pairs[i][3]);
-  const ending = (label: string, index: 2 | 3): Column =>
-    ({ label, value: (row) => pairs[row][index], show: (row) => make_ending(pairs[row][index]) });
+  const outcome = (label: string, index: 2 | 3): Column =>
+    ({ label, value: (row) => pairs[row][index], show: (row) => make_outcome(pairs[row][index]) });
   const show = add_table(find(place, ".pairs"), "seed by seed", [
     { label: "condition", value: (row) => pairs[row][0] },
     { label: "seed", value: (row) => pairs[row][1] },
-    ending(gate.baseline, 2),
-    ending(gate.candidate, 3),
+    outcome(gate.baseline, 2),
+    outcome(gate.candidate, 3),
   ]);
   const all = find(place, '[data-action="pairs"]');
   find(place, ".differing").textContent = `${differing.length} of ${pairs.length} seeds end otherwise.`;
@@ -86,12 +86,12 @@ function open_replay(root: HTMLElement, block: string, command: string): void {
 function show_flights(root: HTMLElement, facts: CampaignFacts, arrays: Arrays): (condition: number) => void {
   const { conditions, rows, tracks = {} } = facts;
   const row_condition = array_of(arrays, "row_condition");
-  const row_ending = array_of(arrays, "row_ending");
+  const row_outcome = array_of(arrays, "row_outcome");
   const place = find(root, ".flights");
-  const [condition, ending] = ["condition", "ending"].map((name) => find<HTMLSelectElement>(place, `select[name="${name}"]`));
+  const [condition, outcome] = ["condition", "outcome"].map((name) => find<HTMLSelectElement>(place, `select[name="${name}"]`));
   const text = find<HTMLInputElement>(place, "input");
   condition.append(new Option("all conditions", ""), ...conditions.map(({ label }, i) => new Option(label, String(i))));
-  ending.append(new Option("all endings", ""), ...facts.endings.map((name, i) => new Option(endings[name] ?? name, String(i))));
+  outcome.append(new Option("all outcomes", ""), ...facts.outcomes.map((name, i) => new Option(outcomes[name] ?? name, String(i))));
 
   function copy_command(button: HTMLElement, row: number): void {
     show_text(root, "chosen", rows.commands[row]);
@@ -113,11 +113,11 @@ function show_flights(root: HTMLElement, facts: CampaignFacts, arrays: Arrays): 
     return buttons;
   }
 
-  const ending_of = (row: number) => facts.endings[row_ending[row]] ?? "";
+  const outcome_of = (row: number) => facts.outcomes[row_outcome[row]] ?? "";
   const show = add_table(find(place, ".all"), "all flights", [
     { label: "condition", value: (row) => conditions[row_condition[row]]?.label ?? null },
     { label: "seed", value: (row) => rows.seeds[row] },
-    { label: "ending", value: (row) => endings[ending_of(row)] ?? ending_of(row), show: (row) => make_ending(ending_of(row)) },
+    { label: "outcome", value: (row) => outcomes[outcome_of(row)] ?? outcome_of(row), show: (row) => make_outcome(outcome_of(row)) },
     { label: "again", value: (row) => (tracks[row] ? "replay" : "without"), show: make_buttons }, // sorts those with a replay first
     { label: "how it ended", value: (row) => rows.reasons[row] || null },
     ...(facts.columns ?? []).map(({ name, label, unit }): Column => {
@@ -134,10 +134,10 @@ function show_flights(root: HTMLElement, facts: CampaignFacts, arrays: Arrays): 
     const wanted = text.value.trim().toLowerCase();
     show(in_order.filter((row) =>
       (condition.value === "" || row_condition[row] === Number(condition.value)) &&
-      (ending.value === "" || row_ending[row] === Number(ending.value)) &&
+      (outcome.value === "" || row_outcome[row] === Number(outcome.value)) &&
       searched[row].includes(wanted)));
   }
-  for (const control of [condition, ending, text]) control.addEventListener("input", filter);
+  for (const control of [condition, outcome, text]) control.addEventListener("input", filter);
   filter();
   return (index) => {
     condition.value = String(index);

@@ -30,7 +30,7 @@ export interface ChartFact {
 
 export interface EventFact {
   t_s: number;
-  kind: "launch" | "in_view" | "detected" | "forgotten" | "blind" | "estimate" | "fallback" | "fault" | "ending";
+  kind: "launch" | "in_view" | "detected" | "forgotten" | "blind" | "estimate" | "fallback" | "fault" | "outcome";
   text: string;
 }
 
@@ -51,7 +51,7 @@ export interface FlightFacts {
   kind: "flight";
   title: string;
   program: string;
-  ending: "goal" | "collision" | "ground" | "out_of_bounds" | "time" | "aborted";
+  outcome: "goal" | "collision" | "ground" | "out_of_bounds" | "time" | "aborted";
   sentence: string;
   warning?: string;
   story?: string[];
@@ -91,7 +91,7 @@ export interface GateFact {
   baseline: string;
   candidate: string;
   lines?: string[];
-  pairs?: [string, string | number, string, string][]; // condition, seed, ending of the baseline, of the candidate
+  pairs?: [string, string | number, string, string][]; // condition, seed, outcome of the baseline, of the candidate
 }
 
 export interface CampaignFacts {
@@ -102,7 +102,7 @@ export interface CampaignFacts {
   sentence?: string;
   conditions: Condition[];
   grid_keys?: string[];
-  endings: string[];
+  outcomes: string[];
   columns?: { name: string; label: string; unit: string }[];
   survival?: { condition: number; array: string }[];
   rows: { ids: string[]; seeds: string[]; reasons: string[]; touched: string[]; commands: string[] };

@@ -11,7 +11,7 @@ import { Replay } from "./scene";
 
 const lost_start_s = 1; // before the end: there a lost flight is interesting
 
-export const endings: Record<string, string> = {
+export const outcomes: Record<string, string> = {
   goal: "goal", collision: "collision", ground: "ground", out_of_bounds: "out of bounds", time: "time over", aborted: "aborted", not_flown: "not flown",
 };
 
@@ -22,10 +22,10 @@ function show_list(root: HTMLElement, name: string, sentences: string[] | undefi
 }
 
 function show_words(root: HTMLElement, facts: FlightFacts): void {
-  const lost = facts.ending !== "goal";
+  const lost = facts.outcome !== "goal";
   show_text(root, "title", facts.title);
-  show_text(root, "ending", endings[facts.ending] ?? facts.ending);
-  find(root, ".ending").classList.toggle("lost", lost);
+  show_text(root, "outcome", outcomes[facts.outcome] ?? facts.outcome);
+  find(root, ".outcome").classList.toggle("lost", lost);
   show_text(root, "sentence", facts.sentence);
   show_text(root, "warning", facts.warning);
   show_list(root, "story", facts.story);
@@ -147,7 +147,7 @@ export function show_flight(root: HTMLElement, facts: FlightFacts, arrays: Array
   lay_out(root, "flight");
   const components = new Map((facts.arrays ?? []).map((array) => [array.name, array.components]));
   const clock = new Clock(...time_span(facts, floats_of(arrays, "t")));
-  if (facts.ending !== "goal") clock.seek(clock.end_s - lost_start_s);
+  if (facts.outcome !== "goal") clock.seek(clock.end_s - lost_start_s);
   const events = facts.events ?? [];
 
   show_words(root, facts);
