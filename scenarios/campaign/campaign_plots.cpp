@@ -116,8 +116,8 @@ bool is_scanned(const std::vector<FlightRow>& rows, const PlotAxis& axis) {
 
 LinePlot success_over(const std::vector<FlightRow>& all_rows, const PlotAxis& axis) {
   const std::vector<FlightRow> rows = flown_ones(all_rows);
-  LinePlot plot =
-      success_plot(titled(scenario_of_all(summarise(rows)), fmt::format("success over {}", axis.name)), axis.label);
+  LinePlot plot = success_plot(
+      titled(scenario_of_all(summarise(rows)), fmt::format("success over {}", axis.name)), axis.label);
   const std::vector<CountedSeries> all = counted(rows, axis);
   const double apart = 0.008 * span_of(rows, axis);
   double aside = -0.5 * apart * (static_cast<double>(all.size()) - 1);

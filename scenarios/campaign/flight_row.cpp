@@ -37,18 +37,8 @@ void visit_columns(Row& row, Visit&& visit) {
   visit("cruise_speed_mps", row.cruise_speed_mps);
   visit("square_metres_per_tree", row.square_metres_per_tree);
   visit("goal_m", row.goal_m);
-  visit("distance_m", row.distance_m);
-  visit("progress_m", row.progress_m);
-  visit("mean_speed_mps", row.mean_speed_mps);
-  visit("minimum_clearance_m", row.minimum_clearance_m);
-  visit("position_error_mean_m", row.position_error_mean_m);
-  visit("position_error_max_m", row.position_error_max_m);
-  visit("detections", row.detections);
-  visit("remembered_points", row.remembered_points);
-  visit("minimum_points_on_an_obstacle", row.minimum_points_on_an_obstacle);
-  visit_fields(visit, row.planner);
-  visit("simulated_s", row.simulated_s);
-  visit("digest", row.digest);
+  using Measures = std::conditional_t<std::is_const_v<Row>, const FlightMeasures, FlightMeasures>;
+  visit_fields(visit, static_cast<Measures&>(row));
 }
 
 template <typename Value>
@@ -116,7 +106,7 @@ bool take_row(FlightRow& row, TextOf&& text_of) {
         (is_measured && !row.flown()) || std::ranges::find(optional, name) != optional.end();
     is_whole = (text.empty() ? may_be_empty : take(text, value)) && is_whole;
   });
-  return is_whole && row.flown() == is_ending(row.outcome);
+  return is_whole && row.flown() == outcome_named(row.outcome).has_value();
 }
 
 Table empty_table() {
@@ -138,20 +128,7 @@ FlightRow flown_row(const std::string& condition, const Scenario& scenario, cons
   row.seed = result.seed;
   row.status = RunStatus::flown;
   row.outcome = word_for(result.outcome);
-  row.distance_m = result.distance_m;
-  row.progress_m = result.progress_m;
-  row.mean_speed_mps = result.mean_speed_mps;
-  row.minimum_clearance_m = result.minimum_clearance_m;
-  row.position_error_mean_m = result.position_error_mean_m;
-  row.position_error_max_m = result.position_error_max_m;
-  row.detections = result.detections;
-  row.remembered_points = result.remembered_points;
-  for (const auto& [obstacle, points] : result.points_on_obstacles)
-    if (row.minimum_points_on_an_obstacle < 0 || points < row.minimum_points_on_an_obstacle)
-      row.minimum_points_on_an_obstacle = points;
-  row.planner = result.planner;
-  row.simulated_s = result.simulated_s;
-  row.digest = result.digest;
+  static_cast<FlightMeasures&>(row) = result;
   return row;
 }
 

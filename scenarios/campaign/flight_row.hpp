@@ -5,11 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "planning/plan.hpp"
+#include "scenarios/flight/flight_result.hpp"
 
 namespace understory {
 
-struct FlightResult;
 struct Scenario;
 
 /// Of rows and of the folders that hold them: results of another format are refused.
@@ -26,7 +25,7 @@ enum class RunStatus {
 
 /// One flight of a campaign: a row of flights.csv, a line of flights.jsonl. Nothing in it depends on the
 /// machine's speed, so that a campaign flown again gives the same rows. `id` is unique within a campaign.
-struct FlightRow {
+struct FlightRow : FlightMeasures {
   std::string id;                         ///< "<condition>-<seed>"
   std::string condition;                  ///< scenario and overrides, by name
   std::uint64_t seed = 0;                 ///< of course and sensors
@@ -36,19 +35,6 @@ struct FlightRow {
   double cruise_speed_mps = 0;            ///< asked, as the next two
   double square_metres_per_tree = 0;      ///< of the forest
   double goal_m = 0;                      ///< x of the goal plane
-  double distance_m = 0;                  ///< flown: true path length since release
-  double progress_m = 0;                  ///< maximum true x reached
-  double mean_speed_mps = 0;              ///< true, over ground
-  double minimum_clearance_m = 0;         ///< true; +infinity (empty in CSV, null in JSON) without obstacles
-  double position_error_mean_m = 0;       ///< estimate against truth, since release
-  double position_error_max_m = 0;        ///< the largest
-  std::int64_t detections = 0;            ///< hits, all frames
-  std::int64_t remembered_points = 0;     ///< points ever taken into the map
-  std::int64_t minimum_points_on_an_obstacle = -1;  ///< -1 (empty, null): not counted on this course
-  PlannerCounts planner;
-  double simulated_s = 0;  ///< since the start at rest
-  std::string digest;      ///< of the flight, bit for bit (RunDigest)
-
   bool flown() const { return status == RunStatus::flown; }
   bool reached_goal() const { return flown() && outcome == "goal"; }
 };

@@ -8,7 +8,7 @@
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/keys.hpp"
-#include "scenarios/flight/flight_result.hpp"
+#include "scenarios/flight/run_files.hpp"
 #include "scenarios/report/table.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
@@ -22,30 +22,28 @@ struct KeysArguments {
   bool json = false, markdown = false;
 };
 
-/// The columns of a CSV file, whose struct says what they mean.
-std::vector<Key> columns_of(const char* owner, const std::string& csv) {
+/// Fields of a result or a row, whose structs say what they mean: `owner` for its own, else what both
+/// measure.
+Key key_of_measure(const char* owner, const std::string& name) {
+  const Key own = key_of_field(owner, name);
+  return own.meaning.empty() ? key_of_field("FlightMeasures", name) : own;
+}
+
+std::vector<Key> row_keys() {
   std::vector<Key> columns;
-  for (const std::string& name : table_from_csv(csv, "columns").head)
-    columns.push_back(key_of_field(owner, name));
+  for (const std::string& name : table_from_csv(to_csv(std::vector<FlightRow>{}), "columns").head)
+    columns.push_back(key_of_measure("FlightRow", name));
   return columns;
 }
 
 std::vector<Key> result_keys() {
   std::vector<Key> keys;
-  const Json result = Json::parse(to_json(FlightResult{}));
-  for (const auto& [name, value] : result.items()) {
-    if (name == "versions") continue;
-    if (!value.is_object()) {
-      keys.push_back(key_of_field("FlightResult", name == "outcome" ? "outcome" : name));
-      keys.back().name = name;
-      continue;
-    }
-    for (const auto& [part, count] : value.items()) {
-      const std::string field = part == "count" ? "replans" : part == "searches_found" ? "found" : part;
-      keys.push_back(key_of_field("FlightResult", field));
-      keys.back().name = name + "." + part;
-    }
-  }
+  const FlightResult result;
+  const auto add = [&](std::string_view name, const auto&) {
+    keys.push_back(key_of_measure("FlightResult", std::string(name)));
+  };
+  visit_fields(add, result);
+  for (const char* list : {"points_on_obstacles", "timings"}) add(list, 0);
   return keys;
 }
 
@@ -81,8 +79,7 @@ std::string page_of(const std::vector<Key>& keys) {
       "aircraft estimates it; commands; what the actuators did of them; distance from the wing to the "
       "nearest "
       "obstacle.\n\n```\n{}```\n",
-      to_markdown(table_of(keys, false)),
-      to_markdown(table_of(columns_of("FlightRow", to_csv(std::vector<FlightRow>{})), true)),
+      to_markdown(table_of(keys, false)), to_markdown(table_of(row_keys(), true)),
       to_markdown(table_of(result_keys(), true)), trajectory_columns);
 }
 

@@ -12,7 +12,7 @@
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/flight/fly.hpp"
-#include "scenarios/flight/run_record.hpp"
+#include "scenarios/flight/run_files.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/output_folder.hpp"
 #include "scenarios/output/progress_line.hpp"

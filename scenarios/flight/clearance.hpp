@@ -28,8 +28,8 @@ double obstacle_distance_m(const Segment& segment, const Obstacle& obstacle);
 double clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airframe,
                    const std::vector<Obstacle>& obstacles);
 
-/// A detected or remembered point this near to an obstacle's surface stands for it, m: what stereo at 10 m and the
-/// estimate's drift leave open.
+/// A detected or remembered point this near to an obstacle's surface stands for it, m: what stereo at 10 m
+/// and the estimate's drift leave open.
 constexpr double belongs_within_m = 0.5;
 bool belongs_to(const Eigen::Vector3d& point_world, const Obstacle& obstacle);
 

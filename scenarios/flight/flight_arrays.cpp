@@ -20,7 +20,7 @@ struct Detail {
   std::size_t moments, plans, plan_points, hits, map_points;
   std::size_t obstacles;  ///< those nearest to where the flight ended
   double from_end_s;      ///< plans, hits and points of the map before are left out
-  bool is_whole;  ///< has all charts, and all of the map evenly
+  bool is_whole;          ///< has all charts, and all of the map evenly
 };
 constexpr Detail everything{4800, 3600, 11, 20'000, 20'000, 4000, 1e9, true};  // below 3 MB in base64
 constexpr Detail compact{150, 40, 8, 150, 240, 200, 2, false};                 // below 30 kB in base64
@@ -31,7 +31,9 @@ constexpr double degrees = 57.29577951308232;
 // ---- decimation ----
 
 /// One of how many is kept so that at most `maximum` are.
-std::size_t one_of(std::size_t count, std::size_t maximum) { return std::max<std::size_t>(1, (count + maximum - 1) / maximum); }
+std::size_t one_of(std::size_t count, std::size_t maximum) {
+  return std::max<std::size_t>(1, (count + maximum - 1) / maximum);
+}
 
 /// Every `every`-th, and the last.
 template <typename T>
@@ -68,20 +70,19 @@ void append(std::vector<float>& values, const Eigen::Vector3d& position) {
 void append(std::vector<float>& values, const Eigen::Isometry3d& pose) {
   append(values, Eigen::Vector3d(pose.translation()));
   const Eigen::Quaterniond turn(pose.linear());
-  for (const double part : {turn.x(), turn.y(), turn.z(), turn.w()}) values.push_back(static_cast<float>(part));
+  for (const double part : {turn.x(), turn.y(), turn.z(), turn.w()})
+    values.push_back(static_cast<float>(part));
 }
 
-float shown_m(double clearance_m) {
-  return static_cast<float>(std::min(clearance_m, farthest_shown_m));
-}
+float shown_m(double clearance_m) { return static_cast<float>(std::min(clearance_m, farthest_shown_m)); }
 
 void add_moments(const FlightTrack& track, const Detail& detail, PageArrays& arrays, Json& decimation) {
   const std::size_t every = one_of(track.moments.size(), detail.moments);
   if (every > 1) {
     std::vector<Eigen::Vector3d> way;
     for (const TrackMoment& moment : track.moments) way.push_back(moment.T_world_true.translation());
-    decimation.push_back(fmt::format("moments: one of {}; the path is at most {:.3f} m from the full one", every,
-                                     decimation_error_m(way, every)));
+    decimation.push_back(fmt::format("moments: one of {}; the path is at most {:.3f} m from the full one",
+                                     every, decimation_error_m(way, every)));
   }
   const std::vector<TrackMoment> moments = decimated(track.moments, every);
   std::vector<float> truth, estimate;
@@ -130,9 +131,10 @@ void add_hits(const FlightTrack& track, const std::vector<Obstacle>& obstacles, 
     const auto t_s = static_cast<float>(static_cast<double>(frame.t_ns) * 1e-9);
     frame_t.push_back(t_s);
     const auto begin = track.hits_world.begin() + static_cast<std::ptrdiff_t>(frame.first_hit);
-    const auto on_obstacles =
-        std::count_if(begin, begin + static_cast<std::ptrdiff_t>(frame.hits), [&](const Eigen::Vector3d& hit_world) {
-          return std::ranges::any_of(obstacles, [&](const Obstacle& one) { return belongs_to(hit_world, one); });
+    const auto on_obstacles = std::count_if(
+        begin, begin + static_cast<std::ptrdiff_t>(frame.hits), [&](const Eigen::Vector3d& hit_world) {
+          return std::ranges::any_of(obstacles,
+                                     [&](const Obstacle& one) { return belongs_to(hit_world, one); });
         });
     frame_hits.push_back(static_cast<float>(on_obstacles));
     other_hits.push_back(static_cast<float>(frame.hits) - frame_hits.back());
@@ -159,8 +161,10 @@ void add_map(const FlightTrack& track, const Detail& detail, PageArrays& arrays,
                        [&](const TrackPoint& point) { return point.to_s >= from_s; });
   if (!detail.is_whole && shown.size() > detail.map_points) {
     const Eigen::Vector3d end_world = track.moments.back().T_world_estimated.translation();
-    std::ranges::sort(shown, {}, [&](const TrackPoint& point) { return (point.position_world - end_world).norm(); });
-    decimation.push_back(fmt::format("points of the map: the {} nearest to the end, of {}", detail.map_points, shown.size()));
+    std::ranges::sort(shown, {},
+                      [&](const TrackPoint& point) { return (point.position_world - end_world).norm(); });
+    decimation.push_back(
+        fmt::format("points of the map: the {} nearest to the end, of {}", detail.map_points, shown.size()));
     shown.resize(detail.map_points);
     std::ranges::sort(shown, {}, &TrackPoint::from_s);
   }
@@ -200,8 +204,9 @@ void add_plans(const FlightTrack& track, const Detail& detail, PageArrays& array
                                                         : std::numeric_limits<float>::quiet_NaN());
   }
   if (!shown.empty())
-    decimation.push_back(fmt::format("plans: {} points at most; the drawn line is at most {:.3f} m from the plan",
-                                     detail.plan_points, error_m));
+    decimation.push_back(
+        fmt::format("plans: {} points at most; the drawn line is at most {:.3f} m from the plan",
+                    detail.plan_points, error_m));
   arrays.add("plan_t", 1, t);
   arrays.add("plan_start", 1, start);
   arrays.add("plan_points", 3, points);
@@ -217,9 +222,12 @@ void add_obstacles(const Flight& flight, std::optional<std::size_t> touched, con
   std::iota(shown.begin(), shown.end(), std::size_t{0});
   if (shown.size() > detail.obstacles) {
     const Eigen::Vector3d& end_world = flight.truth().T_world_body.translation();
-    std::ranges::sort(shown, {}, [&](std::size_t i) { return obstacle_distance_m({end_world, end_world}, obstacles[i]); });
+    std::ranges::sort(shown, {}, [&](std::size_t i) {
+      return obstacle_distance_m({end_world, end_world}, obstacles[i]);
+    });
     shown.resize(detail.obstacles);
-    decimation.push_back(fmt::format("obstacles: the {} nearest to the end, of {}", shown.size(), obstacles.size()));
+    decimation.push_back(
+        fmt::format("obstacles: the {} nearest to the end, of {}", shown.size(), obstacles.size()));
   }
   std::vector<float> values;
   facts["touched"] = Json();
@@ -268,21 +276,27 @@ Json series(const char* name, const char* array, const char* color, const char* 
 }
 
 Json chart(const char* title, const char* unit, Json lines) {
-  return {{"title", title}, {"unit", unit}, {"series", std::move(lines)}, {"bands", Json::array()},
+  return {{"title", title},
+          {"unit", unit},
+          {"series", std::move(lines)},
+          {"bands", Json::array()},
           {"limits", Json::array()}};
 }
 
 Json charts_of(const Scenario& scenario, const Detail& detail) {
   Json charts = Json::array();
-  charts.push_back(chart("Speed over ground", "m/s",
-                         {series("true", "speed", "truth"), series("estimated", "estimated_speed", "estimate")}));
-  Json height = chart("Height", "m",
-                      {series("true", "height", "truth"), series("estimated above ground", "estimated_height", "estimate")});
+  charts.push_back(
+      chart("Speed over ground", "m/s",
+            {series("true", "speed", "truth"), series("estimated", "estimated_speed", "estimate")}));
+  Json height = chart(
+      "Height", "m",
+      {series("true", "height", "truth"), series("estimated above ground", "estimated_height", "estimate")});
   height["limits"] = {{{"name", "lower bound"}, {"value", scenario.band.minimum_altitude_m}},
                       {{"name", "upper bound"}, {"value", scenario.band.maximum_altitude_m}}};
   charts.push_back(height);
-  Json clearance = chart("Clearance", "m", {series("true", "clearance", "truth"),
-                                            series("of the plan", "plan_clearance", "command", "plan_t")});
+  Json clearance = chart(
+      "Clearance", "m",
+      {series("true", "clearance", "truth"), series("of the plan", "plan_clearance", "command", "plan_t")});
   clearance["limits"] = {{{"name", "touch"}, {"value", 0}}};
   charts.push_back(clearance);
   Json plans = chart("Plan in force", "", {series("plan", "plan_origin_number", "command", "plan_t")});
@@ -290,17 +304,19 @@ Json charts_of(const Scenario& scenario, const Detail& detail) {
        {PlanOrigin::straight, PlanOrigin::solved, PlanOrigin::kept, PlanOrigin::fallback})
     plans["words"].push_back(word_for(origin));
   charts.push_back(plans);
-  charts.push_back(chart("Detections", "per frame", {series("on obstacles", "frame_hits", "truth", "frame_t"),
-                                                    series("elsewhere", "other_hits", "alert", "frame_t")}));
-  charts.push_back(chart("Bank", "deg", {series("true", "bank", "truth"), series("estimated", "estimated_bank", "estimate"),
-                                         series("commanded", "commanded_bank", "command")}));
+  charts.push_back(chart("Detections", "per frame",
+                         {series("on obstacles", "frame_hits", "truth", "frame_t"),
+                          series("elsewhere", "other_hits", "alert", "frame_t")}));
+  charts.push_back(chart("Bank", "deg",
+                         {series("true", "bank", "truth"), series("estimated", "estimated_bank", "estimate"),
+                          series("commanded", "commanded_bank", "command")}));
   if (!detail.is_whole) return charts;
-  charts.push_back(chart("Elevons", "deg", {series("left", "left_elevon", "truth"),
-                                            series("right", "right_elevon", "other")}));
+  charts.push_back(chart("Elevons", "deg",
+                         {series("left", "left_elevon", "truth"), series("right", "right_elevon", "other")}));
   for (const char* const axis : {"x", "y", "z"}) {
     const std::string words = fmt::format("Error of the odometry, {}", *axis == 'x'   ? "along the course"
-                                                                  : *axis == 'y' ? "to the left"
-                                                                                 : "upwards");
+                                                                       : *axis == 'y' ? "to the left"
+                                                                                      : "upwards");
     const std::string name = fmt::format("error_{}", axis);
     Json error = chart(words.c_str(), "m", {series("estimate less truth", name.c_str(), "estimate")});
     error["bands"] = {{{"name", "3 sigma"},

@@ -13,11 +13,11 @@ namespace understory {
 
 /// What a page adds to a flight that has ended.
 struct FlightPageExtras {
-  std::filesystem::path data_root;         ///< holds models/ and scenarios/
-  std::string warning = {};                ///< stands above everything else; empty: nothing to warn of
-  std::filesystem::path film = {};         ///< flight.mp4; empty: none
-  std::vector<float> film_times_s = {};    ///< of its pictures
-  cv::Mat last_picture = {};               ///< of the film
+  std::filesystem::path data_root;       ///< holds models/ and scenarios/
+  std::string warning = {};              ///< stands above everything else; empty: nothing to warn of
+  std::filesystem::path film = {};       ///< flight.mp4; empty: none
+  std::vector<float> film_times_s = {};  ///< of its pictures
+  cv::Mat last_picture = {};             ///< of the film
 };
 
 /// The page of a flight: one HTML file that needs nothing else. Long flights are decimated, so that it has at
@@ -26,13 +26,13 @@ struct FlightPageExtras {
 std::string flight_page(const Flight& flight, const FlightResult& result, const FlightTrack& track,
                         const FlightStory& story, const FlightPageExtras& extras);
 
-/// The same in at most 30 kB, for a campaign's page: packed_part() of the last two seconds in detail and of the
-/// rest in outline.
+/// The same in at most 30 kB, for a campaign's page: packed_part() of the last two seconds in detail and of
+/// the rest in outline.
 std::string compact_flight(const Flight& flight, const FlightResult& result, const FlightTrack& track,
                            const FlightStory& story);
 
-/// The arguments of `understory fly` that fly a scenario: a library's name, seed and settings, or, where those
-/// do not make the same scenario, a file scenario.yaml.
+/// The arguments of `understory fly` that fly a scenario: a library's name, seed and settings, or, where
+/// those do not make the same scenario, a file scenario.yaml.
 std::string arguments_that_fly(const Scenario& scenario, const std::filesystem::path& data_root);
 
 }  // namespace understory

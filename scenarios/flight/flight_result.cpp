@@ -11,6 +11,7 @@
 #include <opencv2/core/version.hpp>
 
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/output/errors.hpp"
 #include "scenarios/output/program.hpp"
 
 namespace understory {
@@ -70,16 +71,11 @@ void RunDigest::add(std::span<const std::byte> bytes) {
 
 std::string RunDigest::hex() const { return fmt::format("{:016x}", state_); }
 
-const char* const trajectory_columns =
-    "t_s,x_m,y_m,z_m,qw,qx,qy,qz,vx_world_mps,vy_world_mps,vz_world_mps,p_radps,q_radps,r_radps,"
-    "est_x_m,est_y_m,est_z_m,est_qw,est_qx,est_qy,est_qz,est_vx_world_mps,est_vy_world_mps,est_vz_world_mps,"
-    "est_p_radps,est_q_radps,est_r_radps,left_elevon_command_rad,right_elevon_command_rad,thrust_command_n,"
-    "left_elevon_rad,right_elevon_rad,thrust_n,clearance_m\n";
-
-bool is_ending(std::string_view word) {
-  constexpr std::array all{Outcome::goal, Outcome::collision, Outcome::ground, Outcome::out_of_bounds,
-                           Outcome::time};
-  return std::ranges::any_of(all, [&](Outcome outcome) { return word == word_for(outcome); });
+std::optional<Outcome> outcome_named(std::string_view word) {
+  for (const Outcome outcome :
+       {Outcome::goal, Outcome::collision, Outcome::ground, Outcome::out_of_bounds, Outcome::time})
+    if (word == word_for(outcome)) return outcome;
+  return {};
 }
 
 std::string_view word_for(Outcome outcome) {
@@ -100,35 +96,20 @@ std::string_view word_for(Outcome outcome) {
 
 std::string to_json(const FlightResult& result) {
   Json json;
-  json["outcome"] = word_for(result.outcome);
-  json["scenario"] = result.scenario;
-  json["seed"] = result.seed;
-  json["sensor_seed"] = result.sensor_seed;
-  json["detector"] = result.detector;
-  json["state_source"] = result.state_source;
-  if (!result.touched.empty()) json["touched"] = result.touched;
-  json["simulated_s"] = result.simulated_s;
-  json["wall_s"] = result.wall_s;
-  json["distance_m"] = result.distance_m;
-  json["progress_m"] = result.progress_m;
-  json["mean_speed_mps"] = result.mean_speed_mps;
-  json["minimum_clearance_m"] = number(result.minimum_clearance_m);
-  json["estimation"] = {{"position_error_mean_m", result.position_error_mean_m},
-                        {"position_error_max_m", result.position_error_max_m},
-                        {"position_error_end_m", result.position_error_end_m},
-                        {"attitude_error_max_rad", result.attitude_error_max_rad},
-                        {"velocity_error_mean_mps", result.velocity_error_mean_mps}};
-  json["frames"] = result.frames;
-  json["detections"] = result.detections;
-  json["remembered_points"] = result.remembered_points;
-  const auto put_count = [&](std::string_view name, std::int64_t count) {
-    const std::string key(name == "replans" ? "count" : name == "found" ? "searches_found" : name);
-    json["replans"][key] = count;
+  const auto put = [&](std::string_view name, const auto& value) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    Json& to = json[std::string(name)];
+    if constexpr (std::is_same_v<Value, Outcome>)
+      to = word_for(value);
+    else if constexpr (std::floating_point<Value>)
+      to = number(value);
+    else if constexpr (std::is_same_v<Value, std::int64_t>)
+      to = value < 0 ? Json(nullptr) : Json(value);
+    else
+      to = value;
   };
-  visit_fields(put_count, result.planner);
-  if (!result.points_on_obstacles.empty()) {
-    for (const auto& [name, count] : result.points_on_obstacles) json["points_on_obstacles"][name] = count;
-  }
+  visit_fields(put, result);
+  for (const auto& [name, count] : result.points_on_obstacles) json["points_on_obstacles"][name] = count;
   for (const StageTiming& timing : result.timings) {
     json["timings"][timing.stage] = {
         {"count", timing.count},
@@ -137,18 +118,40 @@ std::string to_json(const FlightResult& result) {
         {"total_s", timing.total_s}};
   }
   json["versions"] = {{"understory", understory_version}, {"opencv", CV_VERSION}, {"compiler", __VERSION__}};
-  if (!result.renderer.empty()) json["versions"]["renderer"] = result.renderer;
-  json["digest"] = result.digest;
   return json_text(json, 2) + "\n";
 }
 
-std::string to_report(const FlightResult& result) {
-  std::string text;
-  const auto line = [&](std::string_view name, const std::string& value) {
-    text += fmt::format("  {:<18}{}\n", name, value);
+FlightResult result_from_json(const std::string& text, const std::string& name) try {
+  const Json json = parse_json(text);
+  FlightResult result;
+  const auto take = [&](std::string_view key, auto& value) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    const Json& from = json.at(std::string(key));
+    if constexpr (std::is_same_v<Value, Outcome>) {
+      const std::optional<Outcome> outcome = outcome_named(from.get<std::string>());
+      if (!outcome)
+        throw ScenarioError(
+            fmt::format("{}: outcome: expected goal, collision, ground, out_of_bounds or time", name));
+      value = *outcome;
+    } else if (!from.is_null()) {  // null: the field's own default says nothing
+      value = from.get<Value>();
+    }
   };
-  text += fmt::format("{} (scenario {}, seed {}, {}, {})\n", word_for(result.outcome), result.scenario,
-                      result.seed, result.detector, result.state_source);
+  visit_fields(take, result);
+  if (json.contains("points_on_obstacles"))
+    for (const auto& [obstacle, count] : json["points_on_obstacles"].items())
+      result.points_on_obstacles.emplace_back(obstacle, count.get<std::int64_t>());
+  return result;
+} catch (const Json::exception&) {
+  throw ScenarioError(fmt::format("{}: expected a flight's result of this version", name));
+}
+
+std::vector<std::pair<std::string, std::string>> result_lines(const FlightResult& result) {
+  std::vector<std::pair<std::string, std::string>> lines;
+  const auto line = [&](std::string_view name, std::string value) {
+    lines.emplace_back(name, std::move(value));
+  };
+  line("outcome", std::string(word_for(result.outcome)));
   if (!result.touched.empty()) line("touched", result.touched);
   line("flown", fmt::format("{:.1f} m in {:.2f} s, {:.1f} m/s on average", result.distance_m,
                             result.simulated_s, result.mean_speed_mps));
@@ -164,11 +167,18 @@ std::string to_report(const FlightResult& result) {
                    planner.straight, planner.solved, planner.kept, planner.kept_ompl, planner.fallback));
   line("obstacle ahead", fmt::format("in {} replans, {} of them flown on OMPL's answer",
                                      planner.obstacle_ahead, planner.obstacle_ahead_ompl));
-  line("real-time factor",
-       fmt::format("{:.2f} ({:.1f} s of wall time)",
-                   result.wall_s > 0 ? result.simulated_s / result.wall_s : 0.0, result.wall_s));
+  line("renderer", result.renderer.empty() ? "none: no images" : result.renderer);
   line("digest", result.digest);
-  return text;
+  return lines;
+}
+
+std::string to_report(const FlightResult& result) {
+  std::string text = fmt::format("{} (scenario {}, seed {}, {}, {})\n", word_for(result.outcome),
+                                 result.scenario, result.seed, result.detector, result.state_source);
+  for (const auto& [name, value] : result_lines(result))
+    if (name != "outcome" && name != "renderer") text += fmt::format("  {:<18}{}\n", name, value);
+  return text + fmt::format("  {:<18}{:.2f} ({:.1f} s of wall time)\n", "real-time factor",
+                            result.wall_s > 0 ? result.simulated_s / result.wall_s : 0.0, result.wall_s);
 }
 
 }  // namespace understory

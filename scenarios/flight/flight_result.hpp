@@ -1,12 +1,16 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "planning/plan.hpp"
@@ -39,8 +43,8 @@ enum class Outcome {
 };
 
 std::string_view word_for(Outcome outcome);
-/// Whether an outcome is called so.
-bool is_ending(std::string_view word);
+/// Empty where no outcome is called so.
+std::optional<Outcome> outcome_named(std::string_view word);
 
 /// Wall time of one stage of the loop, for people. It decides nothing.
 struct StageTiming {
@@ -50,46 +54,92 @@ struct StageTiming {
   double maximum_s = 0;
 };
 
-/// One flight in numbers: what result.json holds.
-struct FlightResult {
-  std::string scenario;             ///< its name
-  std::uint64_t seed = 0;           ///< of the course
-  std::uint64_t sensor_seed = 0;    ///< of the sensors' noise
-  std::string detector;             ///< perception.detector
-  std::string state_source;         ///< estimation.source
-  Outcome outcome = Outcome::time;  ///< goal, collision, ground, out_of_bounds or time
-  std::string touched;              ///< name of the nearest obstacle at a collision
-  double simulated_s = 0;           ///< since the start at rest
-  double wall_s = 0;                ///< that the flight took on its machine
-  double distance_m = 0;            ///< true path length since release
-  double progress_m = 0;            ///< maximum true x reached
-  double mean_speed_mps = 0;        ///< true, over ground, since release
-  /// True; +infinity without obstacles (null in JSON).
+/// What a result and a campaign's row say of a flight that was flown.
+struct FlightMeasures {
+  double distance_m = 0;      ///< flown: true path length since release
+  double progress_m = 0;      ///< maximum true x reached
+  double mean_speed_mps = 0;  ///< true, over ground, since release
+  /// True; +infinity (empty in CSV, null in JSON) without obstacles.
   double minimum_clearance_m = std::numeric_limits<double>::infinity();
   double position_error_mean_m = 0;    ///< estimate against truth, since release
   double position_error_max_m = 0;     ///< the largest
+  std::int64_t detections = 0;         ///< hits, all frames
+  std::int64_t remembered_points = 0;  ///< points ever taken into the map
+  /// Fewest points remembered within 0.5 m of an obstacle; -1 (empty, null): not counted, since there are
+  /// more than eight obstacles or none.
+  std::int64_t minimum_points_on_an_obstacle = -1;
+  PlannerCounts planner;
+  double simulated_s = 0;  ///< since the start at rest
+  std::string digest;      ///< of the flight, bit for bit: equal flights have equal digests
+};
+
+template <typename Visitor, typename Measures>
+requires std::same_as<std::remove_const_t<Measures>, FlightMeasures>
+void visit_fields(Visitor& visit, Measures& measures) {
+  visit("distance_m", measures.distance_m);
+  visit("progress_m", measures.progress_m);
+  visit("mean_speed_mps", measures.mean_speed_mps);
+  visit("minimum_clearance_m", measures.minimum_clearance_m);
+  visit("position_error_mean_m", measures.position_error_mean_m);
+  visit("position_error_max_m", measures.position_error_max_m);
+  visit("detections", measures.detections);
+  visit("remembered_points", measures.remembered_points);
+  visit("minimum_points_on_an_obstacle", measures.minimum_points_on_an_obstacle);
+  visit_fields(visit, measures.planner);
+  visit("simulated_s", measures.simulated_s);
+  visit("digest", measures.digest);
+}
+
+/// One flight in numbers: what result.json holds.
+struct FlightResult : FlightMeasures {
+  Outcome outcome = Outcome::time;     ///< goal, collision, ground, out_of_bounds or time
+  std::string scenario;                ///< its name
+  std::uint64_t seed = 0;              ///< of the course
+  std::uint64_t sensor_seed = 0;       ///< of the sensors' noise
+  std::string detector;                ///< perception.detector
+  std::string state_source;            ///< estimation.source
+  std::string touched;                 ///< name of the nearest obstacle at a collision; else empty
   double position_error_end_m = 0;     ///< at the end
   double attitude_error_max_rad = 0;   ///< the largest, since release
   double velocity_error_mean_mps = 0;  ///< estimate against truth, since release
   std::int64_t frames = 0;             ///< that the stack received
-  std::int64_t detections = 0;         ///< hits, all frames
-  std::int64_t remembered_points = 0;  ///< points ever taken into the map
-  PlannerCounts planner;
-  /// For each obstacle of a short course (goalposts): remembered points within 0.5 m of it before it was
-  /// passed.
+  double wall_s = 0;                   ///< that the flight took on its machine
+  std::string renderer;                ///< OpenGL's name of what drew; empty without images
+  /// Of each obstacle on a course of at most eight: remembered points within 0.5 m of it.
   std::vector<std::pair<std::string, std::int64_t>> points_on_obstacles;
   std::vector<StageTiming> timings;
-  std::string renderer;  ///< OpenGL's name of what drew; empty without images
-  std::string digest;    ///< of the flight, bit for bit: equal flights have equal digests
 };
 
-/// The columns of trajectory.csv, a line.
-extern const char* const trajectory_columns;
+/// All but the two lists.
+template <typename Visitor, typename Result>
+requires std::same_as<std::remove_const_t<Result>, FlightResult>
+void visit_fields(Visitor& visit, Result& result) {
+  using Measures = std::conditional_t<std::is_const_v<Result>, const FlightMeasures, FlightMeasures>;
+  visit("outcome", result.outcome);
+  visit("scenario", result.scenario);
+  visit("seed", result.seed);
+  visit("sensor_seed", result.sensor_seed);
+  visit("detector", result.detector);
+  visit("state_source", result.state_source);
+  visit("touched", result.touched);
+  visit_fields(visit, static_cast<Measures&>(result));
+  visit("position_error_end_m", result.position_error_end_m);
+  visit("attitude_error_max_rad", result.attitude_error_max_rad);
+  visit("velocity_error_mean_mps", result.velocity_error_mean_mps);
+  visit("frames", result.frames);
+  visit("wall_s", result.wall_s);
+  visit("renderer", result.renderer);
+}
 
 /// As indented JSON text, versions of program and libraries included.
 std::string to_json(const FlightResult& result);
 
-/// One screen for a person.
+/// Reads it back, the timings apart. Throws ScenarioError, naming `name`, where the text is no result.
+FlightResult result_from_json(const std::string& text, const std::string& name);
+
+/// What a person reads of a result, line by line: a heading and words.
+std::vector<std::pair<std::string, std::string>> result_lines(const FlightResult& result);
+/// The same as one screen.
 std::string to_report(const FlightResult& result);
 
 }  // namespace understory

@@ -63,7 +63,8 @@ void TrackRecorder::on_frame(const Flight& flight) {
   const Truth& truth = flight.truth_at(t_ns);
   const Eigen::Isometry3d T_world_camera = truth.T_world_body * flight.rig().rig.T_body_camera;
   track_.frames.push_back({t_ns, truth, track_.hits_world.size(), flight.hits().size()});
-  for (const StereoHit& hit : flight.hits()) track_.hits_world.push_back(T_world_camera * hit.position_camera);
+  for (const StereoHit& hit : flight.hits())
+    track_.hits_world.push_back(T_world_camera * hit.position_camera);
   follow_map(flight);
 }
 

@@ -18,16 +18,16 @@ struct TrackMoment {
   double estimated_altitude_m = 0;
   double bank_rad = 0, estimated_bank_rad = 0, commanded_bank_rad = 0;  ///< right wing down positive
   double left_elevon_rad = 0, right_elevon_rad = 0;
-  double clearance_m = 0;                                         ///< true; +infinity without obstacles
+  double clearance_m = 0;                                          ///< true; +infinity without obstacles
   Eigen::Vector3d position_error_world = Eigen::Vector3d::Zero();  ///< estimate less truth
   Eigen::Vector3d position_sigma_world = Eigen::Vector3d::Zero();  ///< as the estimator believes
-  int hits = 0;  ///< in the newest frame
+  int hits = 0;                                                    ///< in the newest frame
 };
 
 /// A frame that the autopilot looked at.
 struct TrackFrame {
-  std::int64_t t_ns = 0;  ///< of the exposure
-  Truth truth;            ///< then
+  std::int64_t t_ns = 0;                ///< of the exposure
+  Truth truth;                          ///< then
   std::size_t first_hit = 0, hits = 0;  ///< in FlightTrack::hits_world
 };
 
@@ -49,7 +49,7 @@ struct FlightTrack {
   std::vector<TrackMoment> moments;  ///< 120 a second, and the last
   std::vector<TrackFrame> frames;
   std::vector<Eigen::Vector3d> hits_world;  ///< placed by the true pose
-  std::vector<TrackPoint> points;  ///< in order of from_s
+  std::vector<TrackPoint> points;           ///< in order of from_s
   std::vector<TrackPlan> plans;
   double launch_s = 0;  ///< when the aircraft left the catapult
 };

@@ -6,10 +6,11 @@
 
 #include "scenarios/flight/flight.hpp"
 #include "scenarios/flight/flight_film.hpp"
+#include "scenarios/flight/flight_logger.hpp"
 #include "scenarios/flight/flight_page.hpp"
 #include "scenarios/flight/flight_story.hpp"
 #include "scenarios/flight/flight_track.hpp"
-#include "scenarios/flight/run_record.hpp"
+#include "scenarios/flight/run_files.hpp"
 #include "scenarios/output/file_output.hpp"
 
 namespace understory {
@@ -21,20 +22,20 @@ constexpr std::int64_t progress_every_steps = physics_rate_hz / 10;
 
 class ProgressTeller : public FlightObserver {
  public:
-  ProgressTeller(const RunRecord& record, const std::function<void(const FlightProgress&)>& tell)
-      : record_(record), tell_(tell) {}
+  ProgressTeller(const FlightLog& log, const std::function<void(const FlightProgress&)>& tell)
+      : log_(log), tell_(tell) {}
 
   const char* stage() const override { return "progress"; }
   void on_step(const Flight& flight) override {
     if (flight.clock().step() % progress_every_steps != 0) return;
-    const FlightResult& so_far = record_.so_far();
+    const FlightResult& so_far = log_.result;
     tell_({flight.clock().t_s(), flight.stopwatch().elapsed_s(), so_far.progress_m,
            flight.scenario().goal_x_m(), flight.truth().velocity_world_mps.norm(),
            so_far.minimum_clearance_m});
   }
 
  private:
-  const RunRecord& record_;
+  const FlightLog& log_;
   const std::function<void(const FlightProgress&)>& tell_;
 };
 
@@ -70,20 +71,20 @@ void write_story(const Flight& flight, const FlightResult& result, const FlyOpti
 }  // namespace
 
 FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
-  RunRecord record;
+  FlightLogger logger;
   std::optional<FlightFilm> film;
   std::optional<TrackRecorder> track;
   std::optional<ProgressTeller> progress;
-  std::vector<FlightObserver*> observers{&record};
+  std::vector<FlightObserver*> observers{&logger};
   if (options.video) observers.push_back(&film.emplace(options.output_folder, scenario.frame_rate_hz()));
   if (options.report || !options.track.empty()) observers.push_back(&track.emplace());
-  if (options.on_progress) observers.push_back(&progress.emplace(record, options.on_progress));
+  if (options.on_progress) observers.push_back(&progress.emplace(logger.log(), options.on_progress));
   observers.insert(observers.end(), options.observers.begin(), options.observers.end());
 
   Flight flight(scenario, {options.models_folder, options.renderer}, std::move(observers));
   while (!flight.outcome()) flight.step();
 
-  const FlightResult result = record.finish(flight);
+  const FlightResult& result = logger.log().result;
   std::string lost;
   try {
     if (film) film->finish(flight);
@@ -91,7 +92,7 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
     lost = error.what();
     film.reset();
   }
-  if (!options.output_folder.empty()) record.write(options.output_folder);
+  if (!options.output_folder.empty()) write_run_files(logger.log(), options.output_folder);
   if (track) write_story(flight, result, options, *track, film ? &*film : nullptr);
   if (!lost.empty()) throw LostFilm(lost);
   return result;

@@ -12,7 +12,7 @@
 #include "scenarios/flight/flight_page.hpp"
 #include "scenarios/flight/flight_story.hpp"
 #include "scenarios/flight/flight_track.hpp"
-#include "scenarios/flight/run_record.hpp"
+#include "scenarios/flight/flight_logger.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -33,13 +33,13 @@ Scenario library(const std::string& name, const std::vector<std::string>& settin
 
 /// A flight that ended, its track and its story.
 struct Told {
-  explicit Told(const Scenario& scenario) : flight(scenario, {root / "models"}, {&record, &recorder}) {
+  explicit Told(const Scenario& scenario) : flight(scenario, {root / "models"}, {&logger, &recorder}) {
     while (!flight.outcome()) flight.step();
-    result = record.finish(flight);
+    result = logger.log().result;
     track = recorder.finish(flight);
     story = story_of(flight, track);
   }
-  RunRecord record;
+  FlightLogger logger;
   TrackRecorder recorder;
   Flight flight;
   FlightResult result;

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "scenarios/flight/run_record.hpp"
+#include "scenarios/flight/flight_logger.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "sim/render/offscreen_backend.hpp"
 #include "tests/closed_loop/flown.hpp"
@@ -27,17 +27,17 @@ Scenario forest(int seed, std::vector<std::string> settings = short_forest) {
 /// A flight and its record.
 struct Recorded {
   explicit Recorded(const Scenario& scenario, std::vector<FlightObserver*> more = {})
-      : flight(scenario, machine, with_record(std::move(more))) {}
-  std::vector<FlightObserver*> with_record(std::vector<FlightObserver*> observers) {
-    observers.push_back(&record);
+      : flight(scenario, machine, with_logger(std::move(more))) {}
+  std::vector<FlightObserver*> with_logger(std::vector<FlightObserver*> observers) {
+    observers.push_back(&logger);
     return observers;
   }
   FlightResult flown() {
     while (!flight.outcome()) flight.step();
-    return record.finish(flight);
+    return logger.log().result;
   }
 
-  RunRecord record;
+  FlightLogger logger;
   Flight flight;
 };
 

@@ -12,7 +12,7 @@
 #include "scenarios/flight/flight.hpp"
 #include "scenarios/flight/onboard_sensors.hpp"
 #include "scenarios/flight/oracles.hpp"
-#include "scenarios/flight/run_record.hpp"
+#include "scenarios/flight/flight_logger.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
@@ -95,15 +95,15 @@ FilterConfig woken_at(const Truth& truth, FilterConfig filter) {
 FlightTrace traced_flight(Scenario scenario, StateKind flown_on) {
   scenario.perception.detector = DetectorKind::true_depth;
   scenario.estimation.source = flown_on;
-  RunRecord record;
-  Flight flight(scenario, {UNDERSTORY_SOURCE_DIR "/models"}, {&record});
+  FlightLogger logger;
+  Flight flight(scenario, {UNDERSTORY_SOURCE_DIR "/models"}, {&logger});
   FlightTrace trace{scenario, flight.rig().rig, flight.obstacles()};
   while (!flight.outcome()) {
     if (!flight.launched()) ++trace.release_step;
     trace.truths.push_back(flight.truth());
     flight.step();
   }
-  trace.result = record.finish(flight);
+  trace.result = logger.log().result;
   return trace;
 }
 
