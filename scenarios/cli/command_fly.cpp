@@ -11,6 +11,7 @@
 #include "scenarios/campaign/gate.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
+#include "scenarios/flight/flight_logger.hpp"
 #include "scenarios/flight/fly.hpp"
 #include "scenarios/flight/run_files.hpp"
 #include "scenarios/output/file_output.hpp"
@@ -141,12 +142,14 @@ void require_writable_beside(const fs::path& folder, const std::string& file) {
   if (folder.empty() || above != fs::weakly_canonical(fs::absolute(folder), ignored)) require_writable(file);
 }
 
-/// The log that --mcap asks for, as one of the flight's observers.
-std::unique_ptr<FlightMcap> log_of(const FlightArguments& arguments, FlyOptions& options) {
+/// The file that --mcap asks for, as one of the flight's observers.
+std::unique_ptr<FlightMcap> mcap_of(const FlightArguments& arguments, FlightLogger& logger,
+                                    FlyOptions& options) {
   if (!arguments.mcap) return nullptr;
-  auto log = std::make_unique<FlightMcap>(options.output_folder / "flight.mcap", false);
-  options.observers.push_back(log.get());
-  return log;
+  auto mcap = std::make_unique<FlightMcap>(logger.log(), options.output_folder / "flight.mcap", false);
+  options.logger = &logger;
+  options.observers.push_back(mcap.get());
+  return mcap;
 }
 
 FlightResult flown(const Scenario& scenario, const FlyOptions& options, std::optional<OutputFolder>& output) {
@@ -179,7 +182,8 @@ int run_fly(const FlyArguments& arguments) {
     output.emplace(folder, run_contents(scenario), arguments.force ? Replace::anything : Replace::same);
     options.output_folder = output->path();
   }
-  const std::unique_ptr<FlightMcap> log = log_of(arguments, options);
+  FlightLogger logger;
+  const std::unique_ptr<FlightMcap> mcap = mcap_of(arguments, logger, options);
   warn_of(scenario, arguments.quiet);
   ProgressLine line(!arguments.quiet);
   options.on_progress = [&](const FlightProgress& progress) { show(line, progress); };
@@ -236,7 +240,8 @@ std::string record(const RecordArguments& arguments, const Scenario& scenario, F
       arguments.path.empty() ? std::vector<TimedPose>{} : read_path(path_file(arguments.path));
   ProgressLine line(!arguments.quiet);
   options.on_progress = [&](const FlightProgress& progress) { show(line, progress); };
-  const std::unique_ptr<FlightMcap> log = log_of(arguments, options);
+  FlightLogger logger;
+  const std::unique_ptr<FlightMcap> mcap = mcap_of(arguments, logger, options);
   if (!path.empty()) return report_of(follow_recorded(scenario, path, options));
   if (!arguments.walk_mps) return report_of(fly_recorded(scenario, options));
   return report_of(walk_recorded(

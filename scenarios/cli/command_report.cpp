@@ -11,6 +11,8 @@
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/flight/flight_logger.hpp"
+#include "scenarios/flight/flight_page.hpp"
 #include "scenarios/flight/fly.hpp"
 #include "scenarios/flight/run_files.hpp"
 #include "scenarios/output/file_output.hpp"
@@ -19,11 +21,14 @@
 #include "scenarios/recording/flight_mcap.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
-/// What a run's folder does not hold comes from flying it again.
+/// Pages and logs are made of the log that a run has kept. Films and images come from flying it again.
 namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Of a flight.log; one of a flight of 600 s has 12 MB.
+constexpr std::size_t maximum_log_bytes = std::size_t{256} << 20;
 
 struct AgainArguments {
   std::string folder;
@@ -39,6 +44,7 @@ struct ReportArguments : AgainArguments {
 
 struct McapArguments : AgainArguments {
   bool compress = false;
+  bool no_images = false;
 };
 
 /// What the run's result.json says; empty where the run never came to its end.
@@ -58,6 +64,29 @@ Scenario scenario_of_run(const fs::path& run) {
     throw ScenarioError(fmt::format(
         "{}: expected the folder of a run, which holds scenario.yaml, or of a campaign", run.string()));
   return load_scenario(run / "scenario.yaml");
+}
+
+FlightLog log_of_run(const fs::path& run) {
+  scenario_of_run(run);  // or this is no run
+  const fs::path file = run / "flight.log";
+  std::error_code ignored;
+  if (!fs::exists(file, ignored))
+    throw ScenarioError(fmt::format(
+        "{}: flight.log is missing: this run was written by an older version; fly it again", run.string()));
+  return flight_log_from_bytes(read_file(file, maximum_log_bytes), file.string(), data_root() / "models");
+}
+
+/// The run's result must be the log's: somebody may have put files of two runs together.
+std::string warning_of_log(const FlightLog& log, const fs::path& run) {
+  return warning_of_digest(log.result, digest_of(run));
+}
+
+int told(const fs::path& file, const std::string& warning, bool quiet) {
+  if (!quiet)
+    fmt::print("{}: {}\n", file.string(),
+               warning.empty() ? "made of the run's log"
+                               : "made of a log with another digest than the run's result");
+  return warning.empty() ? exit_goal : exit_not_goal;
 }
 
 std::vector<fs::path> with_folder(const fs::path& folder, const std::vector<std::string>& names) {
@@ -122,13 +151,26 @@ int fly_again(const Scenario& scenario, const AgainArguments& arguments, FlyOpti
   return is_same ? exit_goal : exit_not_goal;
 }
 
+/// The page without a film.
+int report_from_log(const ReportArguments& arguments) {
+  const fs::path run = arguments.folder;
+  const FlightLog log = log_of_run(run);
+  const AgainOutput output(arguments, "flight", "report.html");
+  require_writable(output.file);
+  FlightPageExtras extras{data_root()};
+  extras.warning = warning_of_log(log, run);
+  write_whole_file(output.file, flight_page(log, extras), output.named);
+  return told(output.file, extras.warning, arguments.quiet);
+}
+
 int run_report(const ReportArguments& arguments) {
+  if (arguments.no_video) return report_from_log(arguments);
   const fs::path run = arguments.folder;
   const Scenario scenario = scenario_of_run(run);
   FlyOptions options;
   options.expected_digest = digest_of(run);
   options.report = true;
-  options.video = !arguments.no_video;
+  options.video = true;
   const AgainOutput output(arguments, "flight", "report.html");
   require_writable(output.file);
   // The film, too, is made as a file first: beside the page, or where that is a device.
@@ -169,13 +211,22 @@ int run_report_of_either(const ReportArguments& arguments) {
 
 int run_mcap(const McapArguments& arguments) {
   const fs::path run = arguments.folder;
+  if (arguments.no_images) {
+    const FlightLog log = log_of_run(run);
+    const AgainOutput output(arguments, "flight", "flight.mcap");
+    require_writable(output.file);
+    FlightMcap(log, output.file, arguments.compress, output.named).write_whole_log();
+    return told(output.file, warning_of_log(log, run), arguments.quiet);
+  }
   const Scenario scenario = scenario_of_run(run);
   FlyOptions options;
   options.expected_digest = digest_of(run);
   const AgainOutput output(arguments, "flight", "flight.mcap");
   require_writable(output.file);
-  FlightMcap log(output.file, arguments.compress, output.named);
-  options.observers.push_back(&log);
+  FlightLogger logger;
+  FlightMcap mcap(logger.log(), output.file, arguments.compress, output.named);
+  options.logger = &logger;
+  options.observers.push_back(&mcap);
   return fly_again(scenario, arguments, options, output.file, [] {});
 }
 
@@ -195,7 +246,8 @@ void add_report_command(CommandLine& line) {
                                "it is there, but shows another flight than the run's, or the gate fails"});
   add_again_options(command, *arguments, "the page (default: FOLDER/report.html)");
   command.text("--baseline", "FOLDER", arguments->baseline, "of a campaign: the one it is gated against");
-  command.flag("--no-video", arguments->no_video, "leave the film out: a smaller page, made sooner");
+  command.flag("--no-video", arguments->no_video,
+               "leave the film out: a smaller page, made at once from the run's log");
   command.runs([arguments] { return run_report_of_either(*arguments); });
 }
 
@@ -206,6 +258,7 @@ void add_mcap_command(CommandLine& line) {
                 "the log is there", "it is there, but of another flight than the run's"});
   add_again_options(command, *arguments, "the log (default: FOLDER/flight.mcap)");
   command.flag("--zstd", arguments->compress, "compress it");
+  command.flag("--no-images", arguments->no_images, "leave the images out: made at once from the run's log");
   command.runs([arguments] { return run_mcap(*arguments); });
 }
 

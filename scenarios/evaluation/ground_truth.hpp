@@ -26,7 +26,7 @@ struct TrueImages {
   cv::Mat shared_depth_mm;
 };
 
-/// A thing of objects.csv: a obstacle between two points (world frame, m); the ground has no geometry.
+/// A thing of objects.csv: an obstacle between two points (world frame, m); the ground has no geometry.
 struct RecordedObject {
   int number = 0;  ///< its pixels' value
   std::string name;

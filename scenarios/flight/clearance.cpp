@@ -62,6 +62,18 @@ double obstacle_distance_m(const Segment& segment, const Obstacle& obstacle) {
          obstacle.radius_m;
 }
 
+Eigen::Vector3d nearest_place(const Eigen::Vector3d& point_world, const Obstacle& obstacle) {
+  const Eigen::Vector3d extent = obstacle.to_world - obstacle.from_world,
+                        offset = point_world - obstacle.from_world;
+  const auto along = [&](const Eigen::Vector3d& way) -> Eigen::Vector3d {
+    const double length2 = way.squaredNorm();
+    if (length2 <= 0) return Eigen::Vector3d::Zero();
+    return std::clamp(offset.dot(way) / length2, 0.0, 1.0) * way;
+  };
+  if (obstacle.kind != ObstacleKind::wall) return obstacle.from_world + along(extent);
+  return obstacle.from_world + along({extent.x(), extent.y(), 0}) + along({0, 0, extent.z()});
+}
+
 double clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airframe,
                    const std::vector<Obstacle>& obstacles) {
   const double tail_x = airframe.elevon_hinge_x_m - airframe.elevon_chord_m;
@@ -88,8 +100,12 @@ double clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airfra
   return minimum;
 }
 
+double distance_m(const Eigen::Vector3d& point_world, const Obstacle& obstacle) {
+  return obstacle_distance_m({point_world, point_world}, obstacle);
+}
+
 bool belongs_to(const Eigen::Vector3d& point_world, const Obstacle& obstacle) {
-  return obstacle_distance_m({point_world, point_world}, obstacle) < belongs_within_m;
+  return distance_m(point_world, obstacle) < belongs_within_m;
 }
 
 std::optional<std::size_t> nearest_obstacle(const Eigen::Isometry3d& T_world_body, const Airframe& airframe,

@@ -22,6 +22,12 @@ double segment_distance_m(const Segment& a, const Segment& b);
 /// Minimum distance between a segment and an obstacle's surface, m; not positive where they touch.
 double obstacle_distance_m(const Segment& segment, const Obstacle& obstacle);
 
+/// From a point to an obstacle's surface, m; negative within.
+double distance_m(const Eigen::Vector3d& point_world, const Obstacle& obstacle);
+
+/// The place on an obstacle's axis, or on a wall's middle plane, that is nearest to a point.
+Eigen::Vector3d nearest_place(const Eigen::Vector3d& point_world, const Obstacle& obstacle);
+
 /// The true minimum distance between the aircraft and the obstacles' surfaces, m; negative where they
 /// overlap, +infinity without obstacles. The aircraft is its wing as a segment between the tips and its body
 /// as one from nose to tail (the root chord of a delta is about twice the mean chord).

@@ -44,19 +44,12 @@ std::vector<T> decimated(const std::vector<T>& all, std::size_t every) {
   return kept;
 }
 
-double distance_m(const Eigen::Vector3d& point, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  const Eigen::Vector3d along = to - from;
-  const double length2 = along.squaredNorm();
-  const double share = length2 > 0 ? std::clamp((point - from).dot(along) / length2, 0.0, 1.0) : 0;
-  return (from + share * along - point).norm();
-}
-
 /// Farthest that a point of `way` lies from the line through every `every`-th, m.
 double decimation_error_m(const std::vector<Eigen::Vector3d>& way, std::size_t every) {
   double maximum_m = 0;
   for (std::size_t i = 0; i < way.size(); ++i) {
     const std::size_t from = i / every * every, to = std::min(from + every, way.size() - 1);
-    maximum_m = std::max(maximum_m, distance_m(way[i], way[from], way[to]));
+    maximum_m = std::max(maximum_m, segment_distance_m({way[i], way[i]}, {way[from], way[to]}));
   }
   return maximum_m;
 }
@@ -76,73 +69,75 @@ void append(std::vector<float>& values, const Eigen::Isometry3d& pose) {
 
 float shown_m(double clearance_m) { return static_cast<float>(std::min(clearance_m, farthest_shown_m)); }
 
-void add_moments(const FlightTrack& track, const Detail& detail, PageArrays& arrays, Json& decimation) {
-  const std::size_t every = one_of(track.moments.size(), detail.moments);
+/// When what a page of this detail shows begins.
+std::int64_t shown_from_ns(const FlightLog& log, const Detail& detail) {
+  return log.moments.back().t_ns - static_cast<std::int64_t>(detail.from_end_s * 1e9);
+}
+
+float shown_s(std::int64_t t_ns) { return static_cast<float>(seconds(t_ns)); }
+
+void add_moments(const FlightLog& log, const Detail& detail, PageArrays& arrays, Json& decimation) {
+  const std::size_t every = one_of(log.moments.size(), detail.moments);
   if (every > 1) {
     std::vector<Eigen::Vector3d> way;
-    for (const TrackMoment& moment : track.moments) way.push_back(moment.T_world_true.translation());
+    for (const LogMoment& moment : log.moments) way.push_back(moment.T_world_body.translation());
     decimation.push_back(fmt::format("moments: one of {}; the path is at most {:.3f} m from the full one",
                                      every, decimation_error_m(way, every)));
   }
-  const std::vector<TrackMoment> moments = decimated(track.moments, every);
+  const std::vector<LogMoment> moments = decimated(log.moments, every);
   std::vector<float> truth, estimate;
-  for (const TrackMoment& moment : moments) {
-    append(truth, moment.T_world_true);
-    append(estimate, moment.T_world_estimated);
+  for (const LogMoment& moment : moments) {
+    append(truth, moment.T_world_body);
+    append(estimate, moment.T_odometry_body);
   }
   arrays.add("truth", 7, truth);
   arrays.add("estimate", 7, estimate);
-  const auto add = [&](const char* name, auto value_of) {
+  const auto add = [&](const std::string& name, auto value_of) {
     std::vector<float> values;
-    for (const TrackMoment& moment : moments) values.push_back(static_cast<float>(value_of(moment)));
+    for (const LogMoment& moment : moments) values.push_back(static_cast<float>(value_of(moment)));
     arrays.add(name, 1, values);
   };
-  using Moment = const TrackMoment&;
-  add("t", [](Moment m) { return m.t_s; });
-  add("speed", [](Moment m) { return m.speed_mps; });
-  add("estimated_speed", [](Moment m) { return m.estimated_speed_mps; });
-  add("height", [](Moment m) { return m.T_world_true.translation().z(); });
+  using Moment = const LogMoment&;
+  add("t", [](Moment m) { return seconds(m.t_ns); });
+  add("speed", [](Moment m) { return m.velocity_world_mps.norm(); });
+  add("estimated_speed", [](Moment m) { return m.estimated_velocity_mps.norm(); });
+  add("height", [](Moment m) { return m.T_world_body.translation().z(); });
   add("estimated_height", [](Moment m) { return m.estimated_altitude_m; });
   add("clearance", [](Moment m) { return shown_m(m.clearance_m); });
-  add("bank", [](Moment m) { return degrees * m.bank_rad; });
-  add("estimated_bank", [](Moment m) { return degrees * m.estimated_bank_rad; });
+  add("bank", [](Moment m) { return degrees * bank_rad(m.T_world_body); });
+  add("estimated_bank", [](Moment m) { return degrees * bank_rad(m.T_odometry_body); });
   add("commanded_bank", [](Moment m) { return degrees * m.commanded_bank_rad; });
   if (!detail.is_whole) return;
   add("left_elevon", [](Moment m) { return degrees * m.left_elevon_rad; });
   add("right_elevon", [](Moment m) { return degrees * m.right_elevon_rad; });
   for (const auto& [axis, letter] : {std::pair(0, 'x'), {1, 'y'}, {2, 'z'}}) {
-    add(fmt::format("error_{}", letter).c_str(), [&](Moment m) { return m.position_error_world[axis]; });
-    add(fmt::format("sigma3_{}", letter).c_str(), [&](Moment m) { return 3 * m.position_sigma_world[axis]; });
-    add(fmt::format("minus_sigma3_{}", letter).c_str(),
-        [&](Moment m) { return -3 * m.position_sigma_world[axis]; });
+    add(fmt::format("error_{}", letter), [&](Moment m) { return position_error_m(m)[axis]; });
+    add(fmt::format("sigma3_{}", letter), [&](Moment m) { return 3 * m.position_sigma_m[axis]; });
+    add(fmt::format("minus_sigma3_{}", letter), [&](Moment m) { return -3 * m.position_sigma_m[axis]; });
   }
 }
 
-void add_hits(const FlightTrack& track, const std::vector<Obstacle>& obstacles, const Detail& detail,
-              PageArrays& arrays, Json& decimation) {
-  const double from_s = track.moments.back().t_s - detail.from_end_s;
-  const auto recent = std::ranges::partition_point(
-      track.frames, [&](const TrackFrame& frame) { return static_cast<double>(frame.t_ns) * 1e-9 < from_s; });
-  const std::size_t first = recent == track.frames.end() ? track.hits_world.size() : recent->first_hit;
-  const std::size_t every = one_of(track.hits_world.size() - first, detail.hits);
+void add_hits(const FlightLog& log, const Detail& detail, PageArrays& arrays, Json& decimation) {
+  const auto recent = std::ranges::lower_bound(log.frames, shown_from_ns(log, detail), {}, &LogFrame::t_ns);
+  const auto all = static_cast<std::int64_t>(log.hits_camera.size());
+  const std::int64_t first = recent == log.frames.end() ? all : recent->first_hit;
+  const auto every = static_cast<std::int64_t>(one_of(static_cast<std::size_t>(all - first), detail.hits));
   if (every > 1) decimation.push_back(fmt::format("hits: one of {}", every));
   std::vector<float> hits, hits_t, frame_t, frame_hits, other_hits;
-  for (const TrackFrame& frame : track.frames) {
-    const auto t_s = static_cast<float>(static_cast<double>(frame.t_ns) * 1e-9);
-    frame_t.push_back(t_s);
-    const auto begin = track.hits_world.begin() + static_cast<std::ptrdiff_t>(frame.first_hit);
-    const auto on_obstacles = std::count_if(
-        begin, begin + static_cast<std::ptrdiff_t>(frame.hits), [&](const Eigen::Vector3d& hit_world) {
-          return std::ranges::any_of(obstacles,
-                                     [&](const Obstacle& one) { return belongs_to(hit_world, one); });
-        });
-    frame_hits.push_back(static_cast<float>(on_obstacles));
-    other_hits.push_back(static_cast<float>(frame.hits) - frame_hits.back());
-    for (std::size_t i = std::max(first, frame.first_hit); i < frame.first_hit + frame.hits; ++i) {
-      if (i % every != 0) continue;
-      append(hits, track.hits_world[i]);
-      hits_t.push_back(t_s);
+  for (const LogFrame& frame : log.frames) {
+    int on_obstacles = 0;
+    for (std::int64_t hit = 0; hit < frame.hits; ++hit) {
+      const Eigen::Vector3d place_world = hit_world(log, frame, hit);
+      on_obstacles += std::ranges::any_of(log.obstacles,
+                                          [&](const Obstacle& one) { return belongs_to(place_world, one); });
+      const std::int64_t number = frame.first_hit + hit;
+      if (number < first || number % every != 0) continue;
+      append(hits, place_world);
+      hits_t.push_back(shown_s(frame.t_ns));
     }
+    frame_t.push_back(shown_s(frame.t_ns));
+    frame_hits.push_back(static_cast<float>(on_obstacles));
+    other_hits.push_back(static_cast<float>(frame.hits - on_obstacles));
   }
   const std::size_t every_frame = one_of(frame_t.size(), detail.moments);
   if (every_frame > 1)
@@ -154,50 +149,50 @@ void add_hits(const FlightTrack& track, const std::vector<Obstacle>& obstacles, 
   arrays.add("other_hits", 1, decimated(other_hits, every_frame));
 }
 
-void add_map(const FlightTrack& track, const Detail& detail, PageArrays& arrays, Json& decimation) {
-  const double from_s = track.moments.back().t_s - detail.from_end_s;
-  std::vector<TrackPoint> shown;
-  std::ranges::copy_if(track.points, std::back_inserter(shown),
-                       [&](const TrackPoint& point) { return point.to_s >= from_s; });
+void add_map(const FlightLog& log, const Detail& detail, PageArrays& arrays, Json& decimation) {
+  const std::int64_t end_ns = log.moments.back().t_ns, from_ns = shown_from_ns(log, detail);
+  std::vector<LogPoint> shown;
+  std::ranges::copy_if(log.points, std::back_inserter(shown),
+                       [&](const LogPoint& one) { return one.to_ns >= from_ns; });
   if (!detail.is_whole && shown.size() > detail.map_points) {
-    const Eigen::Vector3d end_world = track.moments.back().T_world_estimated.translation();
+    const Eigen::Vector3d end = log.moments.back().T_odometry_body.translation();
     std::ranges::sort(shown, {},
-                      [&](const TrackPoint& point) { return (point.position_world - end_world).norm(); });
+                      [&](const LogPoint& one) { return (one.point.position_world - end).norm(); });
     decimation.push_back(
         fmt::format("points of the map: the {} nearest to the end, of {}", detail.map_points, shown.size()));
     shown.resize(detail.map_points);
-    std::ranges::sort(shown, {}, &TrackPoint::from_s);
+    std::ranges::sort(shown, {}, &LogPoint::from_ns);
   }
   const std::size_t every = one_of(shown.size(), detail.map_points);
   if (every > 1) decimation.push_back(fmt::format("points of the map: one of {}", every));
   std::vector<float> positions, from, to;
-  for (const TrackPoint& point : decimated(shown, every)) {
-    append(positions, point.position_world);
-    from.push_back(static_cast<float>(point.from_s));
-    to.push_back(static_cast<float>(point.to_s));
+  for (const LogPoint& one : decimated(shown, every)) {
+    append(positions, one.point.position_world);
+    from.push_back(shown_s(one.from_ns));
+    to.push_back(shown_s(std::min(one.to_ns, end_ns)));
   }
   arrays.add("map_points", 3, positions);
   arrays.add("map_from", 1, from);
   arrays.add("map_to", 1, to);
 }
 
-void add_plans(const FlightTrack& track, const Detail& detail, PageArrays& arrays, Json& decimation) {
-  const double from_s = track.moments.back().t_s - detail.from_end_s;
-  std::vector<TrackPlan> shown;
-  std::ranges::copy_if(track.plans, std::back_inserter(shown),
-                       [&](const TrackPlan& plan) { return plan.from_s >= from_s; });
+void add_plans(const FlightLog& log, const Detail& detail, PageArrays& arrays, Json& decimation) {
+  const std::int64_t from_ns = shown_from_ns(log, detail);
+  std::vector<LogPlan> shown;
+  std::ranges::copy_if(log.plans, std::back_inserter(shown),
+                       [&](const LogPlan& plan) { return plan.t_ns >= from_ns; });
   const std::size_t every = one_of(shown.size(), detail.plans);
   if (every > 1) decimation.push_back(fmt::format("plans: one of {}", every));
   std::vector<float> t, points, clearance, origin_number;
   std::vector<std::uint32_t> start;
   std::vector<std::uint8_t> origin;
   double error_m = 0;
-  for (const TrackPlan& plan : decimated(shown, every)) {
-    const std::size_t every_point = one_of(plan.way_world.size(), detail.plan_points - 1);
-    error_m = std::max(error_m, decimation_error_m(plan.way_world, every_point));
-    t.push_back(static_cast<float>(plan.from_s));
+  for (const LogPlan& plan : decimated(shown, every)) {
+    const std::size_t every_point = one_of(plan.way_odometry.size(), detail.plan_points - 1);
+    error_m = std::max(error_m, decimation_error_m(plan.way_odometry, every_point));
+    t.push_back(shown_s(plan.t_ns));
     start.push_back(static_cast<std::uint32_t>(points.size() / 3));
-    for (const Eigen::Vector3d& point : decimated(plan.way_world, every_point)) append(points, point);
+    for (const Eigen::Vector3d& point : decimated(plan.way_odometry, every_point)) append(points, point);
     origin.push_back(static_cast<std::uint8_t>(plan.origin));
     origin_number.push_back(origin.back());
     clearance.push_back(std::isfinite(plan.clearance_m) ? shown_m(plan.clearance_m)
@@ -215,32 +210,34 @@ void add_plans(const FlightTrack& track, const Detail& detail, PageArrays& array
   arrays.add("plan_clearance", 1, clearance);
 }
 
-void add_obstacles(const Flight& flight, std::optional<std::size_t> touched, const Detail& detail,
-                   PageArrays& arrays, Json& facts, Json& decimation) {
-  const std::vector<Obstacle>& obstacles = flight.obstacles();
+void add_obstacles(const FlightLog& log, const FlightStory& story, const Detail& detail, PageArrays& arrays,
+                   Json& facts, Json& decimation) {
+  const std::vector<Obstacle>& obstacles = log.obstacles;
   std::vector<std::size_t> shown(obstacles.size());
   std::iota(shown.begin(), shown.end(), std::size_t{0});
   if (shown.size() > detail.obstacles) {
-    const Eigen::Vector3d& end_world = flight.truth().T_world_body.translation();
-    std::ranges::sort(shown, {}, [&](std::size_t i) {
-      return obstacle_distance_m({end_world, end_world}, obstacles[i]);
-    });
+    const Eigen::Vector3d end_world = log.moments.back().T_world_body.translation();
+    std::ranges::sort(shown, {}, [&](std::size_t i) { return distance_m(end_world, obstacles[i]); });
     shown.resize(detail.obstacles);
     decimation.push_back(
         fmt::format("obstacles: the {} nearest to the end, of {}", shown.size(), obstacles.size()));
   }
   std::vector<float> values;
+  std::vector<std::uint8_t> kinds;
   facts["touched"] = Json();
   for (const std::size_t i : shown) {
-    if (i == touched) {
-      facts["touched"] = values.size() / 7;
+    if (story.touched && i == story.touched->obstacle) {
+      facts["touched"] = kinds.size();
       facts["touched_name"] = obstacles[i].name;
     }
     append(values, obstacles[i].from_world);
     append(values, obstacles[i].to_world);
     values.push_back(static_cast<float>(obstacles[i].radius_m));
+    kinds.push_back(static_cast<std::uint8_t>(obstacles[i].kind));
   }
   arrays.add("obstacles", 7, values);
+  arrays.add("obstacle_kinds", 1, kinds);
+  facts["obstacle_kinds"] = obstacle_kind_names;
 }
 
 void add_aircraft(const AircraftShape& shape, const std::string& touched_part, PageArrays& arrays) {
@@ -329,17 +326,17 @@ Json charts_of(const Scenario& scenario, const Detail& detail) {
 
 }  // namespace
 
-void add_track(const Flight& flight, const FlightTrack& track, const FlightStory& story, PageDetail of_page,
-               PageArrays& arrays, Json& facts) {
+void add_flight(const FlightLog& log, const FlightStory& story, PageDetail of_page, PageArrays& arrays,
+                Json& facts) {
   const Detail& detail = of_page == PageDetail::everything ? everything : compact;
   Json decimation = Json::array();
-  facts["charts"] = charts_of(flight.scenario(), detail);
-  add_moments(track, detail, arrays, decimation);
-  add_hits(track, flight.obstacles(), detail, arrays, decimation);
-  add_map(track, detail, arrays, decimation);
-  add_plans(track, detail, arrays, decimation);
-  add_obstacles(flight, story.touched, detail, arrays, facts, decimation);
-  add_aircraft(flight.aircraft_shape(), story.part, arrays);
+  facts["charts"] = charts_of(log.scenario, detail);
+  add_moments(log, detail, arrays, decimation);
+  add_hits(log, detail, arrays, decimation);
+  add_map(log, detail, arrays, decimation);
+  add_plans(log, detail, arrays, decimation);
+  add_obstacles(log, story, detail, arrays, facts, decimation);
+  add_aircraft(log.aircraft, log.touch.part, arrays);
   facts["decimation"] = std::move(decimation);
 }
 

@@ -3,7 +3,6 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "scenarios/flight/flight_story.hpp"
-#include "scenarios/flight/flight_track.hpp"
 #include "scenarios/report/page.hpp"
 
 namespace understory {
@@ -15,7 +14,7 @@ enum class PageDetail {
 
 /// What a page draws of a flight, thinned to fit: its arrays, and in `facts` the charts of them, the obstacle
 /// that was touched and how much was left out.
-void add_track(const Flight& flight, const FlightTrack& track, const FlightStory& story, PageDetail detail,
-               PageArrays& arrays, nlohmann::ordered_json& facts);
+void add_flight(const FlightLog& log, const FlightStory& story, PageDetail detail, PageArrays& arrays,
+                nlohmann::ordered_json& facts);
 
 }  // namespace understory

@@ -6,24 +6,23 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
-#include "scenarios/flight/flight_track.hpp"
-
 namespace understory {
 namespace {
 
 constexpr std::int64_t slow_end_ns = 500'000'000;
 constexpr double film_rate_hz = 30;
 
-double seconds(std::int64_t t_ns) { return static_cast<double>(t_ns) * 1e-9; }
-
-std::string caption_of(const Flight& flight, const Truth& truth) {
-  const Plan& plan = flight.plan();
-  const std::string planned = plan.points.empty() ? "none"
-                              : std::isfinite(plan.clearance_m)
-                                  ? fmt::format("{}, {:.2f} m clear", word_for(plan.origin), plan.clearance_m)
-                                  : fmt::format("{}, nothing near", word_for(plan.origin));
-  return fmt::format("{:.3f} s   {:.1f} m/s   {:.1f} m high   plan: {}", seconds(truth.t_ns),
-                     truth.velocity_world_mps.norm(), truth.T_world_body.translation().z(), planned);
+/// Of the moment of an exposure, under the plan in force when the frame arrived.
+std::string caption_of(const FlightLog& log, std::int64_t t_ns) {
+  const LogMoment& moment = moment_at(log, t_ns);
+  const LogPlan* plan = log.plans.empty() ? nullptr : &log.plans.back();
+  const std::string planned =
+      plan == nullptr ? "none"
+      : std::isfinite(plan->clearance_m)
+          ? fmt::format("{}, {:.2f} m clear", word_for(plan->origin), plan->clearance_m)
+          : fmt::format("{}, nothing near", word_for(plan->origin));
+  return fmt::format("{:.3f} s   {:.1f} m/s   {:.1f} m high   plan: {}", seconds(t_ns),
+                     moment.velocity_world_mps.norm(), moment.T_world_body.translation().z(), planned);
 }
 
 void mark(cv::Mat picture, const Eye& eye, const Eigen::Vector3d& place_world, int scale) {
@@ -37,8 +36,9 @@ constexpr int scale = 2;
 
 }  // namespace
 
-FlightFilm::FlightFilm(const std::filesystem::path& folder, double frame_rate_hz)
+FlightFilm::FlightFilm(const std::filesystem::path& folder, double frame_rate_hz, const FlightLog& log)
     : folder_(folder),
+      log_(log),
       every_(std::max(1, static_cast<int>(frame_rate_hz / film_rate_hz))),
       video_(folder / "flight.mp4", frame_rate_hz / every_) {}
 
@@ -49,12 +49,12 @@ FlightFilm::Moment FlightFilm::moment_of(const Flight& flight) {
   OverlayMoment overlay{{},
                         flight.hits(),
                         flight.map().points(),
-                        planned_way_world(flight),
+                        log_.plans.empty() ? std::vector<Eigen::Vector3d>() : log_.plans.back().way_odometry,
                         seen.T_world_body * flight.rig().rig.T_body_camera,
                         seen.velocity_body_mps.x(),
                         seen.T_world_body.translation().z(),
                         {}};
-  return {frames_++, frame, std::move(overlay), truth, caption_of(flight, truth)};
+  return {frames_++, frame, std::move(overlay), truth, caption_of(log_, frame.t_ns)};
 }
 
 cv::Mat FlightFilm::draw(const Flight& flight, Moment& moment) {

@@ -10,6 +10,7 @@
 
 #include "perception/rectification/rectify.hpp"
 #include "scenarios/flight/flight.hpp"
+#include "scenarios/flight/flight_log.hpp"
 #include "scenarios/report/pictures.hpp"
 
 namespace understory {
@@ -20,8 +21,9 @@ namespace understory {
 /// detections.
 class FlightFilm : public FlightObserver {
  public:
-  /// Files go into `folder`. `frame_rate_hz`: of the frames that reach the autopilot.
-  FlightFilm(const std::filesystem::path& folder, double frame_rate_hz);
+  /// Files go into `folder`. `frame_rate_hz`: of the frames that reach the autopilot. `log`: of the same
+  /// flight, kept by an observer that is called earlier.
+  FlightFilm(const std::filesystem::path& folder, double frame_rate_hz, const FlightLog& log);
 
   bool needs_images() const override { return true; }
   const char* stage() const override { return "film"; }
@@ -45,6 +47,7 @@ class FlightFilm : public FlightObserver {
   void add(const Flight& flight, Moment& moment);
 
   std::filesystem::path folder_;
+  const FlightLog& log_;
   int every_;  ///< frames per picture
   VideoFile video_;
   std::optional<Rectifier> rectifier_;  ///< for raw pairs, since the detector rectifies only part of an image

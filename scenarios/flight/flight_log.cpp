@@ -211,8 +211,10 @@ class Reader {
 
   template <typename Row>
   void table(std::vector<Row>& rows) {
-    rows.resize(count(take()));
-    columns_.assign(count(take()), std::vector<std::int64_t>(rows.size()));
+    const std::size_t row_count = count(take()), column_count = count(take());
+    if (column_count > 0 && row_count > rest_.size() / column_count) refuse();
+    rows.resize(row_count);
+    columns_.assign(column_count, std::vector<std::int64_t>(row_count));
     for (std::vector<std::int64_t>& column : columns_) {
       std::uint64_t before = 0;  // unsigned, since a damaged file may overflow it
       for (std::int64_t& number : column)
@@ -231,9 +233,9 @@ class Reader {
     const std::int64_t read = next();
     number = read == infinite ? still_there_ns : read;
   }
-  /// Refuses more of anything than the file has bytes left for.
+  /// Refuses more of anything than the file has bytes left for: each number takes one at least.
   std::size_t count(std::int64_t number) const {
-    if (number < 0 || static_cast<std::uint64_t>(number) > maximum_bytes / 64) refuse();
+    if (number < 0 || static_cast<std::uint64_t>(number) > rest_.size()) refuse();
     return static_cast<std::size_t>(number);
   }
   [[noreturn]] void refuse() const {

@@ -10,6 +10,7 @@
 #include "perception/io/text_file.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/flight/flight_arrays.hpp"
+#include "scenarios/flight/flight_story.hpp"
 #include "scenarios/output/errors.hpp"
 #include "scenarios/output/program.hpp"
 #include "scenarios/report/page.hpp"
@@ -23,14 +24,34 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t maximum_film_bytes = std::size_t{1} << 30;
 
-/// That the detector looks at.
-std::vector<double> depths_of(const Flight& flight) {
-  const std::vector<double>& depths_m = flight.scenario().perception.pushbroom.depths_m;
-  return depths_m.empty() ? std::vector{flight.rig().rig.detection_depth_m} : depths_m;
+/// Depths at which the detector compares images; empty where it compares none, or all.
+std::vector<double> depths_of(const FlightLog& log) {
+  if (log.scenario.perception.detector != DetectorKind::pushbroom) return {};
+  const std::vector<double>& depths_m = log.scenario.perception.pushbroom.depths_m;
+  return depths_m.empty() ? std::vector{log.rig.rig.detection_depth_m} : depths_m;
 }
 
-Json camera_of(const Flight& flight) {
-  const StereoRig& rig = flight.rig().rig;
+/// "pushbroom at 10.1 m", "stereo_bm from 1.5 to 15 m".
+std::string words_of_detector(const FlightLog& log) {
+  const PerceptionSection& perception = log.scenario.perception;
+  const std::string& name = log.result.detector;
+  switch (perception.detector) {
+    case DetectorKind::pushbroom:
+      return fmt::format("{} at {:.1f} m", name, fmt::join(depths_of(log), " and "));
+    case DetectorKind::stereo_bm:
+    case DetectorKind::stereo_sgbm:
+      return fmt::format("{} from {:.1f} to {:.1f} m", name, perception.full_stereo.minimum_depth_m,
+                         perception.full_stereo.maximum_depth_m);
+    case DetectorKind::true_depth:
+      return fmt::format("{} at {:.1f} m", name, log.rig.rig.detection_depth_m);
+    case DetectorKind::none:
+      break;
+  }
+  return name;
+}
+
+Json camera_of(const FlightLog& log) {
+  const StereoRig& rig = log.rig.rig;
   Json T_body_camera = Json::array();
   const Eigen::Matrix4d matrix = rig.T_body_camera.matrix();
   for (int row = 0; row < 4; ++row)
@@ -42,32 +63,15 @@ Json camera_of(const Flight& flight) {
           {"cx", rig.center_left_x_px},
           {"cy", rig.center_y_px},
           {"T_body_camera", T_body_camera},
-          {"depths_m", depths_of(flight)},
+          {"depths_m", depths_of(log)},
           {"baseline_m", rig.baseline_m}};
 }
 
-Json result_of(const FlightResult& result, const Flight& flight) {
+Json result_of(const FlightLog& log) {
   Json rows = Json::array();
-  const auto add = [&](const char* name, const std::string& text) { rows.push_back({name, text}); };
-  add("outcome", std::string(word_for(result.outcome)));
-  add("flown", fmt::format("{:.1f} m in {:.2f} s, {:.1f} m/s on average", result.distance_m,
-                           result.simulated_s, result.mean_speed_mps));
-  add("minimum clearance", std::isfinite(result.minimum_clearance_m)
-                               ? fmt::format("{:.2f} m", result.minimum_clearance_m)
-                               : "no obstacles");
-  add("estimate's error", fmt::format("{:.2f} m on average, {:.2f} m at most", result.position_error_mean_m,
-                                      result.position_error_max_m));
-  add("detections", fmt::format("{} in {} frames", result.detections, result.frames));
-  add("points remembered", fmt::format("{}", result.remembered_points));
-  const PlannerCounts& planner = result.planner;
-  add("plans", fmt::format("{}: {} straight, {} solved, {} kept, {} fallback", planner.replans,
-                           planner.straight, planner.solved, planner.kept, planner.fallback));
-  add("detector",
-      uses_images(flight.scenario().perception.detector)
-          ? fmt::format("{}, looking {:.1f} m ahead", result.detector, fmt::join(depths_of(flight), " and "))
-          : result.detector);
-  add("state", result.state_source);
-  add("renderer", result.renderer.empty() ? "none: no images" : result.renderer);
+  for (const auto& [name, text] : result_lines(log.result)) rows.push_back({name, text});
+  rows.push_back({"detector", words_of_detector(log)});
+  rows.push_back({"state", log.result.state_source});
   return rows;
 }
 
@@ -132,29 +136,28 @@ std::string arguments_that_fly(const Scenario& scenario, const fs::path& data_ro
 namespace {
 
 /// What page and track share.
-Json facts_of(const Flight& flight, const FlightResult& result, const FlightTrack& track,
-              const FlightStory& story) {
-  const Scenario& scenario = flight.scenario();
+Json facts_of(const FlightLog& log, const FlightStory& story) {
+  const Scenario& scenario = log.scenario;
   Json facts{{"kind", "flight"},
              {"title", fmt::format("{}, seed {}", scenario.name, scenario.seed)},
              {"program", fmt::format("understory {} ({})", understory_version, understory_commit)},
-             {"outcome", word_for(result.outcome)},
+             {"outcome", word_for(log.result.outcome)},
              {"sentence", story.outcome},
              {"story", story.before},
-             {"digest", result.digest},
-             {"t_end_s", flight.clock().t_s()},
-             {"t_launch_s", track.launch_s}};
+             {"digest", log.result.digest},
+             {"t_end_s", seconds(log.moments.back().t_ns)},
+             {"t_launch_s", log.launch_ns ? seconds(*log.launch_ns) : 0.0}};
   facts["course"] = {{"goal_x_m", scenario.goal_x_m()},
                      {"half_width_m", scenario.forest.half_width_m},
                      {"minimum_altitude_m", scenario.band.minimum_altitude_m},
                      {"maximum_altitude_m", scenario.band.maximum_altitude_m},
                      {"cruise_altitude_m", scenario.band.cruise_altitude_m}};
   facts["impact"] = Json();
-  if (story.impact_world) {
-    const Eigen::Vector3d& place = *story.impact_world;
-    facts["impact"] = {{"position", {place.x(), place.y(), place.z()}}, {"part", story.part}};
+  if (log.touch.with != Contact::none) {
+    const Eigen::Vector3d& place = log.touch.position_world;
+    facts["impact"] = {{"position", {place.x(), place.y(), place.z()}}, {"part", log.touch.part}};
   }
-  facts["camera"] = uses_images(scenario.perception.detector) ? camera_of(flight) : Json();
+  facts["camera"] = uses_images(scenario.perception.detector) ? camera_of(log) : Json();
   facts["events"] = Json::array();
   for (const FlightEvent& event : story.events)
     facts["events"].push_back({{"t_s", event.t_s}, {"kind", event.kind}, {"text", event.text}});
@@ -164,16 +167,16 @@ Json facts_of(const Flight& flight, const FlightResult& result, const FlightTrac
 
 }  // namespace
 
-std::string flight_page(const Flight& flight, const FlightResult& result, const FlightTrack& track,
-                        const FlightStory& story, const FlightPageExtras& extras) {
-  const Scenario& scenario = flight.scenario();
+std::string flight_page(const FlightLog& log, const FlightPageExtras& extras) {
+  const Scenario& scenario = log.scenario;
+  const FlightStory story = story_of(log);
   PageContent page;
-  page.title = fmt::format("{}, seed {}: {}", scenario.name, scenario.seed, word_for(result.outcome));
-  Json facts = facts_of(flight, result, track, story);
+  page.title = fmt::format("{}, seed {}: {}", scenario.name, scenario.seed, word_for(log.result.outcome));
+  Json facts = facts_of(log, story);
   facts["command"] = "understory fly " + arguments_that_fly(scenario, extras.data_root);
   facts["warning"] = extras.warning;
   facts["scenario"] = scenario_to_text(scenario);
-  facts["result"] = result_of(result, flight);
+  facts["result"] = result_of(log);
   facts["keys"] = changed_keys(scenario);
   if (!extras.film.empty()) {
     facts["film"] = {{"times", "film_t"}};
@@ -184,16 +187,16 @@ std::string flight_page(const Flight& flight, const FlightResult& result, const 
       page.still.assign(still.begin(), still.end());
     }
   }
-  add_track(flight, track, story, PageDetail::everything, page.arrays, facts);
+  add_flight(log, story, PageDetail::everything, page.arrays, facts);
   page.facts = json_text(facts);
   return page_html(extras.data_root, page);
 }
 
-std::string compact_flight(const Flight& flight, const FlightResult& result, const FlightTrack& track,
-                           const FlightStory& story) {
-  Json facts = facts_of(flight, result, track, story);
+std::string compact_flight(const FlightLog& log) {
+  const FlightStory story = story_of(log);
+  Json facts = facts_of(log, story);
   PageArrays arrays(true);
-  add_track(flight, track, story, PageDetail::compact, arrays, facts);
+  add_flight(log, story, PageDetail::compact, arrays, facts);
   return packed_part(json_text(facts), arrays);
 }
 

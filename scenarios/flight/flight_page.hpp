@@ -5,9 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/flight/flight_result.hpp"
-#include "scenarios/flight/flight_story.hpp"
-#include "scenarios/flight/flight_track.hpp"
+#include "scenarios/flight/flight_log.hpp"
 
 namespace understory {
 
@@ -23,13 +21,11 @@ struct FlightPageExtras {
 /// The page of a flight: one HTML file that needs nothing else. Long flights are decimated, so that it has at
 /// most 3 MB without the film; the page says what was left out. Throws MachineError where the page's program
 /// or the film cannot be read.
-std::string flight_page(const Flight& flight, const FlightResult& result, const FlightTrack& track,
-                        const FlightStory& story, const FlightPageExtras& extras);
+std::string flight_page(const FlightLog& log, const FlightPageExtras& extras);
 
 /// The same in at most 30 kB, for a campaign's page: packed_part() of the last two seconds in detail and of
 /// the rest in outline.
-std::string compact_flight(const Flight& flight, const FlightResult& result, const FlightTrack& track,
-                           const FlightStory& story);
+std::string compact_flight(const FlightLog& log);
 
 /// The arguments of `understory fly` that fly a scenario: a library's name, seed and settings, or, where
 /// those do not make the same scenario, a file scenario.yaml.

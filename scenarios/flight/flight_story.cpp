@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <opencv2/core.hpp>
 
 #include "scenarios/flight/clearance.hpp"
+#include "scenarios/flight/oracles.hpp"
 
 namespace understory {
 namespace {
@@ -18,8 +18,6 @@ constexpr int in_view_px = 25;
 constexpr double gap_s = 0.1, wrong_m = 0.3;
 
 constexpr double degrees = 57.29577951308232;
-
-double seconds(std::int64_t t_ns) { return static_cast<double>(t_ns) * 1e-9; }
 
 /// "left_wing_outer": "the outer left wing".
 std::string words_of_part(const std::string& part) {
@@ -35,25 +33,20 @@ std::string words_of_part(const std::string& part) {
   return fmt::format("the {}", fmt::join(words, " "));
 }
 
-double distance_m(const Eigen::Vector3d& point_world, const Obstacle& obstacle) {
-  return obstacle_distance_m({point_world, point_world}, obstacle);
-}
-
-std::string outcome_sentence(const Flight& flight, const FlightStory& story) {
-  const Eigen::Vector3d& place = flight.truth().T_world_body.translation();
-  const Scenario& scenario = flight.scenario();
-  const std::string when =
-      fmt::format("at {:.2f} s, {:.1f} m from the launch", flight.clock().t_s(), place.x());
-  switch (flight.outcome().value()) {
+std::string outcome_sentence(const FlightLog& log) {
+  const Scenario& scenario = log.scenario;
+  const LogMoment& end = log.moments.back();
+  const Eigen::Vector3d place = end.T_world_body.translation();
+  const std::string when = fmt::format("at {:.2f} s, {:.1f} m from the launch", seconds(end.t_ns), place.x());
+  switch (log.result.outcome) {
     case Outcome::goal:
       return fmt::format("It passed the goal plane at {:.0f} m after {:.2f} s.", scenario.goal_x_m(),
-                         flight.clock().t_s());
+                         seconds(end.t_ns));
     case Outcome::collision:
-      return fmt::format("{} touched {} {}, {:.1f} m above the ground.", words_of_part(story.part),
-                         story.touched ? flight.obstacles()[*story.touched].name : "an obstacle", when,
-                         place.z());
+      return fmt::format("{} touched {} {}, {:.1f} m above the ground.", words_of_part(log.touch.part),
+                         log.result.touched.empty() ? "an obstacle" : log.result.touched, when, place.z());
     case Outcome::ground:
-      return fmt::format("{} touched the ground {}.", words_of_part(story.part), when);
+      return fmt::format("{} touched the ground {}.", words_of_part(log.touch.part), when);
     case Outcome::time:
       return fmt::format("Its {:.1f} s were over, {:.1f} m before the goal plane.", scenario.time_limit_s,
                          scenario.goal_x_m() - place.x());
@@ -65,212 +58,315 @@ std::string outcome_sentence(const Flight& flight, const FlightStory& story) {
                        at_m, when);
   };
   const BandConfig& band = scenario.band;
+  const double half_width_m = scenario.forest.half_width_m;
   if (place.z() > band.maximum_altitude_m)
     return beyond("the upper bound", band.maximum_altitude_m, place.z());
-  if (std::abs(place.y()) > scenario.forest.half_width_m)
-    return beyond(place.y() > 0 ? "the left side" : "the right side", scenario.forest.half_width_m,
-                  std::abs(place.y()));
-  if (place.x() < -scenario.forest.half_width_m)
+  if (std::abs(place.y()) > half_width_m)
+    return beyond(place.y() > 0 ? "the left side" : "the right side", half_width_m, std::abs(place.y()));
+  if (place.x() < -half_width_m)
     return fmt::format("It left the course backwards: {:.1f} m behind the launch after {:.2f} s.", -place.x(),
-                       flight.clock().t_s());
+                       seconds(end.t_ns));
   return beyond("the lower bound", band.minimum_altitude_m, place.z());
 }
 
-std::optional<double> first_in_view_s(const Flight& flight, const FlightTrack& track, std::size_t obstacle) {
-  if (flight.cameras() == nullptr || flight.scenario().forest.invisible) return std::nullopt;
-  const auto object = static_cast<double>(object_first_obstacle + obstacle);
-  for (const TrackFrame& frame : track.frames) {
-    const TrueView view = flight.cameras()->true_view(frame.truth.T_world_body);
-    if (cv::countNonZero(view.objects == object) >= in_view_px) return seconds(frame.t_ns);
-  }
+// ---- of the obstacle that was hit ----
+
+std::optional<double> first_in_view_s(const FlightLog& log, std::size_t obstacle) {
+  for (const LogFrame& frame : log.frames)
+    if (pixels_in_view(log, frame.T_world_body, obstacle, in_view_px) >= in_view_px)
+      return seconds(frame.t_ns);
   return std::nullopt;
 }
 
-double ahead_m(const FlightTrack& track, double t_s, const Obstacle& obstacle) {
-  const auto moment = std::ranges::lower_bound(track.moments, t_s, {}, &TrackMoment::t_s);
-  const TrackMoment& there = moment == track.moments.end() ? track.moments.back() : *moment;
-  return distance_m(there.T_world_true.translation(), obstacle);
+double away_m(const FlightLog& log, double t_s, const Obstacle& obstacle) {
+  const auto moment =
+      std::ranges::lower_bound(log.moments, t_s, {}, [](const LogMoment& m) { return seconds(m.t_ns); });
+  const LogMoment& there = moment == log.moments.end() ? log.moments.back() : *moment;
+  return distance_m(there.T_world_body.translation(), obstacle);
 }
 
-void tell_of_obstacle(const Flight& flight, const FlightTrack& track, FlightStory& story) {
-  const Obstacle& obstacle = flight.obstacles()[story.touched.value()];
-  const double end_s = flight.clock().t_s();
-  // The map belongs to the estimate, which drifts; what counts is where it has things beside the aircraft.
-  const Eigen::Isometry3d T_true_estimated =
-      track.moments.back().T_world_true * track.moments.back().T_world_estimated.inverse();
-  const auto first_s = first_in_view_s(flight, track, *story.touched);
-  if (first_s) {
+void find_hits(const FlightLog& log, const Obstacle& obstacle, ObstacleStory& story) {
+  for (const LogFrame& frame : log.frames) {
+    std::int64_t on_it = 0;
+    for (std::int64_t hit = 0; hit < frame.hits; ++hit)
+      on_it += belongs_to(hit_world(log, frame, hit), obstacle);
+    if (on_it > 0 && !story.detected_s) story.detected_s = seconds(frame.t_ns);
+    story.frames_with_hits += on_it > 0;
+    story.hits += on_it;
+  }
+  if (story.detected_s) story.detected_m = away_m(log, *story.detected_s, obstacle);
+}
+
+/// The map belongs to the estimate, which drifts; what counts is where it has things beside the aircraft.
+void find_points(const FlightLog& log, const Obstacle& obstacle, ObstacleStory& story) {
+  const LogMoment& end = log.moments.back();
+  const Eigen::Isometry3d T_world_odometry = end.T_world_body * end.T_odometry_body.inverse();
+  Eigen::Vector3d sum_world = Eigen::Vector3d::Zero();
+  std::int64_t lost_ns = -1;
+  story.nearest_point_m = std::numeric_limits<double>::infinity();
+  for (const LogPoint& one : log.points) {
+    const Eigen::Vector3d place_world = T_world_odometry * one.point.position_world;
+    const double surface_m = distance_m(place_world, obstacle);
+    if (surface_m > 2 * belongs_within_m) continue;
+    if (one.to_ns != still_there_ns) {
+      lost_ns = std::max(lost_ns, one.to_ns);
+      continue;
+    }
+    ++story.points;
+    story.nearest_point_m = std::min(story.nearest_point_m, surface_m);
+    sum_world += place_world;
+  }
+  if (story.points == 0) {
+    if (lost_ns >= 0) story.forgotten_s = seconds(lost_ns);
+    return;
+  }
+  const Eigen::Vector3d middle_world = sum_world / static_cast<double>(story.points);
+  story.points_off_world = middle_world - nearest_place(middle_world, obstacle);
+}
+
+ObstacleStory story_of_obstacle(const FlightLog& log, std::size_t index) {
+  const Obstacle& obstacle = log.obstacles[index];
+  ObstacleStory story;
+  story.obstacle = index;
+  story.has_camera = !log.result.renderer.empty() && !log.scenario.forest.invisible;
+  if (story.has_camera) story.in_view_s = first_in_view_s(log, index);
+  if (story.in_view_s) story.in_view_m = away_m(log, *story.in_view_s, obstacle);
+  find_hits(log, obstacle, story);
+  find_points(log, obstacle, story);
+  return story;
+}
+
+/// "0.21 m to the left, 0.31 m before and 0.40 m below", of what is worth saying.
+std::string words_of_offset(const Eigen::Vector3d& off_world) {
+  constexpr double worth_m = 0.005;
+  std::vector<std::string> words;
+  const auto add = [&](double by_m, const char* more, const char* less) {
+    if (std::abs(by_m) >= worth_m)
+      words.push_back(fmt::format("{:.2f} m {}", std::abs(by_m), by_m > 0 ? more : less));
+  };
+  add(off_world.y(), "to the left", "to the right");
+  add(off_world.x(), "behind", "before");
+  add(off_world.z(), "above", "below");
+  if (words.empty()) return "less than a centimetre from";
+  if (words.size() == 1) return words[0] + (std::abs(off_world.y()) >= worth_m ? " of" : "");
+  const std::string last = words.back();
+  words.pop_back();
+  return fmt::format("{} and {}", fmt::join(words, ", "), last);
+}
+
+void tell_of_obstacle(const FlightLog& log, const ObstacleStory& told, FlightStory& story) {
+  const Obstacle& obstacle = log.obstacles[told.obstacle];
+  const double end_s = seconds(log.moments.back().t_ns);
+  if (told.in_view_s) {
     const std::string text = fmt::format("{} came into view {:.2f} s before the end, {:.1f} m away",
-                                         obstacle.name, end_s - *first_s, ahead_m(track, *first_s, obstacle));
-    story.events.push_back({*first_s, "in_view", text});
+                                         obstacle.name, end_s - *told.in_view_s, told.in_view_m);
+    story.events.push_back({*told.in_view_s, "in_view", text});
     story.before.push_back(text + ".");
-  } else if (flight.cameras() != nullptr) {
+  } else if (told.has_camera) {
     story.before.push_back(obstacle.name + " never came into view.");
   }
-
-  int frames = 0;
-  std::int64_t hits = 0;
-  double first_hit_s = 0;
-  for (const TrackFrame& frame : track.frames) {
-    const auto begin = track.hits_world.begin() + static_cast<std::ptrdiff_t>(frame.first_hit);
-    const auto on_it =
-        std::count_if(begin, begin + static_cast<std::ptrdiff_t>(frame.hits),
-                      [&](const Eigen::Vector3d& hit_world) { return belongs_to(hit_world, obstacle); });
-    if (on_it > 0 && frames++ == 0) first_hit_s = seconds(frame.t_ns);
-    hits += on_it;
-  }
-  if (frames > 0) {
-    const std::string text =
-        fmt::format("{} was first detected {:.2f} s before the end, {:.1f} m away", obstacle.name,
-                    end_s - first_hit_s, ahead_m(track, first_hit_s, obstacle));
-    story.events.push_back({first_hit_s, "detected", text});
-    story.before.push_back(fmt::format("{}; {} hits in {} frames.", text, hits, frames));
+  if (told.detected_s) {
+    const std::string text = fmt::format("{} was first detected {:.2f} s before the end, {:.1f} m away",
+                                         obstacle.name, end_s - *told.detected_s, told.detected_m);
+    story.events.push_back({*told.detected_s, "detected", text});
+    story.before.push_back(fmt::format("{}; {} hits in {} frames.", text, told.hits, told.frames_with_hits));
   } else {
     story.before.push_back(obstacle.name + " was never detected.");
   }
-
-  int points = 0;
-  double forgotten_s = 0;
-  double nearest_m = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d sum_world = Eigen::Vector3d::Zero();
-  for (const TrackPoint& point : track.points) {
-    const Eigen::Vector3d place_world = T_true_estimated * point.position_world;
-    const double away_m = distance_m(place_world, obstacle);
-    if (away_m > 2 * belongs_within_m) continue;
-    forgotten_s = std::max(forgotten_s, point.to_s);
-    if (point.to_s < end_s) continue;
-    ++points;
-    nearest_m = std::min(nearest_m, away_m);
-    sum_world += place_world;
-  }
-  if (points == 0) {
+  if (told.points > 0) {
     story.before.push_back(
-        fmt::format("At the end the map held no point within {:.0f} m of it", 2 * belongs_within_m));
-    if (forgotten_s > 0) {
-      story.before.back() += fmt::format(": it had lost the last one {:.2f} s before", end_s - forgotten_s);
-      story.events.push_back(
-          {forgotten_s, "forgotten", fmt::format("the map lost its last point of {}", obstacle.name)});
-    }
-    story.before.back() += ".";
+        fmt::format("At the end the map held {} points for it, the nearest {:.2f} m from its surface; their "
+                    "middle lay {} its {}.",
+                    told.points, std::max(0.0, told.nearest_point_m), words_of_offset(told.points_off_world),
+                    obstacle.kind == ObstacleKind::wall ? "face" : "axis"));
     return;
   }
-  const Eigen::Vector3d off_world = sum_world / points - obstacle.from_world;
-  story.before.push_back(fmt::format(
-      "At the end the map held {} points for it, the nearest {:.2f} m from its surface; their middle "
-      "lay {:.2f} m {} and {:.2f} m {} its axis.",
-      points, std::max(0.0, nearest_m), std::abs(off_world.y()),
-      off_world.y() > 0 ? "to the left" : "to the right", std::abs(off_world.x()),
-      off_world.x() > 0 ? "behind" : "before"));
+  std::string text =
+      fmt::format("At the end the map held no point within {:.0f} m of it", 2 * belongs_within_m);
+  if (told.forgotten_s) {
+    text += fmt::format(": it had lost the last one {:.2f} s before", end_s - *told.forgotten_s);
+    story.events.push_back(
+        {*told.forgotten_s, "forgotten", fmt::format("the map lost its last point of {}", obstacle.name)});
+  }
+  story.before.push_back(text + ".");
 }
 
+// ---- of everything else ----
+
 /// Frames that did not come; an estimate that no longer knows how wrong it is.
-void tell_of_senses(const FlightTrack& track, double end_s, FlightStory& story) {
-  double before_s = track.frames.empty() ? end_s : seconds(track.frames.front().t_ns);
+void tell_of_senses(const FlightLog& log, FlightStory& story) {
+  const double end_s = seconds(log.moments.back().t_ns);
+  double before_s = log.frames.empty() ? end_s : seconds(log.frames.front().t_ns);
   const auto tell_gap = [&](double until_s) {
     if (until_s - before_s > gap_s)
       story.events.push_back(
           {before_s, "blind",
            fmt::format("no picture reached the autopilot for {:.2f} s", until_s - before_s)});
+    before_s = until_s;
   };
-  for (const TrackFrame& frame : track.frames) {
-    tell_gap(seconds(frame.t_ns));
-    before_s = seconds(frame.t_ns);
-  }
+  for (const LogFrame& frame : log.frames) tell_gap(seconds(frame.t_ns));
   tell_gap(end_s);
-  const auto lost = std::ranges::find_if(track.moments, [](const TrackMoment& moment) {
-    const Eigen::Array3d error_m = moment.position_error_world.array().abs();
-    return (error_m > wrong_m && error_m > 3 * moment.position_sigma_world.array()).any();
+  const auto lost = std::ranges::find_if(log.moments, [](const LogMoment& moment) {
+    const Eigen::Array3d error_m = position_error_m(moment).array().abs();
+    return (error_m > wrong_m && error_m > 3 * moment.position_sigma_m.array()).any();
   });
-  if (lost != track.moments.end())
+  if (lost != log.moments.end())
     story.events.push_back(
-        {lost->t_s, "estimate",
-         fmt::format("the estimate's error left its 3 sigma: {:.2f} m", lost->position_error_world.norm())});
+        {seconds(lost->t_ns), "estimate",
+         fmt::format("the estimate's error left its 3 sigma: {:.2f} m", position_error_m(*lost).norm())});
 }
 
 /// Of an aircraft that left its band: how it moved in the last second, and what it knew of that.
-void tell_of_motion(const FlightTrack& track, FlightStory& story) {
-  constexpr double told_s = 1, level_rad = 0.2, wrong_height_m = 0.2;
-  const TrackMoment& end = track.moments.back();
-  const auto first = std::ranges::lower_bound(track.moments, end.t_s - told_s, {}, &TrackMoment::t_s);
-  const auto banked = std::ranges::max_element(
-      first, track.moments.end(), {}, [](const TrackMoment& moment) { return std::abs(moment.bank_rad); });
-  const double risen_m = end.T_world_true.translation().z() - first->T_world_true.translation().z();
-  std::string text = fmt::format("In the last {:.1f} s it {} {:.1f} m", end.t_s - first->t_s,
+void tell_of_motion(const FlightLog& log, FlightStory& story) {
+  constexpr std::int64_t told_ns = 1'000'000'000;
+  constexpr double level_rad = 0.2, wrong_height_m = 0.2;
+  const LogMoment& end = log.moments.back();
+  const auto first = std::ranges::lower_bound(log.moments, end.t_ns - told_ns, {}, &LogMoment::t_ns);
+  const auto banked = std::ranges::max_element(first, log.moments.end(), {}, [](const LogMoment& moment) {
+    return std::abs(bank_rad(moment.T_world_body));
+  });
+  const double bank = bank_rad(banked->T_world_body);
+  const double height_m = end.T_world_body.translation().z();
+  const double risen_m = height_m - first->T_world_body.translation().z();
+  std::string text = fmt::format("In the last {:.1f} s it {} {:.1f} m", seconds(end.t_ns - first->t_ns),
                                  risen_m < 0 ? "sank" : "climbed", std::abs(risen_m));
-  if (std::abs(banked->bank_rad) > level_rad)
+  if (std::abs(bank) > level_rad)
     text += fmt::format(", banked up to {:.0f} degrees to the {} ({:.0f} were commanded)",
-                        degrees * std::abs(banked->bank_rad), banked->bank_rad > 0 ? "right" : "left",
+                        degrees * std::abs(bank), bank > 0 ? "right" : "left",
                         degrees * std::abs(banked->commanded_bank_rad));
   story.before.push_back(fmt::format("{}, and its speed went from {:.1f} to {:.1f} m/s.", text,
-                                     first->speed_mps, end.speed_mps));
+                                     first->velocity_world_mps.norm(), end.velocity_world_mps.norm()));
   double lowest_m = std::numeric_limits<double>::infinity(), highest_m = -lowest_m;
-  for (const TrackPlan& plan : track.plans)
-    if (plan.from_s >= end.t_s - told_s)
-      for (const Eigen::Vector3d& point : plan.way_world) {
-        lowest_m = std::min(lowest_m, point.z());
-        highest_m = std::max(highest_m, point.z());
+  for (const LogPlan& plan : log.plans)
+    if (plan.t_ns >= end.t_ns - told_ns)
+      for (const Eigen::Vector3d& place : plan.way_odometry) {
+        lowest_m = std::min(lowest_m, place.z());
+        highest_m = std::max(highest_m, place.z());
       }
   if (lowest_m <= highest_m)
     story.before.push_back(
         fmt::format("The plans of that time led to heights from {:.1f} to {:.1f} m.", lowest_m, highest_m));
-  const double believed_m = end.estimated_altitude_m - end.T_world_true.translation().z();
+  const double believed_m = end.estimated_altitude_m - height_m;
   if (std::abs(believed_m) > wrong_height_m)
     story.before.push_back(fmt::format("It believed itself {:.1f} m {} than it was.", std::abs(believed_m),
                                        believed_m > 0 ? "higher" : "lower"));
 }
 
-void tell_of_plans(const FlightTrack& track, FlightStory& story) {
+void tell_of_plans(const FlightLog& log, FlightStory& story) {
   bool falls_back = false;
-  for (const TrackPlan& plan : track.plans) {
+  for (const LogPlan& plan : log.plans) {
     const bool now = plan.origin == PlanOrigin::fallback;
     if (now && !falls_back)
-      story.events.push_back({plan.from_s, "fallback", "the planner found no free way and fell back"});
+      story.events.push_back({seconds(plan.t_ns), "fallback", "the planner found no free way and fell back"});
     falls_back = now;
   }
-  if (track.plans.empty()) return;
-  const TrackPlan& last = track.plans.back();
-  if (std::isfinite(last.clearance_m))
-    story.before.push_back(
-        last.clearance_m > 0
-            ? fmt::format("The plan in force ({}) left {:.2f} m to what the planner believed was there.",
-                          word_for(last.origin), last.clearance_m)
-            : fmt::format("The plan in force ({}) led through what the planner believed was there.",
-                          word_for(last.origin)));
-  else
+  if (log.plans.empty()) return;
+  const LogPlan& last = log.plans.back();
+  if (!std::isfinite(last.clearance_m))
     story.before.push_back(
         fmt::format("The plan in force ({}) knew of nothing near.", word_for(last.origin)));
+  else if (last.clearance_m > 0)
+    story.before.push_back(
+        fmt::format("The plan in force ({}) left {:.2f} m to what the planner believed was there.",
+                    word_for(last.origin), last.clearance_m));
+  else
+    story.before.push_back(fmt::format(
+        "The plan in force ({}) led through what the planner believed was there.", word_for(last.origin)));
+}
+
+/// Columns and rows of the left image within which the obstacle lies, at most; empty where it lies elsewhere.
+struct ImageWindow {
+  int first_column = 0, last_column = -1, first_row = 0, last_row = -1;
+};
+
+ImageWindow window_of(const StereoRig& rig, const Eigen::Isometry3d& T_camera_world,
+                      const Obstacle& obstacle) {
+  constexpr double nearest_m = 0.05;
+  const Eigen::Vector3d& from = obstacle.from_world;
+  const Eigen::Vector3d& to = obstacle.to_world;
+  std::vector<Eigen::Vector3d> corners{from, to};
+  if (obstacle.kind == ObstacleKind::wall) {
+    corners.emplace_back(from.x(), from.y(), to.z());
+    corners.emplace_back(to.x(), to.y(), from.z());
+  }
+  Eigen::AlignedBox2d seen;
+  bool is_ahead = false, is_behind = false;
+  for (const Eigen::Vector3d& corner_world : corners) {
+    const Eigen::Vector3d corner = T_camera_world * corner_world;
+    (corner.z() > nearest_m ? is_ahead : is_behind) = true;
+    if (corner.z() <= nearest_m) continue;
+    const Eigen::Vector2d at(rig.focal_px * corner.x() / corner.z() + rig.center_left_x_px,
+                             rig.focal_px * corner.y() / corner.z() + rig.center_y_px);
+    const Eigen::Vector2d wide = Eigen::Vector2d::Constant(rig.focal_px * obstacle.radius_m / corner.z() + 1);
+    seen.extend(at - wide).extend(at + wide);
+  }
+  if (!is_ahead) return {};
+  if (is_behind) return {0, rig.width_px - 1, 0, rig.height_px - 1};
+  const auto within = [](double at, int size) { return static_cast<int>(std::clamp(at, -1.0, 1.0 * size)); };
+  return {std::max(0, within(seen.min().x(), rig.width_px)),
+          std::min(rig.width_px - 1, within(seen.max().x(), rig.width_px)),
+          std::max(0, within(seen.min().y(), rig.height_px)),
+          std::min(rig.height_px - 1, within(seen.max().y(), rig.height_px))};
+}
+
+double reach_of_ray(const Eigen::Vector3d& eye_world, const Eigen::Vector3d& ray_world,
+                    const Obstacle& obstacle) {
+  return obstacle.kind == ObstacleKind::wall
+             ? ray_meets_wall(eye_world, ray_world, obstacle)
+             : ray_meets_round_obstacle(eye_world, ray_world, obstacle.from_world, obstacle.to_world,
+                                        obstacle.radius_m);
 }
 
 }  // namespace
 
-FlightStory story_of(const Flight& flight, const FlightTrack& track) {
+int pixels_in_view(const FlightLog& log, const Eigen::Isometry3d& T_world_body, std::size_t obstacle,
+                   int enough) {
+  const StereoRig& rig = log.rig.rig;
+  const Eigen::Isometry3d T_world_camera = T_world_body * rig.T_body_camera;
+  const Eigen::Vector3d eye_world = T_world_camera.translation();
+  const Obstacle& target = log.obstacles[obstacle];
+  if (distance_m(eye_world, target) > log.scenario.cameras.cameras.view_distance_m) return 0;
+  const ImageWindow window = window_of(rig, T_world_camera.inverse(), target);
+  int pixels = 0;
+  for (int row = window.first_row; row <= window.last_row; ++row)
+    for (int column = window.first_column; column <= window.last_column; ++column) {
+      const Eigen::Vector3d ray_world =
+          T_world_camera.linear() * Eigen::Vector3d((column - rig.center_left_x_px) / rig.focal_px,
+                                                    (row - rig.center_y_px) / rig.focal_px, 1);
+      const double reach = reach_of_ray(eye_world, ray_world, target);
+      if (!std::isfinite(reach)) continue;
+      const bool is_hidden = std::ranges::any_of(log.obstacles, [&](const Obstacle& other) {
+        return &other != &target && reach_of_ray(eye_world, ray_world, other) < reach;
+      });
+      if (!is_hidden && ++pixels >= enough) return pixels;
+    }
+  return pixels;
+}
+
+FlightStory story_of(const FlightLog& log) {
   FlightStory story;
-  const double end_s = flight.clock().t_s();
-  const Touch touch = flight.touch();
-  if (touch.with != Contact::none) {
-    story.part = touch.part;
-    story.impact_world = touch.position_world;
-  }
-  if (flight.outcome() == Outcome::collision)
-    story.touched =
-        nearest_obstacle(flight.truth().T_world_body, flight.scenario().airframe, flight.obstacles());
-  story.outcome = outcome_sentence(flight, story);
-  if (!story.outcome.empty()) story.outcome.front() = static_cast<char>(std::toupper(story.outcome.front()));
-  if (track.launch_s > 0) story.events.push_back({track.launch_s, "launch", "left the catapult"});
-  for (const FaultConfig& fault : flight.scenario().faults)
+  const Outcome outcome = log.result.outcome;
+  const double end_s = seconds(log.moments.back().t_ns);
+  story.outcome = outcome_sentence(log);
+  story.outcome.front() = static_cast<char>(std::toupper(story.outcome.front()));
+  if (log.launch_ns) story.events.push_back({seconds(*log.launch_ns), "launch", "left the catapult"});
+  for (const FaultConfig& fault : log.scenario.faults)
     if (fault.at_s <= end_s)
       story.events.push_back(
           {fault.at_s, "fault",
            fmt::format("fault: {} {}", faulty_sensor_names[static_cast<std::size_t>(fault.sensor)].first,
                        fault_kind_names[static_cast<std::size_t>(fault.kind)].first)});
-  if (story.touched) tell_of_obstacle(flight, track, story);
-  tell_of_senses(track, end_s, story);
-  if (flight.outcome() == Outcome::out_of_bounds || flight.outcome() == Outcome::ground)
-    tell_of_motion(track, story);
-  if (flight.outcome() != Outcome::goal) tell_of_plans(track, story);
-  std::string outcome(word_for(flight.outcome().value()));
-  std::ranges::replace(outcome, '_', ' ');
-  story.events.push_back({end_s, "outcome", outcome});
+  const auto touched = std::ranges::find(log.obstacles, log.result.touched, &Obstacle::name);
+  if (outcome == Outcome::collision && touched != log.obstacles.end()) {
+    story.touched = story_of_obstacle(log, static_cast<std::size_t>(touched - log.obstacles.begin()));
+    tell_of_obstacle(log, *story.touched, story);
+  }
+  tell_of_senses(log, story);
+  if (outcome == Outcome::out_of_bounds || outcome == Outcome::ground) tell_of_motion(log, story);
+  if (outcome != Outcome::goal) tell_of_plans(log, story);
+  std::string word(word_for(outcome));
+  std::ranges::replace(word, '_', ' ');
+  story.events.push_back({end_s, "outcome", word});
   std::ranges::stable_sort(story.events, {}, &FlightEvent::t_s);
   return story;
 }

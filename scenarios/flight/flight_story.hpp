@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/flight/flight_track.hpp"
+#include "scenarios/flight/flight_log.hpp"
 
 namespace understory {
 
@@ -16,17 +16,36 @@ struct FlightEvent {
   std::string text;
 };
 
-/// How a flight ended, in words, and what led to it.
-struct FlightStory {
-  std::string outcome;                 ///< one sentence: what, when, by how much
-  std::vector<std::string> before;     ///< what was seen and remembered of the obstacle that was hit
-  std::vector<FlightEvent> events;     ///< in order of time
-  std::optional<std::size_t> touched;  ///< index of the obstacle that was hit
-  std::string part;                    ///< of the aircraft that touched it or the ground
-  std::optional<Eigen::Vector3d> impact_world;
+/// What the aircraft knew of the obstacle that it hit.
+struct ObstacleStory {
+  std::size_t obstacle = 0;          ///< its index
+  bool has_camera = false;           ///< whether it could come into view at all
+  std::optional<double> in_view_s;   ///< first time that the left camera saw enough of it
+  double in_view_m = 0;              ///< from the aircraft's centre to its surface, then
+  std::optional<double> detected_s;  ///< exposure of the first frame with a hit on it
+  double detected_m = 0;             ///< as in_view_m
+  std::int64_t hits = 0, frames_with_hits = 0;
+  std::int64_t points = 0;     ///< in the map for it at the end
+  double nearest_point_m = 0;  ///< of those, from its surface; negative within
+  /// From the nearest place on its axis or face to the points' middle, world axes.
+  Eigen::Vector3d points_off_world = Eigen::Vector3d::Zero();
+  std::optional<double> forgotten_s;  ///< when the map lost its last point of it, if it held any
 };
 
-/// Of a flight that has ended. Draws what the camera saw in order to find when the obstacle came into view.
-FlightStory story_of(const Flight& flight, const FlightTrack& track);
+/// How a flight ended and what led to it: measurements, and words made of them.
+struct FlightStory {
+  std::optional<ObstacleStory> touched;  ///< of a collision
+  std::vector<FlightEvent> events;       ///< in order of time
+  std::string outcome;                   ///< one sentence: what, when, by how much
+  std::vector<std::string> before;       ///< sentences: what was seen and remembered, and of the plan
+};
+
+/// Of a log that is complete.
+FlightStory story_of(const FlightLog& log);
+
+/// How many pixels of the left image show an obstacle from a pose, counted up to `enough`: rays through the
+/// pixels' centres, the nearest obstacle counts. Nothing beyond the cameras' view distance is seen.
+int pixels_in_view(const FlightLog& log, const Eigen::Isometry3d& T_world_body, std::size_t obstacle,
+                   int enough);
 
 }  // namespace understory

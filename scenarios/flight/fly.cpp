@@ -8,8 +8,6 @@
 #include "scenarios/flight/flight_film.hpp"
 #include "scenarios/flight/flight_logger.hpp"
 #include "scenarios/flight/flight_page.hpp"
-#include "scenarios/flight/flight_story.hpp"
-#include "scenarios/flight/flight_track.hpp"
 #include "scenarios/flight/run_files.hpp"
 #include "scenarios/output/file_output.hpp"
 
@@ -39,45 +37,35 @@ class ProgressTeller : public FlightObserver {
   const std::function<void(const FlightProgress&)>& tell_;
 };
 
-std::string warning_of(const FlightResult& result, const std::string& expected_digest) {
-  if (expected_digest.empty() || expected_digest == result.digest) return "";
-  return fmt::format(
-      "This page shows another flight than the run's: its digest is {}, the run's was {}. Another version of "
-      "the "
-      "program, of a library or another machine flew it.",
-      result.digest, expected_digest);
-}
-
-/// The page, and the track for a campaign's.
-void write_story(const Flight& flight, const FlightResult& result, const FlyOptions& options,
-                 TrackRecorder& recorder, const FlightFilm* film) {
-  const fs::path root = options.models_folder.parent_path();
-  const bool keeps_track = !options.track.empty() && result.outcome != Outcome::goal;
-  if (!options.report && !keeps_track) return;
-  const FlightTrack track = recorder.finish(flight);
-  const FlightStory story = story_of(flight, track);
-  if (keeps_track)
-    write_whole_file(options.track, compact_flight(flight, result, track, story), Named::by_user);
-  if (!options.report) return;
-  FlightPageExtras extras{root, warning_of(result, options.expected_digest)};
+void write_report(const FlightLog& log, const FlyOptions& options, const FlightFilm* film) {
+  FlightPageExtras extras{options.models_folder.parent_path()};
+  extras.warning = warning_of_digest(log.result, options.expected_digest);
   if (film != nullptr) {
     extras.film = options.output_folder / "flight.mp4";
     extras.film_times_s = film->times_s();
     extras.last_picture = film->last();
   }
-  write_whole_file(options.output_folder / "report.html", flight_page(flight, result, track, story, extras));
+  write_whole_file(options.output_folder / "report.html", flight_page(log, extras));
 }
 
 }  // namespace
 
+std::string warning_of_digest(const FlightResult& result, const std::string& expected_digest) {
+  if (expected_digest.empty() || expected_digest == result.digest) return "";
+  return fmt::format(
+      "This page shows another flight than the run's: its digest is {}, the run's was {}. Another version of "
+      "the program, of a library or another machine flew it.",
+      result.digest, expected_digest);
+}
+
 FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
-  FlightLogger logger;
+  FlightLogger own_logger;
+  FlightLogger& logger = options.logger != nullptr ? *options.logger : own_logger;
   std::optional<FlightFilm> film;
-  std::optional<TrackRecorder> track;
   std::optional<ProgressTeller> progress;
   std::vector<FlightObserver*> observers{&logger};
-  if (options.video) observers.push_back(&film.emplace(options.output_folder, scenario.frame_rate_hz()));
-  if (options.report || !options.track.empty()) observers.push_back(&track.emplace());
+  if (options.video)
+    observers.push_back(&film.emplace(options.output_folder, scenario.frame_rate_hz(), logger.log()));
   if (options.on_progress) observers.push_back(&progress.emplace(logger.log(), options.on_progress));
   observers.insert(observers.end(), options.observers.begin(), options.observers.end());
 
@@ -93,7 +81,9 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
     film.reset();
   }
   if (!options.output_folder.empty()) write_run_files(logger.log(), options.output_folder);
-  if (track) write_story(flight, result, options, *track, film ? &*film : nullptr);
+  if (!options.track.empty() && result.outcome != Outcome::goal)
+    write_whole_file(options.track, compact_flight(logger.log()), Named::by_user);
+  if (options.report) write_report(logger.log(), options, film ? &*film : nullptr);
   if (!lost.empty()) throw LostFilm(lost);
   return result;
 }

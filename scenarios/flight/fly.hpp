@@ -12,6 +12,7 @@
 
 namespace understory {
 
+class FlightLogger;
 class FlightObserver;
 
 /// Where a flight is, for a progress line.
@@ -32,7 +33,8 @@ struct FlyOptions {
   std::filesystem::path track;                   ///< compact_flight() of a lost flight; empty: none
   std::string expected_digest;                   ///< another one is a warning in the report; empty: any
   RendererKind renderer = RendererKind::osmesa;  ///< the machine's: not part of the scenario
-  std::vector<FlightObserver*> observers;        ///< beside the run's own record
+  FlightLogger* logger = nullptr;                ///< keeps the log for other observers; null: nobody asks
+  std::vector<FlightObserver*> observers;        ///< beside the logger
   std::function<void(const FlightProgress&)> on_progress;  ///< ten times per simulated second; may be empty
 };
 
@@ -41,7 +43,10 @@ struct LostFilm : MachineError {
   using MachineError::MachineError;
 };
 
-/// Flies a scenario once and leaves its files: trajectory.csv, map.ply, obstacles.csv, result.json. Throws
+/// What a page says where its flight is another than the run's; empty where it is the same or nobody knows.
+std::string warning_of_digest(const FlightResult& result, const std::string& expected_digest);
+
+/// Flies a scenario once and leaves its files (run_files.hpp). Throws
 /// ScenarioError at bad input (rig, folder), MachineError where the machine fails (GL library, disk),
 /// LostFilm where only the film does.
 FlightResult fly(const Scenario& scenario, const FlyOptions& options);

@@ -56,7 +56,7 @@ class NoDetector : public ObstacleDetector {
 };
 
 /// Perfect detection at the pushbroom's depth: a hit for every 5x5 block of the left image (rows 0..205, as
-/// the original detector) whose centre ray first meets a obstacle or wall within one pixel of disparity of
+/// the original detector) whose centre ray first meets an obstacle or wall within one pixel of disparity of
 /// the detection depth. The depth is analytic (ray against round obstacle or box); images are not used. Hits
 /// carry the true point.
 class TrueDepth : public ObstacleDetector {
@@ -82,7 +82,7 @@ class TrueDepth : public ObstacleDetector {
 double ray_meets_wall(const Eigen::Vector3d& origin_world, const Eigen::Vector3d& direction_world,
                       const Obstacle& wall);
 
-/// Where a ray first meets a obstacle's side: the multiple of `direction` from `origin`; +infinity where it
+/// Where a ray first meets an obstacle's side: the multiple of `direction` from `origin`; +infinity where it
 /// does not. All in one frame. From inside the obstacle the answer is +infinity.
 double ray_meets_round_obstacle(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                                 const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius_m);

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 #include <google/protobuf/descriptor.pb.h>
 
+#include <algorithm>
+#include <limits>
 #include <set>
 
-#include "scenarios/flight/flight_track.hpp"
 #include "scenarios/recording/foxglove.pb.h"
 #include "scenarios/recording/foxglove_messages.hpp"
 #include "scenarios/recording/mcap_file.hpp"
@@ -32,6 +33,7 @@ std::string descriptors_of(const google::protobuf::Descriptor& type) {
 }  // namespace
 
 struct FlightMcap::Implementation {
+  const FlightLog& log;
   McapFile file;
   template <typename Message>
   std::uint16_t channel(const char* topic) {
@@ -42,8 +44,8 @@ struct FlightMcap::Implementation {
     file.add(topic, t_ns, message.SerializeAsString());
   }
 
-  Implementation(const std::filesystem::path& name, bool compress, Named named)
-      : file(name, compress, named) {}
+  Implementation(const FlightLog& flight_log, const std::filesystem::path& name, bool compress, Named named)
+      : log(flight_log), file(name, compress, named) {}
 
   std::uint16_t left_image = channel<foxglove::CompressedImage>("/camera/left/image");
   std::uint16_t right_image = channel<foxglove::CompressedImage>("/camera/right/image");
@@ -57,10 +59,12 @@ struct FlightMcap::Implementation {
   std::uint16_t true_pose = channel<foxglove::PoseInFrame>("/pose/true");
   std::uint16_t estimated_pose = channel<foxglove::PoseInFrame>("/pose/estimated");
   std::uint16_t scalars = channel<FlightScalars>("/scalars");
-  std::uint16_t log = channel<foxglove::Log>("/log");
+  std::uint16_t texts = channel<foxglove::Log>("/log");
 
-  std::int64_t plan_t_ns = -1;
-  bool begun = false, launched = false, fell_back = false;
+  // What has been written of the log.
+  std::size_t frames = 0, plans = 0, moments = 0;
+  std::int64_t next_begin_ns = 0, map_points = 0;
+  bool launched = false, fell_back = false;
 
   void say(std::int64_t t_ns, foxglove::Log::Level level, const std::string& text) {
     foxglove::Log message;
@@ -68,120 +72,145 @@ struct FlightMcap::Implementation {
     message.set_level(level);
     message.set_message(text);
     message.set_name("understory");
-    put(log, t_ns, message);
+    put(texts, t_ns, message);
   }
-  void begin(const Flight& flight);
-  void put_plan(const Flight& flight);
-  void put_moment(const Flight& flight);
+  void begin(std::int64_t t_ns);
+  void put_frame(const LogFrame& frame);
+  void put_plan(const LogPlan& plan);
+  void put_moment(const LogMoment& moment);
+  void put_outcome();
+  void catch_up(std::int64_t until_ns);
 };
 
 /// What does not change: again with every second, so that one can look at any part of the file.
-void FlightMcap::Implementation::begin(const Flight& flight) {
-  const std::int64_t t_ns = flight.clock().t_ns();
-  const StereoRig& rig = flight.rig().rig;
+void FlightMcap::Implementation::begin(std::int64_t t_ns) {
   put(transforms, t_ns, transform("world", "odometry", Eigen::Isometry3d::Identity(), t_ns));
-  put(transforms, t_ns, transform("aircraft", "left_rectified", rig.T_body_camera, t_ns));
+  put(transforms, t_ns, transform("aircraft", "left_rectified", log.rig.rig.T_body_camera, t_ns));
   for (const bool is_left : {true, false})
     put(transforms, t_ns,
-        transform("aircraft", is_left ? "left_camera" : "right_camera", camera_pose(flight.rig(), is_left),
-                  t_ns));
-  put(left_calibration, t_ns, calibration_of(flight.rig(), true, t_ns));
-  put(right_calibration, t_ns, calibration_of(flight.rig(), false, t_ns));
-  put(obstacles, t_ns, cloud("world", surface_points(flight.obstacles()), t_ns));
-  if (!begun)
-    say(t_ns, foxglove::Log::INFO,
-        fmt::format("scenario {}, seed {}", flight.scenario().name, flight.scenario().seed));
-  begun = true;
+        transform("aircraft", is_left ? "left_camera" : "right_camera", camera_pose(log.rig, is_left), t_ns));
+  put(left_calibration, t_ns, calibration_of(log.rig, true, t_ns));
+  put(right_calibration, t_ns, calibration_of(log.rig, false, t_ns));
+  put(obstacles, t_ns, cloud("world", surface_points(log.obstacles), t_ns));
+  if (moments == 0)
+    say(t_ns, foxglove::Log::INFO, fmt::format("scenario {}, seed {}", log.scenario.name, log.scenario.seed));
 }
 
-void FlightMcap::Implementation::put_plan(const Flight& flight) {
-  if (flight.plan().t_ns == plan_t_ns || flight.plan().points.empty()) return;
-  plan_t_ns = flight.plan().t_ns;
-  const std::int64_t t_ns = flight.clock().t_ns();
+/// A viewer orders by the time at which something was known; the hits bear the time of the exposure.
+void FlightMcap::Implementation::put_frame(const LogFrame& frame) {
+  const auto first = log.hits_camera.begin() + frame.first_hit;
+  put(hits, frame.arrival_ns, cloud("left_rectified", {first, first + frame.hits}, frame.t_ns));
+  std::vector<Eigen::Vector3d> remembered;
+  for (const LogPoint& one : log.points)
+    if (one.from_ns <= frame.arrival_ns && frame.arrival_ns < one.to_ns)
+      remembered.push_back(one.point.position_world);
+  map_points = static_cast<std::int64_t>(remembered.size());
+  put(map, frame.arrival_ns, cloud("odometry", remembered, frame.arrival_ns));
+}
+
+void FlightMcap::Implementation::put_plan(const LogPlan& in_force) {
   foxglove::PosesInFrame message;
-  set_time(message.mutable_timestamp(), t_ns);
+  set_time(message.mutable_timestamp(), in_force.t_ns);
   message.set_frame_id("odometry");
-  for (const Eigen::Vector3d& position_world : planned_way_world(flight))
-    set_pose(message.add_poses(), Eigen::Isometry3d(Eigen::Translation3d(position_world)));
-  put(plan, t_ns, message);
-  const bool falls_back = flight.plan().origin == PlanOrigin::fallback;
+  for (const Eigen::Vector3d& place : in_force.way_odometry)
+    set_pose(message.add_poses(), Eigen::Isometry3d(Eigen::Translation3d(place)));
+  put(plan, in_force.t_ns, message);
+  const bool falls_back = in_force.origin == PlanOrigin::fallback;
   if (falls_back && !fell_back)
-    say(t_ns, foxglove::Log::WARNING, "the planner found no free way and fell back");
+    say(in_force.t_ns, foxglove::Log::WARNING, "the planner found no free way and fell back");
   fell_back = falls_back;
 }
 
-void FlightMcap::Implementation::put_moment(const Flight& flight) {
-  const std::int64_t t_ns = flight.clock().t_ns();
-  const TrackMoment moment = moment_of(flight);
-  put(transforms, t_ns, transform("world", "aircraft", moment.T_world_true, t_ns));
-  put(transforms, t_ns, transform("odometry", "estimated_aircraft", moment.T_world_estimated, t_ns));
+void FlightMcap::Implementation::put_moment(const LogMoment& moment) {
+  const std::int64_t t_ns = moment.t_ns;
+  if (log.launch_ns && *log.launch_ns <= t_ns && !launched)
+    say(t_ns, foxglove::Log::INFO, "left the catapult");
+  launched = log.launch_ns && *log.launch_ns <= t_ns;
+  put(transforms, t_ns, transform("world", "aircraft", moment.T_world_body, t_ns));
+  put(transforms, t_ns, transform("odometry", "estimated_aircraft", moment.T_odometry_body, t_ns));
   for (const bool is_true : {true, false}) {
     foxglove::PoseInFrame pose;
     set_time(pose.mutable_timestamp(), t_ns);
     pose.set_frame_id(is_true ? "world" : "odometry");
-    set_pose(pose.mutable_pose(), is_true ? moment.T_world_true : moment.T_world_estimated);
+    set_pose(pose.mutable_pose(), is_true ? moment.T_world_body : moment.T_odometry_body);
     put(is_true ? true_pose : estimated_pose, t_ns, pose);
   }
+  const Eigen::Vector3d error_m = position_error_m(moment);
   FlightScalars numbers;
   set_time(numbers.mutable_timestamp(), t_ns);
-  numbers.set_speed(moment.speed_mps);
-  numbers.set_estimated_speed(moment.estimated_speed_mps);
-  numbers.set_height(moment.T_world_true.translation().z());
+  numbers.set_speed(moment.velocity_world_mps.norm());
+  numbers.set_estimated_speed(moment.estimated_velocity_mps.norm());
+  numbers.set_height(moment.T_world_body.translation().z());
   numbers.set_estimated_height(moment.estimated_altitude_m);
-  numbers.set_bank(moment.bank_rad);
+  numbers.set_bank(bank_rad(moment.T_world_body));
   numbers.set_commanded_bank(moment.commanded_bank_rad);
   numbers.set_left_elevon(moment.left_elevon_rad);
   numbers.set_right_elevon(moment.right_elevon_rad);
   numbers.set_clearance(moment.clearance_m);
-  numbers.set_planned_clearance(flight.plan().clearance_m);
-  numbers.set_position_error_x(moment.position_error_world.x());
-  numbers.set_position_error_y(moment.position_error_world.y());
-  numbers.set_position_error_z(moment.position_error_world.z());
-  numbers.set_position_sigma_x(moment.position_sigma_world.x());
-  numbers.set_position_sigma_y(moment.position_sigma_world.y());
-  numbers.set_position_sigma_z(moment.position_sigma_world.z());
-  numbers.set_hits(static_cast<std::uint32_t>(moment.hits));
-  numbers.set_map_points(static_cast<std::uint32_t>(flight.map().points().size()));
+  if (plans > 0) numbers.set_planned_clearance(log.plans[plans - 1].clearance_m);
+  numbers.set_position_error_x(error_m.x());
+  numbers.set_position_error_y(error_m.y());
+  numbers.set_position_error_z(error_m.z());
+  numbers.set_position_sigma_x(moment.position_sigma_m.x());
+  numbers.set_position_sigma_y(moment.position_sigma_m.y());
+  numbers.set_position_sigma_z(moment.position_sigma_m.z());
+  numbers.set_hits(frames > 0 ? static_cast<std::uint32_t>(log.frames[frames - 1].hits) : 0);
+  numbers.set_map_points(static_cast<std::uint32_t>(map_points));
   put(scalars, t_ns, numbers);
 }
 
-FlightMcap::FlightMcap(const std::filesystem::path& file, bool compress, Named named)
-    : implementation_(std::make_unique<Implementation>(file, compress, named)) {}
+void FlightMcap::Implementation::put_outcome() {
+  const Outcome outcome = log.result.outcome;
+  say(log.moments.back().t_ns, outcome == Outcome::goal ? foxglove::Log::INFO : foxglove::Log::ERROR,
+      std::string(word_for(outcome)));
+  file.finish();
+}
+
+/// Writes what the log has gained, in order of time.
+void FlightMcap::Implementation::catch_up(std::int64_t until_ns) {
+  constexpr std::int64_t later = std::numeric_limits<std::int64_t>::max(), second_ns = 1'000'000'000;
+  while (true) {
+    const std::int64_t frame_ns = frames < log.frames.size() ? log.frames[frames].arrival_ns : later;
+    const std::int64_t plan_ns = plans < log.plans.size() ? log.plans[plans].t_ns : later;
+    const std::int64_t moment_ns = moments < log.moments.size() ? log.moments[moments].t_ns : later;
+    const std::int64_t next_ns = std::min({frame_ns, plan_ns, moment_ns});
+    if (next_ns == later || next_ns > until_ns) return;
+    if (next_begin_ns <= next_ns) {
+      begin(next_ns);
+      next_begin_ns += second_ns;
+    } else if (frame_ns == next_ns) {
+      put_frame(log.frames[frames++]);
+    } else if (plan_ns == next_ns) {
+      put_plan(log.plans[plans++]);
+    } else {
+      put_moment(log.moments[moments++]);
+    }
+  }
+}
+
+FlightMcap::FlightMcap(const FlightLog& log, const std::filesystem::path& file, bool compress, Named named)
+    : implementation_(std::make_unique<Implementation>(log, file, compress, named)) {}
 
 FlightMcap::~FlightMcap() = default;
 
 void FlightMcap::on_frame(const Flight& flight) {
   Implementation& to = *implementation_;
   const StereoFrame& frame = flight.frame();
-  // A viewer orders by the time at which something was known; the messages bear the time of the exposure.
   const std::int64_t now_ns = flight.clock().t_ns();
   to.put(to.left_image, now_ns, image_message(frame.left, true, frame.t_ns));
   to.put(to.right_image, now_ns, image_message(frame.right, false, frame.t_ns));
-  std::vector<Eigen::Vector3d> points;
-  for (const StereoHit& hit : flight.hits()) points.push_back(hit.position_camera);
-  to.put(to.hits, now_ns, cloud("left_rectified", points, frame.t_ns));
-  points.clear();
-  for (const ObstaclePoint& point : flight.map().points()) points.push_back(point.position_world);
-  to.put(to.map, now_ns, cloud("odometry", points, now_ns));
 }
 
-void FlightMcap::on_step(const Flight& flight) {
-  Implementation& to = *implementation_;
-  if (flight.clock().step() % physics_rate_hz == 0) to.begin(flight);
-  if (flight.launched() && !to.launched)
-    to.say(flight.clock().t_ns(), foxglove::Log::INFO, "left the catapult");
-  to.launched = flight.launched();
-  to.put_plan(flight);
-  if (flight.clock().step() % (physics_rate_hz / 120) == 0) to.put_moment(flight);
-}
+void FlightMcap::on_step(const Flight& flight) { implementation_->catch_up(flight.clock().t_ns()); }
 
 void FlightMcap::on_end(const Flight& flight) {
-  Implementation& to = *implementation_;
-  to.put_moment(flight);
-  const Outcome outcome = flight.outcome().value();
-  to.say(flight.clock().t_ns(), outcome == Outcome::goal ? foxglove::Log::INFO : foxglove::Log::ERROR,
-         std::string(word_for(outcome)));
-  to.file.finish();
+  implementation_->catch_up(flight.clock().t_ns());
+  implementation_->put_outcome();
+}
+
+void FlightMcap::write_whole_log() {
+  implementation_->catch_up(std::numeric_limits<std::int64_t>::max() - 1);
+  implementation_->put_outcome();
 }
 
 }  // namespace understory

@@ -5,16 +5,20 @@
 #include <memory>
 
 #include "scenarios/flight/flight.hpp"
+#include "scenarios/flight/flight_log.hpp"
 #include "scenarios/output/file_output.hpp"
 
 namespace understory {
 
 /// A flight as an MCAP file with Foxglove's protobuf schemas, in simulated time, as docs/viewers.md lists its
 /// topics: images, calibrations, clouds of hits, map and obstacles, transforms, plan, poses, numbers, log.
+/// All but the images comes from the flight's log.
 class FlightMcap : public FlightObserver {
  public:
-  /// `compress`: in zstd. Throws ScenarioError where the file cannot be made.
-  FlightMcap(const std::filesystem::path& file, bool compress, Named named = Named::by_us);
+  /// `log`: of the flight, kept by an observer that is called earlier. `compress`: in zstd. Throws
+  /// ScenarioError where the file cannot be made.
+  FlightMcap(const FlightLog& log, const std::filesystem::path& file, bool compress,
+             Named named = Named::by_us);
   ~FlightMcap() override;
 
   bool needs_images() const override { return true; }
@@ -22,6 +26,9 @@ class FlightMcap : public FlightObserver {
   void on_frame(const Flight& flight) override;
   void on_step(const Flight& flight) override;
   void on_end(const Flight& flight) override;
+
+  /// Writes all of a log that is complete and has no images, and closes the file.
+  void write_whole_log();
 
  private:
   struct Implementation;

@@ -168,10 +168,13 @@ struct EstimationSection {
 };
 
 struct AutopilotSection {
-  PlanningPreset preset = PlanningPreset::thorough;  ///< keys given beside it win over it
-  int replan_rate_hz = 120;                          ///< divides 1200
+  PlanningPreset preset = PlanningPreset::economical;  ///< keys given beside it win over it
+  int replan_rate_hz = 120;                            ///< divides 1200
   AutopilotConfig autopilot;
 };
+
+/// The numbers that a preset stands for (docs/decisions/015, 024).
+AutopilotSection planning_of(PlanningPreset preset);
 
 struct Scenario {
   std::string name = "unnamed";  ///< letters, digits and - _ . : names the run's folder
@@ -196,7 +199,7 @@ struct Scenario {
   std::vector<FaultConfig> faults;  ///< of sensors and cameras, by schedule
   PerceptionSection perception;
   EstimationSection estimation;
-  AutopilotSection autopilot;
+  AutopilotSection autopilot = planning_of(PlanningPreset::economical);
 
   /// The mission as the stack knows it.
   Mission mission() const {

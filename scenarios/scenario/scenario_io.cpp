@@ -139,19 +139,6 @@ Eigen::Vector3d rail_start_world(const LaunchConfig& launch) {
           launch.altitude_m - launch.rail_length_m * std::sin(launch.climb_angle_rad)};
 }
 
-/// Plans at once for what is new near the way, seldom otherwise, and searches less: for forests that leave
-/// room (docs/decisions/015).
-AutopilotSection economical_planning() {
-  AutopilotSection section;
-  section.replan_rate_hz = 600;  // the moments at which it may plan
-  section.autopilot.straight_period_s = 0.1;
-  section.autopilot.avoiding_period_s = 0.025;
-  section.autopilot.planner.refresh_s = 0.105;
-  section.autopilot.planner.search.iterations = 100;
-  section.autopilot.planner.improvement.iterations = 20;
-  return section;
-}
-
 Sources sources_of(ConfigNode file, const std::vector<std::string>& settings,
                    const std::vector<std::filesystem::path>& with = {}) {
   Sources sources{std::move(file)};
@@ -177,7 +164,7 @@ Scenario compose(const Sources& sources, const std::string& name) {
   if (first.estimation.preset != FilterPreset::original && first.sensors.grade != SensorGrade::ideal)
     scenario.estimation.filter =
         filter_for_sensors(scenario.estimation.filter, sensors_of_grade(first.sensors.grade));
-  if (first.autopilot.preset == PlanningPreset::economical) scenario.autopilot = economical_planning();
+  scenario.autopilot = planning_of(first.autopilot.preset);
   scenario.estimation.filter.distrust.imu_gap_s = 1.5 / first.sensors.sensors.imu_rate_hz;
   scenario.estimation.filter.start.position_world_m = rail_start_world(first.launch);
   scenario.estimation.filter.start.pitch_rad =
@@ -190,6 +177,20 @@ Scenario compose(const Sources& sources, const std::string& name) {
 }
 
 }  // namespace
+
+AutopilotSection planning_of(PlanningPreset preset) {
+  AutopilotSection section;
+  section.preset = preset;
+  if (preset == PlanningPreset::thorough) return section;
+  // At once for what is new near the way, seldom otherwise, with smaller searches.
+  section.replan_rate_hz = 600;  // the moments at which it may plan
+  section.autopilot.straight_period_s = 0.1;
+  section.autopilot.avoiding_period_s = 0.025;
+  section.autopilot.planner.refresh_s = 0.105;
+  section.autopilot.planner.search.iterations = 100;
+  section.autopilot.planner.improvement.iterations = 20;
+  return section;
+}
 
 Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& settings,
                        const std::vector<std::filesystem::path>& with) {

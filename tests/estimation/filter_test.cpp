@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "estimation/gate.hpp"
+#include "estimation/measurements.hpp"
 #include "simulated_flight.hpp"
 
 namespace understory::test {
@@ -140,6 +142,70 @@ TEST(Filter, HandlingWithoutAStrokeIsNoLaunch) {
     filter.on(ImuSample{t_ns, Eigen::Vector3d::Zero(), force});
   }
   EXPECT_FALSE(filter.launched());
+}
+
+/// A window of samples at rest on a slope, 200 a second, with a gyro's bias and noise; `shake` on top.
+bool rests(const Eigen::Vector3d& gyro_bias, double gyro_noise, const Eigen::Vector3d& shake_radps,
+           const RestConfig& config = {}) {
+  RestWindow window(config, 9.81);
+  std::mt19937_64 generator(7);
+  std::normal_distribution<double> noise(0, 1);
+  bool is_rest = false;
+  for (int i = 0; i < 20; ++i) {
+    ImuSample sample;
+    sample.t_ns = i * std::int64_t{5'000'000};
+    sample.specific_force_body_mps2 = {3.8, 0.05 * noise(generator), 9.04};
+    for (int axis = 0; axis < 3; ++axis) {
+      sample.angular_rate_body_radps[axis] = gyro_bias[axis] + gyro_noise * noise(generator);
+      sample.angular_rate_body_radps[axis] += shake_radps[axis] * std::sin(0.6 * i);
+    }
+    is_rest = window.rests_with(sample);
+    EXPECT_TRUE(!is_rest || i >= 4);  // fewer samples tell no variance
+  }
+  return is_rest;
+}
+
+TEST(Filter, AConstantGyroBiasIsNoMotion) {
+  const Eigen::Vector3d still = Eigen::Vector3d::Zero();
+  EXPECT_TRUE(rests(still, 0.0024, still));
+  EXPECT_TRUE(rests({0.03, -0.03, 0.02}, 0.0024, still));  // 0.047 rad/s, more than a consumer gyro's
+  EXPECT_FALSE(rests(still, 0.0024, {0, 0.05, 0}));        // carried by hand
+  EXPECT_FALSE(rests({0.2, 0, 0}, 0.0024, still));         // turned steadily
+  RestConfig rough;
+  rough.rate_tolerance_radps = 0.15;
+  EXPECT_TRUE(rests({0.08, 0.05, -0.03}, 0.0024, still, rough));
+}
+
+TEST(Filter, LearnsWhatThePropellerDoesToTheBarometer) {
+  constexpr double wash_m_per_n = 0.4;
+  for (const bool knows : {true, false}) {
+    FilterConfig config;
+    config.start.in_flight = true;
+    config.start.pitch_rad = 0;
+    config.start.position_world_m = {0, 0, 4};
+    config.start.velocity_body_mps = {12, 0, 0};
+    config.sideslip.model = SideslipModel::off;
+    config.heading.enabled = false;
+    config.altitude.wash_sigma_m_per_n = knows ? wash_m_per_n : 0;
+    Filter filter(config);
+    std::mt19937_64 generator(3);
+    std::normal_distribution<double> noise(0, 0.3);
+    for (std::int64_t t_ns = 0; t_ns <= 5'000'000'000; t_ns += 5'000'000) {
+      const double thrust_n = t_ns / 700'000'000 % 2 == 0 ? 1 : 4;  // level, now weak, now strong
+      filter.on(ImuSample{t_ns, Eigen::Vector3d::Zero(), {0, 0, 9.81}});
+      filter.on(ThrustSample{t_ns, thrust_n});
+      if (t_ns % 20'000'000 != 0) continue;
+      filter.on(PitotSample{t_ns, 12});
+      filter.on(BarometerSample{t_ns, 4 + wash_m_per_n * thrust_n + noise(generator)});
+    }
+    if (knows) {
+      EXPECT_NEAR(filter.state().barometer_wash_m_per_n, wash_m_per_n, 0.08);
+      EXPECT_NEAR(filter.state().altitude_m, 4, 0.3);
+    } else {
+      EXPECT_EQ(filter.state().barometer_wash_m_per_n, 0);
+      EXPECT_GT(filter.state().altitude_m, 4.4);  // it believes the barometer
+    }
+  }
 }
 
 TEST(Filter, APitotBiasOfThreeMetresPerSecondMovesTheEstimate) {

@@ -200,9 +200,9 @@ TEST(CliOutput, AFullDiskIsOneLineAndAFilmThatDoesNotFitLosesNoResult) {
   const Outcome film = on_small_disk("fly clear --set forest.length_m=10 --quiet --video --out run",
                                      folder.path(), "300k", "ls -A . run");
   EXPECT_NE(film.text.find("No space left on device\nstatus 3\n"), std::string::npos) << film.text;
-  EXPECT_NE(
-      film.text.find("run:\n.understory\nestimate.tum\nmap.ply\nobstacles.csv\nresult.json\nscenario.yaml\n"),
-      std::string::npos)
+  EXPECT_NE(film.text.find("run:\n.understory\nestimate.tum\nflight.log\nmap.ply\nobstacles.csv\nresult."
+                           "json\nscenario.yaml\n"),
+            std::string::npos)
       << film.text;
   EXPECT_EQ(film.text.find("unfinished", film.text.find("status 3")), std::string::npos) << film.text;
 }
@@ -213,7 +213,8 @@ TEST(CliOutput, AFolderThatIsADiskOfItsOwnIsWrittenWithin) {
   const Outcome flown = on_small_disk(short_flight + "--out .", folder.path(), "1m", "ls -A");
   EXPECT_EQ(flown.text,
             "status "
-            "0\n.understory\nestimate.tum\nmap.ply\nobstacles.csv\nresult.json\nscenario.yaml\ntrajectory."
+            "0\n.understory\nestimate.tum\nflight.log\nmap.ply\nobstacles.csv\nresult.json\nscenario."
+            "yaml\ntrajectory."
             "csv\ntruth.tum\n");
 }
 

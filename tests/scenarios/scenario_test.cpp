@@ -1,6 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "estimation/filter_config.hpp"
 #include "perception/io/calibration_file.hpp"
+#include "scenarios/config/config_tree.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -37,6 +41,9 @@ TEST(Scenario, TheLibraryIsWhatTheMissionSays) {
   EXPECT_EQ(forest.band.minimum_altitude_m, 1);
   EXPECT_EQ(forest.band.maximum_altitude_m, 6);
   EXPECT_EQ(forest.autopilot.replan_rate_hz, 600);
+  EXPECT_EQ(Scenario().autopilot.replan_rate_hz, 600);
+  EXPECT_EQ(load_scenario(library / "forest.yaml", {"autopilot.preset=thorough"}).autopilot.replan_rate_hz,
+            120);
   EXPECT_EQ(forest.autopilot.autopilot.planner.search.iterations, 100);
   EXPECT_EQ(load_scenario(library / "forest.yaml", {"autopilot.replan_rate_hz=120"}).autopilot.replan_rate_hz,
             120);
@@ -45,6 +52,86 @@ TEST(Scenario, TheLibraryIsWhatTheMissionSays) {
   EXPECT_EQ(load_scenario(library / "clear.yaml").course, Course::clear);
   EXPECT_EQ(load_scenario(library / "goalposts.yaml").course, Course::goalposts);
   EXPECT_EQ(load_scenario(library / "windy.yaml").wind_world_mps, Eigen::Vector3d(0, 3, 0));
+}
+
+/// A key in which a scenario of the library differs from forest.yaml, and what its comments say of it.
+struct Difference {
+  const char *scenario, *key, *comment;
+};
+
+TEST(Scenario, TwoOfTheLibraryDifferOnlyInWhatTheirCommentsSay) {
+  const std::vector<Difference> differences{
+      {"dense", "forest.square_metres_per_tree", "one tree per 25 m^2"},
+      {"paper", "rig", "with the rig of Barry & Tedrake"},
+      {"paper", "perception.pushbroom.", "with the rig of Barry & Tedrake"},  // the numbers tuned for it
+      {"paper", "band.cruise_altitude_m", "a hard dodge sinks 1.5 m"},
+      {"paper", "autopilot.flight_model.cruise_speed_mps", "more roll authority"},
+      {"paper_depths", "rig", "the rig of Barry & Tedrake"},
+      {"paper_depths", "perception.pushbroom.", "the rig of Barry & Tedrake"},
+      {"paper_depths", "perception.depths_m", "depths"},
+      {"paper_depths", "band.cruise_altitude_m", "flown as in paper.yaml"},
+      {"paper_depths", "autopilot.flight_model.cruise_speed_mps", "flown as in paper.yaml"},
+      {"windy", "wind_world_mps", "3 m/s across the flight"},
+      {"windy", "wind.turbulence_wind20_mps", "turbulence"},
+      {"windy", "estimation.", "the filter estimates wind and gusts"},
+      {"windy", "autopilot.planner.field.stands_on_ground", "gusts turn the nose up and down"},
+      {"pitot_blocked", "faults", "the pitot tube is blocked"},
+      {"rough_sensors", "sensors.", "every error is three times"},
+      {"rough_sensors", "estimation.filter.", "filter knows"},
+  };
+  const FlatKeys forest = flat_keys(scenario_to_text(load_scenario(library / "forest.yaml")), "forest");
+  int compared = 0;
+  for (const auto& entry : fs::directory_iterator(library)) {
+    const std::string name = entry.path().stem().string(), text = content_of(entry.path());
+    if (load_scenario(entry.path()).course != Course::forest) continue;
+    ++compared;
+    for (const auto& [key, value] : flat_keys(scenario_to_text(load_scenario(entry.path())), name)) {
+      if (key == "name" || value == value_in(forest, key)) continue;
+      const auto known = std::ranges::find_if(differences, [&, &k = key](const Difference& one) {
+        return name == one.scenario && k.starts_with(one.key);
+      });
+      ASSERT_NE(known, differences.end()) << name << ".yaml differs in " << key << ": " << value;
+      EXPECT_NE(text.find(known->comment), std::string::npos) << name << ".yaml says nothing of " << key;
+    }
+    // How plans are made and blocks are matched is everybody's default.
+    EXPECT_EQ(text.find("preset: economical"), std::string::npos) << name;
+    EXPECT_EQ(text.find("preset: thorough"), std::string::npos) << name;
+  }
+  EXPECT_GE(compared, 6);
+}
+
+TEST(Scenario, TheFilterStartsAsTheAircraftStandsAndKnowsItsSensors) {
+  const Scenario nominal = scenario_from_text("name: a\n", "a.yaml");
+  EXPECT_NEAR(nominal.estimation.filter.start.pitch_rad, 0.398, 0.002);  // slope and angle of attack
+  const FilterConfig tuned;
+  EXPECT_EQ(nominal.estimation.filter.altitude.noise_m, tuned.altitude.noise_m);
+  EXPECT_EQ(nominal.estimation.filter.gyro_noise_radps_rthz, tuned.gyro_noise_radps_rthz);
+  EXPECT_EQ(nominal.estimation.filter.altitude.wash_sigma_m_per_n, 0);
+  const Scenario rough = scenario_from_text("sensors: {grade: rough}\n", "a.yaml");
+  EXPECT_NEAR(rough.estimation.filter.altitude.noise_m, 3 * tuned.altitude.noise_m, 1e-12);
+  EXPECT_NEAR(rough.estimation.filter.start.gyro_bias_sigma_radps, 3 * tuned.start.gyro_bias_sigma_radps,
+              1e-12);
+  EXPECT_NEAR(rough.estimation.filter.altitude.wash_sigma_m_per_n, 0.39, 1e-12);
+  EXPECT_GT(rough.estimation.filter.rest.rate_tolerance_radps, tuned.rest.rate_tolerance_radps);
+  // A scenario that says otherwise wins; the original's filter knew nothing of its sensors.
+  EXPECT_EQ(scenario_from_text("{sensors: {grade: rough}, estimation: {filter: {altitude: {noise_m: 0.7}}}}",
+                               "a.yaml")
+                .estimation.filter.altitude.noise_m,
+            0.7);
+  EXPECT_EQ(scenario_from_text("{sensors: {grade: rough}, estimation: {preset: original}}", "a.yaml")
+                .estimation.filter.altitude.sigma_m,
+            original_filter().altitude.sigma_m);
+}
+
+TEST(Scenario, OldNamesAreRefusedWithTheNewOnes) {
+  const auto refused = [](const char* text, const char* part) {
+    expect_part(refusal_of([&] { scenario_from_text(text, "a.yaml"); }), part);
+  };
+  refused("perception: {rule: tuned}", "did you mean preset?");
+  refused("perception: {preset: paper}", "did you mean original?");
+  refused("sensors: {grade: plain}", "did you mean nominal?");
+  refused("fence: {gate_m: 3}", "did you mean opening_m?");
+  refused("band: {least_altitude_m: 1}", "did you mean minimum_altitude_m?");
 }
 
 TEST(Scenario, EveryDefaultIsWritten) {

@@ -10,9 +10,9 @@
 #include <random>
 
 #include "scenarios/flight/flight.hpp"
+#include "scenarios/flight/flight_logger.hpp"
 #include "scenarios/flight/onboard_sensors.hpp"
 #include "scenarios/flight/oracles.hpp"
-#include "scenarios/flight/flight_logger.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
@@ -110,7 +110,7 @@ FlightTrace traced_flight(Scenario scenario, StateKind flown_on) {
 Scenario forest_in(const Air& air, std::uint64_t seed) {
   Scenario scenario =
       load_scenario(UNDERSTORY_SOURCE_DIR "/scenarios/library/forest.yaml", {fmt::format("seed={}", seed)});
-  scenario.autopilot = {};
+  scenario.autopilot = planning_of(PlanningPreset::thorough);
   scenario.wind_world_mps = {0, air.wind_mps, 0};
   if (air.turbulent) scenario.wind.turbulence_wind20_mps = air.wind_mps;
   return scenario;

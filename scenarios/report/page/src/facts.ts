@@ -63,6 +63,7 @@ export interface FlightFacts {
   t_end_s: number;
   t_launch_s?: number;
   course?: CourseFact | null;
+  obstacle_kinds?: string[]; // what the numbers of the array obstacle_kinds mean
   touched_name?: string;
   touched?: number | null;
   impact?: { position: [number, number, number]; part: string } | null;

@@ -152,15 +152,19 @@ export class Replay {
 
   private add_trunks(): void {
     const obstacles = floats_of(this.arrays, "obstacles");
-    const count = obstacles.length / 7;
+    const kinds = array_of(this.arrays, "obstacle_kinds");
+    const wall = this.facts.obstacle_kinds?.indexOf("wall") ?? -1;
+    const numbers = Array.from({ length: obstacles.length / 7 }, (_, i) => i);
+    const round = numbers.filter((i) => kinds[i] !== wall);
+    const count = round.length;
     const [from, to] = [new Float32Array(count * 3), new Float32Array(count * 3)];
     const [radius_m, touched] = [new Float32Array(count), new Float32Array(count)];
-    for (let i = 0; i < count; ++i) {
-      from.set(obstacles.subarray(i * 7, i * 7 + 3), i * 3);
-      to.set(obstacles.subarray(i * 7 + 3, i * 7 + 6), i * 3);
-      radius_m[i] = obstacles[i * 7 + 6];
-      touched[i] = this.facts.touched === i ? 1 : 0;
-    }
+    round.forEach((number, i) => {
+      from.set(obstacles.subarray(number * 7, number * 7 + 3), i * 3);
+      to.set(obstacles.subarray(number * 7 + 3, number * 7 + 6), i * 3);
+      radius_m[i] = obstacles[number * 7 + 6];
+      touched[i] = this.facts.touched === number ? 1 : 0;
+    });
     const sides = Math.min(Math.max(Math.floor((trunk_triangles / Math.max(count, 1) + 2) / 3), 3), 16);
     this.parts.trunks = this.add({
       ...shapes.unit_trunk(sides),
@@ -169,6 +173,10 @@ export class Replay {
       radius_m: { data: radius_m, instanced: 1 },
       touched: { data: touched, instanced: 1 },
     }, this.program(shaders.trunk, {}, "trunk"));
+    const add_walls = (is_touched: boolean, color: string) =>
+      this.add(shapes.wall_boxes(obstacles, numbers.filter((i) => kinds[i] === wall && (this.facts.touched === i) === is_touched)), this.program(shaders.surface, { shading: { value: 1 } }, color));
+    this.parts.walls = add_walls(false, "trunk");
+    this.parts.touched_wall = add_walls(true, "alert");
   }
 
   /// Segments of the plans lie one after the other, so that a plan is a range of them.
