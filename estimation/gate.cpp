@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "estimation/samples.hpp"
+
 namespace understory {
 namespace {
 
@@ -24,7 +26,7 @@ double chi_square_quantile(double probability, int degrees) {
 }
 
 Gate::Gate(double threshold, double patience_s, Distrust distrust)
-    : threshold_(threshold), patience_ns_(static_cast<std::int64_t>(patience_s * 1e9)), distrust_(distrust) {}
+    : threshold_(threshold), patience_ns_(nanoseconds(patience_s)), distrust_(distrust) {}
 
 bool Gate::admits(double squared, std::int64_t t_ns) {
   newest_ = squared;

@@ -3,13 +3,14 @@
 #include <cmath>
 #include <vector>
 
+#include "estimation/samples.hpp"
 #include "estimation/so3.hpp"
 
 namespace understory {
 
 bool RestWindow::rests_with(const ImuSample& sample) {
   constexpr std::size_t fewest = 5;
-  const std::int64_t window_ns = std::llround(config_.window_s * 1e9);
+  const std::int64_t window_ns = nanoseconds(config_.window_s);
   std::erase_if(samples_, [&](const ImuSample& old) { return old.t_ns <= sample.t_ns - window_ns; });
   samples_.push_back(sample);
   if (samples_.size() < fewest) return false;

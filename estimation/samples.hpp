@@ -1,11 +1,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 
 /// What the sensors deliver. Body frame: x forward, y left, z up. World: x east, y north, z up. Times are the
 /// moment of measurement. SI units.
 namespace understory {
+
+inline std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
+inline double seconds(std::int64_t t_ns) { return static_cast<double>(t_ns) * 1e-9; }
 
 struct ImuSample {
   std::int64_t t_ns = 0;

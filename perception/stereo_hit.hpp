@@ -2,13 +2,9 @@
 
 #include <Eigen/Core>
 
-namespace understory {
+#include "perception/stereo_rig.hpp"
 
-/// Depths between which a block's true disparity lies one pixel or less from the disparity used, m.
-struct DepthInterval {
-  double near_m = 0;
-  double far_m = 0;
-};
+namespace understory {
 
 /// One detection in one stereo pair: a block of the left image that matches at the detection disparity.
 struct StereoHit {
@@ -18,7 +14,7 @@ struct StereoHit {
   double disparity_px = 0;                                    ///< u_left - u_right
   double score = 0;     ///< the paper's S = SAD / (sum of both blocks' edges); smaller is better
   double edge_sum = 0;  ///< sum of both blocks' Laplacian edge sums
-  DepthInterval depth;  ///< what the whole disparity leaves open; both 0 where a detector does not say
+  DepthInterval depth;  ///< one pixel of disparity either way; both 0 where a detector does not say
 };
 
 }  // namespace understory

@@ -3,9 +3,15 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace understory {
+
+struct DepthInterval {
+  double near_m = 0;
+  double far_m = 0;
+};
 
 /// A rectified stereo rig: two pinhole cameras with parallel axes, rows aligned.
 ///
@@ -37,6 +43,14 @@ struct StereoRig {
   }
   double depth_m(double disparity_px) const {
     return focal_px * baseline_m / (disparity_px - infinity_disparity_px());
+  }
+  /// Depths whose disparity lies `pixels` or less from this one; far_m is infinite where that reaches
+  /// infinity.
+  DepthInterval depths_around(double disparity_px, double pixels = 1) const {
+    const double farther_px = disparity_px - pixels;
+    return {depth_m(disparity_px + pixels), farther_px > infinity_disparity_px()
+                                                ? depth_m(farther_px)
+                                                : std::numeric_limits<double>::infinity()};
   }
   /// Whether a detector can compare the images at this whole disparity: it lies more than a pixel nearer than
   /// infinity, and leaves at least a tenth of the images' columns (and a 5x5 block).

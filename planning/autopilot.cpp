@@ -8,8 +8,6 @@ namespace {
 
 constexpr double predict_step_s = 0.005;
 
-std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
-
 }  // namespace
 
 Autopilot::Autopilot(const AutopilotConfig& config, const Airframe& airframe, const StereoRig& rig,

@@ -99,10 +99,10 @@ void FullStereoDetector::match(const StereoFrame& frame) {
 }
 
 FullStereoCrop one_pixel_crop(const StereoRig& rig) {
-  const double disparity_px = std::round(rig.disparity_px(rig.detection_depth_m));
+  const DepthInterval interval = rig.depths_around(std::round(rig.disparity_px(rig.detection_depth_m)));
   FullStereoCrop crop;
-  crop.minimum_depth_m = rig.depth_m(disparity_px + 1);
-  crop.maximum_depth_m = rig.depth_m(disparity_px - 1);
+  crop.minimum_depth_m = interval.near_m;
+  crop.maximum_depth_m = interval.far_m;
   crop.maximum_below_m = unlimited_m;  // the pushbroom's rows alone
   return crop;
 }
@@ -136,9 +136,8 @@ void FullStereoDetector::add_cell(int column_px, int row_px) {
   hit.position_camera = {(column_px + center_px - rig_.center_left_x_px) * z_m / rig_.focal_px,
                          (row_px + center_px - rig_.center_y_px) * z_m / rig_.focal_px, z_m};
   if (hit.position_camera.y() > crop_.maximum_below_m) return;
-  const double farther_px = hit.disparity_px - uncertainty_px;
-  hit.depth = {rig_.depth_m(hit.disparity_px + uncertainty_px),
-               farther_px > rig_.infinity_disparity_px() ? rig_.depth_m(farther_px) : crop_.maximum_depth_m};
+  hit.depth = rig_.depths_around(hit.disparity_px, uncertainty_px);
+  if (!std::isfinite(hit.depth.far_m)) hit.depth.far_m = crop_.maximum_depth_m;
   hits_.push_back(hit);
 }
 

@@ -154,7 +154,7 @@ PushbroomStereo::PushbroomStereo(const StereoRig& rig, const PushbroomConfig& co
   if (const std::string fault = fault_of(config, rig); !fault.empty())
     throw std::invalid_argument("PushbroomStereo: " + fault);
   for (const int px : disparities_of(config, rig))
-    depths_.push_back({px, rig.depth_m(px), {rig.depth_m(px + 1), rig.depth_m(px - 1)}});
+    depths_.push_back({px, rig.depth_m(px), rig.depths_around(px)});
   for (int i = 0; i < config.threads; ++i) bands_.push_back({PushbroomKernel(block_rule()), {}, {}});
 }
 

@@ -80,10 +80,7 @@ BlockContent content_between(const TrueImages& truth, int column_px, int row_px,
 
 DetectionDepth detection_depth(const StereoRig& rig, double asked_m) {
   const int px = static_cast<int>(std::lround(rig.disparity_px(asked_m)));
-  return {px,
-          rig.depth_m(px),
-          {rig.depth_m(px + 1), rig.depth_m(px - 1)},
-          {rig.depth_m(px + 0.5), rig.depth_m(px - 0.5)}};
+  return {px, rig.depth_m(px), rig.depths_around(px), rig.depths_around(px, 0.5)};
 }
 
 DetectionGrid::DetectionGrid(const StereoRig& rig, std::vector<double> depths_m, int last_row_px)

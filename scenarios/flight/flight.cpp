@@ -12,8 +12,6 @@
 namespace understory {
 namespace {
 
-std::int64_t nanoseconds(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
-
 /// An image that nobody looks at is not rendered: rendering is most of a flight's cost.
 bool needs_images(const Scenario& scenario, const std::vector<FlightObserver*>& observers) {
   return uses_images(scenario.perception.detector) ||

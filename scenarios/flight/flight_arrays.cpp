@@ -71,7 +71,7 @@ float shown_m(double clearance_m) { return static_cast<float>(std::min(clearance
 
 /// When what a page of this detail shows begins.
 std::int64_t shown_from_ns(const FlightLog& log, const Detail& detail) {
-  return log.moments.back().t_ns - static_cast<std::int64_t>(detail.from_end_s * 1e9);
+  return log.moments.back().t_ns - nanoseconds(detail.from_end_s);
 }
 
 float shown_s(std::int64_t t_ns) { return static_cast<float>(seconds(t_ns)); }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "estimation/samples.hpp"
 #include "perception/io/calibration_file.hpp"
 #include "perception/obstacle_point.hpp"
 #include "planning/airframe.hpp"
@@ -18,8 +19,6 @@
 #include "sim/scene/obstacle.hpp"
 
 namespace understory {
-
-inline double seconds(std::int64_t t_ns) { return static_cast<double>(t_ns) * 1e-9; }
 
 /// One moment of a flight: what is, what the aircraft believes, what it commands. `odometry` is the frame of
 /// the estimate, in which the map lies; without drift it is the world.

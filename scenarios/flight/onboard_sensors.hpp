@@ -89,7 +89,7 @@ inline OnboardSensors::OnboardSensors(const Scenario& scenario)
       barometer_(scenario.sensors.sensors.barometer, seed_for(scenario.sensor_seed(), "barometer")),
       magnetometer_(scenario.sensors.sensors.magnetometer, seed_for(scenario.sensor_seed(), "magnetometer")),
       gps_(scenario.sensors.sensors.gps, seed_for(scenario.sensor_seed(), "gps")),
-      gps_delay_ns_(std::llround(scenario.sensors.sensors.gps.delay_s * 1e9)),
+      gps_delay_ns_(nanoseconds(scenario.sensors.sensors.gps.delay_s)),
       faults_(scenario.faults) {}
 
 template <typename Receiver>

@@ -101,10 +101,7 @@ double ray_meets_wall(const Eigen::Vector3d& origin_world, const Eigen::Vector3d
 
 TrueDepth::TrueDepth(const StereoRig& rig, std::vector<Obstacle> obstacles, const TruthHistory& history)
     : rig_(rig), obstacles_(std::move(obstacles)), history_(history) {
-  const double parallax_px =
-      std::round(rig.disparity_px(rig.detection_depth_m)) - rig.infinity_disparity_px();
-  minimum_depth_m_ = rig.focal_px * rig.baseline_m / (parallax_px + 1);
-  maximum_depth_m_ = parallax_px > 1 ? rig.focal_px * rig.baseline_m / (parallax_px - 1) : infinity;
+  interval_ = rig.depths_around(std::round(rig.disparity_px(rig.detection_depth_m)));
 }
 
 const std::vector<StereoHit>& TrueDepth::detect(const StereoFrame& frame) {
@@ -113,7 +110,7 @@ const std::vector<StereoHit>& TrueDepth::detect(const StereoFrame& frame) {
   const double corner_x =
       std::max(rig_.center_left_x_px, rig_.width_px - rig_.center_left_x_px) / rig_.focal_px;
   const double corner_y = std::max(rig_.center_y_px, rig_.height_px - rig_.center_y_px) / rig_.focal_px;
-  const double reach_m = maximum_depth_m_ * std::sqrt(1 + corner_x * corner_x + corner_y * corner_y);
+  const double reach_m = interval_.far_m * std::sqrt(1 + corner_x * corner_x + corner_y * corner_y);
   const Eigen::Isometry3d T_world_camera = T_camera_world.inverse();
   std::vector<SeenObstacle> round_obstacles;
   std::vector<Obstacle> walls;
@@ -146,7 +143,7 @@ const std::vector<StereoHit>& TrueDepth::detect(const StereoFrame& frame) {
         depth_m = std::min(depth_m,
                            ray_meets_wall(T_world_camera.translation(), T_world_camera.linear() * ray, wall));
       }
-      if (depth_m < minimum_depth_m_ || depth_m > maximum_depth_m_ || depth_m == infinity) continue;
+      if (depth_m < interval_.near_m || depth_m > interval_.far_m || depth_m == infinity) continue;
       hits_.push_back({depth_m * ray, column, row, rig_.disparity_px(depth_m), 0.0, 0.0, {}});
     }
   }

@@ -66,15 +66,13 @@ class TrueDepth : public ObstacleDetector {
   const std::vector<StereoHit>& detect(const StereoFrame& frame) override;
 
   /// The depth interval of a hit, m: one pixel either side of the nearest whole disparity.
-  double minimum_depth_m() const { return minimum_depth_m_; }
-  double maximum_depth_m() const { return maximum_depth_m_; }
+  DepthInterval interval() const { return interval_; }
 
  private:
   StereoRig rig_;
   std::vector<Obstacle> obstacles_;
   const TruthHistory& history_;
-  double minimum_depth_m_ = 0;
-  double maximum_depth_m_ = 0;
+  DepthInterval interval_;
   std::vector<StereoHit> hits_;
 };
 

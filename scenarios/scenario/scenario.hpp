@@ -120,7 +120,9 @@ struct ComputeConfig {
   /// 0.001 .. 1000. 8.3: the original detector, 1.0 ms there, filled the 8.3 ms of a frame at 120 Hz on all
   /// cores of a 1.7 GHz quad ARM Cortex-A9 (Barry & Tedrake 2015). A larger factor is a slower computer.
   double factor = 8.3;
-  double pushbroom_s = 0.0010;    ///< 0 .. 1; the original, rectification included (docs/sources.md [17])
+  double pushbroom_s = 0.0010;  ///< 0 .. 1; the original, rectification included (docs/sources.md [17])
+  /// Each depth beyond the first, as a share of the first: the edges are the same (docs/benchmarks.md).
+  double more_depths = 0.4;
   double stereo_bm_s = 0.0090;    ///< StereoBM, 112 disparities (paper's rig, a Zen 4 core, 2026-11)
   double stereo_sgbm_s = 0.0127;  ///< StereoSGBM likewise, five paths
 };
@@ -130,6 +132,7 @@ void visit_fields(Visitor& visit, ComputeConfig& config) {
   visit("enabled", config.enabled);
   visit("factor", config.factor, 0.001, 1000.0);
   visit("pushbroom_s", config.pushbroom_s, 0.0, 1.0);
+  visit("more_depths", config.more_depths, 0.0, 1.0);
   visit("stereo_bm_s", config.stereo_bm_s, 0.0, 1.0);
   visit("stereo_sgbm_s", config.stereo_sgbm_s, 0.0, 1.0);
 }
@@ -148,7 +151,9 @@ struct PerceptionSection {
     if (!compute.enabled) return 0;
     switch (detector) {
       case DetectorKind::pushbroom:
-        return compute.factor * compute.pushbroom_s;
+        return compute.factor * compute.pushbroom_s *
+               (1 + compute.more_depths *
+                        static_cast<double>(std::max<std::size_t>(1, pushbroom.depths_m.size()) - 1));
       case DetectorKind::stereo_bm:
         return compute.factor * compute.stereo_bm_s;
       case DetectorKind::stereo_sgbm:

@@ -82,8 +82,8 @@ TEST(RayMeetsBar, ClosedForms) {
 TEST(TrueDepth, SeesOnePixelEitherWay) {
   Scene scene;
   const TrueDepth detector(paper_rig(), {}, scene.history);
-  EXPECT_NEAR(detector.minimum_depth_m(), 4.47, 0.02);
-  EXPECT_NEAR(detector.maximum_depth_m(), 5.20, 0.02);
+  EXPECT_NEAR(detector.interval().near_m, 4.47, 0.02);
+  EXPECT_NEAR(detector.interval().far_m, 5.20, 0.02);
 }
 
 TEST(TrueDepth, HitsLieOnTheTrunkAndCoverIt) {
