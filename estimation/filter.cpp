@@ -266,10 +266,10 @@ void Filter::fuse_force(Aid aid, Measurement<1> measurement, std::int64_t t_ns) 
   sum.innovation += measurement.innovation[0];
   if (++sum.samples < config_.force_samples) return;
   const double samples = sum.samples;
-  // Over some turns of the propeller a vibration adds up to about its amplitude.
+  // Over some turns of the propeller a vibration adds up to less than its amplitude, at some phase.
   const double vibration_mps2 = config_.vibration_mps2pn * thrust_n_ / samples;
   measurement.innovation[0] = sum.innovation / samples;
-  measurement.noise(0, 0) = measurement.noise(0, 0) / samples + 0.5 * vibration_mps2 * vibration_mps2;
+  measurement.noise(0, 0) = measurement.noise(0, 0) / samples + 0.25 * vibration_mps2 * vibration_mps2;
   sum = {};
   fuse(aid, measurement, t_ns);
 }

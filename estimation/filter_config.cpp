@@ -7,10 +7,6 @@ namespace understory {
 FilterConfig windy_filter() {
   FilterConfig config;
   config.states.wind = config.states.gust = true;
-  config.accelerometer_noise_mps2_rthz = 0.005;
-  config.airspeed.sigma_mps = 0.12;
-  config.altitude.sigma_m = 0.31;
-  config.sideslip.sigma_mps2 = 0.05;
   config.sideslip.model_error = 0.05;
   config.angle_of_attack.enabled = true;  // nothing else shows a vertical gust, which is no state
   return config;

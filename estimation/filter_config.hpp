@@ -18,7 +18,7 @@ struct AirspeedConfig {
   double usable_mps = 6.0;  ///< m/s, 0..20: slower readings are ignored, being poor
   /// m/s, 0.01..10: of one reading at 12 m/s; pressure grows with the square of the speed, so that slower
   /// readings are worse by as much. 1.5 Pa of noise are 0.11 m/s; the bias is a state.
-  double sigma_mps = 0.15;
+  double sigma_mps = 0.12;
 };
 
 template <typename Visitor>
@@ -45,7 +45,7 @@ struct SideslipConfig {
   double mass_kg = 0.648412;           ///< kg, 0.05..20: believed in
   Eigen::Vector3d winglets_body_m{-0.08, 0.0,
                                   0.081954};  ///< m, -5..5: mean position (y cancels between the two)
-  double sigma_mps2 = 0.2;                    ///< m/s^2, 0.01..50: noise 0.05, and what the plates leave out
+  double sigma_mps2 = 0.05;                   ///< m/s^2, 0.01..50: noise of one reading
   double model_error = 0.15;  ///< fraction of the force, 0..1 (docs/sources.md [15]: 15 % costs about 0.16 m)
   double zero_sigma_mps =
       2.236;  ///< m/s, 0.01..50: of v_y = 0, where that is the model (the original's variance 5)
@@ -105,7 +105,7 @@ void visit_fields(Visitor& visit, AngleOfAttackConfig& config) {
 /// thrust, so that the barometer reads too high by metres per newton: another state, where wash_sigma_m_per_n
 /// is not zero.
 struct AltitudeConfig {
-  double sigma_m = 0.4;             ///< m, 0.01..100: of one reading; a consumer barometer's noise is 0.3 m
+  double sigma_m = 0.31;            ///< m, 0.01..100: of one reading: noise 0.3 m and steps of 0.1 m
   double offset_sigma_m = 0.3;      ///< m, 0..10: spread of the offset before the readings at rest
   double offset_walk_m_rts = 0.09;  ///< m/sqrt(s), 0..10: weather and heat: 0.5 m in a minute
   /// m/N, 0..10: what is expected of the barometer's error per newton of thrust; 0: the state is off.
@@ -225,7 +225,7 @@ struct ExtraStatesConfig {
   double gust_sigma_mps = 0.6;   ///< m/s, 0..20, per axis. MIL-F-8785C near the ground: 0.2 of the wind
   double gust_length_m = 30.0;   ///< m, 0.1..2000: MIL-F-8785C at 4 m; its time is this over the airspeed
   bool pitot_bias = true;        ///< one state
-  double pitot_bias_sigma_mps = 0.1;   ///< m/s, 0..10: 1 Pa left by zeroing, at 12 m/s
+  double pitot_bias_sigma_mps = 0.07;  ///< m/s, 0..10: 1 Pa left by zeroing, at 12 m/s
   double pitot_bias_walk_rthz = 1e-3;  ///< m/s^2/sqrt(Hz), 0..1: how fast it may change
 };
 
@@ -248,11 +248,11 @@ struct FilterConfig {
   FilterModel model = FilterModel::gyro_bias;  ///< angular_rate: the paper's states (docs/estimator.md)
   StartConfig start;
   double gravity_mps2 = 9.81;  ///< m/s^2, 1..20: believed in
-  /// rad/s/sqrt(Hz), 0..1. Consumer MEMS: 0.01 deg/s/sqrt(Hz) = 1.7e-4; doubled for what sampling at 200 Hz
-  /// loses.
+  /// rad/s/sqrt(Hz), 0..1. Consumer MEMS: 0.01 deg/s/sqrt(Hz) = 1.7e-4, and half as much for what sampling at
+  /// 200 Hz loses.
   double gyro_noise_radps_rthz = 3.5e-4;
-  /// m/s^2/sqrt(Hz), 0..10. Noise alone is 0.0035 (0.05 m/s^2 at 200 Hz); scale and vibration come on top.
-  double accelerometer_noise_mps2_rthz = 0.01;
+  /// m/s^2/sqrt(Hz), 0..10. Noise alone is 0.0035 (0.05 m/s^2 at 200 Hz).
+  double accelerometer_noise_mps2_rthz = 0.005;
   /// 0..1: share of an angular rate that the gyro reads wrongly (scale, misalignment). The error lasts as
   /// long as a turn, so it counts as noise that grows with the rate.
   double gyro_scale = 0;
@@ -290,9 +290,8 @@ struct FilterConfig {
 /// launch gives no other initial velocity.
 FilterConfig original_filter();
 
-/// For moving air: wind, gust and the sensors' own noise instead of margins. Its numbers come from flights
-/// with 3 m/s of wind and Dryden turbulence (docs/estimator.md); in calm air it drifts about twice the
-/// default's 0.06 m.
+/// For moving air: with wind and gust as states. Its numbers come from flights with 3 m/s of wind and Dryden
+/// turbulence (docs/estimator.md); in calm air it drifts about twice as much as the default.
 FilterConfig windy_filter();
 
 template <typename Visitor>

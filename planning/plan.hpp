@@ -54,8 +54,8 @@ struct Plan {
   std::int64_t t_ns = 0;  ///< the moment its first point stands for
   PlanOrigin origin = PlanOrigin::straight;
   std::vector<PlanPoint> points;  ///< evenly spaced in time; empty before the first replan
-  /// Minimum free distance from the wing to what the planner knew of, negative where the plan leads through it;
-  /// +infinity where it is no less than the comfortable clearance, beyond which nobody asks.
+  /// Minimum free distance from the wing to what the planner knew of, negative where the plan leads through
+  /// it; +infinity where it is no less than the comfortable clearance, beyond which nobody asks.
   double clearance_m = std::numeric_limits<double>::infinity();
 };
 

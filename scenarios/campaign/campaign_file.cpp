@@ -24,8 +24,9 @@ using Changes = std::vector<ConfigNode>;  ///< a tree per key
 
 /// What is added to a scenario's name and keys.
 struct Variant {
-  std::string name;  ///< empty: the scenario as it is
+  std::string name;  ///< of the overrides; empty: the scenario as it is
   Changes changes;
+  std::vector<std::pair<std::string, std::string>> grid = {};
 };
 
 /// "forest.length_m" and its value, or groups of them.
@@ -116,16 +117,23 @@ std::size_t require_grid(const ConfigNode* grid, std::size_t variants) {
   return variants;
 }
 
+/// "forest-blind-cruise_speed_mps=10".
+std::string name_of(const std::string& scenario, const Variant& variant) {
+  std::string name = joined(scenario, variant.name);
+  for (const auto& [key, value] : variant.grid)
+    name = joined(name, plain(key.substr(key.rfind('.') + 1) + "=" + value));
+  return name;
+}
+
 /// Every combination of the grid's values over each of `variants`.
 std::vector<Variant> with_grid(std::vector<Variant> variants, const ConfigNode* grid) {
   if (grid == nullptr) return variants;
   for (const ConfigNode& axis : grid->children) {
-    const std::string short_key = axis.key.substr(axis.key.rfind('.') + 1);
     std::vector<Variant> more;
     for (const Variant& variant : variants)
       for (const ConfigNode& value : axis.children) {
         Variant next = variant;
-        next.name = joined(variant.name, plain(short_key + "=" + text_of(value)));
+        next.grid.emplace_back(axis.key, text_of(value));
         next.changes.push_back(under_keys(value, axis.key));
         more.push_back(std::move(next));
       }
@@ -229,14 +237,15 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario,
     campaign.files.push_back(path);
     for (const Variant& variant : variants) {
       const Scenario scenario = load_changed_scenario(path, variant.changes);
-      const std::string name = joined(plain(path.stem().string()), variant.name);
+      const std::string name = name_of(plain(path.stem().string()), variant);
       if (!is_plain_name(name))
         refuse_key(
             *scenarios, "scenarios",
             fmt::format("names of conditions of at most 200 characters, no '.' first; '{}' comes out", name));
       if (!seen.insert(name).second)
         refuse_key(*scenarios, "scenarios", fmt::format("each condition once, '{}' comes out twice", name));
-      campaign.conditions.push_back({name, scenario_to_text(scenario)});
+      campaign.conditions.push_back(
+          {name, scenario_to_text(scenario), plain(path.stem().string()), variant.name, variant.grid});
       if (on_condition) on_condition(campaign.conditions.size(), conditions);
     }
   }

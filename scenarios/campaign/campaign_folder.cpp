@@ -30,8 +30,15 @@ constexpr const char* manifest_name = "campaign.json";
 }
 
 std::string manifest_of(const Campaign& campaign) {
-  std::vector<std::string> conditions;
-  for (const Condition& condition : campaign.conditions) conditions.push_back(condition.name);
+  Json conditions = Json::array();
+  for (const Condition& condition : campaign.conditions) {
+    Json grid = Json::object();
+    for (const auto& [key, value] : condition.grid) grid[key] = value;
+    conditions.push_back({{"name", condition.name},
+                          {"scenario", condition.scenario},
+                          {"variant", condition.variant},
+                          {"grid", grid}});
+  }
   Json identity = Json::object();
   for (const auto& [name, digest] : campaign.identity) identity[name] = digest;
   const Json json{{"format", results_format},
@@ -165,8 +172,10 @@ Campaign read_campaign(const CampaignFolder& folder) {
         refuse_manifest(folder, key, "expected whole numbers from 0 to 2^32");
       campaign.seeds.push_back(seed);
     }
-    for (const Json& name : json.at(key = "conditions")) {
-      campaign.conditions.push_back({name, ""});
+    for (const Json& held : json.at(key = "conditions")) {
+      Condition& condition = campaign.conditions.emplace_back(
+          Condition{held.at("name"), "", held.at("scenario"), held.at("variant"), {}});
+      for (const auto& [name, value] : held.at("grid").items()) condition.grid.emplace_back(name, value);
       const bool is_new = names.insert(campaign.conditions.back().name).second;
       if (!is_plain_name(campaign.conditions.back().name) || !is_new)
         refuse_manifest(folder, key, "expected names of letters, digits and . _ = -, each once");

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenarios/campaign/flight_row.hpp"
@@ -16,6 +17,9 @@ struct Condition {
   std::string name;  ///< "forest-blind", "forest-cruise_speed_mps=10": letters, digits and . _ = -
   /// The effective scenario, every value written; a flight's seed replaces its own.
   std::string scenario_text;
+  std::string scenario;  ///< what its file is called: "forest"
+  std::string variant;   ///< name of the overrides: "blind"; empty without any
+  std::vector<std::pair<std::string, std::string>> grid;  ///< keys of the grid and its values, in its order
 };
 
 /// Many flights: every seed in every condition.

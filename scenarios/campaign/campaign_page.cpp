@@ -59,14 +59,16 @@ std::vector<std::string> grid_keys(const std::vector<ShownCondition>& conditions
   return keys;
 }
 
-/// "blind" of "forest-blind" where every condition is one of that scenario.
-std::string label_of(const std::string& name, const Campaign& campaign) {
-  const std::string scenario = name.substr(0, name.find('-') + 1);
-  const bool is_everywhere =
-      !scenario.empty() && std::ranges::all_of(campaign.conditions, [&](const Condition& other) {
-        return other.name.starts_with(scenario) && other.name.size() > scenario.size();
-      });
-  return is_everywhere ? name.substr(scenario.size()) : name;
+/// What tells a condition from the others: its scenario only where there are several.
+std::string label_of(const Condition& condition, const Campaign& campaign) {
+  std::vector<std::string> words;
+  const bool is_everywhere = std::ranges::all_of(
+      campaign.conditions, [&](const Condition& other) { return other.scenario == condition.scenario; });
+  if (!is_everywhere) words.push_back(condition.scenario);
+  if (!condition.variant.empty()) words.push_back(condition.variant);
+  for (const auto& [key, value] : condition.grid)
+    words.push_back(key.substr(key.rfind('.') + 1) + "=" + value);
+  return words.empty() ? condition.scenario : fmt::format("{}", fmt::join(words, ", "));
 }
 
 Json conditions_of(const Campaign& campaign, const std::vector<ShownCondition>& conditions,
@@ -76,7 +78,7 @@ Json conditions_of(const Campaign& campaign, const std::vector<ShownCondition>& 
     const std::string& name = campaign.conditions[i].name;
     Json values = Json::object();
     for (const std::string& key : keys) values[key] = value_in(conditions[i].keys, key);
-    Json condition{{"name", name}, {"label", label_of(name, campaign)}, {"keys", values}};
+    Json condition{{"name", name}, {"label", label_of(campaign.conditions[i], campaign)}, {"keys", values}};
     const auto summary = std::ranges::find(summaries, name, &ConditionSummary::condition);
     const ConditionSummary none;
     const ConditionSummary& of = summary == summaries.end() ? none : *summary;

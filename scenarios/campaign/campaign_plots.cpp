@@ -22,7 +22,7 @@ struct CountedSeries {
   std::map<double, Count> at;
 };
 
-/// What conditions may differ in: the field, and the key that a campaign's grid puts into their names.
+/// What conditions may differ in: the field of a row, and the key of a campaign's grid.
 struct PlotAxis {
   double (*value)(const FlightRow&);
   const char *key, *name, *label;
@@ -32,8 +32,9 @@ double speed_of(const FlightRow& row) { return row.cruise_speed_mps; }
 double density_of(const FlightRow& row) {
   return row.square_metres_per_tree > 0 ? 100 / row.square_metres_per_tree : 0;
 }
-constexpr PlotAxis speed_axis{speed_of, "cruise_speed_mps=", "speed", "cruise speed asked (m/s)"};
-constexpr PlotAxis density_axis{density_of, "square_metres_per_tree=", "density", "trees per 100 m²"};
+constexpr PlotAxis speed_axis{speed_of, "autopilot.flight_model.cruise_speed_mps", "speed",
+                              "cruise speed asked (m/s)"};
+constexpr PlotAxis density_axis{density_of, "forest.square_metres_per_tree", "density", "trees per 100 m²"};
 
 constexpr AxisRange percent_range{-2, 102};  // dots at 0 and at 100 are whole
 
@@ -43,19 +44,36 @@ std::vector<FlightRow> flown_ones(const std::vector<FlightRow>& rows) {
   return flown;
 }
 
-/// "forest-blind-cruise_speed_mps=10" without its key: "forest-blind". A value may be negative: "=-1".
-std::string name_without(const std::string& name, const std::string& key) {
-  const std::size_t begin = name.find(key);
-  if (begin == std::string::npos || (begin > 0 && name[begin - 1] != '-')) return name;
-  const std::size_t end = name.find('-', begin + key.size() + 1);
-  if (begin == 0) return end == std::string::npos ? "" : name.substr(end + 1);
-  return name.substr(0, begin - 1) + (end == std::string::npos ? "" : name.substr(end));
+using Conditions = std::vector<Condition>;
+
+/// Rows of a campaign whose description is not known belong to a scenario of their condition's name.
+Condition condition_of(const std::string& name, const Conditions& conditions) {
+  const auto found = std::ranges::find(conditions, name, &Condition::name);
+  return found == conditions.end() ? Condition{name, "", name, "", {}} : *found;
 }
 
-std::vector<CountedSeries> counted(const std::vector<FlightRow>& rows, const PlotAxis& axis) {
+/// What a condition adds to its scenario, but for one key of the grid: "blind, raw=true".
+std::string added_words(const Condition& condition, std::string_view but_for = "") {
+  std::vector<std::string> words;
+  if (!condition.variant.empty()) words.push_back(condition.variant);
+  for (const auto& [key, value] : condition.grid)
+    if (key != but_for) words.push_back(key.substr(key.rfind('.') + 1) + "=" + value);
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+/// The same with its scenario's name, where the title does not bear that.
+std::string words_of(const Condition& condition, const std::string& titled_scenario,
+                     std::string_view but_for = "") {
+  const std::string added = added_words(condition, but_for);
+  if (condition.scenario == titled_scenario) return added.empty() ? condition.scenario : added;
+  return added.empty() ? condition.scenario : condition.scenario + ", " + added;
+}
+
+std::vector<CountedSeries> counted(const std::vector<FlightRow>& rows, const Conditions& conditions,
+                                   const PlotAxis& axis, const std::string& titled_scenario) {
   std::vector<CountedSeries> all;
   for (const FlightRow& row : rows) {
-    const std::string name = name_without(row.condition, axis.key);
+    const std::string name = words_of(condition_of(row.condition, conditions), titled_scenario, axis.key);
     auto series = std::ranges::find(all, name, &CountedSeries::name);
     if (series == all.end()) series = all.insert(all.end(), {name, {}});
     Count& count = series->at[axis.value(row)];
@@ -73,24 +91,15 @@ void add_point(Series& series, double x, const Count& count) {
   series.high.push_back(100 * interval.maximum);
 }
 
-/// "forest" of "forest-blind": what a campaign's file puts first.
-std::string scenario_of(const std::string& condition) { return condition.substr(0, condition.find('-')); }
-
-/// What all conditions begin with; empty where they differ.
-std::string scenario_of_all(const std::vector<ConditionSummary>& all) {
-  const std::string first = all.empty() ? "" : scenario_of(all[0].condition);
-  const auto has_it = [&](const ConditionSummary& one) { return scenario_of(one.condition) == first; };
-  return std::ranges::all_of(all, has_it) ? first : "";
+/// The scenario of all conditions; empty where they have several.
+std::string scenario_of_all(const std::vector<FlightRow>& rows, const Conditions& conditions) {
+  std::set<std::string> scenarios;
+  for (const FlightRow& row : rows) scenarios.insert(condition_of(row.condition, conditions).scenario);
+  return scenarios.size() == 1 ? *scenarios.begin() : "";
 }
 
 std::string titled(const std::string& scenario, const std::string& title) {
   return (scenario.empty() ? "" : scenario + ": ") + title;
-}
-
-/// "blind" of "forest-blind" in a plot that bears the scenario's name.
-std::string name_within(const std::string& condition, const std::string& scenario) {
-  const std::string before = scenario + "-";
-  return condition.starts_with(before) ? condition.substr(before.size()) : condition;
 }
 
 LinePlot success_plot(const std::string& title, const std::string& x_label) {
@@ -110,15 +119,17 @@ double span_of(const std::vector<FlightRow>& rows, const PlotAxis& axis) {
 }
 
 /// Whether any conditions differ in nothing else: scenarios that differ in much besides are no scan.
-bool is_scanned(const std::vector<FlightRow>& rows, const PlotAxis& axis) {
-  return std::ranges::any_of(counted(rows, axis), [](const CountedSeries& one) { return one.at.size() > 1; });
+bool is_scanned(const std::vector<FlightRow>& rows, const Conditions& conditions, const PlotAxis& axis) {
+  return std::ranges::any_of(counted(rows, conditions, axis, ""),
+                             [](const CountedSeries& one) { return one.at.size() > 1; });
 }
 
-LinePlot success_over(const std::vector<FlightRow>& all_rows, const PlotAxis& axis) {
+LinePlot success_over(const std::vector<FlightRow>& all_rows, const Conditions& conditions,
+                      const PlotAxis& axis) {
   const std::vector<FlightRow> rows = flown_ones(all_rows);
-  LinePlot plot = success_plot(
-      titled(scenario_of_all(summarise(rows)), fmt::format("success over {}", axis.name)), axis.label);
-  const std::vector<CountedSeries> all = counted(rows, axis);
+  const std::string scenario = scenario_of_all(rows, conditions);
+  LinePlot plot = success_plot(titled(scenario, fmt::format("success over {}", axis.name)), axis.label);
+  const std::vector<CountedSeries> all = counted(rows, conditions, axis, scenario);
   const double apart = 0.008 * span_of(rows, axis);
   double aside = -0.5 * apart * (static_cast<double>(all.size()) - 1);
   for (const CountedSeries& one : all) {
@@ -152,17 +163,21 @@ Series steps_of(const ConditionSummary& summary) {
 
 }  // namespace
 
-LinePlot success_over_speed(const std::vector<FlightRow>& rows) { return success_over(rows, speed_axis); }
+LinePlot success_over_speed(const std::vector<FlightRow>& rows, const Conditions& conditions) {
+  return success_over(rows, conditions, speed_axis);
+}
 
-LinePlot success_over_density(const std::vector<FlightRow>& rows) { return success_over(rows, density_axis); }
+LinePlot success_over_density(const std::vector<FlightRow>& rows, const Conditions& conditions) {
+  return success_over(rows, conditions, density_axis);
+}
 
-LinePlot success_by_condition(const std::vector<FlightRow>& rows) {
-  const std::vector<ConditionSummary> all = summarise(flown_ones(rows));
-  const std::string scenario = scenario_of_all(all);
+LinePlot success_by_condition(const std::vector<FlightRow>& all_rows, const Conditions& conditions) {
+  const std::vector<FlightRow> rows = flown_ones(all_rows);
+  const std::string scenario = scenario_of_all(rows, conditions);
   LinePlot plot = success_plot(titled(scenario, "success by condition"), "");
-  for (const ConditionSummary& summary : all) {
+  for (const ConditionSummary& summary : summarise(rows)) {
     const auto place = static_cast<double>(plot.series.size() + 1);
-    plot.x_names.emplace_back(place, name_within(summary.condition, scenario));
+    plot.x_names.emplace_back(place, words_of(condition_of(summary.condition, conditions), scenario));
     Series series;
     series.mark = Mark::dots;
     add_point(series, place, {summary.flown, summary.goals});
@@ -172,17 +187,19 @@ LinePlot success_by_condition(const std::vector<FlightRow>& rows) {
   return plot;
 }
 
-std::vector<LinePlot> survival_curves(const std::vector<FlightRow>& rows) {
+std::vector<LinePlot> survival_curves(const std::vector<FlightRow>& all_rows, const Conditions& conditions) {
   constexpr std::size_t to_a_panel = 6;
-  const std::vector<ConditionSummary> all = summarise(flown_ones(rows));
+  const std::vector<FlightRow> rows = flown_ones(all_rows);
+  const std::vector<ConditionSummary> all = summarise(rows);
   std::vector<LinePlot> panels;
   double furthest_m = 0;
   const bool fits_one = all.size() <= to_a_panel;
   std::string scenario;
   for (const ConditionSummary& one : all) {
-    const bool begins = panels.empty() || (!fits_one && scenario_of(one.condition) != scenario);
+    const Condition condition = condition_of(one.condition, conditions);
+    const bool begins = panels.empty() || (!fits_one && condition.scenario != scenario);
     if (begins || panels.back().series.size() == to_a_panel) {
-      scenario = fits_one ? scenario_of_all(all) : scenario_of(one.condition);
+      scenario = fits_one ? scenario_of_all(rows, conditions) : condition.scenario;
       panels.emplace_back();
       panels.back().title = titled(scenario, begins ? "survival over distance" : "survival, continued");
       panels.back().x_label = "progress (m)";
@@ -190,21 +207,21 @@ std::vector<LinePlot> survival_curves(const std::vector<FlightRow>& rows) {
       panels.back().y_range = percent_range;
     }
     panels.back().series.push_back(steps_of(one));
-    panels.back().series.back().name = name_within(one.condition, scenario);
+    panels.back().series.back().name = words_of(condition, scenario);
     furthest_m = std::max(furthest_m, one.survival.last_at);
   }
   for (LinePlot& panel : panels) panel.x_range = AxisRange{0, std::max(furthest_m, 1.0)};
   return panels;
 }
 
-std::string campaign_svg(const std::vector<FlightRow>& all_rows) {
+std::string campaign_svg(const std::vector<FlightRow>& all_rows, const Conditions& conditions) {
   const std::vector<FlightRow> rows = flown_ones(all_rows);
   if (rows.empty()) return "";
   std::vector<LinePlot> panels;
-  if (is_scanned(rows, speed_axis)) panels.push_back(success_over_speed(rows));
-  if (is_scanned(rows, density_axis)) panels.push_back(success_over_density(rows));
-  if (panels.empty()) panels.push_back(success_by_condition(rows));
-  for (LinePlot& panel : survival_curves(rows)) panels.push_back(std::move(panel));
+  if (is_scanned(rows, conditions, speed_axis)) panels.push_back(success_over_speed(rows, conditions));
+  if (is_scanned(rows, conditions, density_axis)) panels.push_back(success_over_density(rows, conditions));
+  if (panels.empty()) panels.push_back(success_by_condition(rows, conditions));
+  for (LinePlot& panel : survival_curves(rows, conditions)) panels.push_back(std::move(panel));
   return to_svg(panels, 2);
 }
 

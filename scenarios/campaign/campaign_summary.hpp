@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/campaign/flight_row.hpp"
+#include "scenarios/campaign/campaign_folder.hpp"
 #include "scenarios/report/line_plot.hpp"
 #include "scenarios/report/table.hpp"
 #include "scenarios/statistics/statistics.hpp"
@@ -39,25 +39,26 @@ std::vector<ConditionSummary> summarise(const std::vector<FlightRow>& rows);
 /// OMPL's answer.
 Table summary_table(const std::vector<ConditionSummary>& summaries);
 
-/// Share of flights that reached the goal, with 95 % Wilson bars, over the speed asked (m/s). A series for
-/// all that else distinguishes conditions: their names without "cruise_speed_mps=..."; conditions that come
-/// out with one name differ in nothing but the speed and are joined by a line. Points are set a little apart
-/// sideways where series share a speed.
-LinePlot success_over_speed(const std::vector<FlightRow>& rows);
+// Plots know a row's scenario, overrides and grid by its condition; a row without one stands for itself.
 
-/// The same over trees per 100 m^2, names without "square_metres_per_tree=...".
-LinePlot success_over_density(const std::vector<FlightRow>& rows);
+/// Share of flights that reached the goal, with 95 % Wilson bars, over the speed asked (m/s). A series for
+/// all that else distinguishes conditions; those that differ in nothing but the speed are joined by a line.
+/// Points are set a little apart sideways where series share a speed.
+LinePlot success_over_speed(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions);
+
+/// The same over trees per 100 m^2.
+LinePlot success_over_density(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions);
 
 /// The same side by side: a place per condition, which bears its name.
-LinePlot success_by_condition(const std::vector<FlightRow>& rows);
+LinePlot success_by_condition(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions);
 
 /// Share of flights that get beyond each distance (m of progress): Kaplan and Meier's steps with 95 % bands,
 /// at most six conditions to a panel; of more than six, those of one scenario, which the title names.
-std::vector<LinePlot> survival_curves(const std::vector<FlightRow>& rows);
+std::vector<LinePlot> survival_curves(const std::vector<FlightRow>& rows,
+                                      const std::vector<Condition>& conditions);
 
 /// One SVG: success over speed and over density, each where conditions differ in nothing else, or else by
-/// condition; then survival.
-/// Flights that failed to run enter nothing. Empty where none was flown.
-std::string campaign_svg(const std::vector<FlightRow>& rows);
+/// condition; then survival. Flights that failed to run enter nothing. Empty where none was flown.
+std::string campaign_svg(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions);
 
 }  // namespace understory

@@ -12,7 +12,7 @@ namespace understory {
 struct Scenario;
 
 /// Of rows and of the folders that hold them: results of another format are refused.
-inline constexpr int results_format = 1;
+inline constexpr int results_format = 2;
 
 /// What became of one flight of a campaign.
 enum class RunStatus {

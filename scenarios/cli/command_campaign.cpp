@@ -153,7 +153,7 @@ int run_campaign(const CampaignArguments& arguments) {
   const Finish finish =
       on_slurm ? fly_on_slurm(folder, campaign, arguments) : fly_here(folder, campaign, arguments);
   const Collected collected = collect(folder, campaign);
-  if (finish == Finish::all_over) return report(folder, collected, arguments.junit);
+  if (finish == Finish::all_over) return report(folder, campaign, collected, arguments.junit);
   if (on_slurm) {
     const std::string what =
         fmt::format("the job goes on; understory collect {} gathers what it leaves", folder.path.string());

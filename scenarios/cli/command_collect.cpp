@@ -38,10 +38,11 @@ int run_gate(const GateArguments& arguments) {
 
 }  // namespace
 
-int report(const CampaignFolder& folder, const Collected& collected, const std::filesystem::path& junit) {
+int report(const CampaignFolder& folder, const Campaign& campaign, const Collected& collected,
+           const std::filesystem::path& junit) {
   const Table table = summary_table(summarise(collected.rows));
   write_whole_file(folder.path / "summary.md", to_markdown(table));
-  const std::string plots = campaign_svg(collected.rows);
+  const std::string plots = campaign_svg(collected.rows, campaign.conditions);
   if (!plots.empty()) write_whole_file(folder.path / "campaign.svg", plots);
   if (!junit.empty()) write_whole_file(junit, campaign_junit(collected.rows), Named::by_user);
 
@@ -69,7 +70,7 @@ void add_collect_command(CommandLine& line) {
     FolderClaim claim(results.path, "campaign", results.path, FolderClaim::Manner::beside_others);
     claim.adopt(campaign_patterns);
     claim.require_own(campaign_patterns);
-    return report(results, collect(results, campaign));
+    return report(results, campaign, collect(results, campaign));
   });
 }
 

@@ -9,6 +9,7 @@
 
 namespace understory {
 
+struct Campaign;
 struct CampaignFolder;
 struct Collected;
 
@@ -31,7 +32,8 @@ void add_keys_command(CommandLine& line);
 /// Prints what a campaign came to and leaves summary.md and campaign.svg in its folder, and with a name of a
 /// file there JUnit XML. Gives the exit status: 0 where every flight was flown, whatever its outcome; 1 where
 /// one was not.
-int report(const CampaignFolder& folder, const Collected& collected, const std::filesystem::path& junit = {});
+int report(const CampaignFolder& folder, const Campaign& campaign, const Collected& collected,
+           const std::filesystem::path& junit = {});
 
 /// OpenGL's name for what draws by default, or why nothing does.
 std::string renderer_of_this_machine();

@@ -157,8 +157,9 @@ class Panel {
     constexpr const char *middle = "text-anchor=\"middle\"", *end = "text-anchor=\"end\"";
     text += label(left, 18, plot_.title, "class=\"title\"");
     for (const auto& [x, name] : plot_.x_names)
-      text += fmt::format("<text transform=\"translate({:.1f} {:.1f}) rotate(-90)\" class=\"note\">{}</text>\n",
-                          at_x(x) - 6, bottom - 6, escaped(name));
+      text +=
+          fmt::format("<text transform=\"translate({:.1f} {:.1f}) rotate(-90)\" class=\"note\">{}</text>\n",
+                      at_x(x) - 6, bottom - 6, escaped(name));
     for (const double tick : plot_.x_names.empty() ? tick_positions(x_, wanted_x) : std::vector<double>{}) {
       text += straight(at_x(tick), top, "V", bottom, "grid");
       text += label(at_x(tick), bottom + 15, fmt::format("{:.{}f}", tick, x_decimals), middle);

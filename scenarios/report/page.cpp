@@ -77,7 +77,8 @@ void PageArrays::add(std::string_view name, int components, const std::vector<fl
   std::vector<std::int16_t> rounded;
   rounded.reserve(values.size());
   for (const float value : values)
-    rounded.push_back(std::isfinite(value) ? static_cast<std::int16_t>(std::lround(value / scale)) : not_a_number);
+    rounded.push_back(std::isfinite(value) ? static_cast<std::int16_t>(std::lround(value / scale))
+                                           : not_a_number);
   add(name, "i16", components, values.size(), std::as_bytes(std::span(rounded)), scale);
 }
 
@@ -105,10 +106,10 @@ std::string page_html(const std::filesystem::path& data_root, const PageContent&
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw MachineError(fmt::format("{}: expected the page's program there", file.string()));
   std::string page{std::istreambuf_iterator<char>(stream), {}};
-  std::string blocks = block("facts", "application/json", without_tags(with_arrays(content.facts, content.arrays))) +
-                       block("arrays", "text/plain", base64(content.arrays.bytes())) +
-                       block("film", "text/plain", base64(content.film)) +
-                       block("still", "text/plain", base64(content.still));
+  std::string blocks =
+      block("facts", "application/json", without_tags(with_arrays(content.facts, content.arrays))) +
+      block("arrays", "text/plain", base64(content.arrays.bytes())) +
+      block("film", "text/plain", base64(content.film)) + block("still", "text/plain", base64(content.still));
   for (const auto& [name, bytes] : content.parts) blocks += block(name, "text/plain", base64(bytes));
   page = with(std::move(page), "<!--DATA-->", blocks);
   return with(std::move(page), "<title>Understory</title>", fmt::format("<title>{}</title>", content.title));

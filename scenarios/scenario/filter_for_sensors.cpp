@@ -17,9 +17,9 @@ FilterConfig filter_for_sensors(FilterConfig filter, const SensorsConfig& sensor
   filter.accelerometer_noise_mps2_rthz *= force_noise;
   filter.accelerometer_scale = std::hypot(imu.accelerometer_scale, imu.accelerometer_misalignment);
   const double force_bias = imu.accelerometer_bias_mps2 / nominal.imu.accelerometer_bias_mps2;
-  // A scale error of gravity itself is a bias, too.
+  // What gravity puts on the two level axes is a bias, too.
   double& bias_sigma = filter.states.accelerometer_bias_sigma_mps2;
-  bias_sigma = std::hypot(bias_sigma * force_bias, imu.accelerometer_scale * filter.gravity_mps2);
+  bias_sigma = std::hypot(bias_sigma * force_bias, imu.accelerometer_misalignment * filter.gravity_mps2);
   filter.sideslip.sigma_mps2 *= force_noise;
   filter.vibration_mps2pn = imu.accelerometer_vibration_mps2pn;
   if (filter.vibration_mps2pn > 0)

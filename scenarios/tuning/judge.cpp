@@ -42,7 +42,7 @@ class FlightJudge : public Judge {
 
   Measured measure(const std::string& name, const Scenario& scenario) override {
     const Campaign campaign{"tuning",
-                            {{name, scenario_to_text(scenario)}},
+                            {{name, scenario_to_text(scenario), name, "", {}}},
                             config_.seeds,
                             config_.renderer,
                             config_.timeout_s,

@@ -21,8 +21,8 @@ Table comparison_table(const TuneFile& file, const Tuned& tuned);
 std::string tune_summary(const TuneFile& file, const Tuned& tuned);
 
 /// Writes trials.csv, pareto.csv, summary.md, tune.svg, front/trial-N.yaml, report.html, a page of all that,
-/// and, where the search gains anything, best.yaml: the tuned keys as `fly --with` reads them, with figures as
-/// comments. `data_root` holds scenarios/report/page.
+/// and, where the search gains anything, best.yaml: the tuned keys as `fly --with` reads them, with figures
+/// as comments. `data_root` holds scenarios/report/page.
 void write_tune_report(const std::filesystem::path& folder, const TuneFile& file, const Tuned& tuned,
                        const std::filesystem::path& data_root);
 

@@ -83,8 +83,9 @@ double number_before(const std::string& text, const std::string& words) {
 }
 
 /// A planner that may only just touch flies into a tree that it has seen.
-const std::vector<std::string> careless{"seed=1005", "autopilot.planner.field.half_span_m=0.01",
-                                        "autopilot.planner.trajectory.minimum_clearance_m=0.01"};
+const std::vector<std::string> careless{"seed=1000", "autopilot.planner.field.half_span_m=0.01",
+                                        "autopilot.planner.trajectory.minimum_clearance_m=0.01",
+                                        "autopilot.planner.trajectory.comfortable_clearance_m=0.1"};
 
 TEST(FlightStory, TellsWhenTheTrunkWasSeen) {
   const Told told(library("dense", careless));

@@ -55,13 +55,15 @@ scenario: forest
 seeds: 1000..1001
 overrides: [{name: brief, set: {time_limit_s: 0.8}}]
 )");
-  run("campaign two.yaml --jobs 2 --out two --junit two.xml", {"two/flights.csv", "two/summary.md", "two.xml"});
+  run("campaign two.yaml --jobs 2 --out two --junit two.xml",
+      {"two/flights.csv", "two/summary.md", "two.xml"});
   run("gate --baseline two --candidate two", {});
   run("report two --baseline two", {"two/report.html"});
 }
 
 TEST_F(WholeProgram, Tunes) {
-  folder.write("brief.yaml", "course: clear\ntime_limit_s: 0.5\nforest: {length_m: 10}\ncameras: {rate_hz: 10}\n");
+  folder.write("brief.yaml",
+               "course: clear\ntime_limit_s: 0.5\nforest: {length_m: 10}\ncameras: {rate_hz: 10}\n");
   folder.write("tune.yaml", R"(
 scenario: brief.yaml
 parameters: {autopilot.flight_model.cruise_speed_mps: {from: 9, to: 12}}

@@ -208,7 +208,7 @@ TEST(Fault, ABarometerThatStepsIsLeftOut) {
       EXPECT_EQ(course.faulty[Course::index(t_s)], seeds) << t_s;
     }
   }
-  EXPECT_GT(course.at(course.sigma_z_m, 8), 1.2 * healthy().at(healthy().sigma_z_m, 8));
+  EXPECT_GT(course.at(course.sigma_z_m, 8), 1.15 * healthy().at(healthy().sigma_z_m, 8));
 }
 
 }  // namespace

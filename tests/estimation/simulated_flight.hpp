@@ -44,7 +44,7 @@ std::vector<Moment> fly(const Manoeuvre& manoeuvre, double flying_s, const Launc
 struct SensorErrors {
   double gyro_noise = 0.00244, gyro_bias = 0.0087;     ///< rad/s per sample, per flight
   double force_noise = 0.05, force_bias = 0.05;        ///< m/s^2
-  double pitot_noise = 0.1, pitot_bias = 0.1;          ///< m/s
+  double pitot_noise = 0.1, pitot_bias = 0.07;         ///< m/s: 1.5 Pa and 1 Pa at 12 m/s
   double barometer_noise = 0.3, barometer_bias = 0.2;  ///< m
   double field_noise = 0.5, field_bias = 0.5;          ///< uT
   static SensorErrors none() { return {0, 0, 0, 0, 0, 0, 0, 0, 0, 0}; }

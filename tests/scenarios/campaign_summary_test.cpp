@@ -1,4 +1,7 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 #include "scenarios/campaign/campaign_summary.hpp"
 #include "tests/support/flight_rows.hpp"
@@ -37,14 +40,24 @@ TEST(CampaignSummary, CountsEachCondition) {
   EXPECT_EQ(summaries[2].flown, 0);
 }
 
-TEST(CampaignSummary, PrintsARowPerCondition) {
+TEST(CampaignSummary, ShowsSharesWithTheirIntervals) {
   const Table table = summary_table(summarise(rows()));
-  EXPECT_EQ(table.rows[0], (std::vector<std::string>{"forest", "3", "2", "66.7 (20.8 to 93.9)", "1", "0", "0",
-                                                     "0", "11.50", "> 75", "0.25", "75.0", "1"}));
-  EXPECT_EQ(table.rows[1][9], "10.0");
-  EXPECT_EQ(table.rows[2],
-            (std::vector<std::string>{"paper", "0", "0", "-", "0", "0", "0", "0", "-", "-", "-", "-", "1"}));
+  const auto cell = [&](std::size_t row, const char* column) {
+    const auto at =
+        std::ranges::find_if(table.head, [&](const std::string& head) { return head.starts_with(column); });
+    return table.rows.at(row).at(static_cast<std::size_t>(at - table.head.begin()));
+  };
+  ASSERT_EQ(table.rows.size(), 3u);
+  EXPECT_EQ(cell(0, "success"), "66.7 (20.8 to 93.9)");  // 2 of 3: R's binom::binom.wilson
+  EXPECT_EQ(cell(0, "OMPL"), "75.0");                    // (27 + 3) of (30 + 10) replans
+  EXPECT_EQ(cell(0, "median"), "> 75");                  // one of three ended before
+  EXPECT_EQ(cell(1, "median"), "10.0");
+  EXPECT_EQ(cell(2, "success"), "-");  // nothing flown
+  EXPECT_EQ(cell(2, "not flown"), "1");
 }
+
+const std::string speed_key = "autopilot.flight_model.cruise_speed_mps",
+                  density_key = "forest.square_metres_per_tree";
 
 /// Ten flights, `goals` of which reach the goal; the others collide at 10, 20, ... m.
 void add_ten(std::vector<FlightRow>& rows, const std::string& condition, double speed_mps, double per_tree_m2,
@@ -61,32 +74,40 @@ void add_ten(std::vector<FlightRow>& rows, const std::string& condition, double 
 
 TEST(CampaignPlots, JoinsConditionsThatDifferInSpeedOnly) {
   std::vector<FlightRow> rows;
-  add_ten(rows, "forest-ours-cruise_speed_mps=12", 12, 25, 8);
-  add_ten(rows, "forest-ours-cruise_speed_mps=8", 8, 25, 10);
-  add_ten(rows, "forest-blind-cruise_speed_mps=8", 8, 25, 3);
-  add_ten(rows, "forest-blind-cruise_speed_mps=12", 12, 25, 1);
-  add_ten(rows, "dense", 10, 25, 5);
-  rows.push_back(failed_row("forest-ours-cruise_speed_mps=8", 99, "hung"));
-  const LinePlot plot = success_over_speed(rows);
+  // Names with dashes and signs of equality of their own.
+  const std::vector<Condition> conditions{{"a", "", "my-forest", "ours=new", {{speed_key, "12"}}},
+                                          {"b", "", "my-forest", "ours=new", {{speed_key, "8"}}},
+                                          {"c", "", "my-forest", "blind", {{speed_key, "8"}}},
+                                          {"d", "", "my-forest", "blind", {{speed_key, "12"}}},
+                                          {"e", "", "dense", "", {}}};
+  add_ten(rows, "a", 12, 25, 8);
+  add_ten(rows, "b", 8, 25, 10);
+  add_ten(rows, "c", 8, 25, 3);
+  add_ten(rows, "d", 12, 25, 1);
+  add_ten(rows, "e", 10, 25, 5);
+  rows.push_back(failed_row("b", 99, "hung"));
+  const LinePlot plot = success_over_speed(rows, conditions);
   ASSERT_EQ(plot.series.size(), 3u);
-  EXPECT_EQ(plot.series[0].name, "forest-ours");
+  EXPECT_EQ(plot.series[0].name, "my-forest, ours=new");
   EXPECT_EQ(plot.series[0].y, (std::vector<double>{100, 80}));
   EXPECT_NEAR(plot.series[0].x[0], 8, 0.1);
   EXPECT_NEAR(plot.series[0].x[1], 12, 0.1);
   EXPECT_NEAR(plot.series[0].low[1], 49.0, 0.05);  // Wilson, 8 of 10
   EXPECT_NEAR(plot.series[0].high[1], 94.3, 0.05);
   EXPECT_EQ(plot.series[2].mark, Mark::dots);
-  expect_no_part(campaign_svg(rows), "density");
-  expect_part(campaign_svg(rows), "success over speed");
+  expect_no_part(campaign_svg(rows, conditions), "density");
+  expect_part(campaign_svg(rows, conditions), "success over speed");
 }
 
 TEST(CampaignPlots, DensityIsTreesPerHundredSquareMetres) {
   std::vector<FlightRow> rows;
-  add_ten(rows, "square_metres_per_tree=25", 10, 25, 5);
-  add_ten(rows, "square_metres_per_tree=50-late", 10, 50, 5);
-  const LinePlot plot = success_over_density(rows);
+  const std::vector<Condition> conditions{{"a", "", "forest", "", {{density_key, "25"}}},
+                                          {"b", "", "forest", "late", {{density_key, "50"}}}};
+  add_ten(rows, "a", 10, 25, 5);
+  add_ten(rows, "b", 10, 50, 5);
+  const LinePlot plot = success_over_density(rows, conditions);
   ASSERT_EQ(plot.series.size(), 2u);
-  EXPECT_EQ(plot.series[0].name, "");
+  EXPECT_EQ(plot.series[0].name, "forest");
   EXPECT_NEAR(plot.series[0].x[0], 4, 0.05);
   EXPECT_EQ(plot.series[1].name, "late");
   EXPECT_NEAR(plot.series[1].x[0], 2, 0.05);
@@ -96,18 +117,21 @@ TEST(CampaignPlots, WithoutAnAxisConditionsStandSideBySide) {
   std::vector<FlightRow> rows;
   add_ten(rows, "forest-ours", 10, 25, 9);
   add_ten(rows, "forest-blind", 10, 25, 2);
-  const LinePlot plot = success_by_condition(rows);
+  const std::vector<Condition> conditions{{"forest-ours", "", "forest", "ours", {}},
+                                          {"forest-blind", "", "forest", "blind", {}}};
+  const LinePlot plot = success_by_condition(rows, conditions);
   ASSERT_EQ(plot.series.size(), 2u);
   EXPECT_EQ(plot.title, "forest: success by condition");
   EXPECT_EQ(plot.series[1].x, std::vector<double>{2});
   EXPECT_EQ(plot.x_names[1], std::pair(2.0, std::string("blind")));
-  expect_part(campaign_svg(rows), "rotate(-90)\" class=\"note\">blind<");
+  expect_part(campaign_svg(rows, conditions), "rotate(-90)\" class=\"note\">blind<");
 }
 
 TEST(CampaignPlots, SurvivalGoesDownInSteps) {
   std::vector<FlightRow> rows;
   add_ten(rows, "forest-ours", 10, 25, 8);
-  const std::vector<LinePlot> panels = survival_curves(rows);
+  std::vector<Condition> conditions{{"forest-ours", "", "forest", "ours", {}}};
+  const std::vector<LinePlot> panels = survival_curves(rows, conditions);
   ASSERT_EQ(panels.size(), 1u);
   EXPECT_EQ(panels[0].title, "forest: survival over distance");
   const Series& series = panels[0].series[0];
@@ -117,16 +141,19 @@ TEST(CampaignPlots, SurvivalGoesDownInSteps) {
   EXPECT_NEAR(series.y[2], 90, 1e-9);
   EXPECT_NEAR(series.y[5], 80, 1e-9);
   EXPECT_TRUE(series.band);
-  for (int more = 0; more < 6; ++more) add_ten(rows, fmt::format("dense-other{}", more), 10, 25, more);
-  const std::vector<LinePlot> more_panels = survival_curves(rows);  // each shows one scenario
+  for (int more = 0; more < 6; ++more) {
+    add_ten(rows, fmt::format("{}", more), 10, 25, more);
+    conditions.push_back({fmt::format("{}", more), "", "dense", fmt::format("other{}", more), {}});
+  }
+  const std::vector<LinePlot> more_panels = survival_curves(rows, conditions);  // each shows one scenario
   ASSERT_EQ(more_panels.size(), 2u);
   EXPECT_EQ(more_panels[1].title, "dense: survival over distance");
   EXPECT_EQ(more_panels[1].series[0].name, "other0");
 }
 
 TEST(CampaignPlots, NothingFlownIsNothingDrawn) {
-  EXPECT_EQ(campaign_svg({}), "");
-  EXPECT_EQ(campaign_svg({failed_row("forest", 1, "hung")}), "");
+  EXPECT_EQ(campaign_svg({}, {}), "");
+  EXPECT_EQ(campaign_svg({failed_row("forest", 1, "hung")}, {}), "");
 }
 
 }  // namespace

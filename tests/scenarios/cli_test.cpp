@@ -51,7 +51,8 @@ TEST(Cli, HelpShowsExitStatusesAndAnExampleForEveryCommand) {
 TEST(Cli, VersionSaysCommitAndRenderer) {
   const Outcome version = understory("--version");
   expect_parts(version, {"understory ", "(", ")\nrenderer: "});
-  const bool is_checkout = std::system("git -C '" UNDERSTORY_SOURCE_DIR "' rev-parse HEAD >/dev/null 2>&1") == 0;
+  const bool is_checkout =
+      std::system("git -C '" UNDERSTORY_SOURCE_DIR "' rev-parse HEAD >/dev/null 2>&1") == 0;
   EXPECT_EQ(version.text.find("unknown") == std::string::npos, is_checkout) << version.text;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/scenario/filter_for_sensors.hpp"
 #include "sim/sensors/sensors_config.hpp"
 #include "tests/validation/drift.hpp"
 #include "tests/validation/sections.hpp"
@@ -43,10 +44,16 @@ void waking_in_flight(TrialConfig& config) {
   config.ground_velocity_unknown = true;
 }
 
+/// The filter knows its sensors.
 void graded(TrialConfig& config, SensorGrade grade) {
   config.sensors = sensors_of_grade(grade);
+  config.filter = filter_for_sensors(config.filter, config.sensors);
+}
+
+void windy_graded(TrialConfig& config, SensorGrade grade) {
   windy(config);
   second_depth(config);
+  graded(config, grade);
 }
 
 enum Row : std::size_t { row_default = 2, row_windy = 8, row_second = 9, row_gps = 10, row_unknown = 11 };
@@ -70,11 +77,12 @@ const std::vector<Variant> variants{
     {"windy, waking in flight: nothing known of the ground", "", waking_in_flight},
     {"the same, second depth", "", [](TrialConfig& c) { waking_in_flight(c), second_depth(c); }},
     {"the same, GPS", "", [](TrialConfig& c) { waking_in_flight(c), satellites(c); }},
-    {"default, consumer sensors", "",
-     [](TrialConfig& c) { c.sensors = sensors_of_grade(SensorGrade::consumer); }},
+    {"default, consumer sensors", "", [](TrialConfig& c) { graded(c, SensorGrade::consumer); }},
+    {"default, rough sensors", "", [](TrialConfig& c) { graded(c, SensorGrade::rough); }},
     {"windy and second depth, consumer sensors", "",
-     [](TrialConfig& c) { graded(c, SensorGrade::consumer); }},
-    {"windy and second depth, rough sensors", "", [](TrialConfig& c) { graded(c, SensorGrade::rough); }},
+     [](TrialConfig& c) { windy_graded(c, SensorGrade::consumer); }},
+    {"windy and second depth, rough sensors", "",
+     [](TrialConfig& c) { windy_graded(c, SensorGrade::rough); }},
 };
 
 const std::vector<double> sights_m{3, 5, 7.5, sight_m, 15};

@@ -26,6 +26,8 @@ Section fluid_section(const Airframe& airframe);
 Section calm_consistency_section(int flights);
 /// The windy preset in 3 m/s of wind and Dryden turbulence.
 Section turbulent_consistency_section(int flights);
+/// The default filter on nominal, consumer and rough sensors, a section each.
+std::vector<Section> graded_consistency_sections(int flights);
 /// By how much the place of a remembered obstacle is off when it is passed: each switch of the filter as a
 /// row, in three airs, beside what was computed before [15]; against sight, wind and sensors; and what
 /// obstacles seen at a second depth bring. `flights` of each air.

@@ -31,7 +31,10 @@ std::vector<Section> aircraft_sections() {
 }
 
 std::vector<Section> estimator_sections() {
-  return {calm_consistency_section(100), turbulent_consistency_section(100), drift_section(24)};
+  std::vector<Section> sections{calm_consistency_section(100), turbulent_consistency_section(100)};
+  for (Section& section : graded_consistency_sections(100)) sections.push_back(std::move(section));
+  sections.push_back(drift_section(24));
+  return sections;
 }
 
 struct Page {
