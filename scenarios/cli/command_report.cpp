@@ -67,7 +67,6 @@ Scenario scenario_of_run(const fs::path& run) {
 }
 
 FlightLog log_of_run(const fs::path& run) {
-  scenario_of_run(run);  // or this is no run
   const fs::path file = run / "flight.log";
   std::error_code ignored;
   if (!fs::exists(file, ignored))
@@ -154,9 +153,10 @@ int fly_again(const Scenario& scenario, const AgainArguments& arguments, FlyOpti
 /// The page without a film.
 int report_from_log(const ReportArguments& arguments) {
   const fs::path run = arguments.folder;
-  const FlightLog log = log_of_run(run);
+  scenario_of_run(run);  // or this is no run
   const AgainOutput output(arguments, "flight", "report.html");
   require_writable(output.file);
+  const FlightLog log = log_of_run(run);
   FlightPageExtras extras{data_root()};
   extras.warning = warning_of_log(log, run);
   write_whole_file(output.file, flight_page(log, extras), output.named);
@@ -211,14 +211,14 @@ int run_report_of_either(const ReportArguments& arguments) {
 
 int run_mcap(const McapArguments& arguments) {
   const fs::path run = arguments.folder;
+  const Scenario scenario = scenario_of_run(run);
   if (arguments.no_images) {
-    const FlightLog log = log_of_run(run);
     const AgainOutput output(arguments, "flight", "flight.mcap");
     require_writable(output.file);
+    const FlightLog log = log_of_run(run);
     FlightMcap(log, output.file, arguments.compress, output.named).write_whole_log();
     return told(output.file, warning_of_log(log, run), arguments.quiet);
   }
-  const Scenario scenario = scenario_of_run(run);
   FlyOptions options;
   options.expected_digest = digest_of(run);
   const AgainOutput output(arguments, "flight", "flight.mcap");
