@@ -8,7 +8,7 @@
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/keys.hpp"
-#include "scenarios/flight/run_files.hpp"
+#include "scenarios/flight/flight_result.hpp"
 #include "scenarios/report/table.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 

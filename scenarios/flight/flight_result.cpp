@@ -71,6 +71,12 @@ void RunDigest::add(std::span<const std::byte> bytes) {
 
 std::string RunDigest::hex() const { return fmt::format("{:016x}", state_); }
 
+const char* const trajectory_columns =
+    "t_s,x_m,y_m,z_m,qw,qx,qy,qz,vx_world_mps,vy_world_mps,vz_world_mps,p_radps,q_radps,r_radps,"
+    "est_x_m,est_y_m,est_z_m,est_qw,est_qx,est_qy,est_qz,est_vx_world_mps,est_vy_world_mps,est_vz_world_mps,"
+    "est_p_radps,est_q_radps,est_r_radps,left_elevon_command_rad,right_elevon_command_rad,thrust_command_n,"
+    "left_elevon_rad,right_elevon_rad,thrust_n,clearance_m\n";
+
 std::optional<Outcome> outcome_named(std::string_view word) {
   for (const Outcome outcome :
        {Outcome::goal, Outcome::collision, Outcome::ground, Outcome::out_of_bounds, Outcome::time})

@@ -131,6 +131,9 @@ void visit_fields(Visitor& visit, Result& result) {
   visit("renderer", result.renderer);
 }
 
+/// The columns of trajectory.csv, a line.
+extern const char* const trajectory_columns;
+
 /// As indented JSON text, versions of program and libraries included.
 std::string to_json(const FlightResult& result);
 

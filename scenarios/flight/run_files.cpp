@@ -19,12 +19,6 @@ FolderContents run_contents(const Scenario& scenario) {
   return {"flight", "scenario.yaml", scenario_to_text(scenario), run_patterns};
 }
 
-const char* const trajectory_columns =
-    "t_s,x_m,y_m,z_m,qw,qx,qy,qz,vx_world_mps,vy_world_mps,vz_world_mps,p_radps,q_radps,r_radps,"
-    "est_x_m,est_y_m,est_z_m,est_qw,est_qx,est_qy,est_qz,est_vx_world_mps,est_vy_world_mps,est_vz_world_mps,"
-    "est_p_radps,est_q_radps,est_r_radps,left_elevon_command_rad,right_elevon_command_rad,thrust_command_n,"
-    "left_elevon_rad,right_elevon_rad,thrust_n,clearance_m\n";
-
 namespace {
 
 constexpr std::int64_t row_every_ns = 5'000'000;

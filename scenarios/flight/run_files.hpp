@@ -13,9 +13,6 @@ namespace understory {
 extern const std::vector<std::string> run_patterns;
 FolderContents run_contents(const Scenario& scenario);
 
-/// The columns of trajectory.csv, a line.
-extern const char* const trajectory_columns;
-
 /// Writes trajectory.csv, truth.tum, estimate.tum, map.ply, obstacles.csv, flight.log and result.json into
 /// `folder`, each whole or not at all, result.json last.
 void write_run_files(const FlightLog& log, const std::filesystem::path& folder);
