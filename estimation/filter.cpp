@@ -11,7 +11,7 @@ namespace {
 
 /// Long enough for the way between two detection depths: 5 m in the slowest flight.
 constexpr std::int64_t history_length_ns = 1'000'000'000;
-constexpr double turn_s = 0.3;  // how long the aircraft rolls in a dodge
+constexpr double turn_s = 0.25;  // how long the aircraft rolls in a dodge
 
 State starting_state(const FilterConfig& config) {
   const StartConfig& start = config.start;
