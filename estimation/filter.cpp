@@ -195,11 +195,15 @@ void Filter::take_rates(const ImuSample& sample, double dt_s) {
 void Filter::settle(double dt_s) {
   const State start = starting_state(config_);
   const ImuSample& mean = rest_window_.mean();
-  const double root = std::sqrt(rest_window_.size());
   state_.covariance = start.covariance;
   state_.velocity_body_mps.setZero();
   state_.T_world_body.translation() = start.T_world_body.translation();
   state_.T_world_body.linear() = levelled(mean.specific_force_body_mps2, config_.start.yaw_rad);
+  correct_at_rest(mean, dt_s, rest_window_.size());
+}
+
+void Filter::correct_at_rest(const ImuSample& mean, double dt_s, double samples) {
+  const double root = std::sqrt(samples);
   correct(state_,
           gravity_direction(state_, mean.specific_force_body_mps2, config_.gravity_mps2,
                             config_.rest.force_sigma_mps2 / root),
@@ -215,18 +219,10 @@ void Filter::on_catapult(const ImuSample& sample, double dt_s) {
   if (at_rest_ && !rested) {
     settle(dt_s);
   } else if (at_rest_) {
-    const FilterModel model = config_.model;
-    correct(state_, zero_velocity(state_, config_.rest), model, FrameGain::free);
-    correct(state_, known_position(state_, config_.start.position_world_m, config_.rest), model,
+    correct(state_, zero_velocity(state_, config_.rest), config_.model, FrameGain::free);
+    correct(state_, known_position(state_, config_.start.position_world_m, config_.rest), config_.model,
             FrameGain::free);
-    correct(state_,
-            gravity_direction(state_, sample.specific_force_body_mps2, config_.gravity_mps2,
-                              config_.rest.force_sigma_mps2),
-            model, FrameGain::free);
-    if (model == FilterModel::gyro_bias) {
-      const double sigma = std::max(config_.gyro_noise_radps_rthz, 1e-6) / std::sqrt(dt_s);
-      correct(state_, zero_rate(state_, sample.angular_rate_body_radps, sigma), model, FrameGain::free);
-    }
+    correct_at_rest(sample, dt_s, 1);
   }
   // A soft launch never reaches the threshold. Flying speed counts as a launch too.
   const bool fired = launch_detector_.fires(sample);

@@ -54,6 +54,8 @@ class Filter : public StateSource {
   void take_rates(const ImuSample& sample, double dt_s);
   void on_catapult(const ImuSample& sample, double dt_s);
   void settle(double dt_s);
+  /// Gravity and the gyro's bias, from the mean of so many samples.
+  void correct_at_rest(const ImuSample& mean, double dt_s, double samples);
   void in_flight(const ImuSample& sample);
   void launch(std::int64_t t_ns);
   ProcessNoise process_noise(const InertialStep& step) const;

@@ -120,8 +120,7 @@ std::size_t require_grid(const ConfigNode* grid, std::size_t variants) {
 /// "forest-blind-cruise_speed_mps=10".
 std::string name_of(const std::string& scenario, const Variant& variant) {
   std::string name = joined(scenario, variant.name);
-  for (const auto& [key, value] : variant.grid)
-    name = joined(name, plain(key.substr(key.rfind('.') + 1) + "=" + value));
+  for (const auto& [key, value] : variant.grid) name = joined(name, plain(short_key(key) + "=" + value));
   return name;
 }
 

@@ -117,6 +117,16 @@ std::optional<std::string> text_if_there(const fs::path& file) {
   return read_file(file, maximum_table_bytes);
 }
 
+std::string words_of(const Condition& condition, const std::string& titled_scenario,
+                     std::string_view but_for) {
+  std::vector<std::string> words;
+  if (condition.scenario != titled_scenario) words.push_back(condition.scenario);
+  if (!condition.variant.empty()) words.push_back(condition.variant);
+  for (const auto& [key, value] : condition.grid)
+    if (key != but_for) words.push_back(short_key(key) + "=" + value);
+  return words.empty() ? condition.scenario : fmt::format("{}", fmt::join(words, ", "));
+}
+
 std::vector<CampaignTask> tasks_of(const Campaign& campaign) {
   std::vector<CampaignTask> tasks;
   for (std::size_t condition = 0; condition < campaign.conditions.size(); ++condition)

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,11 @@ struct Condition {
   std::string variant;   ///< name of the overrides: "blind"; empty without any
   std::vector<std::pair<std::string, std::string>> grid;  ///< keys of the grid and its values, in its order
 };
+
+/// What tells a condition from others, for people: "forest, blind, raw=true"; without its scenario where a
+/// title bears that already, and without one key of the grid.
+std::string words_of(const Condition& condition, const std::string& titled_scenario,
+                     std::string_view but_for = "");
 
 /// Many flights: every seed in every condition.
 struct Campaign {

@@ -59,16 +59,11 @@ std::vector<std::string> grid_keys(const std::vector<ShownCondition>& conditions
   return keys;
 }
 
-/// What tells a condition from the others: its scenario only where there are several.
-std::string label_of(const Condition& condition, const Campaign& campaign) {
-  std::vector<std::string> words;
-  const bool is_everywhere = std::ranges::all_of(
-      campaign.conditions, [&](const Condition& other) { return other.scenario == condition.scenario; });
-  if (!is_everywhere) words.push_back(condition.scenario);
-  if (!condition.variant.empty()) words.push_back(condition.variant);
-  for (const auto& [key, value] : condition.grid)
-    words.push_back(key.substr(key.rfind('.') + 1) + "=" + value);
-  return words.empty() ? condition.scenario : fmt::format("{}", fmt::join(words, ", "));
+/// The scenario of all conditions; empty where they have several.
+std::string scenario_of_all(const Campaign& campaign) {
+  const std::string& first = campaign.conditions.front().scenario;
+  const auto has_it = [&](const Condition& other) { return other.scenario == first; };
+  return std::ranges::all_of(campaign.conditions, has_it) ? first : "";
 }
 
 Json conditions_of(const Campaign& campaign, const std::vector<ShownCondition>& conditions,
@@ -78,7 +73,9 @@ Json conditions_of(const Campaign& campaign, const std::vector<ShownCondition>& 
     const std::string& name = campaign.conditions[i].name;
     Json values = Json::object();
     for (const std::string& key : keys) values[key] = value_in(conditions[i].keys, key);
-    Json condition{{"name", name}, {"label", label_of(campaign.conditions[i], campaign)}, {"keys", values}};
+    Json condition{{"name", name},
+                   {"label", words_of(campaign.conditions[i], scenario_of_all(campaign))},
+                   {"keys", values}};
     const auto summary = std::ranges::find(summaries, name, &ConditionSummary::condition);
     const ConditionSummary none;
     const ConditionSummary& of = summary == summaries.end() ? none : *summary;

@@ -52,23 +52,6 @@ Condition condition_of(const std::string& name, const Conditions& conditions) {
   return found == conditions.end() ? Condition{name, "", name, "", {}} : *found;
 }
 
-/// What a condition adds to its scenario, but for one key of the grid: "blind, raw=true".
-std::string added_words(const Condition& condition, std::string_view but_for = "") {
-  std::vector<std::string> words;
-  if (!condition.variant.empty()) words.push_back(condition.variant);
-  for (const auto& [key, value] : condition.grid)
-    if (key != but_for) words.push_back(key.substr(key.rfind('.') + 1) + "=" + value);
-  return fmt::format("{}", fmt::join(words, ", "));
-}
-
-/// The same with its scenario's name, where the title does not bear that.
-std::string words_of(const Condition& condition, const std::string& titled_scenario,
-                     std::string_view but_for = "") {
-  const std::string added = added_words(condition, but_for);
-  if (condition.scenario == titled_scenario) return added.empty() ? condition.scenario : added;
-  return added.empty() ? condition.scenario : condition.scenario + ", " + added;
-}
-
 std::vector<CountedSeries> counted(const std::vector<FlightRow>& rows, const Conditions& conditions,
                                    const PlotAxis& axis, const std::string& titled_scenario) {
   std::vector<CountedSeries> all;

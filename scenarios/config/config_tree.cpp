@@ -122,6 +122,8 @@ std::string origin_of(const std::vector<ConfigNode>& sources, std::string_view p
   return "";
 }
 
+std::string short_key(const std::string& key) { return key.substr(key.rfind('.') + 1); }
+
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known) {
   std::string best = renamed(std::string(word));
   if (std::ranges::find(known, best) == known.end()) best.clear();

@@ -36,6 +36,9 @@ std::string value_in(const FlatKeys& keys, std::string_view key);
 /// none does.
 std::string origin_of(const std::vector<ConfigNode>& sources, std::string_view path);
 
+/// "cruise_speed_mps" of "autopilot.flight_model.cruise_speed_mps".
+std::string short_key(const std::string& key);
+
 /// " (did you mean NAME?)", of the known name that `word` most likely meant; empty where none is near.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
 

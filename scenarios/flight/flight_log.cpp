@@ -21,11 +21,6 @@ const LogMoment& moment_at(const FlightLog& log, std::int64_t t_ns) {
   return after == log.moments.begin() ? log.moments.front() : *(after - 1);
 }
 
-const LogPlan* plan_at(const FlightLog& log, std::int64_t t_ns) {
-  const auto after = std::ranges::upper_bound(log.plans, t_ns, {}, &LogPlan::t_ns);
-  return after == log.plans.begin() ? nullptr : &*(after - 1);
-}
-
 Eigen::Vector3d hit_world(const FlightLog& log, const LogFrame& frame, std::int64_t hit) {
   const auto index = static_cast<std::size_t>(frame.first_hit + hit);
   return frame.T_world_body * (log.rig.rig.T_body_camera * log.hits_camera[index]);

@@ -84,8 +84,6 @@ struct FlightLog {
 
 /// The moment in force at a time: the last that is not later, or the first.
 const LogMoment& moment_at(const FlightLog& log, std::int64_t t_ns);
-/// The plan in force then; null before the first.
-const LogPlan* plan_at(const FlightLog& log, std::int64_t t_ns);
 Eigen::Vector3d hit_world(const FlightLog& log, const LogFrame& frame, std::int64_t hit);
 /// Right wing down positive.
 double bank_rad(const Eigen::Isometry3d& T_world_body);

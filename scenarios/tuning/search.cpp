@@ -1,4 +1,5 @@
 #include "scenarios/tuning/search.hpp"
+#include "scenarios/config/config_tree.hpp"
 
 #include <fmt/format.h>
 
@@ -112,8 +113,6 @@ std::string in_words(const Space& space, const Point& point) {
     words.push_back(fmt::format("{} {:g}", short_key(space.parameters[i].key), point[i]));
   return fmt::format("{}", fmt::join(words, ", "));
 }
-
-std::string short_key(const std::string& key) { return key.substr(key.rfind('.') + 1); }
 
 std::size_t grid_size(const Space& space) {
   std::size_t size = 1;

@@ -44,8 +44,6 @@ struct Space {
 std::string to_yaml(const Space& space, const Point& point);
 /// As people read it: "minimum_edge_sum 215, score_limit 0.25".
 std::string in_words(const Space& space, const Point& point);
-/// The last word of a key.
-std::string short_key(const std::string& key);
 
 enum class SearchMethod {
   random,  ///< every parameter drawn evenly over its range, on its scale

@@ -1,3 +1,4 @@
+#include "scenarios/config/config_tree.hpp"
 #include "scenarios/tuning/tune_report.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
 #include "scenarios/tuning/tune_report.hpp"
+#include "scenarios/config/config_tree.hpp"
 
 #include <fmt/format.h>
 
