@@ -60,7 +60,8 @@ PushbroomConfig original_pushbroom();
 /// docs/benchmarks.md).
 PushbroomConfig robust_pushbroom();
 /// The robust rule with the numbers tuned for a rig of models/rigs by its name, `long` or `paper`: most
-/// recall at a precision of 0.985 (docs/tuning.md). Rigs that nobody has tuned for get robust_pushbroom().
+/// recall at a precision of 0.985 (docs/tuning.md), at the depths that serve flights best (docs/thesis.md).
+/// Rigs that nobody has tuned for get robust_pushbroom().
 PushbroomConfig tuned_pushbroom(std::string_view rig);
 
 enum class PushbroomPreset { robust, tuned, original };  ///< which numbers a pushbroom detector starts from

@@ -26,8 +26,9 @@ struct EvaluateArguments {
   int jobs = 0;
 };
 
-int run_evaluate(const EvaluateArguments& arguments) {
+int run_evaluate(EvaluateArguments arguments) {
   EvaluationOptions options;
+  arguments.vision.one_depth = true;  // full stereo is cropped to one depth's interval, to be compared
   read_vision_config(arguments.vision, "");  // what is wrong there shows before anything is recorded
   options.jobs = jobs_or_cores(arguments.jobs);
   fs::path out = arguments.out;

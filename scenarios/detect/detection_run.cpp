@@ -74,7 +74,9 @@ CalibratedRig rig_for(const DetectionOptions& options, const StereoRecording& re
 VisionConfig vision_for(const DetectionOptions& options, const StereoRig& rig) {
   std::string name = options.rig.empty() ? rig_named_in(options.inputs[0]) : "";
   if (name.empty()) name = rig.name;
-  const VisionConfig config = read_vision_config(options.vision, name);
+  VisionConfigSources sources = options.vision;
+  sources.one_depth = options.calibration.detection_depth_m.has_value();  // --depth goes before the preset's
+  const VisionConfig config = read_vision_config(sources, name);
   check_depths(config.pushbroom, rig, "perception.depths_m", "perception.pushbroom");
   return config;
 }

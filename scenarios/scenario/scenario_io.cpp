@@ -275,6 +275,7 @@ VisionConfig read_vision_config(const VisionConfigSources& sources, std::string_
   for (const ConfigNode& tree : trees) read_config(tree, first);
   VisionConfig config;
   config.pushbroom = pushbroom_of(first.preset, rig);
+  if (sources.one_depth) config.pushbroom.depths_m.clear();
   for (const ConfigNode& tree : trees) read_config(tree, config);
   config.preset = first.preset;
   return config;

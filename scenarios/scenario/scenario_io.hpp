@@ -57,6 +57,7 @@ struct VisionConfigSources {
   PushbroomPreset preset = PushbroomPreset::tuned;  ///< where no key names one
   std::vector<std::string> with = {};               ///< files of keys
   std::vector<std::string> settings = {};           ///< key=value, over the files
+  bool one_depth = false;  ///< the rig's detection depth alone, where no key names depths
 };
 
 /// The keys over the numbers that their rule has for a rig of this name. Throws ScenarioError, one line that
