@@ -143,7 +143,7 @@ PushbroomConfig tuned_pushbroom(std::string_view rig) {
     config.uniqueness_minimum_depth_m = 2.15428;
     config.isolation_minimum_points = 8;
     config.isolation_radius_m = 0.621281;
-    config.depths_m = {9.1, 6.4, 4.8};
+    config.depths_m = {9.1, 4.8};
   }
   return config;
 }

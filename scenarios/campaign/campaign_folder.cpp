@@ -43,6 +43,7 @@ std::string manifest_of(const Campaign& campaign) {
   for (const auto& [name, digest] : campaign.identity) identity[name] = digest;
   const Json json{{"format", results_format},
                   {"understory", understory_version},
+                  {"commit", understory_commit},
                   {"identity", identity},
                   {"processor", processor_model()},
                   {"name", campaign.name},

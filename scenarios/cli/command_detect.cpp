@@ -12,7 +12,6 @@
 #include "scenarios/detect/rig_figures.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/progress_line.hpp"
-#include "scenarios/report/pictures.hpp"
 
 namespace understory {
 namespace {
@@ -56,15 +55,15 @@ struct RigArguments : CalibrationArguments {
 
 int run_rig(const RigArguments& arguments) {
   const fs::path out = arguments.out;
-  if (!out.empty() && out.extension() != ".png" && out.extension() != ".jpg")
-    throw ScenarioError(fmt::format("--out {}: expected a .png or .jpg", arguments.out));
+  if (!out.empty() && out.extension() != ".svg")
+    throw ScenarioError(fmt::format("--out {}: expected a name that ends in .svg", arguments.out));
   const CalibrationOptions options = calibration_options(arguments);
   const fs::path path = rig_path(arguments.rig);
   require_separate({out}, {path});
   require_writable(out);
   const CalibratedRig calibrated = bad_input_if_refused([&] { return read_calibrated_rig(path, options); });
   const RigFigures figures = rig_figures(calibrated.rig, PushbroomConfig());
-  if (!arguments.out.empty()) write_picture(arguments.out, draw_rig(calibrated.rig, figures), Named::by_user);
+  if (!out.empty()) write_whole_file(out, to_svg(rig_plots(calibrated.rig, figures), 2), Named::by_user);
   fmt::print("{}", to_report(calibrated, figures));
   if (!arguments.out.empty()) fmt::print("  {:<20}{}\n", "picture", arguments.out);
   return 0;
@@ -98,13 +97,14 @@ void add_detect_command(CommandLine& line) {
 void add_rig_command(CommandLine& line) {
   const auto arguments = std::make_shared<RigArguments>();
   Command& command = line.add({"rig", "show what a calibration means: disparities, depths, views",
-                               "understory rig long --out rig.png"});
+                               "understory rig long --out rig.svg"});
   command
       .text("FILE", "RIG", arguments->rig,
             "a rig file, OpenCV XML or YAML, a folder of them, a EuRoC folder, or a name in models/rigs")
       .required();
   add_calibration_options(command, *arguments);
-  command.text("--out", "FILE", arguments->out, "draw the rig from above into this .png or .jpg");
+  command.text("--out", "FILE", arguments->out,
+               "draw the rig from above, and the columns compared, into this .svg");
   command.runs([arguments] { return run_rig(*arguments); });
 }
 

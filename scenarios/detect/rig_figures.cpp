@@ -84,4 +84,48 @@ std::string to_report(const CalibratedRig& calibrated, const RigFigures& figures
   return report;
 }
 
+std::vector<LinePlot> rig_plots(const StereoRig& rig, const RigFigures& figures) {
+  const DepthInterval band = figures.one_pixel;
+  const double far_m = std::min(1.3 * band.far_m, 4 * figures.detection_depth_m);
+  LinePlot above{rig.name + " from above", "right of the left camera, m", "ahead, m"};
+  above.equal_scale = true;
+  const auto add_view = [&](const char* name, double x_m, double center_px, double angle_rad) {
+    const double left = (-0.5 - center_px) / rig.focal_px,
+                 right = (rig.width_px - 0.5 - center_px) / rig.focal_px;
+    above.series.push_back({fmt::format("{} camera, {:.1f} deg", name, degrees(angle_rad)),
+                            {x_m + left * far_m, x_m, x_m + right * far_m},
+                            {far_m, 0, far_m}});
+  };
+  add_view("left", 0, rig.center_left_x_px, figures.left_field_of_view_rad);
+  add_view("right", rig.baseline_m, rig.center_right_x_px, figures.right_field_of_view_rad);
+  const double depth_m = figures.detection_depth_m;
+  above.series.push_back({fmt::format("detects at {:.2f} m ({} px)", depth_m, figures.detection_disparity_px),
+                          {figures.surface_left_m, figures.surface_right_m},
+                          {depth_m, depth_m}});
+  const auto edge = [&](double surface_m, double at_m) {
+    return surface_m * std::min(at_m, far_m) / depth_m;
+  };
+  const double left_m = figures.surface_left_m, right_m = figures.surface_right_m;
+  const double near_m = band.near_m, end_m = std::min(band.far_m, far_m);
+  above.series.push_back({fmt::format("one pixel either way: {:.2f} to {:.2f} m", band.near_m, band.far_m),
+                          {edge(left_m, near_m), edge(right_m, near_m), edge(right_m, end_m),
+                           edge(left_m, end_m), edge(left_m, near_m)},
+                          {near_m, near_m, end_m, end_m, near_m},
+                          Mark::dashes});
+
+  LinePlot columns{"Columns compared", "column u of the left image, px", "column of the right image, px"};
+  columns.x_range = columns.y_range = AxisRange{0, 1.0 * rig.width_px};
+  const auto add_columns = [&](const std::string& name, int disparity_px, Mark mark) {
+    const double first = std::max(0, disparity_px), end = rig.width_px + std::min(0, disparity_px);
+    columns.series.push_back({name, {first, end}, {first - disparity_px, end - disparity_px}, mark});
+  };
+  add_columns("a block and its partner: " + column_text(figures.detection_disparity_px),
+              figures.detection_disparity_px, Mark::line);
+  add_columns("near infinity, from " + column_text(figures.window_last_px), figures.window_last_px,
+              Mark::dashes);
+  add_columns("to " + column_text(figures.window_first_px) + ": a match here is refused",
+              figures.window_first_px, Mark::dashes);
+  return {above, columns};
+}
+
 }  // namespace understory

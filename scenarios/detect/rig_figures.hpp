@@ -1,10 +1,11 @@
 #pragma once
 
-#include <opencv2/core/mat.hpp>
 #include <string>
+#include <vector>
 
 #include "perception/io/calibration_file.hpp"
 #include "perception/pushbroom/pushbroom_stereo.hpp"
+#include "scenarios/report/line_plot.hpp"
 
 namespace understory {
 
@@ -34,8 +35,8 @@ std::string column_text(int disparity_px);
 /// The figures as lines of text, for one screen.
 std::string to_report(const CalibratedRig& calibrated, const RigFigures& figures);
 
-/// The rig from above, in metres: both cameras, what they see, the surface the detector looks at and its
-/// one-pixel band; beside it what is compared in the two images. CV_8UC3, 1280 x 860.
-cv::Mat draw_rig(const StereoRig& rig, const RigFigures& figures);
+/// The rig from above, in metres: both cameras' fields of view, the surface that the detector looks at and
+/// its one-pixel interval; beside it which columns of the two images are compared.
+std::vector<LinePlot> rig_plots(const StereoRig& rig, const RigFigures& figures);
 
 }  // namespace understory

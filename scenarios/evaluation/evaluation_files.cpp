@@ -9,6 +9,7 @@
 #include "perception/io/picture_codecs.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/output/program.hpp"
 #include "scenarios/report/pictures.hpp"
 #include "scenarios/report/sheet_page.hpp"
 #include "scenarios/statistics/statistics.hpp"
@@ -98,7 +99,10 @@ Json sum_json(const EvaluationSum& sum) {
 
 std::string evaluation_json(const Evaluation& evaluation) {
   const RecordingEvaluation& first = evaluation.recordings.front();
-  Json json{{"rig", first.rig.name},
+  Json json{{"understory", understory_version},
+            {"commit", understory_commit},
+            {"processor", processor_model()},
+            {"rig", first.rig.name},
             {"detection_depth_m", first.detection_depth.depth_m},
             {"one_pixel_m", {first.detection_depth.one_pixel.near_m, first.detection_depth.one_pixel.far_m}},
             {"all", sum_json(evaluation.all)}};

@@ -35,7 +35,7 @@ TEST(CliOutput, AnOutputThatCannotBeWrittenIsRefusedBeforeTheWork) {
 
 TEST(CliOutput, APictureGoesThroughALinkToAFullDevice) {
   const TemporaryFolder folder;
-  const fs::path link = folder.path() / "rig.png";
+  const fs::path link = folder.path() / "rig.svg";
   fs::create_symlink("/dev/full", link);
   if (geteuid() == 0) {  // who could replace the machine's: one of our own
     fs::remove(link);

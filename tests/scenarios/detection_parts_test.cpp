@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
@@ -60,32 +61,18 @@ TEST(RigFigures, HoldWhereTheDisparityIsNegative) {
   EXPECT_NEAR(figures.surface_right_m, 4, 1e-12);
 }
 
-/// Share of clearly green pixels in a row of the picture.
-double green_share(const cv::Mat& picture, int row_px) {
-  int count = 0;
-  for (int u = 0; u < 880; ++u) {  // the view from above
-    const cv::Vec3b color = picture.at<cv::Vec3b>(row_px, u);
-    count += color[1] > color[0] + 20 && color[1] > color[2] + 20;
-  }
-  return count / 880.0;
-}
-
-/// The band is there, between white-to-gray above and below, and wider in metres where a pixel means more.
 TEST(RigPicture, ShowsTheDetectionSurface) {
   StereoRig rig = right_angle_rig();
-  const auto band_px = [&] {
-    const cv::Mat picture = draw_rig(rig, rig_figures(rig, PushbroomConfig()));
-    EXPECT_EQ(picture.size(), cv::Size(1280, 860));
-    EXPECT_EQ(picture.type(), CV_8UC3);
-    int rows = 0;
-    for (int v = 0; v < picture.rows; ++v) rows += green_share(picture, v) > 0.4;
-    return rows;
-  };
-  const int near_px = band_px();
-  rig.detection_depth_m = 20;  // 5 px: one pixel is a fifth of the depth to either side
-  const int far_px = band_px();
-  EXPECT_GT(near_px, 20);
-  EXPECT_GT(far_px, 2 * near_px);
+  const auto plots = [&] { return rig_plots(rig, rig_figures(rig, PushbroomConfig())); };
+  const Series interval = plots()[0].series[3];
+  EXPECT_NEAR(*std::ranges::min_element(interval.y), 100.0 / 21, 1e-9);  // 20 px lie at 5 m
+  EXPECT_NEAR(*std::ranges::max_element(interval.y), 100.0 / 19, 1e-9);
+  const Series view = plots()[0].series[0];
+  EXPECT_NEAR(view.x[2] - view.x[0], 2 * view.y[0], 0.01 * view.y[0]);  // a right angle
+  rig.detection_depth_m = 20;                                           // 5 px
+  EXPECT_NEAR(plots()[0].series[2].y[0], 20, 1e-9);
+  const Series partner = plots()[1].series[0];
+  EXPECT_EQ(partner.x[0] - partner.y[0], 5);
 }
 
 /// A camera that looks along world x whatever the body's axes are, moved along x at 1 m/s.
