@@ -41,16 +41,11 @@ std::string manifest_of(const Campaign& campaign) {
   }
   Json identity = Json::object();
   for (const auto& [name, digest] : campaign.identity) identity[name] = digest;
-  const Json json{{"format", results_format},
-                  {"understory", understory_version},
-                  {"commit", understory_commit},
-                  {"identity", identity},
-                  {"processor", processor_model()},
-                  {"name", campaign.name},
-                  {"renderer", campaign.renderer},
-                  {"timeout_s", campaign.timeout_s},
-                  {"conditions", conditions},
-                  {"seeds", campaign.seeds}};
+  const Json json{{"format", results_format},       {"understory", understory_version},
+                  {"commit", understory_commit},    {"identity", identity},
+                  {"processor", processor_model()}, {"name", campaign.name},
+                  {"renderer", campaign.renderer},  {"timeout_s", campaign.timeout_s},
+                  {"conditions", conditions},       {"seeds", campaign.seeds}};
   return json_text(json, 1) + "\n";
 }
 

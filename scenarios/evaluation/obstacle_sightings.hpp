@@ -67,7 +67,7 @@ struct PacedResult {
 /// hidden by a slow algorithm.
 class PacedSightings {
  public:
-  /// `cost_s`: of a look, on that computer.
+  /// `cost_s`: of a frame, on that computer.
   PacedSightings(std::vector<RecordedObject> objects, double baseline_m, double cost_s);
 
   /// `next_t_ns`: the moment of the frame after this one.

@@ -33,7 +33,7 @@ std::string scene_of(const fs::path& folder) {
   return numbered ? name.substr(0, hyphen) : name;
 }
 
-/// Of a look, on the aircraft's computer.
+/// Of a frame, on the aircraft's computer.
 double cost_s(std::size_t algorithm, const ComputeConfig& compute) {
   if (algorithm == stereo_bm) return compute.factor * compute.stereo_bm_s;
   if (algorithm == stereo_sgbm) return compute.factor * compute.stereo_sgbm_s;
@@ -169,7 +169,7 @@ class Evaluator {
   }
 
  private:
-  void look(const EvaluationFrame& frame) {
+  void detect(const EvaluationFrame& frame) {
     for (std::size_t i = 0; i < computed_count; ++i) {
       const auto begin = std::chrono::steady_clock::now();
       const std::vector<StereoHit>& seen = detectors_[i]->detect(frame.pair);
@@ -207,7 +207,7 @@ class Evaluator {
 
   /// `next_t_ns`: the moment of the frame after it.
   void add(const EvaluationFrame& frame, std::size_t index, std::int64_t next_t_ns) {
-    look(frame);
+    detect(frame);
     DueBlocks due;
     if (recording_.has_depth()) {
       due = due_blocks(frame.truth, grid_);
