@@ -123,6 +123,11 @@ std::string words_of(const Condition& condition, const std::string& titled_scena
   return words.empty() ? condition.scenario : fmt::format("{}", fmt::join(words, ", "));
 }
 
+std::string scenario_of_all(const std::vector<Condition>& conditions) {
+  const auto differs = [&](const Condition& one) { return one.scenario != conditions[0].scenario; };
+  return conditions.empty() || std::ranges::any_of(conditions, differs) ? "" : conditions[0].scenario;
+}
+
 std::vector<CampaignTask> tasks_of(const Campaign& campaign) {
   std::vector<CampaignTask> tasks;
   for (std::size_t condition = 0; condition < campaign.conditions.size(); ++condition)

@@ -28,6 +28,9 @@ struct Condition {
 std::string words_of(const Condition& condition, const std::string& titled_scenario,
                      std::string_view but_for = "");
 
+/// The scenario of all conditions; empty where they have several, or there are none.
+std::string scenario_of_all(const std::vector<Condition>& conditions);
+
 /// Many flights: every seed in every condition.
 struct Campaign {
   std::string name;

@@ -59,13 +59,6 @@ std::vector<std::string> grid_keys(const std::vector<ShownCondition>& conditions
   return keys;
 }
 
-/// The scenario of all conditions; empty where they have several.
-std::string scenario_of_all(const Campaign& campaign) {
-  const std::string& first = campaign.conditions.front().scenario;
-  const auto has_it = [&](const Condition& other) { return other.scenario == first; };
-  return std::ranges::all_of(campaign.conditions, has_it) ? first : "";
-}
-
 Json conditions_of(const Campaign& campaign, const std::vector<ShownCondition>& conditions,
                    const std::vector<std::string>& keys, const std::vector<ConditionSummary>& summaries) {
   Json list = Json::array();
@@ -74,7 +67,7 @@ Json conditions_of(const Campaign& campaign, const std::vector<ShownCondition>& 
     Json values = Json::object();
     for (const std::string& key : keys) values[key] = value_in(conditions[i].keys, key);
     Json condition{{"name", name},
-                   {"label", words_of(campaign.conditions[i], scenario_of_all(campaign))},
+                   {"label", words_of(campaign.conditions[i], scenario_of_all(campaign.conditions))},
                    {"keys", values}};
     const auto summary = std::ranges::find(summaries, name, &ConditionSummary::condition);
     const ConditionSummary none;

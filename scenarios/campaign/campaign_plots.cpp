@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 
 #include "scenarios/campaign/campaign_summary.hpp"
 #include "scenarios/statistics/statistics.hpp"
@@ -74,11 +73,10 @@ void add_point(Series& series, double x, const Count& count) {
   series.high.push_back(100 * interval.maximum);
 }
 
-/// The scenario of all conditions; empty where they have several.
-std::string scenario_of_all(const std::vector<FlightRow>& rows, const Conditions& conditions) {
-  std::set<std::string> scenarios;
-  for (const FlightRow& row : rows) scenarios.insert(condition_of(row.condition, conditions).scenario);
-  return scenarios.size() == 1 ? *scenarios.begin() : "";
+std::string scenario_of_rows(const std::vector<FlightRow>& rows, const Conditions& conditions) {
+  Conditions flown;
+  for (const FlightRow& row : rows) flown.push_back(condition_of(row.condition, conditions));
+  return scenario_of_all(flown);
 }
 
 std::string titled(const std::string& scenario, const std::string& title) {
@@ -110,7 +108,7 @@ bool is_scanned(const std::vector<FlightRow>& rows, const Conditions& conditions
 LinePlot success_over(const std::vector<FlightRow>& all_rows, const Conditions& conditions,
                       const PlotAxis& axis) {
   const std::vector<FlightRow> rows = flown_ones(all_rows);
-  const std::string scenario = scenario_of_all(rows, conditions);
+  const std::string scenario = scenario_of_rows(rows, conditions);
   LinePlot plot = success_plot(titled(scenario, fmt::format("success over {}", axis.name)), axis.label);
   const std::vector<CountedSeries> all = counted(rows, conditions, axis, scenario);
   const double apart = 0.008 * span_of(rows, axis);
@@ -156,7 +154,7 @@ LinePlot success_over_density(const std::vector<FlightRow>& rows, const Conditio
 
 LinePlot success_by_condition(const std::vector<FlightRow>& all_rows, const Conditions& conditions) {
   const std::vector<FlightRow> rows = flown_ones(all_rows);
-  const std::string scenario = scenario_of_all(rows, conditions);
+  const std::string scenario = scenario_of_rows(rows, conditions);
   LinePlot plot = success_plot(titled(scenario, "success by condition"), "");
   for (const ConditionSummary& summary : summarise(rows)) {
     const auto place = static_cast<double>(plot.series.size() + 1);
@@ -182,7 +180,7 @@ std::vector<LinePlot> survival_curves(const std::vector<FlightRow>& all_rows, co
     const Condition condition = condition_of(one.condition, conditions);
     const bool begins = panels.empty() || (!fits_one && condition.scenario != scenario);
     if (begins || panels.back().series.size() == to_a_panel) {
-      scenario = fits_one ? scenario_of_all(rows, conditions) : condition.scenario;
+      scenario = fits_one ? scenario_of_rows(rows, conditions) : condition.scenario;
       panels.emplace_back();
       panels.back().title = titled(scenario, begins ? "survival over distance" : "survival, continued");
       panels.back().x_label = "progress (m)";

@@ -59,24 +59,15 @@ std::vector<Scenario> scenarios_of(const Campaign& campaign, const std::string& 
 /// A campaign writes into a folder of its own: a new one, an empty one, or a campaign's.
 void claim_campaign_folder(FolderClaim& claim, const CampaignFolder& folder, const Campaign& campaign,
                            bool force) {
-  std::error_code ignored;
-  if (fs::exists(folder.path / "campaign.json", ignored)) {
+  if (claim.resumes("campaign.json", campaign_patterns, folder.path, force)) {
     read_campaign(folder);
-    claim.adopt(campaign_patterns);
-  } else if (!force && claim.holds_other_files()) {
-    throw ScenarioError(
-        fmt::format("{}: holds other files and no campaign: --out names another folder, --force writes "
-                    "beside them",
-                    folder.path.string()));
-  } else {
-    std::set<std::string> ids;
-    for (const CampaignTask& task : tasks_of(campaign)) ids.insert(task.id);
-    for (const fs::path& file : files_of(folder.path, flight_patterns)) {
-      const bool is_a_flights = ids.contains(file.stem().string()) || ids.contains(file.filename().string());
-      if (is_a_flights) claim.require_own(claim.folder() / file);
-    }
+    return;
   }
-  claim.require_own(campaign_patterns);
+  std::set<std::string> ids;
+  for (const CampaignTask& task : tasks_of(campaign)) ids.insert(task.id);
+  for (const fs::path& file : files_of(folder.path, flight_patterns))
+    if (ids.contains(file.stem().string()) || ids.contains(file.filename().string()))
+      claim.require_own(claim.folder() / file);
 }
 
 void show(ProgressLine& line, const CampaignProgress& progress) {
@@ -185,12 +176,9 @@ int run_shard(const ShardArguments& arguments) {
   if (arguments.number >= arguments.of)
     throw ScenarioError(
         fmt::format("--number {}: expected less than --of {}", arguments.number, arguments.of));
-  std::vector<Scenario> scenarios;
-  for (const Condition& condition : campaign.conditions)
-    scenarios.push_back(
-        scenario_from_text(condition.scenario_text, folder.condition_file(condition).string()));
   require_identity(folder, campaign,
-                   identity_of(scenarios, data_root() / "models", renderer_named(campaign.renderer)));
+                   identity_of(scenarios_of(campaign, folder.path.string()), data_root() / "models",
+                               renderer_named(campaign.renderer)));
   const StopSignals stop_signals;
   LocalEngineConfig config;
   config.jobs = arguments.jobs;

@@ -59,21 +59,6 @@ Identity identity_of(const TuneFile& file, RendererKind renderer) {
   return identity;
 }
 
-void claim_tune_folder(FolderClaim& claim, const fs::path& folder, bool force) {
-  std::error_code ignored;
-  if (fs::exists(folder / "tune.json", ignored)) {
-    claim.adopt(tune_patterns);
-  } else if (!force && claim.holds_other_files()) {
-    throw ScenarioError(
-        fmt::format("{}: holds other files and no tuning: --out names another folder, --force writes "
-                    "beside them",
-                    folder.string()));
-  } else {
-    claim.require_own(std::vector<std::string>{"flown/*", "flown/*/*", "flown/*/*/*"});
-  }
-  claim.require_own(tune_patterns);
-}
-
 void show(ProgressLine& line, const TuneFile& file, const TuneProgress& progress) {
   line.show(fmt::format("{} {} of {}, best {} {:.4g}", progress.part, progress.done, progress.of,
                         file.figures[file.objective.goals.front().figure], progress.best),
@@ -93,7 +78,8 @@ int run_tune(const TuneArguments& arguments) {
   if (file.over == TuningData::recordings)
     judges = bad_input_if_refused([&] { return judges_of(file, arguments, folder); });
   FolderClaim claim(folder, "tuning", folder);
-  claim_tune_folder(claim, folder, arguments.force);
+  if (!claim.resumes("tune.json", tune_patterns, folder, arguments.force))
+    claim.require_own(std::vector<std::string>{"flown/*", "flown/*/*", "flown/*/*/*"});
   const Identity identity = [&] {
     try {
       return identity_of(file, arguments.renderer);
