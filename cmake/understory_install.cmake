@@ -10,8 +10,11 @@ set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 install(TARGETS understory)
 install(TARGETS understory_picture_codecs LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/understory)
 install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/understory)
-install(DIRECTORY scenarios DESTINATION ${CMAKE_INSTALL_DATADIR}/understory FILES_MATCHING PATTERN "*.yaml" PATTERN "*.tum" REGEX "/built/page\\.html$"
-        PATTERN node_modules EXCLUDE)
+foreach(folder library campaigns evaluations tunings paths)
+  install(DIRECTORY scenarios/${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/understory/scenarios)
+endforeach()
+install(FILES scenarios/report/page/built/page.html
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/understory/scenarios/report/page/built)
 
 # A sanitized program may not run where it is built: no pages of it.
 if(NOT UNDERSTORY_SANITIZE)
