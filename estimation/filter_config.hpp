@@ -15,9 +15,9 @@ enum class FilterModel {
 
 /// The pitot tube measures the speed through the air along body x, plus a bias that remains after zeroing.
 struct AirspeedConfig {
-  double usable_mps = 6.0;  ///< m/s, 0..20: slower readings are ignored, being poor
-  /// m/s, 0.01..10: of one reading at 12 m/s; pressure grows with the square of the speed, so that slower
-  /// readings are worse by as much. 1.5 Pa of noise are 0.11 m/s; the bias is a state.
+  double usable_mps = 6.0;  ///< m/s, 0..20: airspeed below which readings are ignored, because they are poor
+  /// m/s, 0.01..10: standard deviation of one reading at 12 m/s; slower readings are worse, since pressure
+  /// grows with the square of the speed. 1.5 Pa of noise are 0.11 m/s; the bias is a state of its own.
   double sigma_mps = 0.12;
 };
 
@@ -38,17 +38,18 @@ enum class SideslipModel {
 /// body's x-y plane at the winglets. So a_y = -k V v with k = rho S / m (docs/sources.md [3]: identified
 /// flat-plate model).
 struct SideslipConfig {
-  /// What is known of sideways motion: the force on the winglets, v_y = 0, or nothing.
+  /// Measurement of sideways motion: the winglets' side force, v_y = 0 as the original assumed, or none.
   SideslipModel model = SideslipModel::lateral_force;
-  double air_density_kgpm3 = 1.204;    ///< kg/m^3, 0.1..2: believed in
-  double winglets_area_m2 = 0.038882;  ///< m^2, 1e-4..2: both together (docs/sources.md [3]: 2 x 0.019441)
-  double mass_kg = 0.648412;           ///< kg, 0.05..20: believed in
-  Eigen::Vector3d winglets_body_m{-0.08, 0.0,
-                                  0.081954};  ///< m, -5..5: mean position (y cancels between the two)
-  double sigma_mps2 = 0.05;                   ///< m/s^2, 0.01..50: noise of one reading
-  double model_error = 0.15;  ///< fraction of the force, 0..1 (docs/sources.md [15]: 15 % costs about 0.16 m)
+  double air_density_kgpm3 = 1.204;    ///< kg/m^3, 0.1..2: air density that the filter assumes
+  double winglets_area_m2 = 0.038882;  ///< m^2, 1e-4..2: area of both winglets together (docs/sources.md [3])
+  double mass_kg = 0.648412;           ///< kg, 0.05..20: mass that the filter assumes
+  /// m, -5..5: mean position of the two winglets in the body; their y cancels.
+  Eigen::Vector3d winglets_body_m{-0.08, 0.0, 0.081954};
+  double sigma_mps2 = 0.05;  ///< m/s^2, 0.01..50: standard deviation of one reading of the lateral force
+  double model_error =
+      0.15;  ///< 0..1: error of the force model, as a share of the force (docs/sources.md [15])
   double zero_sigma_mps =
-      2.236;  ///< m/s, 0.01..50: of v_y = 0, where that is the model (the original's variance 5)
+      2.236;  ///< m/s, 0.01..50: standard deviation of v_y = 0 (the original's variance 5)
 };
 
 template <typename Visitor>
@@ -73,19 +74,19 @@ void visit_fields(Visitor& visit, SideslipConfig& config) {
 /// therefore balances the pitch damping: D q / (arm m) (docs/sources.md [3], identified model; trim checks
 /// within 0.1 %).
 struct AngleOfAttackConfig {
-  /// Off: with the right wing it takes 0.01 m off the drift over 10 m, with one 20 % wrong in lift or mass it
-  /// adds up to 0.2 m (docs/model_mismatch.md).
+  /// Measures the angle of attack from the normal force. With the right wing it takes 0.01 m off the drift
+  /// over 10 m; with a wing 20 % wrong in lift or mass it adds up to 0.2 m (docs/model_mismatch.md).
   bool enabled = false;
-  double air_density_kgpm3 = 1.204;    ///< kg/m^3, 0.1..2: believed in
-  double wing_area_m2 = 0.1811;        ///< m^2, 0.01..5: of the flat plate
-  double mass_kg = 0.648412;           ///< kg, 0.05..20: believed in
-  double pitch_damping_nmspr = 0.115;  ///< N m s/rad, 0..10: about body y
-  double elevon_arm_m = 0.145;         ///< m, 0.01..5: elevon force behind the centre of mass
-  /// m/s^2, 0.01..100. Weak on purpose: a wrong wing is an error that 200 samples a second do not average
-  /// out. Measured drift over 10 m in dodges (95 %): off 0.19 m, here 0.17 m, and 0.24 m with a wing 15 %
-  /// wrong; with 1 m/s^2 the latter two are 0.13 m and 0.41 m.
+  double air_density_kgpm3 = 1.204;    ///< kg/m^3, 0.1..2: air density that the filter assumes
+  double wing_area_m2 = 0.1811;        ///< m^2, 0.01..5: wing area that the filter assumes
+  double mass_kg = 0.648412;           ///< kg, 0.05..20: mass that the filter assumes
+  double pitch_damping_nmspr = 0.115;  ///< N m s/rad, 0..10: pitch damping that the filter assumes
+  double elevon_arm_m = 0.145;  ///< m, 0.01..5: distance of the elevons' force behind the centre of mass
+  /// m/s^2, 0.01..100: standard deviation of one reading. It is large on purpose, because the error of a
+  /// wrong wing does not average out over 200 samples a second: with 1 m/s^2 a wing 15 % wrong raises the
+  /// drift over 10 m from 0.24 to 0.41 m (95 %, in dodges).
   double sigma_mps2 = 6.0;
-  double model_error = 0.15;  ///< fraction of the force, 0..1
+  double model_error = 0.15;  ///< 0..1: error of the force model, as a share of the force
 };
 
 template <typename Visitor>
@@ -105,13 +106,14 @@ void visit_fields(Visitor& visit, AngleOfAttackConfig& config) {
 /// thrust, so that the barometer reads too high by metres per newton: another state, where wash_sigma_m_per_n
 /// is not zero.
 struct AltitudeConfig {
-  double sigma_m = 0.31;            ///< m, 0.01..100: of one reading: noise 0.3 m and steps of 0.1 m
-  double offset_sigma_m = 0.3;      ///< m, 0..10: spread of the offset before the readings at rest
-  double offset_walk_m_rts = 0.09;  ///< m/sqrt(s), 0..10: weather and heat: 0.5 m in a minute
-  /// m/N, 0..10: what is expected of the barometer's error per newton of thrust; 0: the state is off.
+  double sigma_m = 0.31;  ///< m, 0.01..100: standard deviation of one reading: noise 0.3 m, steps of 0.1 m
+  double offset_sigma_m = 0.3;  ///< m, 0..10: standard deviation of the offset before the readings at rest
+  double offset_walk_m_rts = 0.09;  ///< m/sqrt(s), 0..10: random walk of the offset: weather and heat
+  /// m/N, 0..10: standard deviation of the barometer's error per newton of thrust; 0: no such state.
   double wash_sigma_m_per_n = 0;
-  double noise_m = 0.3;           ///< m, 0.01..100: of one reading about its slow error (consumer barometer)
-  double drift_walk_m_rts = 0.1;  ///< m/sqrt(s), 0..10: how fast odometry and altitude may part
+  double noise_m = 0.3;  ///< m, 0.01..100: noise of one reading about its slow error
+  double drift_walk_m_rts =
+      0.1;  ///< m/sqrt(s), 0..10: random walk between the odometry's height and the altitude
 };
 
 template <typename Visitor>
@@ -127,12 +129,12 @@ void visit_fields(Visitor& visit, AltitudeConfig& config) {
 /// The magnetometer's field, rotated into the world by the estimated attitude (which compensates the tilt),
 /// points to magnetic north, world y. Only its horizontal direction is used, not its strength or inclination.
 struct HeadingConfig {
-  bool enabled = true;  ///< whether the magnetometer corrects the heading
-  /// rad, 0.01..3. A hard-iron error of 0.5 uT against a horizontal field of 19 uT (48 uT, inclination 67
-  /// deg) is 0.027 rad and lasts the flight, and a tilt error enters tan(67 deg) = 2.4 fold: the magnetometer
-  /// holds the heading over minutes and leaves seconds to the gyro.
+  bool enabled = true;  ///< corrects the heading with the magnetometer
+  /// rad, 0.01..3: standard deviation of one heading. A hard-iron error of 0.5 uT against a horizontal field
+  /// of 19 uT is 0.027 rad and lasts the flight, and a tilt error enters 2.4 fold: the magnetometer holds the
+  /// heading over minutes, the gyro over seconds.
   double sigma_rad = 0.35;
-  double minimum_horizontal_ut = 5.0;  ///< uT, 0..100: below this the direction means nothing
+  double minimum_horizontal_ut = 5.0;  ///< uT, 0..100: horizontal field below which a reading is ignored
 };
 
 template <typename Visitor>
@@ -145,8 +147,8 @@ void visit_fields(Visitor& visit, HeadingConfig& config) {
 /// Velocity over ground from GPS, measured at an earlier moment. The inertial sensors alone say how the
 /// velocity has changed since, so that corrections made meanwhile are not applied twice.
 struct GroundVelocityConfig {
-  bool enabled = true;     ///< whether samples, where there are any, are used
-  double sigma_mps = 0.2;  ///< m/s, 0.01..10, per axis (docs/sources.md [15])
+  bool enabled = true;     ///< corrects the velocity with GPS, where the aircraft has a receiver
+  double sigma_mps = 0.2;  ///< m/s, 0.01..10: standard deviation of one GPS velocity, per axis
 };
 
 template <typename Visitor>
@@ -158,24 +160,26 @@ void visit_fields(Visitor& visit, GroundVelocityConfig& config) {
 /// On the catapult the aircraft stands still at a known place: velocity and rate are zero, the specific force
 /// is gravity.
 struct RestConfig {
-  double window_s = 0.1;  ///< s, 0.01..1: over which samples must not vary
-  /// m/s^2, 0.01..10: standard deviation of an axis of the specific force at rest, at most; five times the
+  double window_s = 0.1;  ///< s, 0.01..1: time over which the IMU's samples must hardly vary at rest
+  /// m/s^2, 0.01..10: largest standard deviation of the specific force at rest, per axis; five times the
   /// noise of one reading.
   double force_deviation_mps2 = 0.25;
-  double rate_deviation_radps = 0.012;  ///< rad/s, 1e-4..1: the same of an axis of the angular rate
-  /// m/s^2, 0.01..10: difference between gravity and the mean specific force at rest, at most.
+  double rate_deviation_radps =
+      0.012;  ///< rad/s, 1e-4..1: largest standard deviation of the rate at rest, per axis
+  /// m/s^2, 0.01..10: largest difference between gravity and the mean specific force at rest.
   double force_tolerance_mps2 = 0.6;
-  /// rad/s, 0.001..5: mean angular rate at rest, at most; six times a bias of 0.5 deg/s.
+  /// rad/s, 0.001..5: largest mean angular rate at rest; six times a bias of 0.5 deg/s.
   double rate_tolerance_radps = 0.05;
-  double velocity_sigma_mps = 0.02;       ///< m/s, 1e-4..1: of zero velocity at rest
-  double position_sigma_m = 0.01;         ///< m, 1e-4..1: of the place at rest
-  double force_sigma_mps2 = 0.1;          ///< m/s^2, 0.001..10: one reading's noise as a level
-  double accelerometer_bias_mps2 = 0.05;  ///< m/s^2, 0..1: as a tilt it stays, however long the rest
-  /// m/s^2, 5..150: a_x of two samples running. The original waited for 45 (docs/sources.md [2],
-  /// accel_threshold_x); a 1.5 m rail to 12 m/s gives 48 and a share of gravity.
+  double velocity_sigma_mps = 0.02;  ///< m/s, 1e-4..1: standard deviation of the zero velocity at rest
+  double position_sigma_m = 0.01;    ///< m, 1e-4..1: standard deviation of the place at rest
+  double force_sigma_mps2 = 0.1;  ///< m/s^2, 0.001..10: noise of one reading that serves as a level at rest
+  /// m/s^2, 0..1: accelerometer bias that stays in the attitude as a tilt, however long the rest.
+  double accelerometer_bias_mps2 = 0.05;
+  /// m/s^2, 5..150: acceleration along body x above which two samples in a row mean the launch. The original
+  /// waited for 45 (docs/sources.md [2]); a rail of 1.5 m to 12 m/s gives 48 and a share of gravity.
   double launch_threshold_mps2 = 30.0;
-  /// m/s, 0..5: when in the sample interval the catapult fired, and when it let go, is unknown: each 48 m/s^2
-  /// over 5 ms, evenly spread.
+  /// m/s, 0..5: uncertainty of the speed after the launch, because firing and release fall anywhere within a
+  /// sample interval: 48 m/s^2 over 5 ms each.
   double launch_speed_sigma_mps = 0.1;
 };
 
@@ -196,81 +200,93 @@ void visit_fields(Visitor& visit, RestConfig& config) {
 
 /// Where the flight begins, and how well that is known. Standard deviations are one sigma.
 struct StartConfig {
-  /// m, -1e4..1e4: where the aircraft stands on the catapult: 1.5 m of rail, rising 0.20 rad, below the
-  /// release point (0, 0, 1.5). The scenario sets it from its own catapult.
+  /// m, -1e4..1e4: start on the catapult: 1.5 m of rail, rising 0.20 rad, below the release point (0,
+  /// 0, 1.5). The scenario sets it from its own catapult.
   Eigen::Vector3d position_world_m{-1.470, 0.0, 1.202};
-  double yaw_rad = 0.0;  ///< rad, -3.15..3.15: left of world x
-  double pitch_rad =
-      0.398;  ///< rad, -1.5..1.5: nose up; replaced by the accelerometer's once the aircraft rests
-  double roll_rad = 0.0;                       ///< rad, -3.15..3.15: left wing up; replaced as the pitch is
-  bool in_flight = false;                      ///< no catapult: already flying, at the velocity below
-  Eigen::Vector3d velocity_body_mps{0, 0, 0};  ///< m/s, -50..50: where in_flight
-  double tilt_sigma_rad = 0.02;                ///< rad, 0..1: of roll and pitch
-  double yaw_sigma_rad = 0.02;                 ///< rad, 0..3: the catapult is aimed within a degree
-  double velocity_sigma_mps = 0.15;            ///< m/s, 0..10 (docs/sources.md [2] sigma0.vb)
-  double horizontal_sigma_m = 0.01;  ///< m, 0..100: the catapult's place is the frame's origin by definition
-  double vertical_sigma_m = 0.01;    ///< m, 0..100: likewise
-  double gyro_bias_sigma_radps = 0.0087;  ///< rad/s, 0..1: consumer MEMS after factory calibration, 0.5 deg/s
+  double yaw_rad = 0.0;      ///< rad, -3.15..3.15: heading at the start, to the left of world x
+  double pitch_rad = 0.398;  ///< rad, -1.5..1.5: pitch at the start, nose up; measured anew at rest
+  double roll_rad = 0.0;     ///< rad, -3.15..3.15: roll at the start, left wing up; measured anew at rest
+  bool in_flight = false;    ///< starts in flight with velocity_body_mps, without a catapult
+  Eigen::Vector3d velocity_body_mps{0, 0, 0};  ///< m/s, -50..50: velocity at a start in flight, body axes
+  double tilt_sigma_rad = 0.02;  ///< rad, 0..1: standard deviation of roll and pitch at the start
+  double yaw_sigma_rad =
+      0.02;  ///< rad, 0..3: standard deviation of the heading: a catapult is aimed within 1 deg
+  double velocity_sigma_mps = 0.15;  ///< m/s, 0..10: standard deviation of the velocity (docs/sources.md [2])
+  double horizontal_sigma_m =
+      0.01;                        ///< m, 0..100: standard deviation of x and y: the start defines the frame
+  double vertical_sigma_m = 0.01;  ///< m, 0..100: standard deviation of z: the start defines the frame
+  double gyro_bias_sigma_radps = 0.0087;  ///< rad/s, 0..1: standard deviation of the gyro bias; 0.5 deg/s
 };
 
 /// The states beside the base's twelve, each a switch.
 struct ExtraStatesConfig {
-  bool accelerometer_bias = true;               ///< three states
-  double accelerometer_bias_sigma_mps2 = 0.05;  ///< m/s^2, 0..5: consumer MEMS after calibration, 5 mg
-  double accelerometer_bias_walk_rthz = 1e-3;   ///< m/s^3/sqrt(Hz), 0..1: how fast it may change
-  bool wind = false;                            ///< two states
-  double wind_sigma_mps = 3.0;   ///< m/s, 0..30, each of world x and y: what is expected before the launch
-  double wind_walk_rthz = 0.05;  ///< m/s^2/sqrt(Hz), 0..10: how fast the mean wind may change
-  bool gust = false;             ///< three states
-  double gust_sigma_mps = 0.6;   ///< m/s, 0..20, per axis. MIL-F-8785C near the ground: 0.2 of the wind
-  double gust_length_m = 30.0;   ///< m, 0.1..2000: MIL-F-8785C at 4 m; its time is this over the airspeed
-  bool pitot_bias = true;        ///< one state
-  double pitot_bias_sigma_mps = 0.07;  ///< m/s, 0..10: 1 Pa left by zeroing, at 12 m/s
-  double pitot_bias_walk_rthz = 1e-3;  ///< m/s^2/sqrt(Hz), 0..1: how fast it may change
+  bool accelerometer_bias = true;  ///< estimates the accelerometer's bias, three states
+  double accelerometer_bias_sigma_mps2 =
+      0.05;  ///< m/s^2, 0..5: standard deviation of that bias at first; 5 mg
+  double accelerometer_bias_walk_rthz =
+      1e-3;                      ///< m/s^3/sqrt(Hz), 0..1: random walk of the accelerometer's bias
+  bool wind = false;             ///< estimates the steady wind, two states
+  double wind_sigma_mps = 3.0;   ///< m/s, 0..30: standard deviation of the wind before the launch, per axis
+  double wind_walk_rthz = 0.05;  ///< m/s^2/sqrt(Hz), 0..10: random walk of the steady wind
+  bool gust = false;             ///< estimates gusts, two states
+  double gust_sigma_mps =
+      0.6;  ///< m/s, 0..20: standard deviation of gusts, per axis (MIL-F-8785C: 0.2 of the wind)
+  double gust_length_m =
+      30.0;  ///< m, 0.1..2000: length of gusts (MIL-F-8785C at 4 m); time: this over the airspeed
+  bool pitot_bias = true;              ///< estimates the pitot tube's bias, one state
+  double pitot_bias_sigma_mps = 0.07;  ///< m/s, 0..10: standard deviation of the pitot bias; 1 Pa at 12 m/s
+  double pitot_bias_walk_rthz = 1e-3;  ///< m/s^2/sqrt(Hz), 0..1: random walk of the pitot bias
 };
 
 /// What the filter does about sensors that fail.
 struct DistrustConfig {
-  double gate_probability = 0.999;  ///< 0.5..0.999999: of a good measurement to pass its chi-square gate
-  double gate_patience_s = 0.25;    ///< s, 0..1e6: disagreement for longer is a fault
-  bool exclude = true;  ///< a faulty sensor stays out until it has agreed as long; false: it is believed
-  /// s, 0.001..1.5: an IMU interval longer than this is a loss: what happened meanwhile is guessed from both
-  /// ends, and the guess is this uncertain. The scenario sets it to 1.5 intervals of its own IMU.
+  double gate_probability =
+      0.999;  ///< 0.5..0.999999: probability that a good measurement passes the chi-square gate
+  double gate_patience_s = 0.25;  ///< s, 0..1e6: time of disagreement after which a sensor counts as faulty
+  /// Leaves a faulty sensor out until it has agreed for gate_patience_s; false: believes it after that time.
+  bool exclude = true;
+  /// s, 0.001..1.5: interval between IMU samples above which samples are lost; the motion meanwhile is
+  /// interpolated and uncertain. The scenario sets it to 1.5 intervals of its own IMU.
   double imu_gap_s = 0.0076;
-  double gap_rate_sigma_radps = 2.0;  ///< rad/s, 0..50: of the mean rate over a gap
-  double gap_force_sigma_mps2 = 5.0;  ///< m/s^2, 0..200: of the mean specific force over a gap
-  double longest_gap_s = 0.25;        ///< s, 0.01..10: a longer silence of the IMU is integrated as this long
+  double gap_rate_sigma_radps = 2.0;  ///< rad/s, 0..50: standard deviation of the mean rate over such a gap
+  double gap_force_sigma_mps2 =
+      5.0;                      ///< m/s^2, 0..200: standard deviation of the mean specific force over a gap
+  double longest_gap_s = 0.25;  ///< s, 0.01..10: longest gap that is integrated; a longer one counts as this
 };
 
 /// The error-state Kalman filter. Defaults fit a consumer IMU at 200 Hz, a 1 psi pitot and a barometer, tuned
 /// for little drift of the relative position over 10 m of flight (docs/estimator.md).
 struct FilterConfig {
-  FilterModel model = FilterModel::gyro_bias;  ///< angular_rate: the paper's states (docs/estimator.md)
+  /// Meaning of three states: the gyro's bias, or the angular rate as in the paper (docs/estimator.md).
+  FilterModel model = FilterModel::gyro_bias;
   StartConfig start;
-  double gravity_mps2 = 9.81;  ///< m/s^2, 1..20: believed in
-  /// rad/s/sqrt(Hz), 0..1. Consumer MEMS: 0.01 deg/s/sqrt(Hz) = 1.7e-4, and half as much for what sampling at
-  /// 200 Hz loses.
+  double gravity_mps2 = 9.81;  ///< m/s^2, 1..20: gravity that the filter assumes
+  /// rad/s/sqrt(Hz), 0..1: noise of the gyro. A consumer part has 0.01 deg/s/sqrt(Hz) = 1.7e-4; sampling at
+  /// 200 Hz loses as much again.
   double gyro_noise_radps_rthz = 3.5e-4;
-  /// m/s^2/sqrt(Hz), 0..10. Noise alone is 0.0035 (0.05 m/s^2 at 200 Hz).
+  /// m/s^2/sqrt(Hz), 0..10: noise of the accelerometer. 0.05 m/s^2 at 200 Hz is 0.0035.
   double accelerometer_noise_mps2_rthz = 0.005;
-  /// 0..1: share of an angular rate that the gyro reads wrongly (scale, misalignment). The error lasts as
-  /// long as a turn, so it counts as noise that grows with the rate.
+  /// 0..1: scale error and misalignment of the gyro, as a share of the rate. The error lasts as long as a
+  /// turn, so it counts as noise that grows with the rate.
   double gyro_scale = 0;
-  /// 0..1: the same of the accelerometer, for what the specific force differs from gravity.
+  /// 0..1: scale error and misalignment of the accelerometer, as a share of the specific force less gravity.
   double accelerometer_scale = 0;
-  /// m/s^2 per N, 0..100: amplitude by which the propeller shakes the accelerometer.
+  /// m/s^2/N, 0..100: amplitude of the propeller's vibration in the accelerometer, per newton of thrust.
   double vibration_mps2pn = 0;
-  /// 1..100: IMU samples over which lateral and normal force are averaged before they correct. A vibration
-  /// that is averaged no longer turns a product of two shaken numbers into a bias of the airspeed.
+  /// 1..100: number of IMU samples over which lateral and normal force are averaged before they correct.
+  /// Averaging keeps the product of two vibrating numbers from becoming a bias of the airspeed.
   int force_samples = 1;
-  double gyro_bias_walk_rthz = 1e-5;  ///< rad/s^2/sqrt(Hz), 0..1: a flight is too short for the bias to move
-  /// rad/s^2/sqrt(Hz), 0..1000, angular_rate only: how freely the rate moves between gyro samples. The wing's
-  /// roll accelerates at up to 50 rad/s^2 for 0.1 s.
+  double gyro_bias_walk_rthz = 1e-5;  ///< rad/s^2/sqrt(Hz), 0..1: random walk of the gyro's bias
+  /// rad/s^2/sqrt(Hz), 0..1000: random walk of the angular rate, with the model angular_rate alone. The
+  /// wing's roll accelerates at up to 50 rad/s^2 for 0.1 s.
   double rate_walk_rthz = 15.0;
-  bool smooth_frame = true;         ///< in flight no correction moves position or heading, see FrameGain
-  double max_rate_radps = 34.9;     ///< rad/s, 1..200: gyro's full scale (2000 deg/s); beyond is clamped
-  double max_force_mps2 = 157.0;    ///< m/s^2, 20..2000: accelerometer's full scale (16 g); beyond is clamped
-  double force_low_pass_hz = 30.0;  ///< Hz, 0.1..1000: of State::specific_force_body_mps2
+  bool smooth_frame = true;  ///< keeps corrections in flight from moving position and heading (FrameGain)
+  double max_rate_radps =
+      34.9;  ///< rad/s, 1..200: full scale of the gyro (2000 deg/s); larger rates are clamped
+  double max_force_mps2 =
+      157.0;  ///< m/s^2, 20..2000: full scale of the accelerometer (16 g); more is clamped
+  double force_low_pass_hz =
+      30.0;  ///< Hz, 0.1..1000: cut-off of the low-pass for the reported specific force
   ExtraStatesConfig states;
   DistrustConfig distrust;
   AirspeedConfig airspeed;
@@ -279,7 +295,8 @@ struct FilterConfig {
   AltitudeConfig altitude;
   HeadingConfig heading;
   GroundVelocityConfig gps;
-  bool resightings = true;  ///< whether obstacles seen at a second depth, where there are any, are used
+  bool resightings =
+      true;  ///< corrects the velocity with obstacles seen at two depths (autopilot.resightings)
   RestConfig rest;
 };
 

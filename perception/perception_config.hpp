@@ -8,48 +8,54 @@
 
 namespace understory {
 
-/// Every number and every rule of the detector. Defaults are the paper's rule as the original's public code
-/// had it (Barry & Tedrake 2015); each rule is a switch of its own.
+/// The parameters of the detector. The defaults are those of the original's public code (Barry & Tedrake
+/// 2015); each test is a switch of its own.
 struct PushbroomConfig {
-  std::vector<double> depths_m;  ///< to look at; empty: the rig's own detection depth. 0.1 .. 1000
-  std::vector<double> depths_minimum_edge_sum;  ///< minimum_edge_sum of each depth; empty: one for all
-  std::vector<double> depths_score_limit;       ///< score_limit of each depth; empty: one for all
-  /// Whole disparities to look at, stated by hand as the original's configuration files do ([2],
-  /// docs/sources.md), in place of those nearest to depths_m; empty: these. -8192 .. 8192
+  /// Depths at which the detector looks for obstacles; empty: the rig's detection depth alone. The preset
+  /// `tuned` names two for the rig `paper`. 0.1 .. 1000
+  std::vector<double> depths_m;
+  /// The minimum_edge_sum of each depth, in the order of depths_m; empty: all depths share one.
+  std::vector<double> depths_minimum_edge_sum;
+  /// The score_limit of each depth, in the order of depths_m; empty: all depths share one.
+  std::vector<double> depths_score_limit;
+  /// Whole disparities to look at, in place of depths_m, as the original's configuration files state them
+  /// (docs/sources.md [2]); empty: those nearest to depths_m. -8192 .. 8192
   std::vector<int> disparities_px;
-  /// Whole disparity of the infinitely distant, stated by hand; none: the calibration's, rounded.
-  /// -8192 .. 8192
+  /// Whole disparity of an infinitely distant point; none: the calibration's, rounded. -8192 .. 8192
   std::optional<int> infinity_px;
-  int threads = 1;           ///< 1 .. 64; hits do not depend on it
-  int stride_px = 5;         ///< from block to block, both ways; 1 .. 100; 5 sets the 5x5 blocks side by side
-  bool every_pixel = false;  ///< dense: a window at every pixel, of each 5x5 cell of windows the best counts
-  /// Top edge of the lowest row of blocks in an image of 240 rows, in proportion in others; 0 .. 240. Rows
-  /// below see the ground. The original's lastValidPixelRow, 205, is the end of its lowest blocks.
+  int threads = 1;           ///< threads that search one pair; the detections do not depend on it
+  int stride_px = 5;         ///< distance between neighbouring blocks along rows and columns; 5: side by side
+  bool every_pixel = false;  ///< searches a block at every pixel and keeps the best of each 5x5 pixels
+  /// Top edge of the lowest row of blocks, for an image of 240 rows; it scales with the image's height. The
+  /// ground lies below. The original's lastValidPixelRow, 205, is the end of its lowest blocks.
   int last_row_px = 200;
-  /// Columns that no block touches at the end of those compared, 0 .. 100. The original's loop over columns
+  /// Columns at the right end of the compared area that no block touches. The original's loop over columns
   /// leaves out a last block that ends with the image.
   int right_margin_px = 1;
-  int minimum_edge_sum = 860;         ///< Laplacian sum asked of each image's block by itself; 0 .. 6375
-  double score_limit = 54.0 / 333.0;  ///< hit if S = SAD / (both edge sums) is below; exact to 1/333000
+  int minimum_edge_sum =
+      860;  ///< smallest sum of the Laplacian over a block; each of the two images needs it
+  /// A block matches where S = SAD / (sum of both blocks' Laplacians) is below this; exact to 1/333000.
+  double score_limit = 54.0 / 333.0;
 
-  bool horizontal_invariance = true;              ///< reject texture that also matches near infinity
-  int invariance_columns_px = 3;                  ///< searched to each side of infinity
-  int invariance_rows_px = 8;                     ///< searched up and down
-  int invariance_row_step_px = 2;                 ///< from one row searched to the next
-  double invariance_score_limit = 108.0 / 333.0;  ///< twice the score limit: 0.324
+  bool horizontal_invariance = true;  ///< rejects a block that also matches near infinite depth
+  int invariance_columns_px = 3;   ///< columns searched on each side of infinite depth by the invariance test
+  int invariance_rows_px = 8;      ///< rows searched above and below a block by the invariance test
+  int invariance_row_step_px = 2;  ///< distance between the rows searched by the invariance test
+  double invariance_score_limit = 108.0 / 333.0;  ///< score below which the invariance test finds a match
 
-  bool uniqueness = false;        ///< the disparity must stand out along the row
-  double uniqueness_ratio = 2.0;  ///< no other disparity within this many times its SAD
-  double uniqueness_minimum_depth_m =
-      1.5;  ///< range searched: infinity to here (the paper ignores nearer points)
+  bool uniqueness = false;  ///< rejects a block that matches nearly as well at another disparity of its row
+  double uniqueness_ratio = 2.0;  ///< smallest ratio of any other disparity's SAD to that of the match
+  /// Nearest depth at which the uniqueness test searches for other matches; it begins at infinity. The paper
+  /// ignores nearer points.
+  double uniqueness_minimum_depth_m = 1.5;
 
-  /// Puts a hit at the vertex of the parabola through the SADs of its disparity and the two beside it, at
-  /// most half a pixel away, where its own is the minimum of the three.
+  /// Places a detection at the vertex of the parabola through the SADs of its disparity and the two
+  /// neighbours, at most half a pixel away, where its own SAD is the smallest of the three.
   bool subpixel = false;
 
-  bool isolation = false;            ///< a hit needs company in its own frame
-  int isolation_minimum_points = 3;  ///< itself included (the original's avoidance)
-  double isolation_radius_m = 1.0;   ///< within which its company lies
+  bool isolation = false;            ///< rejects a detection without enough others near it in the same frame
+  int isolation_minimum_points = 3;  ///< smallest number of detections near each other, itself included
+  double isolation_radius_m = 1.0;   ///< distance within which the isolation test counts detections
 };
 
 /// The paper's rule as the original's code has it: its hits, their order and their scores, wherever the
@@ -60,7 +66,7 @@ PushbroomConfig original_pushbroom();
 /// docs/benchmarks.md).
 PushbroomConfig robust_pushbroom();
 /// The robust rule with the numbers tuned for a rig of models/rigs by its name, `long` or `paper`: most
-/// recall at a precision of 0.985 (docs/tuning.md), at the depths that serve flights best (docs/thesis.md).
+/// recall at a precision of 0.985 (docs/tuning.md), at the depths that docs/decisions/025 found.
 /// Rigs that nobody has tuned for get robust_pushbroom().
 PushbroomConfig tuned_pushbroom(std::string_view rig);
 
@@ -114,15 +120,16 @@ void visit_fields(Visitor& visit, PushbroomConfig& config) {
 /// OpenCV's StereoBM with the settings of the paper's evaluation (Barry & Tedrake 2015; public evaluation
 /// code). Disparities count from the rig's infinity, so 2 .. 113 px are parallax.
 struct StereoBmConfig {
-  int window_px = 5;            ///< odd, 5 .. 51
-  int min_disparity_px = 2;     ///< searched from here
-  int disparities = 112;        ///< multiple of 16
-  int texture_threshold = 427;  ///< windows with less texture have no disparity
-  int uniqueness_percent = 18;  ///< by which the best match must beat the second
-  int prefilter_size_px = 105;  ///< odd, 5 .. 255; without effect on OpenCV's default x-Sobel prefilter
-  int prefilter_cap = 61;       ///< 1 .. 63
-  int speckle_window_px = 59;   ///< smaller patches are dropped
-  int speckle_range = 30;       ///< sixteenths of a pixel between neighbours of a patch
+  int window_px = 5;            ///< side of the square that is matched; odd
+  int min_disparity_px = 2;     ///< smallest disparity searched, counted from the rig's infinity
+  int disparities = 112;        ///< number of disparities searched; a multiple of 16
+  int texture_threshold = 427;  ///< a window with less texture gets no disparity (OpenCV's textureThreshold)
+  int uniqueness_percent = 18;  ///< margin by which the best match must beat the second best
+  int prefilter_size_px =
+      105;                     ///< window of OpenCV's normalising prefilter; its default prefilter ignores it
+  int prefilter_cap = 61;      ///< limit of the prefiltered image (OpenCV's preFilterCap)
+  int speckle_window_px = 59;  ///< area below which a patch of disparity is removed, in pixels
+  int speckle_range = 30;      ///< largest step of disparity within a patch, in sixteenths of a pixel
 };
 
 /// How many paths StereoSGBM gathers costs along. Three is OpenCV's fast way, five its default.
@@ -133,17 +140,19 @@ inline constexpr std::array<std::pair<std::string_view, SgbmPaths>, 3> sgbm_path
 /// OpenCV's StereoSGBM (Hirschmueller 2008). The paper flew none: the search is StereoBM's above, the rest
 /// the values that OpenCV's documentation of cv::StereoSGBM and its sample stereo_match.cpp suggest.
 struct StereoSgbmConfig {
-  int window_px = 5;            ///< odd, 1 .. 11 (documentation: 3 .. 11)
-  int min_disparity_px = 2;     ///< searched from here
-  int disparities = 112;        ///< multiple of 16
-  int smoothness_1 = 8;         ///< P1 in windows' areas: a step of one pixel costs so much (sample)
-  int smoothness_2 = 32;        ///< P2 likewise: of more pixels; more than smoothness_1
-  int uniqueness_percent = 10;  ///< documentation: 5 .. 15
-  int prefilter_cap = 63;       ///< sample
-  int left_right_px = 1;        ///< matched back from the right, at most so far off (sample); -1: not asked
-  int speckle_window_px = 100;  ///< documentation: 50 .. 200
-  int speckle_range_px = 2;     ///< documentation: 1 or 2
-  SgbmPaths paths = SgbmPaths::five;  ///< directions that costs are summed along
+  int window_px = 5;         ///< side of the square that is matched; odd (OpenCV advises 3 to 11)
+  int min_disparity_px = 2;  ///< smallest disparity searched, counted from the rig's infinity
+  int disparities = 112;     ///< number of disparities searched; a multiple of 16
+  int smoothness_1 = 8;      ///< cost of a disparity step of one pixel, times the window's area (OpenCV's P1)
+  int smoothness_2 = 32;     ///< cost of a larger step, times the window's area (P2); more than smoothness_1
+  int uniqueness_percent =
+      10;                  ///< margin by which the best match must beat the second (OpenCV advises 5 to 15)
+  int prefilter_cap = 63;  ///< limit of the prefiltered image (OpenCV's preFilterCap)
+  int left_right_px = 1;   ///< left-right consistency: largest difference of disparity; -1: not checked
+  int speckle_window_px =
+      100;                   ///< area below which a patch of disparity is removed (OpenCV advises 50 to 200)
+  int speckle_range_px = 2;  ///< largest step of disparity within a patch (OpenCV advises 1 or 2)
+  SgbmPaths paths = SgbmPaths::five;  ///< number of directions along which costs are summed
 };
 
 template <typename Visitor>
@@ -174,19 +183,18 @@ void visit_fields(Visitor& visit, StereoSgbmConfig& config) {
   visit("paths", config.paths, sgbm_paths_names);
 }
 
-/// What of a depth image becomes hits.
+/// Which pixels of a depth image become detections.
 struct FullStereoCrop {
-  double minimum_depth_m = 1.5;  ///< 0.1 .. 1000 (Barry & Tedrake 2015 ignore nearer points)
-  /// 0.1 .. 1000. At 15 m a pixel of disparity is 3.5 m of the paper's rig and 1.7 m of the long one: what
-  /// lies farther is seen too coarsely to be placed (our choice).
+  double minimum_depth_m = 1.5;  ///< nearest depth that is used (Barry & Tedrake 2015 ignore nearer points)
+  /// Farthest depth that is used. At 15 m a pixel of disparity is 3.5 m of depth on the paper's rig and 1.7 m
+  /// on the long rig: farther obstacles cannot be placed (our choice).
   double maximum_depth_m = 15;
-  /// 0.1 .. 1000; hits farther below the optical axis are dropped: beneath the pushbroom's last row, at its
-  /// depth, the ground begins (2.6 m below on the long rig, 2.8 m on the paper's), and farther out that row
-  /// would see it.
+  /// Distance below the optical axis beyond which detections are dropped, because the ground begins there:
+  /// the pushbroom's last row lies 2.6 m (long rig) and 2.8 m (paper's rig) below at its depth.
   double maximum_below_m = 2.7;
-  int cell_px = 5;                  ///< one hit for each cell of this size, the pushbroom's block
-  int minimum_pixels_per_cell = 5;  ///< matched pixels inside the depths that make a hit (our choice)
-  int last_row_px = 205;            ///< top edge of the lowest row of cells, as PushbroomConfig's
+  int cell_px = 5;  ///< side of the square that gives at most one detection; the pushbroom's block
+  int minimum_pixels_per_cell = 5;  ///< matched pixels within the depths that make a detection (our choice)
+  int last_row_px = 205;            ///< top edge of the lowest row of cells, for an image of 240 rows
 };
 
 template <typename Visitor>
@@ -199,18 +207,20 @@ void visit_fields(Visitor& visit, FullStereoCrop& crop) {
   visit("last_row_px", crop.last_row_px, 0, 240);
 }
 
-/// How long, how many and whom the map remembers.
+/// Which points the map keeps, and which of them it trusts.
 struct LocalMapConfig {
-  double max_age_s = 4.0;  ///< points older than this go (the original remembered 2 to 4 s)
-  /// A point goes once it lies this far behind the aircraft along its heading. Larger than the half span
-  /// (0.43 m) and what a turn swings the wing tips by, so that nothing still beside a wing is lost.
+  double max_age_s = 4.0;  ///< age at which a point is forgotten (the original remembered 2 to 4 s)
+  /// Distance behind the aircraft, along its heading, at which a point is forgotten. It is larger than the
+  /// half span (0.43 m) and the swing of a wing tip in a turn, so that no point beside a wing is lost.
   double passed_m = 2.0;
-  int max_points = 5000;   ///< beyond this the oldest go first
-  double voxel_m = 0.10;   ///< a hit in the voxel of a remembered point refreshes it; 0 keeps every hit
-  int min_neighbours = 2;  ///< other points a trusted point needs (with itself 3, the original's avoidance)
-  double neighbour_radius_m = 1.0;    ///< within this distance
-  bool seen_again = false;            ///< a trusted point also needs support from a second frame
-  double seen_again_radius_m = 0.35;  ///< a point of another frame this near (or itself seen twice)
+  int max_points = 5000;  ///< number of points beyond which the oldest are forgotten
+  double voxel_m =
+      0.10;  ///< side of the voxels; a detection in a point's voxel refreshes it; 0: all are kept
+  int min_neighbours =
+      2;  ///< other points near a point that make it trusted (the original wanted 3 with itself)
+  double neighbour_radius_m = 1.0;    ///< distance within which a point counts as a neighbour
+  bool seen_again = false;            ///< trusts a point only where a second frame saw it, too
+  double seen_again_radius_m = 0.35;  ///< distance within which a point of another frame confirms a point
 };
 
 template <typename Visitor>
@@ -225,25 +235,25 @@ void visit_fields(Visitor& visit, LocalMapConfig& config) {
   visit("seen_again_radius_m", config.seen_again_radius_m, 0.0, 100.0);
 }
 
-/// How sightings at two depths become one displacement.
+/// How two sightings of an obstacle, at a far and at a near depth, measure the drift of the odometry.
 struct ResightingsConfig {
-  bool enabled = false;          ///< whether obstacles seen at two depths measure the ground velocity
-  std::vector<double> depths_m;  ///< that the detector looks at; the composition knows them, no key says them
-  /// Level distance from a cluster's centre within which hits of one depth join it. While a trunk crosses the
-  /// depth interval of a pixel (1.6 m at 10 m), its places smear over as much in the odometry frame, and by
-  /// what a wind that is not yet known carries meanwhile.
+  bool enabled = false;          ///< measures the velocity over ground from obstacles seen at two depths
+  std::vector<double> depths_m;  ///< the detector's depths; the autopilot's composition sets them, no key
+  /// Level distance from a cluster's centre within which detections of one depth join it. While a trunk
+  /// crosses one pixel's depth interval (1.6 m at 10 m), its places smear over as much in the odometry frame.
   double cluster_m = 2.0;
-  int minimum_hits = 8;    ///< a cluster of fewer is left alone
-  double settle_s = 0.04;  ///< a nearer cluster without a hit for as long is complete
-  /// Level distance between the two places of one obstacle, at most: an unknown wind of 5 m/s over the half
+  int minimum_hits = 8;    ///< smallest number of detections that make a cluster usable
+  double settle_s = 0.04;  ///< time without a detection after which the near cluster is complete
+  /// Largest level distance between the two places of one obstacle: an unknown wind of 5 m/s over the half
   /// second between 10 and 5 m.
   double match_m = 2.5;
-  double rival = 1.5;     ///< any other far cluster must be this many times as distant
-  double oldest_s = 0.9;  ///< between the two sightings, at most
-  /// Of the discrepancy, along the line of sight: what remains of a pixel's depth interval once its crossing
-  /// is averaged, and of where a trunk's face lies.
+  double rival = 1.5;  ///< smallest ratio of the second nearest far cluster's distance to the nearest one's
+  double oldest_s = 0.9;  ///< longest time between the two sightings
+  /// Standard deviation of the measured displacement along the line of sight: what remains of a pixel's depth
+  /// interval once its crossing is averaged, and of where a trunk's face lies.
   double along_sigma_m = 0.25;
-  double across_sigma_m = 0.10;  ///< and across it: blocks of 5 pixels at 10 m are 0.13 m
+  double across_sigma_m =
+      0.10;  ///< standard deviation of the displacement across it; a block at 10 m is 0.13 m
 };
 
 template <typename Visitor>

@@ -9,36 +9,37 @@ namespace understory {
 /// default: the original aircraft's identified flat-plate model (public flight records 2014 to 2017,
 /// BSD-3-Clause), inertia the mean of measured and CAD values.
 struct Airframe {
-  double mass_kg = 0.648412;                                ///< all up
-  Eigen::Vector3d inertia_kgm2{0.01526, 0.00525, 0.01835};  ///< principal moments about body x, y, z
-  double gravity_mps2 = 9.81;                               ///< of the simulated place
-  double air_density_kgpm3 = 1.204;                         ///< sea level, 20 degrees C
+  double mass_kg = 0.648412;  ///< mass of the whole aircraft
+  Eigen::Vector3d inertia_kgm2{0.01526, 0.00525,
+                               0.01835};  ///< principal moments of inertia about body x, y, z
+  double gravity_mps2 = 9.81;             ///< acceleration of gravity
+  double air_density_kgpm3 = 1.204;       ///< density of the air: sea level, 20 degrees C
 
-  double span_m = 0.8636;        ///< wing tip to wing tip
-  double chord_m = 0.2097;       ///< mean chord: area over span
-  double wing_area_m2 = 0.1811;  ///< of the flat plate that the wing is
-  double wing_lift_factor =
-      1.0;  ///< on the flat plate's lift and drag: the identified wing is the plate itself
-  double wing_drag_factor = 1.0;  ///< on the flat plate's drag
+  double span_m = 0.8636;         ///< distance between the wing tips
+  double chord_m = 0.2097;        ///< mean chord: the area over the span
+  double wing_area_m2 = 0.1811;   ///< area of the wing
+  double wing_lift_factor = 1.0;  ///< lift of the wing over that of a flat plate
+  double wing_drag_factor = 1.0;  ///< drag of the wing over that of a flat plate
 
-  double elevon_area_m2 = 0.012508;    ///< each
-  double elevon_hinge_x_m = -0.12495;  ///< of the hinge
-  double elevon_y_m = 0.276225;        ///< left +, right -
-  double elevon_chord_m = 0.0402;      ///< the force acts at the mid-chord of the deflected elevon
-  double elevon_lift_factor = 1.3;     ///< on the flat plate's lift
-  double elevon_drag_factor = 0.101;   ///< on the flat plate's drag
-  double elevon_min_rad = -0.90;       ///< positive trailing edge up
-  double elevon_max_rad = 0.855;       ///< the upper stop
+  double elevon_area_m2 = 0.012508;  ///< area of one elevon
+  double elevon_hinge_x_m =
+      -0.12495;                  ///< x of the elevons' hinge in the body; negative: behind the centre of mass
+  double elevon_y_m = 0.276225;  ///< y of the left elevon's centre; the right one stands at minus this
+  double elevon_chord_m = 0.0402;     ///< chord of an elevon; its force acts at the middle, deflected
+  double elevon_lift_factor = 1.3;    ///< lift of an elevon over that of a flat plate
+  double elevon_drag_factor = 0.101;  ///< drag of an elevon over that of a flat plate
+  double elevon_min_rad = -0.90;      ///< lower stop of the elevons; trailing edge up is positive
+  double elevon_max_rad = 0.855;      ///< upper stop of the elevons; trailing edge up is positive
 
-  double winglet_area_m2 = 0.019441;  ///< each
-  double winglet_x_m = -0.08;         ///< of the area's centre
-  double winglet_y_m = 0.4318;        ///< left +, right -
-  double winglet_z_m = 0.081954;      ///< up (the records' z is down: -0.081954)
+  double winglet_area_m2 = 0.019441;  ///< area of one winglet
+  double winglet_x_m = -0.08;   ///< x of a winglet's centre in the body; negative: behind the centre of mass
+  double winglet_y_m = 0.4318;  ///< y of the left winglet; the right one stands at minus this
+  double winglet_z_m = 0.081954;  ///< height of a winglet's centre above the centre of mass
 
-  double body_drag_area_m2 = 0.0443;                      ///< drag = area * rho/2 * u^2
-  Eigen::Vector3d rate_damping_nmspr{0.074, 0.115, 0.0};  ///< moment = -damping * rate
-  double max_thrust_n = 5.34;                             ///< at full throttle
-  double input_delay_s = 0.020;                           ///< command to surface
+  double body_drag_area_m2 = 0.0443;  ///< drag of the body along x over the dynamic pressure
+  Eigen::Vector3d rate_damping_nmspr{0.074, 0.115, 0.0};  ///< damping moment per angular rate about x, y, z
+  double max_thrust_n = 5.34;                             ///< thrust at full throttle
+  double input_delay_s = 0.020;                           ///< time from a command to the actuators
 };
 
 /// Every field by name, for loading, saving, --set and tuning: visit(name, field, minimum, maximum).

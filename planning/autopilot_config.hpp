@@ -4,21 +4,23 @@
 
 namespace understory {
 
-/// How the path follower answers commands, and the envelope it keeps. The reduced model and the path follower
-/// both read these numbers, so that what is planned is what is flown.
+/// How the aircraft under the path follower answers commands, and the envelope it keeps. The planner's flight
+/// model and the path follower both read these numbers, so that the aircraft flies as planned.
 struct FlightModelConfig {
-  double cruise_speed_mps = 12.0;  ///< held by the throttle
-  double maximum_angle_of_attack_rad =
-      0.4363;  ///< 25 deg: flat plates never stall, real wings do (our assumption)
-  double minimum_angle_of_attack_rad = -0.05;  ///< the nose is not pushed down further
-  double minimum_speed_mps = 8.0;  ///< level flight ends here: below it the nose is not pulled up further
-  double bank_gain_per_s = 9.0;    ///< roll rate asked for per radian of bank error
-  double maximum_roll_rate_radps = 7.5;    ///< at the reference speed 12.27 m/s; falls with speed
-  double maximum_differential_rad = 0.50;  ///< elevon deflection to either side of the mean, for rolling
-  double roll_time_s = 0.06;               ///< lag of the roll rate behind what is asked
-  double angle_of_attack_time_s = 0.17;    ///< lag of the angle of attack
-  double climb_angle_time_s = 0.45;        ///< how fast a climb angle error is taken out
-  double speed_gain_n_per_mps = 2.0;       ///< throttle per speed error
+  double cruise_speed_mps = 12.0;  ///< airspeed that the throttle holds; 12.8 m/s is the fastest level flight
+  /// Largest angle of attack. 25 deg: a flat plate never stalls, a real wing does (our assumption).
+  double maximum_angle_of_attack_rad = 0.4363;
+  double minimum_angle_of_attack_rad = -0.05;  ///< smallest angle of attack to which the nose is pushed down
+  double minimum_speed_mps =
+      8.0;  ///< airspeed below which the nose is not pulled up further; level flight ends
+  double bank_gain_per_s = 9.0;          ///< commanded roll rate per bank error
+  double maximum_roll_rate_radps = 7.5;  ///< largest roll rate at 12.27 m/s; it falls with the airspeed
+  double maximum_differential_rad =
+      0.50;                   ///< largest deflection of one elevon from the mean of both, for rolling
+  double roll_time_s = 0.06;  ///< time constant with which the roll rate follows its command
+  double angle_of_attack_time_s = 0.17;  ///< time constant with which the angle of attack follows its command
+  double climb_angle_time_s = 0.45;      ///< time constant in which a climb angle error is corrected
+  double speed_gain_n_per_mps = 2.0;     ///< thrust added per speed error
 };
 
 template <typename Visitor>
@@ -36,12 +38,12 @@ void visit_fields(Visitor& visit, FlightModelConfig& config) {
   visit("speed_gain_n_per_mps", config.speed_gain_n_per_mps, 0.0, 20.0);
 }
 
-/// Gains of the inner loops. The outer laws (bank to roll rate, climb to angle of attack, speed to thrust)
-/// are those of the flight model, so that the aircraft answers as planned.
+/// Time constants of the inner loops. The outer laws (bank to roll rate, climb to angle of attack, speed to
+/// thrust) are those of the flight model, so that the aircraft answers as planned.
 struct PathFollowerConfig {
-  double pitch_time_s = 0.05;            ///< in which a pitch rate error is taken out
-  double angle_of_attack_time_s = 0.09;  ///< in which an angle of attack error is taken out
-  double roll_time_s = 0.05;             ///< in which a roll rate error is taken out
+  double pitch_time_s = 0.05;            ///< time constant in which a pitch rate error is corrected
+  double angle_of_attack_time_s = 0.09;  ///< time constant in which an angle of attack error is corrected
+  double roll_time_s = 0.05;             ///< time constant in which a roll rate error is corrected
 };
 
 template <typename Visitor>
@@ -51,21 +53,21 @@ void visit_fields(Visitor& visit, PathFollowerConfig& config) {
   visit("roll_time_s", config.roll_time_s, 0.005, 1.0);
 }
 
+/// How the planner turns remembered points into upright columns with a size.
 struct ObstacleFieldConfig {
-  double cell_m = 0.15;       ///< points that share a horizontal cell of this size become one upright column
-  double column_gap_m = 1.2;  ///< points of a cell farther apart in height than this start a new column
-  double vertical_reach_m =
-      0.4;  ///< a column stands out this far above and below its outermost points: trees go on
-  /// What is seen in the air stands on the ground, as trees and posts do: columns reach down to height 0, and
-  /// the aircraft does not pass under the part of a trunk that it saw with its nose up. What is wrongly seen
-  /// in the air then stands in the way at every height: it pays in wind (docs/decisions/017).
+  double cell_m = 0.15;       ///< side of the horizontal cells; points of one cell become one upright column
+  double column_gap_m = 1.2;  ///< gap in height between points of a cell at which a new column starts
+  double vertical_reach_m = 0.4;  ///< length by which a column extends above and below its outermost points
+  /// Columns reach down to the ground, as trees and posts do, so that the aircraft does not pass under the
+  /// part of a trunk that it saw with its nose up. A false detection in the air then blocks every height: it
+  /// pays in wind (docs/decisions/017).
   bool stands_on_ground = false;
-  double sigma_zero_m = 0.05;  ///< uncertainty of a point when seen, added to its size
-  double sigma_per_m =
-      0.010;  ///< growth with the distance flown since: drift of the estimate (docs/sources.md [15])
-  double sigma_maximum_m = 0.3;  ///< growth ends here
-  double half_span_m = 0.4318;   ///< of the wing that must pass
-  double wing_radius_m = 0.09;   ///< half the thickness of wing and winglets, as a capsule about the span
+  double sigma_zero_m = 0.05;    ///< uncertainty of a point when it is seen; the planner adds it to its size
+  double sigma_per_m = 0.010;    ///< growth of that uncertainty per metre flown since (docs/sources.md [15])
+  double sigma_maximum_m = 0.3;  ///< uncertainty of a point at which the growth ends
+  double half_span_m = 0.4318;   ///< half the span of the wing that must pass
+  double wing_radius_m =
+      0.09;  ///< radius of the capsule about the span: half the height of wing and winglets
 };
 
 template <typename Visitor>
@@ -81,27 +83,29 @@ void visit_fields(Visitor& visit, ObstacleFieldConfig& config) {
   visit("wing_radius_m", config.wing_radius_m, 0.0, 1.0);
 }
 
-/// How trajectories are judged. Costs are dimensionless, per second of flight. A clearance of zero costs
-/// `clearance_weight`.
+/// The cost of a trajectory and its limits. Costs are dimensionless, per second of flight.
 struct TrajectoryConfig {
-  double step_s = 0.02;                ///< between the places of a rollout
-  double horizon_m = 14.0;             ///< distance ahead that plans cover: detection depth and some
-  double minimum_clearance_m = -0.05;  ///< hard, for plans to be found
-  double minimum_kept_clearance_m =
-      -0.08;  ///< hard, for the plan in force: smaller, so that noise does not upset it
-  double comfortable_clearance_m = 0.7;  ///< below it clearance costs
-  double clearance_weight = 15.0;        ///< at contact; none from the comfortable clearance on
-  double bank_weight = 1.0;              ///< per rad^2
-  double heading_weight = 6.0;        ///< per rad^2 off the course: what lies to the side was not looked at
-  double altitude_weight = 1.0;       ///< per m^2 off the cruise altitude
-  double band_weight = 40.0;          ///< per m^2 beyond the band's margin
-  double band_margin_m = 0.8;         ///< kept from the band's limits
-  double slow_weight = 2.0;           ///< per (m/s)^2 below 1 m/s less than cruise
-  double final_heading_weight = 4.0;  ///< per rad^2 at the horizon
-  double heading_gain = 1.6;          ///< bank per heading error, course guidance
-  double maximum_course_bank_rad = 0.6;  ///< of the course guidance
-  double altitude_gain_per_s = 1.2;      ///< climb per altitude error
-  double maximum_climb_mps = 2.0;        ///< climb or descent of the course guidance
+  double step_s = 0.02;     ///< time between the computed places of a trajectory
+  double horizon_m = 14.0;  ///< distance ahead that a plan covers: the detection depth and some more
+  double minimum_clearance_m = -0.05;  ///< smallest clearance that a new plan may have
+  /// Smallest clearance at which the plan in force is kept; smaller than minimum_clearance_m, so that noise
+  /// does not discard a plan.
+  double minimum_kept_clearance_m = -0.08;
+  double comfortable_clearance_m = 0.7;  ///< clearance from which on it costs nothing
+  double clearance_weight = 15.0;        ///< cost at zero clearance; it falls to none at the comfortable one
+  double bank_weight = 1.0;              ///< cost per rad^2 of bank
+  double heading_weight =
+      6.0;  ///< cost per rad^2 of heading off the course: the cameras have not looked there
+  double altitude_weight = 1.0;  ///< cost per m^2 off the cruise altitude
+  double band_weight =
+      40.0;  ///< cost per m^2 by which a place is nearer to the band's limits than band_margin_m
+  double band_margin_m = 0.8;         ///< distance from the altitude band's limits within which places cost
+  double slow_weight = 2.0;           ///< cost per (m/s)^2 by which the airspeed is over 1 m/s below cruise
+  double final_heading_weight = 4.0;  ///< cost per rad^2 of heading off the course at the end of the plan
+  double heading_gain = 1.6;          ///< commanded bank per heading error while the course is held
+  double maximum_course_bank_rad = 0.6;  ///< largest bank while the course is held
+  double altitude_gain_per_s = 1.2;      ///< commanded climb per altitude error while the course is held
+  double maximum_climb_mps = 2.0;        ///< largest climb or descent while the course is held
 };
 
 template <typename Visitor>
@@ -128,17 +132,19 @@ void visit_fields(Visitor& visit, TrajectoryConfig& config) {
 /// The tree of manoeuvres that OMPL grows (SST, Li, Littlefield & Bekris 2016, in the space of bank and climb
 /// commands over time).
 struct ManoeuvreSearchConfig {
-  int iterations = 600;             ///< extensions tried; never a time, so that runs repeat
-  double maximum_bank_rad = 1.57;   ///< a wing on edge passes where a level one does not
-  double minimum_climb_mps = -1.5;  ///< lower end of the climb commands tried
-  double maximum_climb_mps = 2.0;   ///< upper end
-  double minimum_part_s = 0.08;     ///< shortest duration of a command
-  double maximum_part_s = 0.48;     ///< longest
-  int maximum_parts = 4;            ///< commands in a row before the course guidance takes over
-  double hint_share = 0.3;          ///< of the commands tried: near those of the plan in force
-  double extreme_share = 0.2;       ///< of the commands tried: with the maximum bank, to either side
-  double selection_radius = 0.6;    ///< SST's, in the search's metric (see manoeuvre_search.cpp)
-  double pruning_radius = 0.15;     ///< SST's: nearer nodes of higher cost go
+  int iterations =
+      600;  ///< number of extensions that a search tries; a count and no time, so that runs repeat
+  double maximum_bank_rad =
+      1.57;  ///< largest bank command tried; a wing on edge passes where a level one cannot
+  double minimum_climb_mps = -1.5;  ///< lowest climb command tried; negative: a descent
+  double maximum_climb_mps = 2.0;   ///< highest climb command tried
+  double minimum_part_s = 0.08;     ///< shortest duration of one command
+  double maximum_part_s = 0.48;     ///< longest duration of one command
+  int maximum_parts = 4;            ///< largest number of commands before the course is held again
+  double hint_share = 0.3;          ///< share of the commands tried that lie near those of the plan in force
+  double extreme_share = 0.2;       ///< share of the commands tried that bank fully, to either side
+  double selection_radius = 0.6;    ///< SST's selection radius, in the metric of manoeuvre_search.cpp
+  double pruning_radius = 0.15;     ///< SST's pruning radius: nearer nodes of higher cost are dropped
 };
 
 template <typename Visitor>
@@ -156,13 +162,14 @@ void visit_fields(Visitor& visit, ManoeuvreSearchConfig& config) {
   visit("pruning_radius", config.pruning_radius, 0.0, 10.0);
 }
 
-/// Random descent around a manoeuvre. A tree of random commands finds a way, but seldom its best version.
+/// Random changes to a manoeuvre that are kept where they lower its cost. A tree of random commands finds a
+/// way, but seldom the best version of it.
 struct ManoeuvreImprovementConfig {
-  int iterations = 60;             ///< rollouts tried
-  double bank_sigma_rad = 0.35;    ///< of the change to one part's bank
-  double climb_sigma_mps = 0.6;    ///< of the change to its climb
-  double duration_sigma_s = 0.08;  ///< of the change to its duration
-  double maximum_bank_rad = 1.57;  ///< changes end there
+  int iterations = 60;             ///< number of changed manoeuvres that are tried
+  double bank_sigma_rad = 0.35;    ///< standard deviation of the change to one command's bank
+  double climb_sigma_mps = 0.6;    ///< standard deviation of the change to one command's climb
+  double duration_sigma_s = 0.08;  ///< standard deviation of the change to one command's duration
+  double maximum_bank_rad = 1.57;  ///< largest bank that a change may reach
 };
 
 template <typename Visitor>
@@ -175,13 +182,14 @@ void visit_fields(Visitor& visit, ManoeuvreImprovementConfig& config) {
 }
 
 struct PlannerConfig {
-  bool use_ompl = true;  ///< false: the fallback primitives alone answer when the straight way is blocked
-  /// A plan in force whose cost has not grown past this share of its cost when new is kept without a search.
+  bool use_ompl =
+      true;  ///< searches with OMPL; false: simple manoeuvres alone answer where the way is blocked
+  /// A plan is kept without a search while its cost is below this multiple of its cost when it was new.
   double kept_cost_ratio = 1.3;
-  double change_cost_ratio =
-      1.5;                   ///< another way must be this much cheaper than the plan in force: no dithering
-  int refresh_replans = 12;  ///< a kept plan is searched against anew after this many replans,
-  double refresh_s = 1;      ///< or after this long
+  /// A new way replaces the plan in force where the plan in force costs this many times as much.
+  double change_cost_ratio = 1.5;
+  int refresh_replans = 12;  ///< number of replans after which a kept plan is compared with a new search
+  double refresh_s = 1;      ///< time after which a kept plan is compared with a new search
   ObstacleFieldConfig field;
   TrajectoryConfig trajectory;
   ManoeuvreSearchConfig search;
@@ -202,14 +210,18 @@ void visit_fields(Visitor& visit, PlannerConfig& config) {
 }
 
 struct AutopilotConfig {
-  double launch_acceleration_mps2 =
-      30;  ///< two IMU samples in a row above this along body x: the catapult has fired
-  double throttle_delay_s = 0.28;  ///< from then to throttle and control; the rail takes 0.25 s of it
-  double plan_latency_s = 0.006;   ///< what computing a plan costs in simulated time, before it takes effect
-  /// Longest between plans while the one in force goes straight and nothing new comes near it; what does is
-  /// planned for at once. 0: plans at every call of replan(), as far as plan_latency_s lets it.
+  /// Acceleration along body x above which two IMU samples in a row mean that the catapult has fired.
+  double launch_acceleration_mps2 = 30;
+  /// Time from the detected launch until throttle and control begin; the rail takes 0.25 s of it.
+  double throttle_delay_s = 0.28;
+  double plan_latency_s =
+      0.006;  ///< simulated time that computing a plan takes, before the plan takes effect
+  /// Longest time between plans while the plan in force goes straight. A new obstacle near the way is planned
+  /// for at once. 0: a plan at every replan, as far as plan_latency_s allows.
   double straight_period_s = 0;
-  double avoiding_period_s = 0;  ///< the same while the plan in force goes around something
+  /// Longest time between plans while the plan in force avoids an obstacle. A new obstacle near the way is
+  /// planned for at once. 0: a plan at every replan.
+  double avoiding_period_s = 0;
   LocalMapConfig map;
   ResightingsConfig resightings;
   FlightModelConfig flight_model;
