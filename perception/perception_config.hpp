@@ -12,16 +12,16 @@ namespace understory {
 /// 2015); each test is a switch of its own.
 struct PushbroomConfig {
   /// Depths at which the detector looks for obstacles; empty: the rig's detection depth alone. The preset
-  /// `tuned` names two for the rig `paper`. 0.1 .. 1000
+  /// `tuned` names two for the rig `paper`.
   std::vector<double> depths_m;
   /// The minimum_edge_sum of each depth, in the order of depths_m; empty: all depths share one.
   std::vector<double> depths_minimum_edge_sum;
   /// The score_limit of each depth, in the order of depths_m; empty: all depths share one.
   std::vector<double> depths_score_limit;
   /// Whole disparities to look at, in place of depths_m, as the original's configuration files state them
-  /// (docs/sources.md [2]); empty: those nearest to depths_m. -8192 .. 8192
+  /// (docs/sources.md [2]); empty: those nearest to depths_m.
   std::vector<int> disparities_px;
-  /// Whole disparity of an infinitely distant point; none: the calibration's, rounded. -8192 .. 8192
+  /// Whole disparity of an infinitely distant point; none: the calibration's, rounded.
   std::optional<int> infinity_px;
   int threads = 1;           ///< threads that search one pair; the detections do not depend on it
   int stride_px = 5;         ///< distance between neighbouring blocks along rows and columns; 5: side by side

@@ -11,8 +11,14 @@ namespace understory {
 namespace {
 
 /// How a name's end says its unit; the longer ends first.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 28> units{
-    {{"_radpsps_rthz", "rad/s^2/sqrt(Hz)"},
+constexpr std::array<std::pair<std::string_view, std::string_view>, 34> units{
+    {{"_n_per_mps", "N per m/s"},
+     {"_m_per_n", "m/N"},
+     {"_per_s", "1/s"},
+     {"_hz_at_1n", "Hz"},
+     {"_well_e", "electrons"},
+     {"_gray", "gray levels"},
+     {"_radpsps_rthz", "rad/s^2/sqrt(Hz)"},
      {"_mps2ps_rthz", "m/s^3/sqrt(Hz)"},
      {"_radps_rthz", "rad/s/sqrt(Hz)"},
      {"_mps2_rthz", "m/s^2/sqrt(Hz)"},

@@ -10,15 +10,15 @@ namespace understory {
 /// A forest in the launch frame: x ahead, y to the left. Its length also sets the goal plane of every other
 /// course.
 struct ForestConfig {
-  double square_metres_per_tree = 49;  ///< mean ground area a tree has: 49 is 7 m spacing, 25 is dense
-  double radius_min_m = 0.10;          ///< trunk radii are uniform between these two
-  double radius_max_m = 0.25;          ///< the larger of them
-  double clear_m = 15;                 ///< no tree before this x: room for launch and climb
-  double length_m = 60;       ///< of the forest behind it; the goal plane stands at clear_m + length_m
-  double half_width_m = 25;   ///< trees stand, and flight is allowed, to this |y|
-  double trunk_height_m = 9;  ///< reaches above the altitude band: there is no way over
-  bool invisible = false;     ///< trees collide and are not drawn
-  bool intangible = false;    ///< trees are drawn and harmless
+  double square_metres_per_tree = 49;  ///< mean ground area per tree; 49: 204 trees per hectare, 7 m apart
+  double radius_min_m = 0.10;          ///< smallest radius of a trunk; radii are uniform up to radius_max_m
+  double radius_max_m = 0.25;          ///< largest radius of a trunk
+  double clear_m = 15;                 ///< x at which the forest begins: room for launch and climb
+  double length_m = 60;                ///< length of the forest; the goal plane stands at clear_m + length_m
+  double half_width_m = 25;   ///< half the width of the forest; a flight beyond it has left the course
+  double trunk_height_m = 9;  ///< height of the trunks: above the altitude band, so that none is flown over
+  bool invisible = false;     ///< leaves the trees out of the images; they still collide
+  bool intangible = false;    ///< lets the aircraft pass through the trees; they are still drawn
 };
 
 template <typename Visitor>
@@ -45,16 +45,16 @@ std::vector<Obstacle> poisson_forest(const ForestConfig& config, std::uint64_t s
 /// ground.
 struct GoalpostsConfig {
   double ahead_m = 35;     ///< x of the near upright
-  double width_m = 5.639;  ///< between the insides of the uprights
-  /// Angle of the goal's plane; 0 is straight across the course. The far upright stands farther ahead. At 0
-  /// it would pass outside the cameras' view at the detection depth (our choice; the paper gives no angle).
+  double width_m = 5.639;  ///< distance between the insides of the uprights
+  /// Angle of the goal's plane; 0: straight across the course. The far upright stands farther ahead. At 0 it
+  /// would pass outside the cameras' view at the detection depth (our choice; the paper gives no angle).
   double turn_rad = 0.7;
-  double height_m = 9.144;        ///< top of the uprights
-  double crossbar_top_m = 3.048;  ///< top of the crossbar
-  double radius_m = 0.084;        ///< of every post and crossbar; a crossbar is 6 5/8 in wide
-  double pass_minimum_m =
-      0.5;  ///< the seed draws how far beside the course the near upright's surface stands
-  double pass_maximum_m = 2.0;  ///< at most so far
+  double height_m = 9.144;        ///< height of the uprights
+  double crossbar_top_m = 3.048;  ///< height of the crossbar's upper edge
+  double radius_m = 0.084;        ///< radius of uprights and crossbar; a crossbar is 6 5/8 in wide
+  /// Smallest distance between the course and the near upright's surface; the seed draws the distance.
+  double pass_minimum_m = 0.5;
+  double pass_maximum_m = 2.0;  ///< largest distance between the course and the near upright's surface
 };
 
 template <typename Visitor>
@@ -76,9 +76,9 @@ std::vector<Obstacle> goalposts(const GoalpostsConfig& config, std::uint64_t see
 /// A facade of equal windows across the way behind the goal (sim/scene/meshes.hpp): repeated texture, which
 /// misled the paper's detector without its invariance filter (docs/sources.md [1]).
 struct WindowsConfig {
-  double behind_goal_m = 12;  ///< from the goal plane to its face; flights end before it
-  double width_m = 60;        ///< of the facade
-  double height_m = 20;       ///< of the facade
+  double behind_goal_m = 12;  ///< distance of the facade behind the goal plane; flights end before it
+  double width_m = 60;        ///< width of the facade
+  double height_m = 20;       ///< height of the facade
 };
 
 template <typename Visitor>
@@ -95,15 +95,15 @@ std::vector<Obstacle> windows(const WindowsConfig& config, double goal_x_m);
 /// stand across it with a gate at y = 0. At a certain distance the neighbour of a paling lies at the
 /// disparity that the detector searches: with the long rig and 0.4 m between palings at 22 m instead of 10.
 struct FenceConfig {
-  double height_m = 2;            ///< of the palings
-  double spacing_m = 0.4;         ///< from one paling's axis to the next
-  double paling_radius_m = 0.05;  ///< of each paling
-  double rail_radius_m = 0.04;    ///< of the rails that the palings stand on
-  double beside_m = 3.5;          ///< y of the one along the course, from the first across to the goal
-  double first_across_m = 30;     ///< x of the first across
-  double across_apart_m = 25;     ///< and from it to the next, up to the goal
-  double reach_m = 15;            ///< those across end at this |y|
-  double opening_m = 3;           ///< the gap in them
+  double height_m = 2;            ///< height of the palings
+  double spacing_m = 0.4;         ///< distance between the axes of neighbouring palings
+  double paling_radius_m = 0.05;  ///< radius of a paling
+  double rail_radius_m = 0.04;    ///< radius of a rail that carries palings
+  double beside_m = 3.5;          ///< y of the fence that runs along the course
+  double first_across_m = 30;     ///< x of the first fence across the course
+  double across_apart_m = 25;     ///< distance between the fences across the course, up to the goal
+  double reach_m = 15;            ///< half length of the fences across the course
+  double opening_m = 3;           ///< width of the opening in the fences across the course, at y = 0
 };
 
 template <typename Visitor>

@@ -82,9 +82,9 @@ struct VisitorWithout {
 /// Altitudes within which the flight must stay after it has climbed into them; leaving them ends it. A flight
 /// over the trees or along the ground would prove nothing.
 struct BandConfig {
-  double minimum_altitude_m = 1;   ///< lower than this, once above it, ends the flight
-  double maximum_altitude_m = 6;   ///< higher than this ends the flight
-  double cruise_altitude_m = 4.5;  ///< what the stack is told to hold
+  double minimum_altitude_m = 1;   ///< altitude below which a flight ends, once it has been above it
+  double maximum_altitude_m = 6;   ///< altitude above which a flight ends
+  double cruise_altitude_m = 4.5;  ///< altitude that the planner holds where the way is free
 };
 
 /// How the scene looks. Whether obstacles are seen or felt is the course's business: forest.invisible,
@@ -95,36 +95,38 @@ struct WorldSection {
 
 struct CameraSection {
   CameraConfig cameras;
-  int rate_hz = 120;  ///< divides 1200 (Barry & Tedrake 2015: 120 Hz)
-  /// From the end of the exposure to the stack, a parameter and never a measurement. A frame bears the middle
-  /// of its left image's exposure, cameras.exposure_s / 2 + right_delay_s earlier.
+  int rate_hz = 120;  ///< stereo pairs per second; divides 1200 (Barry & Tedrake 2015: 120 Hz)
+  /// Time from the end of the exposure until the stack has the frame: a parameter, never a measurement. The
+  /// frame's time is the middle of its left exposure.
   double latency_s = 0.008;
-  double drop_probability = 0;  ///< of a frame never to arrive, each by itself, 0 .. 1
-  /// Images come as the rig's raw cameras give them, distorted and turned, and the stack rectifies them; the
-  /// calibration is raw/NAME.xml beside the rig's file (models/rigs/raw).
+  double drop_probability = 0;  ///< probability that a frame never arrives, for each frame by itself
+  /// Gives the stack raw images, distorted and unrectified, which it rectifies with the calibration
+  /// raw/NAME.xml beside the rig's file (models/rigs/raw).
   bool raw = false;
-  double raw_unit_m = 1;  ///< of that file's translations, 0.0001 .. 1000; 0.01 for the paper's rig: cm
+  double raw_unit_m = 1;  ///< unit of the translations in that calibration; 0.01 (cm) for the paper's rig
 };
 
 struct SensorSection {
-  std::uint64_t seed = 0;  ///< of every sensor's noise, the cameras' too; 0: the scenario's seed
-  SensorGrade grade = SensorGrade::nominal;  ///< what the keys beside it start from (docs/sensors.md)
+  std::uint64_t seed = 0;  ///< seed of the noise of all sensors and cameras; 0: the scenario's seed
+  /// Quality from which the keys beside it start: nominal has white noise and constant biases, consumer and
+  /// rough have all errors of real parts, ideal has none (docs/sensors.md).
+  SensorGrade grade = SensorGrade::nominal;
   SensorsConfig sensors;
 };
 
 /// What a pair costs the aircraft's computer, in simulated time, never measured during a flight. Off: every
 /// frame is looked at without delay. docs/thesis.md has the source of the numbers.
 struct ComputeConfig {
-  bool enabled = false;  ///< whether looking at a pair takes simulated time; off: none
-  /// Time on the aircraft's computer for one thread's time on the machine the costs below were measured on,
-  /// 0.001 .. 1000. 8.3: the original detector, 1.0 ms there, filled the 8.3 ms of a frame at 120 Hz on all
-  /// cores of a 1.7 GHz quad ARM Cortex-A9 (Barry & Tedrake 2015). A larger factor is a slower computer.
+  bool enabled = false;  ///< charges the aircraft's computer for each frame; off: detection takes no time
+  /// Time on the aircraft's computer over time on one thread of the machine that measured the costs below.
+  /// 8.3: the original detector takes 1.0 ms there and filled the 8.3 ms of a frame at 120 Hz on a 1.7 GHz
+  /// quad ARM Cortex-A9 (Barry & Tedrake 2015). A larger factor is a slower computer.
   double factor = 8.3;
-  double pushbroom_s = 0.0010;  ///< 0 .. 1; the original, rectification included (docs/sources.md [17])
-  /// Each depth beyond the first, as a share of the first: the edges are the same (docs/benchmarks.md).
-  double more_depths = 0.4;
-  double stereo_bm_s = 0.0090;    ///< StereoBM, 112 disparities (paper's rig, a Zen 4 core, 2026-11)
-  double stereo_sgbm_s = 0.0127;  ///< StereoSGBM likewise, five paths
+  double pushbroom_s =
+      0.0010;  ///< cost of one depth: the original detector with rectification (docs/sources.md [17])
+  double more_depths = 0.4;  ///< cost of each further depth, as a share of the first's (docs/benchmarks.md)
+  double stereo_bm_s = 0.0090;  ///< cost of StereoBM with 112 disparities on the paper's rig (docs/thesis.md)
+  double stereo_sgbm_s = 0.0127;  ///< cost of StereoSGBM with 112 disparities and five paths (docs/thesis.md)
 };
 
 template <typename Visitor>
@@ -138,12 +140,15 @@ void visit_fields(Visitor& visit, ComputeConfig& config) {
 }
 
 struct PerceptionSection {
-  DetectorKind detector = DetectorKind::pushbroom;  ///< true_depth and none look at no image
-  PushbroomPreset preset = PushbroomPreset::tuned;  ///< keys given under pushbroom win over it
+  /// Detector of the aircraft. true_depth is an oracle, none flies blind; neither looks at images.
+  DetectorKind detector = DetectorKind::pushbroom;
+  /// Parameter set from which perception.pushbroom starts; keys given there win. tuned: numbers and depths
+  /// tuned for the rig; robust: before tuning; original: the paper's.
+  PushbroomPreset preset = PushbroomPreset::tuned;
   PushbroomConfig pushbroom = tuned_pushbroom("long");
   StereoBmConfig stereo_bm;
   StereoSgbmConfig stereo_sgbm;
-  FullStereoCrop full_stereo;  ///< what of either's depths becomes hits
+  FullStereoCrop full_stereo;
   ComputeConfig compute;
 
   /// What one pair costs the aircraft's computer, simulated seconds; 0 for what is not computed there.
@@ -153,7 +158,9 @@ struct PerceptionSection {
       case DetectorKind::pushbroom:
         return compute.factor * compute.pushbroom_s *
                (1 + compute.more_depths *
-                        static_cast<double>(std::max<std::size_t>(1, pushbroom.depths_m.size()) - 1));
+                        (static_cast<double>(std::max(
+                             {std::size_t{1}, pushbroom.depths_m.size(), pushbroom.disparities_px.size()})) -
+                         1));
       case DetectorKind::stereo_bm:
         return compute.factor * compute.stereo_bm_s;
       case DetectorKind::stereo_sgbm:
@@ -167,14 +174,18 @@ struct PerceptionSection {
 };
 
 struct EstimationSection {
-  StateKind source = StateKind::filter;       ///< truth: the state is the true one, an oracle
-  FilterPreset preset = FilterPreset::tuned;  ///< keys given under filter win over it
+  StateKind source = StateKind::filter;  ///< source of the aircraft's state; truth is an oracle
+  /// Parameter set from which estimation.filter starts; keys given there win. original: the original
+  /// aircraft's; windy: with wind and gusts as states.
+  FilterPreset preset = FilterPreset::tuned;
   FilterConfig filter;
 };
 
 struct AutopilotSection {
-  PlanningPreset preset = PlanningPreset::economical;  ///< keys given beside it win over it
-  int replan_rate_hz = 120;                            ///< divides 1200
+  /// Parameter set of planning; keys given beside it win. economical plans when something new comes near,
+  /// thorough all the time.
+  PlanningPreset preset = PlanningPreset::economical;
+  int replan_rate_hz = 120;  ///< rate at which the planner may act; divides 1200
   AutopilotConfig autopilot;
 };
 
@@ -182,26 +193,27 @@ struct AutopilotSection {
 AutopilotSection planning_of(PlanningPreset preset);
 
 struct Scenario {
-  std::string name = "unnamed";  ///< letters, digits and - _ . : names the run's folder
-  std::uint64_t seed = 1000;     ///< of the course, and of everything else unless said otherwise
-  std::string rig = "long";  ///< a name in models/rigs, or a rig file, looked for beside the scenario first
-  Course course = Course::forest;                            ///< what stands in the way
-  double time_limit_s = 30;                                  ///< of simulated time
-  Eigen::Vector3d wind_world_mps = Eigen::Vector3d::Zero();  ///< mean, at wind.reference_height_m
-  WindConfig wind;                                           ///< shear, turbulence, a gust, shelter
+  std::string name = "unnamed";  ///< name of the run's folder: letters, digits and - _ . :
+  std::uint64_t seed =
+      1000;  ///< seed of the course, the wind and, unless sensors.seed says otherwise, the sensors
+  std::string rig = "long";  ///< stereo rig: a name in models/rigs, or a rig file, relative to the scenario
+  Course course = Course::forest;  ///< kind of course; the group of the same name describes it
+  double time_limit_s = 30;        ///< simulated time after which a flight ends
+  Eigen::Vector3d wind_world_mps = Eigen::Vector3d::Zero();  ///< mean wind at wind.reference_height_m
+  WindConfig wind;
   BandConfig band;
   ForestConfig forest;
   GoalpostsConfig goalposts;
   WindowsConfig windows;
   FenceConfig fence;
   LaunchConfig launch;
-  Airframe airframe;        ///< what the stack believes in
-  MismatchConfig mismatch;  ///< how far the aircraft that flies is from it
+  Airframe airframe;        ///< as the stack believes
+  MismatchConfig mismatch;  ///< of the aircraft that flies
   ActuatorsConfig actuators;
   WorldSection world;
   CameraSection cameras;
   SensorSection sensors;
-  std::vector<FaultConfig> faults;  ///< of sensors and cameras, by schedule
+  std::vector<FaultConfig> faults;
   PerceptionSection perception;
   EstimationSection estimation;
   AutopilotSection autopilot = planning_of(PlanningPreset::economical);

@@ -9,36 +9,35 @@ namespace understory {
 /// Effects of the cameras on the image. All but noise_gray are off by default and then cost neither
 /// arithmetic nor random draws. docs/cameras.md measures each effect and its cost.
 struct CameraConfig {
-  bool lens_cap = false;    ///< black images (proof against self-deception); noise still applies
+  bool lens_cap = false;    ///< makes the images black, but for noise: a check that vision matters
   double noise_gray = 2.0;  ///< standard deviation of the sensor noise, gray levels, independent per pixel
   double view_distance_m =
-      40;  ///< obstacles farther away than this are not drawn (they are a pixel or two wide)
+      40;  ///< distance beyond which obstacles are not drawn; they are a pixel or two wide
 
-  /// The shutter stands open this long, s, 0 .. 0.02; the image's moment is the middle. Outdoors such
-  /// cameras expose for some 0.1 to 5 ms (our assumption); 0: an instant.
+  /// Time for which the shutter is open; a frame's time is its middle. Outdoors such cameras expose for some
+  /// 0.1 to 5 ms (our assumption). 0: an instant.
   double exposure_s = 0;
-  /// Pictures rendered over the exposure and averaged, 1 .. 64: each costs a rendering. Steps between them
-  /// show where an edge moves more pixels than there are pictures; at 4 ms nothing the planner cares for
-  /// does.
+  /// Number of pictures that are rendered over the exposure and averaged; each costs a rendering. At 4 ms
+  /// more than four change nothing for the planner.
   int exposure_views = 4;
-  /// Light gathered by a pixel over what the rendering takes for granted, 0.001 .. 10: less at dusk.
-  double light = 1;
-  double gain = 1;  ///< of the amplifier after the pixel, 0.1 .. 64: gray levels read over gray levels seen
-  /// Electrons in a pixel at gray 255 and gain 1; their number varies by its root (shot noise). 0: no such
-  /// noise. Some 10,000 in a 6 um pixel (our assumption). 0 .. 1e6
+  double light = 1;  ///< light that a pixel gathers, over that of the rendering; less than 1 at dusk
+  double gain = 1;   ///< gain of the amplifier behind the pixel
+  /// Electrons in a pixel at gray 255 and gain 1; their number varies by its root (shot noise). Some 10,000
+  /// in a pixel of 6 um (our assumption). 0: no shot noise.
   double full_well_e = 0;
-  /// n of the falloff cos^n of the angle to the optical axis, 0 .. 16: 4 for a plain lens (the cosine-fourth
+  /// Exponent n of the falloff cos^n of the angle to the optical axis: 4 for a plain lens (the cosine-fourth
   /// law), 0 for none.
   double vignetting_power = 0;
 
-  /// The right image stands this much lower than the stack believes, px of the image the camera gives.
+  /// Height by which the right image stands lower than the stack believes, in pixels of the camera's image.
   double vertical_misalignment_px = 0;
-  /// The right camera's place less what the stack believes, along the right camera's rectified axes (x right,
-  /// y down, z forward), m, -0.1 .. 0.1: a bent baseline.
+  /// Displacement of the right camera from where the stack believes it, along its rectified axes (x right, y
+  /// down, z forward): a bent baseline.
   Eigen::Vector3d flex_position_m = Eigen::Vector3d::Zero();
-  /// And its turn about them, rad, -0.1 .. 0.1: a rotation vector.
+  /// Rotation of the right camera from what the stack believes, about its rectified axes, as a rotation
+  /// vector.
   Eigen::Vector3d flex_rotation_rad = Eigen::Vector3d::Zero();
-  double right_delay_s = 0;  ///< the right image is exposed this much later than the left, s, 0 .. 0.02
+  double right_delay_s = 0;  ///< time by which the right image is exposed later than the left
 
   std::int64_t exposure_ns() const { return std::llround(exposure_s * 1e9); }
   std::int64_t right_delay_ns() const { return std::llround(right_delay_s * 1e9); }

@@ -8,14 +8,15 @@ namespace understory {
 constexpr int physics_rate_hz = 1200;
 constexpr std::int64_t time_of_step_ns(std::int64_t step) { return step * 1'000'000'000 / physics_rate_hz; }
 
-/// Contents and look of a scene.
+/// Contents and appearance of a scene.
 struct WorldConfig {
-  bool obstacles_visible = true;   ///< false: they collide and are not drawn (proof against self-deception)
-  bool obstacles_tangible = true;  ///< false: drawn, and harmless
-  double bark_contrast =
-      0.35;  ///< standard deviation of the bark's brightness over its mean; frozen, see models/README
-  double ground_contrast = 0.30;   ///< the same of the ground
-  std::uint64_t texture_seed = 1;  ///< of the procedural noise, not of a flight
+  bool obstacles_visible = true;  ///< draws the obstacles (forest.invisible is the key)
+  bool obstacles_tangible =
+      true;  ///< lets the aircraft collide with the obstacles (forest.intangible is the key)
+  /// Standard deviation of the bark's brightness over its mean (models/README.md).
+  double bark_contrast = 0.35;
+  double ground_contrast = 0.30;   ///< standard deviation of the ground's brightness over its mean
+  std::uint64_t texture_seed = 1;  ///< seed of the textures; the same for all flights
 };
 
 template <typename Visitor>

@@ -12,26 +12,29 @@ namespace understory {
 /// resolution. Effects at zero are off; the grade `consumer` sets those of a real part
 /// (sim/sensors/sensor_grades.hpp, docs/sensors.md).
 struct ImuConfig {
-  double gyro_noise_radps = 0.0024;  ///< rms per sample, 0.14 deg/s: 0.01 deg/s/sqrt(Hz) over 200 Hz
-  double gyro_bias_radps = 0.0087;   ///< sigma of the constant bias, 0.5 deg/s: remains after a start at rest
-  double gyro_bias_instability_radps = 0;  ///< floor of the Allan deviation: sim/sensors/bias_wander.hpp
-  double gyro_walk_radpsps_rthz = 0;       ///< rate random walk, rad/s per root second (IEEE 952's K)
-  double gyro_scale = 0;                   ///< sigma of the constant scale error per axis, 0.01: one per cent
+  double gyro_noise_radps = 0.0024;  ///< noise of one gyro sample, rms: 0.01 deg/s/sqrt(Hz) over 200 Hz
+  double gyro_bias_radps = 0.0087;   ///< standard deviation of the gyro's constant bias: 0.5 deg/s
+  double gyro_bias_instability_radps =
+      0;                              ///< floor of the gyro's Allan deviation (sim/sensors/bias_wander.hpp)
+  double gyro_walk_radpsps_rthz = 0;  ///< random walk of the gyro's bias (K of IEEE 952)
+  double gyro_scale = 0;  ///< standard deviation of the gyro's scale error, per axis; 0.01: one per cent
   double gyro_misalignment =
-      0;  ///< sigma per pair of axes: share of one axis that appears on the other (rad)
-  double gyro_vibration_radpspn = 0;               ///< amplitude per newton of thrust
-  double gyro_range_radps = 17.4533;               ///< 1000 deg/s
-  double gyro_step_radps = 0.000532;               ///< 16 bits over the range: 32.8 counts per deg/s
-  double accelerometer_noise_mps2 = 0.05;          ///< rms per sample: 400 ug/sqrt(Hz) over 200 Hz is 0.055
-  double accelerometer_bias_mps2 = 0.05;           ///< sigma of the constant bias after calibration (5 mg)
-  double accelerometer_bias_instability_mps2 = 0;  ///< floor of the Allan deviation
-  double accelerometer_walk_mps2ps_rthz = 0;       ///< acceleration random walk, m/s^2 per root second
-  double accelerometer_scale = 0;                  ///< as the gyro's
-  double accelerometer_misalignment = 0;           ///< as the gyro's
-  double accelerometer_vibration_mps2pn = 0;       ///< amplitude per newton of thrust
-  double accelerometer_range_mps2 = 156.9;         ///< 16 g: the catapult's 5 g stays inside
-  double accelerometer_step_mps2 = 0.00479;        ///< 2048 counts per g
-  /// Turns a second at 1 N of thrust; a propeller's thrust grows with their square. 1 / (D^2 sqrt(C_T rho))
+      0;  ///< standard deviation of the share of one axis that the gyro shows on another
+  double gyro_vibration_radpspn =
+      0;  ///< amplitude of the propeller's vibration in the gyro per newton of thrust
+  double gyro_range_radps = 17.4533;       ///< largest rate that the gyro measures: 1000 deg/s
+  double gyro_step_radps = 0.000532;       ///< resolution of the gyro: 16 bits over the range
+  double accelerometer_noise_mps2 = 0.05;  ///< noise of one accelerometer sample, rms: 400 ug/sqrt(Hz)
+  double accelerometer_bias_mps2 = 0.05;   ///< standard deviation of the accelerometer's constant bias: 5 mg
+  double accelerometer_bias_instability_mps2 = 0;  ///< floor of the accelerometer's Allan deviation
+  double accelerometer_walk_mps2ps_rthz = 0;       ///< random walk of the accelerometer's bias
+  double accelerometer_scale = 0;  ///< standard deviation of the accelerometer's scale error, per axis
+  double accelerometer_misalignment =
+      0;  ///< standard deviation of the share of one axis that shows on another
+  double accelerometer_vibration_mps2pn = 0;  ///< amplitude of the propeller's vibration per newton of thrust
+  double accelerometer_range_mps2 = 156.9;    ///< largest specific force that is measured: 16 g
+  double accelerometer_step_mps2 = 0.00479;   ///< resolution of the accelerometer: 2048 counts per g
+  /// Frequency of the vibration at 1 N of thrust; the thrust grows with its square. 1 / (D^2 sqrt(C_T rho))
   /// with an 8 inch propeller (0.203 m) and a thrust coefficient of 0.1 (typical).
   double propeller_hz_at_1n = 70;
 };
@@ -64,17 +67,17 @@ void visit_fields(Visitor& visit, ImuConfig& config) {
 /// the air's speed along it. Airspeed is the root of the pressure, so below about 4 to 5 m/s (10 to 15 Pa)
 /// noise and bias dominate.
 struct PitotConfig {
-  double pressure_noise_pa = 1.5;   ///< rms per sample
-  double pressure_bias_pa = 1.0;    ///< sigma of the bias that remains after zeroing on the ground
-  double pressure_range_pa = 6894;  ///< 1 psi
-  double pressure_step_pa = 1.05;   ///< 13107 counts (80 % of 14 bits) over the two-sided range
-  double bias_mps = 0.0;            ///< an extra constant error of the airspeed, for experiments
-  double dead_zone_pa = 0;          ///< smaller pressures read zero, as drivers do against false wind
+  double pressure_noise_pa = 1.5;  ///< noise of one pressure sample, rms
+  double pressure_bias_pa = 1.0;  ///< standard deviation of the bias that remains after zeroing on the ground
+  double pressure_range_pa = 6894;  ///< largest pressure that is measured: 1 psi
+  double pressure_step_pa = 1.05;  ///< resolution of the pressure: 13107 counts over plus and minus the range
+  double bias_mps = 0.0;           ///< further constant error of the airspeed, for experiments
+  double dead_zone_pa = 0;         ///< pressure below which the reading is zero, as drivers do on the ground
   /// Angle between air and tube up to which the reading is correct. Total-pressure tubes keep within 1 % up
   /// to about 10 to 25 deg, by the shape of the nose (Gracey, Letko & Russell 1951, NACA TN 2331).
   double recovery_angle_rad = 0.26;
-  /// Share of the pressure lost per square radian beyond that angle; 2: a quarter is gone 20 deg on
-  /// (typical). Zero: no loss.
+  /// Share of the pressure lost per square radian beyond recovery_angle_rad; 2: a quarter is lost 20 deg
+  /// farther (typical); 0: no loss.
   double recovery_loss = 0;
 };
 
@@ -94,14 +97,15 @@ void visit_fields(Visitor& visit, PitotConfig& config) {
 /// 0.3 m of noise, and an offset that wanders as a first-order Gauss-Markov process, zero at the first
 /// sample.
 struct BarometerConfig {
-  double noise_m = 0.3;        ///< rms per sample
-  double step_m = 0.1;         ///< resolution
-  double drift_m = 0.5;        ///< stationary sigma of the wandering offset
-  double drift_time_s = 60.0;  ///< its time constant: weather, heat, airframe pressure
-  /// Altitude read too high per newton of thrust. The propeller's suction lowers the static pressure before
-  /// it (momentum theory, sharpest at the disc): T / 2A times 1 - x / sqrt(x^2 + R^2) at a distance x. An 8
-  /// inch disc (A = 0.032 m^2) has 15.4 Pa per newton or 1.3 m of altitude at the disc, 0.39 m at x = 0.1 m
-  /// and 0.14 m at 0.2 m, with 11.8 Pa per metre.
+  double noise_m = 0.3;  ///< noise of one sample, rms
+  double step_m = 0.1;   ///< resolution of the altitude
+  double drift_m = 0.5;  ///< standard deviation of the slowly wandering error
+  double drift_time_s =
+      60.0;  ///< time constant of the wandering error: weather, heat, pressure in the airframe
+  /// Error of the altitude per newton of thrust, upwards. The propeller's suction lowers the static pressure
+  /// ahead of it by T / 2A times 1 - x / sqrt(x^2 + R^2) at a distance x (momentum theory). An 8 inch disc
+  /// (A = 0.032 m^2) makes 15.4 Pa per newton, 1.3 m of altitude, at the disc, 0.39 m at x = 0.1 m and 0.14 m
+  /// at 0.2 m, with 11.8 Pa per metre.
   double wash_m_per_n = 0;
 };
 
@@ -118,15 +122,15 @@ void visit_fields(Visitor& visit, BarometerConfig& config) {
 /// near a motor: 0.5 uT of noise and of hard iron left after calibration. The field is that of northern
 /// mid-latitudes, towards world +y and down.
 struct MagnetometerConfig {
-  double field_ut = 48.0;            ///< strength
-  double inclination_rad = 1.16937;  ///< 67 deg below the horizon
-  double noise_ut = 0.5;             ///< rms per axis and sample
-  double hard_iron_ut = 0.5;         ///< sigma of the constant error, per axis
-  /// Sigma of the six numbers of the symmetric matrix by which iron on board distorts the field: soft iron
-  /// and scale, as shares of the field.
+  double field_ut = 48.0;            ///< strength of the magnetic field
+  double inclination_rad = 1.16937;  ///< angle of the field below the horizon: 67 deg
+  double noise_ut = 0.5;             ///< noise of one sample, rms per axis
+  double hard_iron_ut = 0.5;         ///< standard deviation of the constant error, per axis
+  /// Standard deviation of the six numbers of the symmetric matrix by which iron on board distorts the field
+  /// (soft iron and scale), as shares of the field.
   double soft_iron = 0;
-  double range_ut = 130.0;  ///< readings end at plus and minus this
-  double step_ut = 0.073;   ///< readings are whole multiples of it; 0: exact
+  double range_ut = 130.0;  ///< largest field that is measured, per axis
+  double step_ut = 0.073;   ///< resolution of the field; 0: exact
 };
 
 template <typename Visitor>
@@ -145,13 +149,15 @@ void visit_fields(Visitor& visit, MagnetometerConfig& config) {
 /// position's error wanders with satellites and reflections: a first-order Gauss-Markov process that starts
 /// in its stationary distribution. Across a forest it is nearly constant.
 struct GpsConfig {
-  bool enabled = false;               ///< off: the original's avoidance used no GPS
-  double delay_s = 0.2;               ///< from the moment of measurement to the arrival
-  double velocity_noise_mps = 0.2;    ///< rms per axis and fix
-  double position_noise_m = 0.3;      ///< rms per axis and fix, the part that is new with every fix (typical)
-  double position_drift_m = 2.1;      ///< sigma per horizontal axis of the wandering part: 2.5 m / 1.18
-  double position_drift_time_s = 60;  ///< its time constant (typical)
-  double vertical_factor = 1.5;  ///< height errors are larger by this factor: no satellites below (typical)
+  bool enabled = false;  ///< whether the aircraft has a GPS receiver; the original's avoidance used none
+  double delay_s = 0.2;  ///< time from the measurement of a fix to its arrival
+  double velocity_noise_mps = 0.2;  ///< noise of one velocity, rms per axis
+  double position_noise_m =
+      0.3;  ///< noise of one position that is new with every fix, rms per axis (typical)
+  double position_drift_m =
+      2.1;  ///< standard deviation of the slowly wandering position error, per level axis
+  double position_drift_time_s = 60;  ///< time constant of the wandering position error (typical)
+  double vertical_factor = 1.5;       ///< ratio of vertical to level errors (typical)
 };
 
 template <typename Visitor>
@@ -167,11 +173,11 @@ void visit_fields(Visitor& visit, GpsConfig& config) {
 
 /// Rates must divide 1200 Hz (divides_physics_rate; whoever loads a scenario checks).
 struct SensorsConfig {
-  int imu_rate_hz = 200;          ///< divides 1200
-  int pitot_rate_hz = 50;         ///< divides 1200
-  int barometer_rate_hz = 50;     ///< divides 1200
-  int magnetometer_rate_hz = 50;  ///< divides 1200
-  int gps_rate_hz = 5;            ///< fixes, where sensors.gps.enabled
+  int imu_rate_hz = 200;          ///< samples of the IMU per second; divides 1200
+  int pitot_rate_hz = 50;         ///< samples of the pitot tube per second; divides 1200
+  int barometer_rate_hz = 50;     ///< samples of the barometer per second; divides 1200
+  int magnetometer_rate_hz = 50;  ///< samples of the magnetometer per second; divides 1200
+  int gps_rate_hz = 5;  ///< fixes of the GPS receiver per second, where sensors.gps.enabled; divides 1200
   ImuConfig imu;
   PitotConfig pitot;
   BarometerConfig barometer;
@@ -232,11 +238,12 @@ inline constexpr std::array<std::pair<std::string_view, FaultKind>, 5> fault_kin
 
 /// One entry of a scenario's `faults`: at_s <= t < at_s + duration_s, by the moment of measurement.
 struct FaultConfig {
-  FaultySensor sensor = FaultySensor::pitot;  ///< that fails
-  FaultKind kind = FaultKind::dropout;        ///< how it fails (docs/sensors.md)
-  double at_s = 0;           ///< of simulated time, which begins 0.25 s of rest before the catapult fires
-  double duration_s = 1000;  ///< beyond any flight by default
-  double value = 0;          ///< in the sensor's unit (rad/s, m/s^2, m/s, m, uT); see FaultKind
+  FaultySensor sensor = FaultySensor::pitot;  ///< sensor that fails
+  FaultKind kind = FaultKind::dropout;        ///< kind of the failure (docs/sensors.md)
+  double at_s = 0;           ///< simulated time at which the sensor fails; the catapult fires at 0.25 s
+  double duration_s = 1000;  ///< time for which the sensor fails; the default is longer than any flight
+  double value =
+      0;  ///< size of a bias, limit or blocked reading, in the sensor's unit (rad/s, m/s^2, m/s, m, uT)
 };
 
 template <typename Visitor>
