@@ -148,7 +148,7 @@ void visit_fields(Visitor& visit, HeadingConfig& config) {
 /// velocity has changed since, so that corrections made meanwhile are not applied twice.
 struct GroundVelocityConfig {
   bool enabled = true;     ///< corrects the velocity with GPS, where the aircraft has a receiver
-  double sigma_mps = 0.2;  ///< m/s, 0.01..10: standard deviation of one GPS velocity, per axis
+  double sigma_mps = 0.2;  ///< m/s, 0.01..10: standard deviation of a GPS velocity, per axis (docs/sources.md [15])
 };
 
 template <typename Visitor>

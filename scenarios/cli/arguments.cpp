@@ -53,23 +53,24 @@ fs::path data_root() {
       "models/ and scenarios/ are missing: install them, or set UNDERSTORY_ROOT to their folder");
 }
 
-std::vector<std::string> scenario_names() { return yaml_names(data_root() / "scenarios" / "library"); }
-
-fs::path scenario_file(const std::string& argument) {
+fs::path library_file(const std::string& argument, const char* folder, const char* noun) {
   std::error_code ignored;
-  const bool is_folder =
-      fs::is_directory(argument, ignored);  // may be called as a scenario of the library is
+  const bool is_folder = fs::is_directory(argument, ignored);  // may be called as a file of the library is
   if (!is_folder && fs::exists(argument, ignored)) return argument;
   const fs::path in_root = data_root() / argument;  // scenarios/library/forest.yaml, from any folder
   if (fs::is_regular_file(in_root, ignored)) return in_root;
   const bool is_name = argument.find('/') == std::string::npos && !argument.ends_with(".yaml");
-  const fs::path named = data_root() / "scenarios" / "library" / (argument + ".yaml");
+  const fs::path library = data_root() / "scenarios" / folder, named = library / (argument + ".yaml");
   if (is_name && fs::exists(named, ignored)) return named;
-  if (is_folder) throw ScenarioError(fmt::format("{}: expected a scenario file, this is a folder", argument));
-  const std::vector<std::string> names = scenario_names();
-  throw ScenarioError(fmt::format("{}: expected a scenario file, or one of the library: {}{}", argument,
+  if (is_folder) throw ScenarioError(fmt::format("{}: expected a {} file, this is a folder", argument, noun));
+  const std::vector<std::string> names = yaml_names(library);
+  throw ScenarioError(fmt::format("{}: expected a {} file, or one of the library: {}{}", argument, noun,
                                   fmt::join(names, ", "), did_you_mean(argument, names)));
 }
+
+std::vector<std::string> scenario_names() { return yaml_names(data_root() / "scenarios" / "library"); }
+
+fs::path scenario_file(const std::string& argument) { return library_file(argument, "library", "scenario"); }
 
 std::vector<std::string> rig_names() { return yaml_names(data_root() / "models" / "rigs"); }
 
@@ -84,29 +85,31 @@ fs::path rig_path(const std::string& argument) {
 }
 
 void add_settings_option(Command& command, std::vector<std::string>& settings) {
-  command.texts("--set", "KEY=VALUE", settings, "as in the scenario file: forest.length_m=30");
+  command.texts("--set", "KEY=VALUE", settings,
+                "override a key of the scenario, for example forest.length_m=30; repeatable");
 }
 
 void add_with_option(Command& command, std::vector<std::string>& with) {
-  command.texts("--with", "FILE", with, "keys that go over the scenario's own: what tune leaves");
+  command.texts("--with", "FILE", with,
+                "YAML file of keys that override the scenario's, for example best.yaml of tune; repeatable");
 }
 
 void add_vision_options(Command& command, VisionConfigSources& sources) {
   command.choice("--preset", sources.preset, pushbroom_preset_names,
-                 "the thresholds of the pushbroom detector; tuned: those of the recordings' rig");
+                 "parameter set of the pushbroom detector; tuned: tuned for the recordings' rig");
   add_with_option(command, sources.with);
   command.texts("--set", "KEY=VALUE", sources.settings,
-                "of perception and autopilot.map, as in a scenario file: perception.depths_m=[10.1,7,5], "
-                "perception.pushbroom.minimum_edge_sum=300, autopilot.map.max_age_s=10");
+                "override a key of perception or autopilot.map, for example perception.depths_m=[10.1,7,5]; "
+                "repeatable");
 }
 
 void add_renderer_option(Command& command, RendererKind& renderer) {
   command.choice("--renderer", renderer, renderer_names,
-                 "who draws: software, a GPU where there is one, a GPU or else osmesa");
+                 "OpenGL backend: osmesa (CPU), egl (a GPU if there is one, else the CPU), auto");
 }
 
 void add_jobs_option(Command& command, int& jobs, const std::string& what) {
-  command.whole("--jobs", jobs, 1, 1024, what + " at a time (default: one a core)");
+  command.whole("--jobs", jobs, 1, 1024, "number of " + what + " at a time (default: number of cores)");
 }
 
 int jobs_or_cores(int jobs) {
@@ -114,10 +117,12 @@ int jobs_or_cores(int jobs) {
 }
 
 void add_calibration_options(Command& command, CalibrationArguments& arguments) {
-  command.choice("--unit", arguments.meters_per_unit, meters_per_unit, "of the calibration's translations");
+  command.choice("--unit", arguments.meters_per_unit, meters_per_unit,
+                 "unit of the lengths in the calibration");
   command.text("--size", "WxH", arguments.size,
-               "of the calibrated images in pixels, where the files do not tell");
-  command.number("--depth", arguments.depth_m, 0.1, 1000, "to look at, m (default: the rig file's, else 10)");
+               "size of the calibrated images, for example 376x240, where the files do not state it");
+  command.number("--depth", arguments.depth_m, 0.1, 1000,
+                 "detection depth in metres (default: the rig file's, else 10)");
 }
 
 CalibrationOptions calibration_options(const CalibrationArguments& arguments) {
@@ -129,7 +134,8 @@ CalibrationOptions calibration_options(const CalibrationArguments& arguments) {
   options.width_px = number_in<int>(arguments.size.substr(0, cross));
   options.height_px = number_in<int>(arguments.size.substr(cross + 1));
   if (!options.width_px || !options.height_px)
-    throw ScenarioError(fmt::format("--size {}: expected WIDTHxHEIGHT in pixels: 376x240", arguments.size));
+    throw ScenarioError(
+        fmt::format("--size {}: must be WIDTHxHEIGHT in pixels, for example 376x240", arguments.size));
   return options;
 }
 

@@ -43,6 +43,8 @@ std::filesystem::path rig_path(const std::string& argument);
 /// The file that a scenario argument means: one that exists, or a name in scenarios/library. Throws
 /// ScenarioError, naming what there is, where it means none.
 std::filesystem::path scenario_file(const std::string& argument);
+/// The same of a file in another folder of scenarios/: library_file("gate", "campaigns", "campaign").
+std::filesystem::path library_file(const std::string& argument, const char* folder, const char* noun);
 /// The names that either may be given as.
 std::vector<std::string> rig_names();
 std::vector<std::string> scenario_names();

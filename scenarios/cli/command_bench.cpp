@@ -95,22 +95,23 @@ int run_bench(const BenchArguments& arguments) {
 
 void add_bench_command(CommandLine& line) {
   const auto arguments = std::make_shared<BenchArguments>();
-  Command& command =
-      line.add({"bench", "time the detector against OpenCV's remap and matchers, or whole flights",
-                "understory bench --pairs 16 --json bench.json"});
+  Command& command = line.add(
+      {"bench", "time the detector against OpenCV's remap, StereoBM and StereoSGBM, or time whole flights",
+       "understory bench --pairs 16 --json bench.json"});
   const auto inputs = command.texts("INPUT", "FILE", arguments->inputs,
-                                    "recorded pairs, as for detect (default: rendered pairs, none twice)");
+                                    "recorded pairs, as for detect (default: rendered pairs)");
   command.text("--rig", "RIG", arguments->rig,
-               "as for rig (default: the long rig's raw cameras, or INPUT's own)");
+               "rig or calibration, as for rig (default: the long rig's raw cameras, or INPUT's)");
   add_calibration_options(command, *arguments);
-  command.whole("--pairs", arguments->pairs, 1, 10000, "how many");
-  command.whole("--rounds", arguments->rounds, 1, 100000, "over all pairs");
-  command.text("--json", "FILE", arguments->json, "also write the rows there");
+  command.whole("--pairs", arguments->pairs, 1, 10000, "number of rendered pairs");
+  command.whole("--rounds", arguments->rounds, 1, 100000, "number of times that all pairs are timed");
+  command.text("--json", "FILE", arguments->json, "also write the table as JSON");
   command
       .flag("--closed-loop", arguments->closed_loop,
-            "time whole flights through the library's forests instead, alone and two side by side")
+            "time whole flights of the library's forests, one and two at a time")
       .excludes(inputs);
-  command.whole("--flights", arguments->flights, 1, 1000, "with --closed-loop: of each kind");
+  command.whole("--flights", arguments->flights, 1, 1000,
+                "with --closed-loop: number of flights of each forest");
   add_settings_option(command, arguments->settings);
   add_renderer_option(command, arguments->renderer);
   command.runs([arguments] { return run_bench(*arguments); });

@@ -117,9 +117,11 @@ Finish fly_on_slurm(const CampaignFolder& folder, const Campaign& campaign,
 
 int run_campaign(const CampaignArguments& arguments) {
   ProgressLine line;
-  Campaign campaign = load_campaign(arguments.file, scenario_file, [&](std::size_t done, std::size_t of) {
-    line.show(fmt::format("{} of {} conditions read", done, of), done, of - done);
-  });
+  Campaign campaign =
+      load_campaign(library_file(arguments.file, "campaigns", "campaign"), scenario_file,
+                    [&](std::size_t done, std::size_t of) {
+                      line.show(fmt::format("{} of {} conditions read", done, of), done, of - done);
+                    });
   line.clear();
   campaign.renderer = word_for(arguments.renderer);
   const std::vector<Scenario> scenarios = scenarios_of(campaign, arguments.file);
@@ -175,7 +177,7 @@ int run_shard(const ShardArguments& arguments) {
   const Campaign campaign = read_campaign(folder);
   if (arguments.number >= arguments.of)
     throw ScenarioError(
-        fmt::format("--number {}: expected less than --of {}", arguments.number, arguments.of));
+        fmt::format("--number {}: must be less than --of {}", arguments.number, arguments.of));
   require_identity(folder, campaign,
                    identity_of(scenarios_of(campaign, folder.path.string()), data_root() / "models",
                                renderer_named(campaign.renderer)));
@@ -193,37 +195,42 @@ int run_shard(const ShardArguments& arguments) {
 void add_campaign_command(CommandLine& line) {
   const auto arguments = std::make_shared<CampaignArguments>();
   Command& command =
-      line.add({"campaign", "fly many seeds in many conditions, a process each",
-                "understory campaign scenarios/campaigns/gate.yaml --out results/gate",
-                "every flight was flown, whatever its outcome", "a flight could not be flown"});
-  command.text("file", "FILE", arguments->file, "what to fly: see docs/campaigns.md").required();
+      line.add({"campaign", "fly many seeds in many conditions, each flight in a process of its own",
+                "understory campaign gate --out results/gate", "every flight was flown, whatever its outcome",
+                "a flight could not be flown"});
+  command
+      .text("file", "FILE", arguments->file,
+            "campaign file, or a name in scenarios/campaigns (docs/campaigns.md)")
+      .required();
   command.text("--out", "FOLDER", arguments->out, "results folder (default: results/NAME)");
   add_jobs_option(command, arguments->jobs, "flights");
   add_renderer_option(command, arguments->renderer);
-  command.choice("--engine", arguments->engine, engine_names, "processes of this machine, or a job array");
-  command.whole("--shards", arguments->slurm.shards, 1, 10000, "slurm: tasks of the job array");
+  command.choice("--engine", arguments->engine, engine_names,
+                 "where flights run: on this machine, or as a Slurm job array");
+  command.whole("--shards", arguments->slurm.shards, 1, 10000,
+                "with slurm: number of tasks in the job array");
   command.texts("--sbatch", "OPTION", arguments->slurm.options,
-                "slurm: an option of sbatch, --sbatch=--partition=short");
-  command.flag("--no-wait", arguments->no_wait, "slurm: submit and leave");
-  command.flag("--resume", arguments->resume, "go on with what the folder holds");
+                "with slurm: an option for sbatch, for example --sbatch=--partition=short; repeatable");
+  command.flag("--no-wait", arguments->no_wait, "with slurm: return after the job is submitted");
+  command.flag("--resume", arguments->resume, "continue the campaign that the folder holds");
   command.flag("--force", arguments->force,
-               "write into a folder that holds other files; none of them is replaced");
+               "allow a folder that holds other files; none of them is replaced");
   command.flag("--print-tasks", arguments->print_tasks,
-               "fly nothing: print a command for each flight; collect gathers what they leave");
-  command.text("--junit", "FILE", arguments->junit, "write a test case per flight as JUnit XML");
-  command.flag("--keep-runs", arguments->keeps_runs, "keep each flight's run folder in runs/");
+               "print a command for each flight and fly nothing; collect gathers the results later");
+  command.text("--junit", "FILE", arguments->junit, "write each flight as a JUnit test case (XML)");
+  command.flag("--keep-runs", arguments->keeps_runs, "keep the run folder of each flight in FOLDER/runs");
   command.runs([arguments] { return run_campaign(*arguments); });
 }
 
 void add_shard_command(CommandLine& line) {
   const auto arguments = std::make_shared<ShardArguments>();
   Command& command =
-      line.add({"shard", "fly a share of a campaign: what campaign --engine slurm submits",
+      line.add({"shard", "fly a share of a campaign, as campaign --engine slurm submits it",
                 "understory shard results/gate --number 0 --of 8", "the share's flights were flown"});
-  command.text("folder", "FOLDER", arguments->folder, "the campaign's results folder").required();
-  command.whole("--number", arguments->number, 0, 9999, "which share, from 0").required();
-  command.whole("--of", arguments->of, 1, 10000, "how many shares there are").required();
-  command.whole("--jobs", arguments->jobs, 1, 1024, "flights at a time");
+  command.text("folder", "FOLDER", arguments->folder, "results folder of the campaign").required();
+  command.whole("--number", arguments->number, 0, 9999, "number of the share, from 0").required();
+  command.whole("--of", arguments->of, 1, 10000, "number of shares").required();
+  command.whole("--jobs", arguments->jobs, 1, 1024, "number of flights at a time");
   command.runs([arguments] { return run_shard(*arguments); });
 }
 

@@ -60,10 +60,10 @@ int report(const CampaignFolder& folder, const Campaign& campaign, const Collect
 
 void add_collect_command(CommandLine& line) {
   const auto folder = std::make_shared<std::string>();
-  Command& command = line.add({"collect", "gather the results that a campaign's flights left",
+  Command& command = line.add({"collect", "gather the results of a campaign's flights into tables",
                                "understory collect results/gate", "every flight was flown",
                                "a flight is missing or could not be flown"});
-  command.text("folder", "FOLDER", *folder, "the campaign's results folder").required();
+  command.text("folder", "FOLDER", *folder, "results folder of the campaign").required();
   command.runs([folder] {
     const CampaignFolder results{*folder};
     const Campaign campaign = read_campaign(results);
@@ -76,15 +76,19 @@ void add_collect_command(CommandLine& line) {
 
 void add_gate_command(CommandLine& line) {
   const auto arguments = std::make_shared<GateArguments>();
-  Command& command = line.add({"gate", "compare two campaigns seed by seed",
-                               "understory gate --baseline results/before --candidate results/after",
-                               "the change may pass", "success fell too far"});
-  command.text("--baseline", "FOLDER", arguments->baseline, "campaign of the program before the change")
+  Command& command =
+      line.add({"gate", "compare two campaigns flight by flight and say whether a change may pass",
+                "understory gate --baseline results/before --candidate results/after", "the change may pass",
+                "success fell too far"});
+  command
+      .text("--baseline", "FOLDER", arguments->baseline, "results folder of the campaign before the change")
       .required();
-  command.text("--candidate", "FOLDER", arguments->candidate, "campaign of the program with the change")
+  command
+      .text("--candidate", "FOLDER", arguments->candidate, "results folder of the campaign with the change")
       .required();
-  command.number("--max-drop", arguments->rule.max_drop, 0, 1, "share of goals that any condition may lose");
-  command.text("--junit", "FILE", arguments->junit, "write a test case per flight as JUnit XML");
+  command.number("--max-drop", arguments->rule.max_drop, 0, 1,
+                 "largest drop of the share of goals that a condition may have");
+  command.text("--junit", "FILE", arguments->junit, "write the comparison as JUnit test cases (XML)");
   command.runs([arguments] { return run_gate(*arguments); });
 }
 

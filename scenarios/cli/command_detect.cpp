@@ -73,34 +73,34 @@ int run_rig(const RigArguments& arguments) {
 
 void add_detect_command(CommandLine& line) {
   const auto arguments = std::make_shared<DetectArguments>();
-  Command& command = line.add({"detect", "find obstacles in recorded stereo images",
+  Command& command = line.add({"detect", "detect obstacles in recorded stereo images",
                                "understory detect left/ right/ --rig calibration/ --out detections",
-                               "every pair was looked at"});
+                               "every pair was searched"});
   command.texts("INPUT", "FILE", arguments->inputs,
-                "a EuRoC folder; a left and a right folder of images; a left and a right image; or a "
-                "side-by-side video",
+                "EuRoC folder; folders of left and right images; a left and a right image; or a side-by-side "
+                "video",
                 1, 2);
   command.text("--rig", "RIG", arguments->rig,
-               "rig or calibration: a file, a folder, or a name in models/rigs (default: the EuRoC folder's "
-               "own)");
+               "rig file, calibration file or folder, or a name in models/rigs (default: the EuRoC folder's "
+               "calibration)");
   add_calibration_options(command, *arguments);
   command.choice("--rectify", arguments->options.interpolation, interpolation_names,
-                 "raw images to the nearest pixel or bilinear");
+                 "how raw images are rectified: to the nearest pixel or bilinear");
   add_vision_options(command, arguments->options.vision);
   command.text("--poses", "FILE", arguments->poses,
-               "poses of the body: TUM (t tx ty tz qx qy qz qw) or EuRoC ground truth; makes map.ply");
-  command.text("--out", "FOLDER", arguments->out, "for what is found");
-  command.flag("--video", arguments->options.video, "one film instead of a picture per frame");
+               "poses of the body, TUM (t tx ty tz qx qy qz qw) or EuRoC ground truth; also writes map.ply");
+  command.text("--out", "FOLDER", arguments->out, "results folder");
+  command.flag("--video", arguments->options.video, "write one video instead of a picture per frame");
   command.runs([arguments] { return run_detect(*arguments); });
 }
 
 void add_rig_command(CommandLine& line) {
   const auto arguments = std::make_shared<RigArguments>();
-  Command& command = line.add({"rig", "show what a calibration means: disparities, depths, views",
+  Command& command = line.add({"rig", "print what a calibration means: disparities, depths, fields of view",
                                "understory rig long --out rig.svg"});
   command
       .text("FILE", "RIG", arguments->rig,
-            "a rig file, OpenCV XML or YAML, a folder of them, a EuRoC folder, or a name in models/rigs")
+            "rig file, OpenCV XML or YAML file or a folder of them, EuRoC folder, or a name in models/rigs")
       .required();
   add_calibration_options(command, *arguments);
   command.text("--out", "FILE", arguments->out,

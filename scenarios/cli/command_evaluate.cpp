@@ -28,11 +28,13 @@ struct EvaluateArguments {
 
 int run_evaluate(EvaluateArguments arguments) {
   EvaluationOptions options;
-  arguments.vision.one_depth = true;  // full stereo is cropped to one depth's interval, to be compared
+  arguments.vision.one_depth = true;         // full stereo is cropped to one depth's interval, to be compared
   read_vision_config(arguments.vision, "");  // what is wrong there shows before anything is recorded
   options.jobs = jobs_or_cores(arguments.jobs);
   fs::path out = arguments.out;
   std::error_code ignored;
+  if (arguments.inputs.size() == 1 && !fs::is_directory(arguments.inputs[0], ignored))
+    arguments.inputs[0] = library_file(arguments.inputs[0], "evaluations", "evaluation").string();
   const bool is_suite = arguments.inputs.size() == 1 && fs::is_regular_file(arguments.inputs[0], ignored);
   if (out.empty()) {
     const fs::path input = fs::absolute(arguments.inputs[0]).lexically_normal();  // "rec/", "."
@@ -66,14 +68,16 @@ int run_evaluate(EvaluateArguments arguments) {
 void add_evaluate_command(CommandLine& line) {
   const auto arguments = std::make_shared<EvaluateArguments>();
   Command& command =
-      line.add({"evaluate", "judge detections against recorded truth, and against StereoBM as the paper did",
+      line.add({"evaluate", "compare detections with the recorded truth, and with StereoBM as the paper did",
                 "understory evaluate recordings/forest --out evaluations/forest"});
-  command.texts("INPUT", "FILE", arguments->inputs,
-                "EuRoC folders as `record` leaves them; or one file of what to record and evaluate", 1);
+  command.texts(
+      "INPUT", "FILE", arguments->inputs,
+      "recordings (EuRoC folders of `record`); or one evaluation file, or a name in scenarios/evaluations",
+      1);
   add_vision_options(command, arguments->vision);
-  command.whole("--every", arguments->every, 1, 1000, "take every n-th frame");
+  command.whole("--every", arguments->every, 1, 1000, "use every N-th frame only");
   add_jobs_option(command, arguments->jobs, "recordings");
-  command.text("--out", "FOLDER", arguments->out, "for the results (default: evaluations/NAME)");
+  command.text("--out", "FOLDER", arguments->out, "results folder (default: evaluations/NAME)");
   command.runs([arguments] { return run_evaluate(*arguments); });
 }
 

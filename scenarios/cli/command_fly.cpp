@@ -89,16 +89,15 @@ FlyOptions options_of(const FlightArguments& arguments) {
 /// The options that fly and record share; `out` and `force` say what those mean. Gives --out.
 Command::Added add_flight_options(Command& command, FlightArguments& arguments, const std::string& out,
                                   const std::string& force) {
-  command
-      .text("scenario", "SCENARIO", arguments.scenario, "a scenario file, or a name from scenarios/library")
+  command.text("scenario", "SCENARIO", arguments.scenario, "scenario file, or a name in scenarios/library")
       .required();
-  command.text("--seed", "N", arguments.seed, "of course and sensors; goes before the scenario's own");
+  command.text("--seed", "N", arguments.seed, "seed of course and sensors; overrides the scenario's");
   add_with_option(command, arguments.with);
   add_settings_option(command, arguments.settings);
   const Command::Added folder = command.text("--out", "FOLDER", arguments.out, out);
   add_renderer_option(command, arguments.renderer);
-  command.flag("--mcap", arguments.mcap, "also make flight.mcap, a log for Foxglove and Rerun");
-  command.flag("--force", arguments.force, "replace " + force + " in the folder already");
+  command.flag("--mcap", arguments.mcap, "also write flight.mcap, a log for Foxglove and Rerun");
+  command.flag("--force", arguments.force, "replace " + force);
   command.flag("--quiet", arguments.quiet, "print nothing");
   return folder;
 }
@@ -171,9 +170,9 @@ int run_fly(const FlyArguments& arguments) {
   options.video = arguments.video || arguments.report;
   const fs::path folder = folder_of(arguments, scenario);
   if (folder.empty() && (options.video || arguments.mcap))
-    throw ScenarioError(fmt::format("--{}: expected --out beside --row", options.report  ? "report"
-                                                                         : options.video ? "video"
-                                                                                         : "mcap"));
+    throw ScenarioError(fmt::format("--{} requires --out where --row is given", options.report  ? "report"
+                                                                                : options.video ? "video"
+                                                                                                : "mcap"));
   require_separate_outputs(arguments, folder, scenario);
   for (const std::string& file : {arguments.row, arguments.track, arguments.junit})
     require_writable_beside(folder, file);
@@ -249,10 +248,11 @@ std::string record(const RecordArguments& arguments, const Scenario& scenario, F
 }
 
 int run_record(const RecordArguments& arguments) {
-  if (arguments.height_m && !arguments.walk_mps) throw ScenarioError("--height: expected beside --walk");
-  if (!arguments.path.empty() && arguments.walk_mps) throw ScenarioError("--path: expected without --walk");
+  if (arguments.height_m && !arguments.walk_mps) throw ScenarioError("--height requires --walk");
+  if (!arguments.path.empty() && arguments.walk_mps)
+    throw ScenarioError("--path and --walk exclude each other");
   if (arguments.mcap && (arguments.walk_mps || !arguments.path.empty()))
-    throw ScenarioError("--mcap: expected without --walk and --path: it is a log of a flight");
+    throw ScenarioError("--mcap is a log of a flight: it excludes --walk and --path");
   const Scenario scenario = scenario_of(arguments);
   FlyOptions options = options_of(arguments);
   OutputFolder output(arguments.out, recording_contents(scenario),
@@ -278,33 +278,34 @@ std::string renderer_of_this_machine() {
 
 void add_fly_command(CommandLine& line) {
   const auto arguments = std::make_shared<FlyArguments>();
-  Command& command = line.add({"fly", "fly a scenario once", "understory fly forest --seed 7 --video",
-                               "the goal was reached", "it was not"});
-  add_flight_options(command, *arguments, "run folder (default: runs/NAME-SEED)",
-                     "a run of another configuration that is");
+  Command& command =
+      line.add({"fly", "fly a scenario once and keep what happened in a run folder",
+                "understory fly forest --seed 7 --video", "the aircraft reached the goal", "it did not"});
+  add_flight_options(command, *arguments, "run folder (default: runs/SCENARIO-SEED)",
+                     "a run of another configuration in the folder");
   command.text("--row", "FILE", arguments->row,
-               "write the flight's row there, as campaign and collect read it; no run folder");
+               "write the flight's row of results as JSON, and make no run folder");
   command.text("--track", "FILE", arguments->track,
-               "where the flight is lost, write what a campaign's page replays of it");
-  command.text("--junit", "FILE", arguments->junit, "write the flight as a JUnit test case");
-  command.flag("--video", arguments->video, "also make flight.mp4 and still.png");
-  command.flag("--report", arguments->report, "also make report.html, a page to look at, and the video");
+               "write a lost flight's track, which the page of a campaign replays");
+  command.text("--junit", "FILE", arguments->junit, "write the flight as a JUnit test case (XML)");
+  command.flag("--video", arguments->video, "also make a video, flight.mp4, and a picture of it, still.png");
+  command.flag("--report", arguments->report, "also make a page with replay, charts and video, report.html");
   command.runs([arguments] { return run_fly(*arguments); });
 }
 
 void add_record_command(CommandLine& line) {
   const auto arguments = std::make_shared<RecordArguments>();
-  Command& command = line.add(
-      {"record",
-       "fly, walk or be carried through a scenario and keep images, true depth and poses as a EuRoC data set",
-       "understory record forest --out recordings/forest", "the recording is whole"});
-  add_flight_options(command, *arguments, "for the recording; gets mav0", "a recording that is").required();
+  Command& command =
+      line.add({"record",
+                "record images, true depth and poses of a flight, a walk or a given path as a EuRoC data set",
+                "understory record forest --out recordings/forest", "the recording is complete"});
+  add_flight_options(command, *arguments, "folder of the recording", "a recording in the folder").required();
   command.flag_or_number("--walk", 1.4, arguments->walk_mps, 0.1, 5.0,
-                         "--walk or --walk=SPEED: carry the cameras through at a walk (1.4 m/s)");
+                         "walk through the course instead of flying; --walk=SPEED sets the speed in m/s");
   command.text("--path", "FILE", arguments->path,
-               "carry the cameras along these poses: TUM, EuRoC, or a run's trajectory.csv");
+               "move the cameras along the poses in a file: TUM, EuRoC, or a run's trajectory.csv");
   command.number("--height", arguments->height_m, 0.3, 8.0,
-                 fmt::format("of the walk, m (default: {})", WalkConfig{}.height_m));
+                 fmt::format("height of the walk in metres (default: {})", WalkConfig{}.height_m));
   command.runs([arguments] { return run_record(*arguments); });
 }
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -18,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct KeysArguments {
-  std::string scenario;
+  std::string scenario, against;
   bool json = false, markdown = false;
 };
 
@@ -59,6 +60,103 @@ Table table_of(const std::vector<Key>& keys, bool are_columns) {
   return table;
 }
 
+/// A part of the list of keys: those that begin with `prefix` and with no longer one.
+struct Chapter {
+  const char *prefix, *title, *text;
+};
+constexpr Chapter chapters[]{
+    {"", "The flight", "What is flown: course, seed and rig. Every other group describes a part of it."},
+    {"wind", "Wind",
+     "The mean wind, its profile over height, turbulence, one gust, and the shelter of the forest. Still air "
+     "is the default."},
+    {"band.", "Altitudes",
+     "The altitudes within which a flight must stay. A flight over the trees or along the ground would prove "
+     "nothing."},
+    {"forest.", "Course: forest",
+     "A Poisson forest of upright trunks, placed at random from the seed. Its length also sets the goal "
+     "plane "
+     "of the other courses. x points ahead from the launch, y to the left."},
+    {"goalposts.", "Course: goalposts",
+     "The field goal of Barry & Tedrake 2015, which is passed beside an upright."},
+    {"windows.", "Course: windows",
+     "A facade of equal windows behind the goal: repeated texture for `evaluate`."},
+    {"fence.", "Course: fence",
+     "Fences of equal palings along and across the course: repeated shapes for `evaluate`."},
+    {"launch.", "Launch", "The catapult: the aircraft rests on its rail, is accelerated, and is released."},
+    {"airframe.", "Airframe",
+     "The delta wing's identified flat-plate model. The simulator, the planner and the filter use it. Axes: "
+     "x "
+     "forward, y left, z up, from the centre of mass. All defaults come from the original's flight records."},
+    {"mismatch.", "Mismatch",
+     "Differences between the aircraft that flies and the airframe that the stack believes in, in percent."},
+    {"actuators.", "Actuators",
+     "Lags and limits of servos, motor and propeller. The identified model has none, so each is off by "
+     "default."},
+    {"world.", "World", "The appearance of the scene."},
+    {"cameras.", "Cameras", "What the stereo cameras do to the images (docs/cameras.md)."},
+    {"sensors.", "Sensors",
+     "Errors and rates of the other sensors (docs/sensors.md). A grade sets them together. The standard "
+     "deviation of a constant error is that over flights: each flight draws one."},
+    {"faults[", "Faults",
+     "A list of failures; each entry names a sensor, a kind and a time (docs/sensors.md)."},
+    {"perception.", "Detection", "Which detector flies, and from which parameters it starts."},
+    {"perception.pushbroom.", "Detection: pushbroom",
+     "The detector of Barry & Tedrake 2015: blocks of 5x5 pixels that match at one depth. The presets of "
+     "perception.preset set these keys."},
+    {"perception.stereo_bm.", "Detection: StereoBM",
+     "OpenCV's block matching, with the settings of the paper's evaluation."},
+    {"perception.stereo_sgbm.", "Detection: StereoSGBM",
+     "OpenCV's semi-global matching (Hirschmueller 2008)."},
+    {"perception.full_stereo.", "Detection: full stereo",
+     "Which pixels of StereoBM's and StereoSGBM's depth images become detections."},
+    {"perception.compute.", "Detection: the computer",
+     "A simulated computer that is busy with each pair for a stated time (docs/thesis.md)."},
+    {"estimation.", "Estimation", "Which state the stack believes in: the filter's, or the truth."},
+    {"estimation.filter.", "Estimation: filter",
+     "The error-state Kalman filter (docs/estimator.md). Standard deviations are one sigma. The scenario "
+     "sets "
+     "start, airframe and the sensors' noises from its other groups; keys given here win."},
+    {"autopilot.", "Autopilot", "When the aircraft takes control, and how often it plans."},
+    {"autopilot.map.", "Autopilot: map", "Which detections the map remembers, and for how long."},
+    {"autopilot.resightings.", "Autopilot: resightings",
+     "How two sightings of one obstacle, at a far and at a near depth, measure the velocity over ground."},
+    {"autopilot.flight_model.", "Autopilot: flight model",
+     "How the aircraft answers commands, as the planner predicts it and the path follower commands it."},
+    {"autopilot.planner.", "Autopilot: planner", "When a plan is kept, and when a new one replaces it."},
+    {"autopilot.planner.field.", "Planner: obstacle field",
+     "How remembered points become columns with a size."},
+    {"autopilot.planner.trajectory.", "Planner: trajectory",
+     "Limits and costs of a trajectory. Costs are dimensionless, per second of flight; the cheapest wins."},
+    {"autopilot.planner.search.", "Planner: search",
+     "The tree of manoeuvres that OMPL grows (SST: Li, Littlefield & Bekris 2016). A manoeuvre is a row of "
+     "commands, each a bank and a climb for a time."},
+    {"autopilot.planner.improvement.", "Planner: improvement",
+     "Random changes that make the manoeuvre found cheaper."},
+    {"autopilot.follower.", "Autopilot: path follower",
+     "The inner loops that turn commands into elevons and thrust."}};
+
+const Chapter& chapter_of(const std::string& key) {
+  const Chapter* found = &chapters[0];
+  for (const Chapter& chapter : chapters)
+    if (key.starts_with(chapter.prefix) &&
+        std::string_view(chapter.prefix).size() > std::string_view(found->prefix).size())
+      found = &chapter;
+  return *found;
+}
+
+/// A scenario's keys, chapter by chapter: each as `chapter_text` of its keys.
+template <typename ChapterText>
+std::string by_chapter(const std::vector<Key>& keys, ChapterText&& chapter_text) {
+  std::string text;
+  for (const Chapter& chapter : chapters) {
+    std::vector<Key> own;
+    for (const Key& key : keys)
+      if (&chapter_of(key.name) == &chapter) own.push_back(key);
+    text += chapter_text(chapter, own);
+  }
+  return text;
+}
+
 /// docs/keys.md.
 std::string page_of(const std::vector<Key>& keys) {
   return fmt::format(
@@ -67,8 +165,7 @@ std::string page_of(const std::vector<Key>& keys) {
       "shows the values of one scenario; [scenarios.md](scenarios.md) says how a scenario is written. "
       "Meanings "
       "and sources are the comments beside the fields; a value without a source was chosen or measured "
-      "here.\n\n"
-      "## Keys of a scenario\n\n{}\n"
+      "here.\n\n{}"
       "## Columns of flights.csv\n\nA row per flight of a campaign; the keys of each line of flights.jsonl, "
       "too.\n\n{}\n"
       "## Keys of result.json\n\n{}\n"
@@ -79,8 +176,13 @@ std::string page_of(const std::vector<Key>& keys) {
       "aircraft estimates it; commands; what the actuators did of them; distance from the wing to the "
       "nearest "
       "obstacle.\n\n```\n{}```\n",
-      to_markdown(table_of(keys, false)), to_markdown(table_of(row_keys(), true)),
-      to_markdown(table_of(result_keys(), true)), trajectory_columns);
+      by_chapter(keys,
+                 [](const Chapter& chapter, const std::vector<Key>& own) {
+                   return fmt::format("## {}\n\n{}\n\n{}\n", chapter.title, chapter.text,
+                                      to_markdown(table_of(own, false)));
+                 }),
+      to_markdown(table_of(row_keys(), true)), to_markdown(table_of(result_keys(), true)),
+      trajectory_columns);
 }
 
 std::string json_of(const std::vector<Key>& keys, const std::vector<Key>& defaults) {
@@ -103,17 +205,39 @@ std::string json_of(const std::vector<Key>& keys, const std::vector<Key>& defaul
 }
 
 std::string lines_of(const std::vector<Key>& keys, const std::vector<Key>& defaults) {
-  std::string text;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const Key& key = keys[i];
-    text += fmt::format("{}: {}{}{}  ({})  {}{}\n", key.name, key.value, key.unit.empty() ? "" : " ",
-                        key.unit, key.range, key.meaning,
-                        key.value == defaults[i].value ? "" : fmt::format("; default {}", defaults[i].value));
-  }
-  return text;
+  return by_chapter(keys, [&](const Chapter& chapter, const std::vector<Key>& own) {
+    std::string text =
+        fmt::format("{}# {}: {}\n", chapter.prefix[0] == 0 ? "" : "\n", chapter.title, chapter.text);
+    for (const Key& key : own) {
+      const std::string& usual = std::ranges::find(defaults, key.name, &Key::name)->value;
+      text +=
+          fmt::format("{}: {}{}{}  ({})  {}{}\n", key.name, key.value, key.unit.empty() ? "" : " ", key.unit,
+                      key.range, key.meaning, key.value == usual ? "" : fmt::format("; default {}", usual));
+    }
+    return text;
+  });
+}
+
+/// Every key in which two scenarios differ, with both values.
+std::string differences_of(const std::string& one, const std::string& other) {
+  const auto keys_in = [](const std::string& name) {
+    return flat_keys(scenario_to_text(load_scenario(scenario_file(name))), name);
+  };
+  const FlatKeys first = keys_in(one), second = keys_in(other);
+  Table table{{"key", one, other}};
+  for (const auto& [key, value] : first)
+    if (key != "name" && value_in(second, key) != value) table.add(key, value, value_in(second, key));
+  for (const auto& [key, value] : second)
+    if (key != "name" && value_in(first, key) == "-" && value != "-") table.add(key, std::string("-"), value);
+  return table.rows.empty() ? fmt::format("{} and {} differ in their names alone\n", one, other)
+                            : to_text(table);
 }
 
 int run_keys(const KeysArguments& arguments) {
+  if (!arguments.against.empty()) {
+    fmt::print("{}", differences_of(arguments.scenario, arguments.against));
+    return exit_goal;
+  }
   const std::vector<Key> defaults = keys_of(scenario_from_text("{}", "defaults"));
   const std::vector<Key> keys =
       arguments.scenario.empty() ? defaults : keys_of(load_scenario(scenario_file(arguments.scenario)));
@@ -128,10 +252,14 @@ int run_keys(const KeysArguments& arguments) {
 void add_keys_command(CommandLine& line) {
   const auto arguments = std::make_shared<KeysArguments>();
   Command& command = line.add({"keys", "print each key of a scenario: value, unit, range, meaning, source",
-                               "understory keys forest | grep planner"});
-  command.text("scenario", "SCENARIO", arguments->scenario, "whose values to print (default: the defaults)");
-  const auto json = command.flag("--json", arguments->json, "as JSON");
-  command.flag("--markdown", arguments->markdown, "as docs/keys.md, with the columns of results")
+                               "understory keys dense --against forest"});
+  const auto scenario = command.text("scenario", "SCENARIO", arguments->scenario,
+                                     "scenario whose values are printed (default: the defaults)");
+  command
+      .text("--against", "SCENARIO", arguments->against, "print only the keys in which this scenario differs")
+      .needs(scenario);
+  const auto json = command.flag("--json", arguments->json, "print JSON");
+  command.flag("--markdown", arguments->markdown, "print docs/keys.md, which also has the columns of results")
       .excludes(json);
   command.runs([arguments] { return run_keys(*arguments); });
 }

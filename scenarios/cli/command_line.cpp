@@ -16,7 +16,7 @@ template <typename Number>
 Number number_given(const std::string& name, const std::string& given, Number least, Number most) {
   const auto value = number_in<Number>(given);
   if (!value || *value < least || *value > most)
-    throw ScenarioError(fmt::format("{} {}: expected a {} from {} to {}", name, given,
+    throw ScenarioError(fmt::format("{} {}: must be a {} from {} to {}", name, given,
                                     std::is_integral_v<Number> ? "whole number" : "number", least, most));
   return *value;
 }
@@ -26,7 +26,7 @@ void refuse_empty_assignments(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
     if (argument.starts_with("--") && argument.find('=') == argument.size() - 1)
-      throw ScenarioError(fmt::format("{} expected a value, got nothing", argument));
+      throw ScenarioError(fmt::format("{} needs a value", argument));
   }
 }
 
@@ -41,16 +41,17 @@ void refuse_arguments(const Command& command, const CLI::ParseError& error) {
   const std::string text = error.what();
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr)
     throw ScenarioError(
-        fmt::format("{}: expected {} {}: {}", name, option->name, option->placeholder, option->meaning));
+        fmt::format("{} requires {} {}: {}", name, option->name, option->placeholder, option->meaning));
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
     const bool too_many = text.find("received") != std::string::npos;
-    throw ScenarioError(
-        fmt::format("{} {}: {} (understory {} --help)", name, option->name,
-                    too_many ? "expected fewer arguments, or once" : "expected a value behind it", name));
+    throw ScenarioError(fmt::format("{} {}: {} (understory {} --help)", name, option->name,
+                                    too_many ? "given too often" : "needs a value", name));
   }
+  const std::string other = text.substr(std::min(text.size(), text.rfind(' ') + 1));
+  if (dynamic_cast<const CLI::RequiresError*>(&error) != nullptr)
+    throw ScenarioError(fmt::format("{}: {} requires {}", name, option->name, other));
   if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr)
-    throw ScenarioError(fmt::format("{} {}: expected without {}", name, option->name,
-                                    text.substr(std::min(text.size(), text.rfind(' ') + 1))));
+    throw ScenarioError(fmt::format("{}: {} and {} exclude each other", name, option->name, other));
 }
 
 }  // namespace
@@ -67,6 +68,11 @@ std::vector<std::pair<std::string, std::string>> exit_statuses(const CommandText
 const Command::Added& Command::Added::required() const {
   option.required();
   text.required = true;
+  return *this;
+}
+
+const Command::Added& Command::Added::needs(const Added& other) const {
+  option.needs(&other.option);
   return *this;
 }
 
@@ -95,10 +101,10 @@ Command::Added Command::add(OptionText text, Take take, int most) {
   const std::string name = kept.name;
   const auto take_each = [&kept, take = std::move(take)](const std::vector<std::string>& given) {
     for (const std::string& value : given) {
-      if (value.empty()) throw ScenarioError(kept.name + ": expected a value, got nothing");
+      if (value.empty()) throw ScenarioError(kept.name + " needs a value");
       if (!kept.words.empty() && std::ranges::find(kept.words, value) == kept.words.end())
         throw ScenarioError(
-            fmt::format("{} {}: expected one of {}", kept.name, value, fmt::join(kept.words, ", ")));
+            fmt::format("{} {}: must be one of {}", kept.name, value, fmt::join(kept.words, ", ")));
       take(value);
     }
   };
@@ -173,9 +179,9 @@ Command::Added Command::flag(std::string name, bool& value, std::string meaning)
 CommandLine::CommandLine(std::function<std::string()> version)
     : app_(std::make_unique<CLI::App>(
           "Understory: a small delta wing flies through forests on its own stereo vision", "understory")) {
-  app_->set_version_flag("--version", std::move(version), "Say version, commit and renderer");
+  app_->set_version_flag("--version", std::move(version), "Print version, commit and renderer");
   app_->require_subcommand(1);
-  app_->footer("understory COMMAND --help says what a command takes, with an example and its exit status.");
+  app_->footer("understory COMMAND --help explains a command, with an example and its exit status.");
 }
 
 CommandLine::~CommandLine() = default;
@@ -190,16 +196,18 @@ int CommandLine::run(int argc, char** argv) {
   std::vector<std::string> names;
   for (const Command& command : commands_)
     if (!command.hidden()) names.push_back(command.text().name);
-  if (argc < 2) throw ScenarioError(fmt::format("expected a command: {}", fmt::join(names, ", ")));
+  if (argc < 2)
+    throw ScenarioError(fmt::format("no command given; the commands are {}", fmt::join(names, ", ")));
   const std::string_view first = argv[1];
   if (first.starts_with('-') && first != "--help" && first != "-h" && first != "--version")
     throw ScenarioError(
-        fmt::format("{}: expected a command first: {}{}", first, fmt::join(names, ", "),
-                    did_you_mean(first.substr(std::min(first.size(), first.find_first_not_of('-'))), names)));
+        fmt::format("{}: a command must come first{}; the commands are {}", first,
+                    did_you_mean(first.substr(std::min(first.size(), first.find_first_not_of('-'))), names),
+                    fmt::join(names, ", ")));
   const auto named = std::ranges::find(commands_, first, [](const Command& c) { return c.text().name; });
   if (named == commands_.end() && !first.starts_with('-'))
-    throw ScenarioError(fmt::format("{}: expected a command: {}{}", first, fmt::join(names, ", "),
-                                    did_you_mean(first, names)));
+    throw ScenarioError(fmt::format("{}: unknown command{}; the commands are {}", first,
+                                    did_you_mean(first, names), fmt::join(names, ", ")));
   try {
     app_->parse(argc, argv);
   } catch (const CLI::ExtrasError&) {
@@ -208,14 +216,13 @@ int CommandLine::run(int argc, char** argv) {
     if (named != commands_.end())
       for (const OptionText& option : named->options_) known.push_back(option.name);
     throw ScenarioError(extra.starts_with('-')
-                            ? fmt::format("{} {}: expected an option that there is{}", first, extra,
+                            ? fmt::format("{} {}: unknown option{}", first, extra,
                                           did_you_mean(extra.substr(0, extra.find('=')), known))
-                            : fmt::format("{} {}: expected no further argument", first, extra));
+                            : fmt::format("{} {}: one argument too many", first, extra));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app_->exit(error);
     if (named != commands_.end()) refuse_arguments(*named, error);
-    throw ScenarioError(
-        fmt::format("{} {} (understory {} --help says what there is)", first, error.what(), first));
+    throw ScenarioError(fmt::format("{} {} (see understory {} --help)", first, error.what(), first));
   }
   return named->run_();
 }

@@ -55,6 +55,8 @@ class Command {
     OptionText& text;
     const Added& required() const;
     const Added& excludes(const Added& other) const;
+    /// Refused without the other.
+    const Added& needs(const Added& other) const;
   };
 
   Added text(std::string name, std::string placeholder, std::string& value, std::string meaning);

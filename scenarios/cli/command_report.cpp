@@ -230,8 +230,8 @@ int run_mcap(const McapArguments& arguments) {
   return fly_again(scenario, arguments, options, output.file, [] {});
 }
 
-void add_again_options(Command& command, AgainArguments& arguments, const std::string& out) {
-  command.text("folder", "FOLDER", arguments.folder, "a run's folder").required();
+void add_again_options(Command& command, AgainArguments& arguments, const char* folder, const char* out) {
+  command.text("folder", "FOLDER", arguments.folder, folder).required();
   command.text("--out", "FILE", arguments.out, out);
   add_renderer_option(command, arguments.renderer);
   command.flag("--quiet", arguments.quiet, "print nothing");
@@ -241,24 +241,28 @@ void add_again_options(Command& command, AgainArguments& arguments, const std::s
 
 void add_report_command(CommandLine& line) {
   const auto arguments = std::make_shared<ReportArguments>();
-  Command& command = line.add({"report", "make a page to look at, of a flight or of a campaign",
-                               "understory report runs/forest-7", "the page is there",
-                               "it is there, but shows another flight than the run's, or the gate fails"});
-  add_again_options(command, *arguments, "the page (default: FOLDER/report.html)");
-  command.text("--baseline", "FOLDER", arguments->baseline, "of a campaign: the one it is gated against");
+  Command& command =
+      line.add({"report", "make a page (HTML) of a flight, with video, replay and charts, or of a campaign",
+                "understory report runs/forest-7", "the page was written",
+                "the page was written, but the repeated flight has another digest, or the gate fails"});
+  add_again_options(command, *arguments, "folder of a run or of a campaign",
+                    "file of the page (default: FOLDER/report.html)");
+  command.text("--baseline", "FOLDER", arguments->baseline,
+               "for a campaign: results folder that it is compared with by the gate");
   command.flag("--no-video", arguments->no_video,
-               "leave the film out: a smaller page, made at once from the run's log");
+               "leave the video out: the page is made at once from the run's log");
   command.runs([arguments] { return run_report_of_either(*arguments); });
 }
 
 void add_mcap_command(CommandLine& line) {
   const auto arguments = std::make_shared<McapArguments>();
-  Command& command =
-      line.add({"mcap", "make a log of a flight for Foxglove and Rerun", "understory mcap runs/forest-7",
-                "the log is there", "it is there, but of another flight than the run's"});
-  add_again_options(command, *arguments, "the log (default: FOLDER/flight.mcap)");
-  command.flag("--zstd", arguments->compress, "compress it");
-  command.flag("--no-images", arguments->no_images, "leave the images out: made at once from the run's log");
+  Command& command = line.add({"mcap", "write a log (MCAP) of a flight for Foxglove and Rerun",
+                               "understory mcap runs/forest-7", "the log was written",
+                               "the log was written, but the repeated flight has another digest"});
+  add_again_options(command, *arguments, "folder of a run", "file of the log (default: FOLDER/flight.mcap)");
+  command.flag("--zstd", arguments->compress, "compress the log with zstd");
+  command.flag("--no-images", arguments->no_images,
+               "leave the images out: the log is made at once from the run's log");
   command.runs([arguments] { return run_mcap(*arguments); });
 }
 

@@ -66,7 +66,7 @@ void show(ProgressLine& line, const TuneFile& file, const TuneProgress& progress
 }
 
 int run_tune(const TuneArguments& arguments) {
-  const TuneFile file = load_tune_file(arguments.file, scenario_file);
+  const TuneFile file = load_tune_file(library_file(arguments.file, "tunings", "tuning"), scenario_file);
   const fs::path folder =
       arguments.out.empty() ? fs::path("results") / ("tune-" + file.name) : fs::path(arguments.out);
   std::vector<fs::path> others{arguments.file};
@@ -117,17 +117,18 @@ int run_tune(const TuneArguments& arguments) {
 
 void add_tune_command(CommandLine& line) {
   const auto arguments = std::make_shared<TuneArguments>();
-  Command& command =
-      line.add({"tune", "search a scenario's numbers for what does best on recordings or flights",
-                "understory tune scenarios/tunings/trunks_long.yaml --out results/tuned",
-                "the search is over; best.yaml holds what it found, where that is better"});
-  command.text("file", "FILE", arguments->file, "what to tune, for what: see docs/tuning.md").required();
+  Command& command = line.add({"tune", "search the values of keys that do best on recordings or flights",
+                               "understory tune long --out results/tuned",
+                               "the search is over; best.yaml holds the values found, if they are better"});
+  command
+      .text("file", "FILE", arguments->file, "tuning file, or a name in scenarios/tunings (docs/tuning.md)")
+      .required();
   command.text("--out", "FOLDER", arguments->out, "results folder (default: results/tune-NAME)");
   add_jobs_option(command, arguments->jobs, "flights or recordings");
   add_renderer_option(command, arguments->renderer);
-  command.flag("--resume", arguments->resume, "go on with what the folder holds");
+  command.flag("--resume", arguments->resume, "continue the tuning that the folder holds");
   command.flag("--force", arguments->force,
-               "write into a folder that holds other files; none of them is replaced");
+               "allow a folder that holds other files; none of them is replaced");
   command.runs([arguments] { return run_tune(*arguments); });
 }
 
