@@ -204,6 +204,7 @@ fs::path scenario_beside(const fs::path& file, const ConfigNode& node, const std
 }
 
 Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario,
+                       const std::vector<ConfigNode>& over,
                        const std::function<void(std::size_t done, std::size_t of)>& on_condition) {
   const ConfigNode top = parse_config_file(file);
   require_known_keys(top, {"name", "scenario", "scenarios", "seeds", "overrides", "grid", "timeout_s"}, "");
@@ -229,7 +230,11 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario,
     refuse_key(*find_child(top, "seeds"), "seeds",
                fmt::format("at most {} flights in all, these are {}", maximum_flights,
                            conditions * campaign.seeds.size()));
-  const std::vector<Variant> variants = with_grid(std::move(overrides), find_child(top, "grid"));
+  std::vector<Variant> variants = with_grid(std::move(overrides), find_child(top, "grid"));
+  for (const ConfigNode& tree : over) {
+    if (const ConfigNode* seed = find_child(tree, "seed")) refuse_key(*seed, "seed", seeds_decide);
+    for (Variant& variant : variants) variant.changes.push_back(tree);
+  }
   std::set<std::string> seen;
   for (const std::string& word : words) {
     const fs::path path = scenario_beside(file, *scenarios, word, find_scenario);

@@ -26,9 +26,12 @@ using FindScenario = std::function<std::filesystem::path(const std::string&)>;
 ///     timeout_s: 300                    # optional, 1 .. 86400
 ///     name: speed                       # optional; otherwise the file's
 ///
-/// `on_condition` is told of each condition read. Throws ScenarioError in one line, "file:line: key: expected
+/// `over` goes over every condition without changing its name: campaigns that differ in it alone can be
+/// compared by the gate. `on_condition` is told of each condition read. Throws ScenarioError in one line,
+/// "file:line: key: expected
 /// ...": an unknown key, no seeds, a seed or a condition twice, whatever a scenario refuses.
 Campaign load_campaign(const std::filesystem::path& file, const FindScenario& find_scenario,
+                       const std::vector<ConfigNode>& over = {},
                        const std::function<void(std::size_t done, std::size_t of)>& on_condition = {});
 
 /// The scenario that `word`, given under `node`, means: a file beside `file`, or whatever the command line

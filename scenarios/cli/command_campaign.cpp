@@ -29,6 +29,7 @@ constexpr std::array<std::pair<std::string_view, Engine>, 2> engine_names{
 
 struct CampaignArguments {
   std::string file;
+  std::vector<std::string> with, settings;
   std::string out;    // empty: results/<name>
   std::string junit;  // empty: none
   Engine engine = Engine::local;
@@ -116,12 +117,16 @@ Finish fly_on_slurm(const CampaignFolder& folder, const Campaign& campaign,
 }
 
 int run_campaign(const CampaignArguments& arguments) {
+  std::vector<ConfigNode> over;
+  for (const std::string& file : arguments.with) over.push_back(parse_config_file(file));
+  for (const std::string& setting : arguments.settings) over.push_back(parse_assignment(setting));
   ProgressLine line;
   Campaign campaign =
-      load_campaign(library_file(arguments.file, "campaigns", "campaign"), scenario_file,
+      load_campaign(library_file(arguments.file, "campaigns", "campaign"), scenario_file, over,
                     [&](std::size_t done, std::size_t of) {
                       line.show(fmt::format("{} of {} conditions read", done, of), done, of - done);
                     });
+  campaign.files.insert(campaign.files.end(), arguments.with.begin(), arguments.with.end());
   line.clear();
   campaign.renderer = word_for(arguments.renderer);
   const std::vector<Scenario> scenarios = scenarios_of(campaign, arguments.file);
@@ -203,6 +208,8 @@ void add_campaign_command(CommandLine& line) {
             "campaign file, or a name in scenarios/campaigns (docs/campaigns.md)")
       .required();
   command.text("--out", "FOLDER", arguments->out, "results folder (default: results/NAME)");
+  add_with_option(command, arguments->with);
+  add_settings_option(command, arguments->settings);
   add_jobs_option(command, arguments->jobs, "flights");
   add_renderer_option(command, arguments->renderer);
   command.choice("--engine", arguments->engine, engine_names,

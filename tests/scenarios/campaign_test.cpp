@@ -76,6 +76,21 @@ TEST_F(CampaignFile, PutsFilesOfKeysUnderItsOwn) {
   expect_part(refusal_of(text("none.yaml")), "none.yaml: expected a readable");
 }
 
+TEST_F(CampaignFile, KeysOverAllConditionsLeaveTheirNames) {
+  const fs::path file = folder.write("both.yaml", "scenarios: [forest, dense]\nseeds: 1\n");
+  const Campaign plain = load_campaign(file, in_library);
+  const Campaign changed =
+      load_campaign(file, in_library, {parse_assignment("autopilot.planner.use_ompl=false")});
+  ASSERT_EQ(changed.conditions.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(changed.conditions[i].name, plain.conditions[i].name);
+    EXPECT_FALSE(
+        scenario_from_text(changed.conditions[i].scenario_text, "x").autopilot.autopilot.planner.use_ompl);
+  }
+  expect_part(support::refusal_of([&] { load_campaign(file, in_library, {parse_assignment("seed=3")}); }),
+              "seed: expected no seed here");
+}
+
 TEST_F(CampaignFile, RefusesBadFilesInOneLineWithFileLineAndKey) {
   const struct {
     const char* text;
