@@ -121,7 +121,7 @@ TEST(Cli, APictureWithoutItsModuleIsTheMachinesFault) {
   const Folder folder;
   const fs::path alone = folder.path / "understory";
   fs::copy_file(UNDERSTORY_BINARY, alone);
-  const std::string image = " " UNDERSTORY_SOURCE_DIR "/docs/images/flight.jpg";
+  const std::string image = " " UNDERSTORY_SOURCE_DIR "/docs/images/report.jpg";
   const std::string elsewhere = "UNDERSTORY_ROOT=" UNDERSTORY_SOURCE_DIR " " + alone.string();
   // `before` runs the lonely copy; the program itself then only says its version.
   const Outcome refused =
