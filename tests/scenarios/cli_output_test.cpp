@@ -21,7 +21,7 @@ using understory::support::understory;
 TEST(CliOutput, AnOutputThatCannotBeWrittenIsRefusedBeforeTheWork) {
   const TemporaryFolder folder;
   const std::string nowhere = (folder.path() / "none" / "file").string();
-  expect_refusal("rig long --out " + nowhere + ".png", "expected a writable output");
+  expect_refusal("rig long --out " + nowhere + ".svg", "expected a writable output");
   expect_refusal("bench --rounds 100000 --json " + nowhere, "expected a writable output");
   expect_refusal("gate --baseline a --candidate b --junit " + nowhere, "expected a writable output");
 #ifdef UNDERSTORY_HAS_SIM
