@@ -63,6 +63,7 @@ fs::path library_file(const std::string& argument, const char* folder, const cha
   const fs::path library = data_root() / "scenarios" / folder, named = library / (argument + ".yaml");
   if (is_name && fs::exists(named, ignored)) return named;
   if (is_folder) throw ScenarioError(fmt::format("{}: expected a {} file, this is a folder", argument, noun));
+  if (!is_name) throw ScenarioError(fmt::format("{}: expected a readable {} file", argument, noun));
   const std::vector<std::string> names = yaml_names(library);
   throw ScenarioError(fmt::format("{}: expected a {} file, or one of the library: {}{}", argument, noun,
                                   fmt::join(names, ", "), did_you_mean(argument, names)));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "scenarios/flight/clearance.hpp"
 #include "scenarios/flight/oracles.hpp"
 
@@ -85,6 +86,32 @@ double away_m(const FlightLog& log, double t_s, const Obstacle& obstacle) {
   return distance_m(there.T_world_body.translation(), obstacle);
 }
 
+/// Intervals of depth within which the pushbroom can match something; none for other detectors.
+std::vector<DepthInterval> intervals_of(const FlightLog& log) {
+  if (log.scenario.perception.detector != DetectorKind::pushbroom) return {};
+  const StereoRig& rig = log.rig.rig;
+  std::vector<double> depths_m = stated_depths_m(log.scenario.perception.pushbroom, rig);
+  if (depths_m.empty()) depths_m.push_back(rig.detection_depth_m);
+  std::vector<DepthInterval> intervals;
+  for (const double depth_m : depths_m)
+    intervals.push_back(rig.depths_around(std::round(rig.disparity_px(depth_m)), 0.5));
+  return intervals;
+}
+
+bool was_in_view_at_depth(const FlightLog& log, std::size_t index,
+                          const std::vector<DepthInterval>& intervals) {
+  return std::ranges::any_of(log.frames, [&](const LogFrame& frame) {
+    const Eigen::Isometry3d T_world_camera = frame.T_world_body * log.rig.rig.T_body_camera;
+    const Eigen::Vector3d place_world = nearest_place(T_world_camera.translation(), log.obstacles[index]);
+    const double depth_m = (T_world_camera.inverse() * place_world).z();
+    const auto holds = [&](const DepthInterval& one) {
+      return one.near_m <= depth_m && depth_m <= one.far_m;
+    };
+    return std::ranges::any_of(intervals, holds) &&
+           pixels_in_view(log, frame.T_world_body, index, in_view_px) >= in_view_px;
+  });
+}
+
 void find_hits(const FlightLog& log, const Obstacle& obstacle, ObstacleStory& story) {
   for (const LogFrame& frame : log.frames) {
     std::int64_t on_it = 0;
@@ -132,6 +159,8 @@ ObstacleStory story_of_obstacle(const FlightLog& log, std::size_t index) {
   if (story.has_camera) story.in_view_s = first_in_view_s(log, index);
   if (story.in_view_s) story.in_view_m = away_m(log, *story.in_view_s, obstacle);
   find_hits(log, obstacle, story);
+  if (const std::vector<DepthInterval> intervals = intervals_of(log); story.has_camera && !intervals.empty())
+    story.in_view_at_depth = was_in_view_at_depth(log, index, intervals);
   find_points(log, obstacle, story);
   return story;
 }
@@ -171,14 +200,18 @@ void tell_of_obstacle(const FlightLog& log, const ObstacleStory& told, FlightSto
     story.events.push_back({*told.detected_s, "detected", text});
     story.before.push_back(fmt::format("{}; {} hits in {} frames.", text, told.hits, told.frames_with_hits));
   } else {
-    story.before.push_back(obstacle.name + " was never detected.");
+    story.before.push_back(
+        obstacle.name +
+        (told.in_view_at_depth == false
+             ? " was never detected: it was not in view while it stood at the detector's depth."
+             : " was never detected."));
   }
   if (told.points > 0) {
-    story.before.push_back(
-        fmt::format("At the end the map held {} points for it, the nearest {:.2f} m from its surface; their "
-                    "middle lay {} its {}.",
-                    told.points, std::max(0.0, told.nearest_point_m), words_of_offset(told.points_off_world),
-                    obstacle.kind == ObstacleKind::wall ? "face" : "axis"));
+    story.before.push_back(fmt::format(
+        "At the end the map held {} points within {:.0f} m of it, the nearest {:.2f} m from its "
+        "surface; their middle lay {} its {}.",
+        told.points, 2 * belongs_within_m, std::max(0.0, told.nearest_point_m),
+        words_of_offset(told.points_off_world), obstacle.kind == ObstacleKind::wall ? "face" : "axis"));
     return;
   }
   std::string text =
@@ -231,7 +264,7 @@ void tell_of_motion(const FlightLog& log, FlightStory& story) {
   std::string text = fmt::format("In the last {:.1f} s it {} {:.1f} m", seconds(end.t_ns - first->t_ns),
                                  risen_m < 0 ? "sank" : "climbed", std::abs(risen_m));
   if (std::abs(bank) > level_rad)
-    text += fmt::format(", banked up to {:.0f} degrees to the {} ({:.0f} were commanded)",
+    text += fmt::format(", banked up to {:.0f} degrees to the {} ({:.0f} were commanded at that moment)",
                         degrees * std::abs(bank), bank > 0 ? "right" : "left",
                         degrees * std::abs(banked->commanded_bank_rad));
   story.before.push_back(fmt::format("{}, and its speed went from {:.1f} to {:.1f} m/s.", text,
@@ -264,14 +297,15 @@ void tell_of_plans(const FlightLog& log, FlightStory& story) {
   const LogPlan& last = log.plans.back();
   if (!std::isfinite(last.clearance_m))
     story.before.push_back(
-        fmt::format("The plan in force ({}) knew of nothing near.", word_for(last.origin)));
+        fmt::format("The plan in force ({}) knew of no obstacle near it.", word_for(last.origin)));
   else if (last.clearance_m > 0)
     story.before.push_back(
-        fmt::format("The plan in force ({}) left {:.2f} m to what the planner believed was there.",
+        fmt::format("The plan in force ({}) kept {:.2f} m away from all obstacles as the map had them.",
                     word_for(last.origin), last.clearance_m));
   else
-    story.before.push_back(fmt::format(
-        "The plan in force ({}) led through what the planner believed was there.", word_for(last.origin)));
+    story.before.push_back(
+        fmt::format("The plan in force ({}) touched obstacles as the map had them{}.", word_for(last.origin),
+                    last.origin == PlanOrigin::fallback ? ": the planner had found no free way" : ""));
 }
 
 /// Columns and rows of the left image within which the obstacle lies, at most; empty where it lies elsewhere.

@@ -25,6 +25,8 @@ struct ObstacleStory {
   std::optional<double> detected_s;  ///< exposure of the first frame with a hit on it
   double detected_m = 0;             ///< as in_view_m
   std::int64_t hits = 0, frames_with_hits = 0;
+  /// Whether it was ever in view while it stood at a depth that the detector compares (pushbroom only).
+  std::optional<bool> in_view_at_depth;
   std::int64_t points = 0;     ///< in the map for it at the end
   double nearest_point_m = 0;  ///< of those, from its surface; negative within
   /// From the nearest place on its axis or face to the points' middle, world axes.

@@ -131,7 +131,7 @@ TEST(FlightStory, SaysWhereTheObstacleWasRemembered) {
     return text.find("the map held") != std::string::npos;
   });
   ASSERT_NE(sentence, told.story.before.end());
-  EXPECT_EQ(number_before(*sentence, "points for it"), points);
+  EXPECT_EQ(number_before(*sentence, "points within"), points);
   EXPECT_NEAR(number_before(*sentence, "m to the left") - number_before(*sentence, "m to the right"),
               sum.y() / points, 0.006);
   EXPECT_NEAR(number_before(*sentence, "m behind") - number_before(*sentence, "m before"), sum.x() / points,

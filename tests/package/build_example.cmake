@@ -26,8 +26,8 @@ must(${CMAKE_COMMAND} -S ${WORK}/nameless -B ${WORK}/nameless/build -D CMAKE_PRE
 # The installed program finds its module of picture codecs and its data wherever the prefix was moved to, from any
 # folder, and knows nothing of the source tree.
 file(RENAME ${WORK}/prefix ${WORK}/moved)
-must(${WORK}/moved/bin/understory rig long --out ${WORK}/rig.png)
-if(NOT EXISTS ${WORK}/rig.png)
+must(${WORK}/moved/bin/understory rig long --out ${WORK}/rig.svg)
+if(NOT EXISTS ${WORK}/rig.svg)
   message(FATAL_ERROR "the installed program drew no rig: ${output}")
 endif()
 if(SIM)

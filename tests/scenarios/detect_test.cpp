@@ -203,7 +203,7 @@ TEST_F(Detect, BadInputIsOneLineAndLeavesNoResult) {
   refuse("detect", "INPUT");
   refuse("detect " + folders() + " --out " + out, "expected a rig (--rig)");
   refuse("detect " + folders() + " --rig none --out " + out, "none: expected a rig file");
-  refuse(detect + " --size 752", "--size 752: expected WIDTHxHEIGHT");
+  refuse(detect + " --size 752", "--size 752: must be WIDTHxHEIGHT");
   refuse(detect + " --depth 4000", "depth");
   refuse(detect + " --preset best", "--preset");
   refuse(detect + " --rectify cubic", "--rectify");
@@ -211,8 +211,8 @@ TEST_F(Detect, BadInputIsOneLineAndLeavesNoResult) {
   refuse(detect + " --set perception.pushbroom.edges=3", "perception.pushbroom.edges: expected a known key");
   refuse(detect + " --set perception.depths_m=[4.8,900]",
          "perception.depths_m: expected depths the rig paper can look at, found 900 m");
-  refuse(detect + " --set perception.pushbroom.depths_score_limit=[0.1,0.2]",
-         "perception.pushbroom.depths_score_limit: expected as many as depths, 1, or none, found 2");
+  refuse(detect + " --set perception.pushbroom.depths_score_limit=[0.1,0.2,0.3]",
+         "perception.pushbroom.depths_score_limit: expected as many as depths, 2, or none, found 3");
   refuse(detect + " --poses " + folder.write("p.txt", "0 0 0 0 0 0 0 1\n1 0 0\n").string(),
          "p.txt:2: expected");
   refuse(detect + " --poses " + folder.write("q.txt", "0 0 0 0 0 0 0 1\n").string(),
