@@ -183,9 +183,12 @@ int run_shard(const ShardArguments& arguments) {
   if (arguments.number >= arguments.of)
     throw ScenarioError(
         fmt::format("--number {}: must be less than --of {}", arguments.number, arguments.of));
+  std::vector<Scenario> scenarios;
+  for (const Condition& condition : campaign.conditions)
+    scenarios.push_back(
+        scenario_from_text(condition.scenario_text, folder.condition_file(condition).string()));
   require_identity(folder, campaign,
-                   identity_of(scenarios_of(campaign, folder.path.string()), data_root() / "models",
-                               renderer_named(campaign.renderer)));
+                   identity_of(scenarios, data_root() / "models", renderer_named(campaign.renderer)));
   const StopSignals stop_signals;
   LocalEngineConfig config;
   config.jobs = arguments.jobs;

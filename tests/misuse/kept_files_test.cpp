@@ -36,7 +36,7 @@ const std::map<std::string, std::string> commands{
     {"collect", "cp -rn $F/campaign/. out/; $U collect out"},
     {"campaign_page", "cp -rn $F/campaign/. out/; $U report out --quiet"},
     {"tune", "$U tune $F/tune.yaml --out out --force"},
-    {"rig", "$U rig long --out out/of_mine.png"},
+    {"rig", "$U rig long --out out/of_mine.svg"},
     {"bench", "$U bench --pairs 1 --rounds 1 --json out/of_mine.json"}};
 
 /// Names that no command writes, and names that some do.
