@@ -147,8 +147,9 @@ void visit_fields(Visitor& visit, HeadingConfig& config) {
 /// Velocity over ground from GPS, measured at an earlier moment. The inertial sensors alone say how the
 /// velocity has changed since, so that corrections made meanwhile are not applied twice.
 struct GroundVelocityConfig {
-  bool enabled = true;     ///< corrects the velocity with GPS, where the aircraft has a receiver
-  double sigma_mps = 0.2;  ///< m/s, 0.01..10: standard deviation of a GPS velocity, per axis (docs/sources.md [15])
+  bool enabled = true;  ///< corrects the velocity with GPS, where the aircraft has a receiver
+  double sigma_mps =
+      0.2;  ///< m/s, 0.01..10: standard deviation of a GPS velocity, per axis (docs/sources.md [15])
 };
 
 template <typename Visitor>

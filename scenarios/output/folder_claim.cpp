@@ -302,16 +302,17 @@ void FolderClaim::require_own(const fs::path& file) {
       file.string(), kind_));
 }
 
-bool FolderClaim::resumes(const char* manifest, const std::vector<std::string>& patterns, const fs::path& name,
-                          bool force) {
+bool FolderClaim::resumes(const char* manifest, const std::vector<std::string>& patterns,
+                          const fs::path& name, bool force) {
   std::error_code ignored;
   const bool is_there = fs::exists(folder_ / manifest, ignored);
   if (is_there) {
     adopt(patterns);
   } else if (!force && holds_other_files()) {
-    throw ScenarioError(fmt::format("{}: holds other files and no {}: --out names another folder, --force "
-                                    "writes beside them",
-                                    name.string(), kind_));
+    throw ScenarioError(
+        fmt::format("{}: holds other files and no {}: --out names another folder, --force "
+                    "writes beside them",
+                    name.string(), kind_));
   }
   require_own(patterns);
   return is_there;

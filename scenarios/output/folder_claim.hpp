@@ -50,8 +50,8 @@ class FolderClaim {
   /// For results that a later run may go on with. Where the file `manifest` is there, adopts `patterns`; else
   /// the folder must hold no other files, unless `force`. Gives whether the manifest is there. Throws as
   /// require_own(patterns) does; `name` stands for the folder.
-  bool resumes(const char* manifest, const std::vector<std::string>& patterns, const std::filesystem::path& name,
-               bool force);
+  bool resumes(const char* manifest, const std::vector<std::string>& patterns,
+               const std::filesystem::path& name, bool force);
   /// Lists files that will be written now. Throws as require_own().
   void add(const std::vector<std::filesystem::path>& files);
   /// Removes what is ours, matches one of `patterns` and was not added by this object.
