@@ -45,11 +45,9 @@ struct SideslipConfig {
   double mass_kg = 0.648412;           ///< kg, 0.05..20: mass that the filter assumes
   /// m, -5..5: mean position of the two winglets in the body; their y cancels.
   Eigen::Vector3d winglets_body_m{-0.08, 0.0, 0.081954};
-  double sigma_mps2 = 0.05;  ///< m/s^2, 0.01..50: standard deviation of one reading of the lateral force
-  double model_error =
-      0.15;  ///< 0..1: error of the force model, as a share of the force (docs/sources.md [15])
-  double zero_sigma_mps =
-      2.236;  ///< m/s, 0.01..50: standard deviation of v_y = 0 (the original's variance 5)
+  double sigma_mps2 = 0.05;       ///< m/s^2, 0.01..50: standard deviation of one reading of the lateral force
+  double model_error = 0.15;      ///< 0..1: error of the force model, as a share (docs/sources.md [15])
+  double zero_sigma_mps = 2.236;  ///< m/s, 0.01..50: standard deviation of v_y = 0 (original)
 };
 
 template <typename Visitor>
@@ -111,9 +109,8 @@ struct AltitudeConfig {
   double offset_walk_m_rts = 0.09;  ///< m/sqrt(s), 0..10: random walk of the offset: weather and heat
   /// m/N, 0..10: standard deviation of the barometer's error per newton of thrust; 0: no such state.
   double wash_sigma_m_per_n = 0;
-  double noise_m = 0.3;  ///< m, 0.01..100: noise of one reading about its slow error
-  double drift_walk_m_rts =
-      0.1;  ///< m/sqrt(s), 0..10: random walk between the odometry's height and the altitude
+  double noise_m = 0.3;           ///< m, 0.01..100: noise of one reading about its slow error
+  double drift_walk_m_rts = 0.1;  ///< m/sqrt(s), 0..10: random walk of odometry against altitude
 };
 
 template <typename Visitor>
@@ -165,8 +162,7 @@ struct RestConfig {
   /// m/s^2, 0.01..10: largest standard deviation of the specific force at rest, per axis; five times the
   /// noise of one reading.
   double force_deviation_mps2 = 0.25;
-  double rate_deviation_radps =
-      0.012;  ///< rad/s, 1e-4..1: largest standard deviation of the rate at rest, per axis
+  double rate_deviation_radps = 0.012;  ///< rad/s, 1e-4..1: largest deviation of the rate at rest
   /// m/s^2, 0.01..10: largest difference between gravity and the mean specific force at rest.
   double force_tolerance_mps2 = 0.6;
   /// rad/s, 0.001..5: largest mean angular rate at rest; six times a bias of 0.5 deg/s.
@@ -209,49 +205,41 @@ struct StartConfig {
   double roll_rad = 0.0;     ///< rad, -3.15..3.15: roll at the start, left wing up; measured anew at rest
   bool in_flight = false;    ///< starts in flight with velocity_body_mps, without a catapult
   Eigen::Vector3d velocity_body_mps{0, 0, 0};  ///< m/s, -50..50: velocity at a start in flight, body axes
-  double tilt_sigma_rad = 0.02;  ///< rad, 0..1: standard deviation of roll and pitch at the start
-  double yaw_sigma_rad =
-      0.02;  ///< rad, 0..3: standard deviation of the heading: a catapult is aimed within 1 deg
+  double tilt_sigma_rad = 0.02;      ///< rad, 0..1: standard deviation of roll and pitch at the start
+  double yaw_sigma_rad = 0.02;       ///< rad, 0..3: standard deviation of the heading at the start
   double velocity_sigma_mps = 0.15;  ///< m/s, 0..10: standard deviation of the velocity (docs/sources.md [2])
-  double horizontal_sigma_m =
-      0.01;                        ///< m, 0..100: standard deviation of x and y: the start defines the frame
-  double vertical_sigma_m = 0.01;  ///< m, 0..100: standard deviation of z: the start defines the frame
-  double gyro_bias_sigma_radps = 0.0087;  ///< rad/s, 0..1: standard deviation of the gyro bias; 0.5 deg/s
+  double horizontal_sigma_m = 0.01;  ///< m, 0..100: standard deviation of x and y at the start
+  double vertical_sigma_m = 0.01;    ///< m, 0..100: standard deviation of z at the start
+  double gyro_bias_sigma_radps = 0.0087;  ///< rad/s, 0..1: standard deviation of the gyro bias
 };
 
 /// The states beside the base's twelve, each a switch.
 struct ExtraStatesConfig {
-  bool accelerometer_bias = true;  ///< estimates the accelerometer's bias, three states
-  double accelerometer_bias_sigma_mps2 =
-      0.05;  ///< m/s^2, 0..5: standard deviation of that bias at first; 5 mg
-  double accelerometer_bias_walk_rthz =
-      1e-3;                      ///< m/s^3/sqrt(Hz), 0..1: random walk of the accelerometer's bias
-  bool wind = false;             ///< estimates the steady wind, two states
+  bool accelerometer_bias = true;               ///< estimates the accelerometer's bias, three states
+  double accelerometer_bias_sigma_mps2 = 0.05;  ///< m/s^2, 0..5: standard deviation of that bias; 5 mg
+  double accelerometer_bias_walk_rthz = 1e-3;   ///< m/s^3/sqrt(Hz), 0..1: random walk of that bias
+  bool wind = false;                            ///< estimates the steady wind, two states
   double wind_sigma_mps = 3.0;   ///< m/s, 0..30: standard deviation of the wind before the launch, per axis
   double wind_walk_rthz = 0.05;  ///< m/s^2/sqrt(Hz), 0..10: random walk of the steady wind
   bool gust = false;             ///< estimates gusts, two states
-  double gust_sigma_mps =
-      0.6;  ///< m/s, 0..20: standard deviation of gusts, per axis (MIL-F-8785C: 0.2 of the wind)
-  double gust_length_m =
-      30.0;  ///< m, 0.1..2000: length of gusts (MIL-F-8785C at 4 m); time: this over the airspeed
-  bool pitot_bias = true;              ///< estimates the pitot tube's bias, one state
+  double gust_sigma_mps = 0.6;   ///< m/s, 0..20: standard deviation of gusts, per axis (MIL-F-8785C)
+  double gust_length_m = 30.0;   ///< m, 0.1..2000: length of gusts (MIL-F-8785C at 4 m)
+  bool pitot_bias = true;        ///< estimates the pitot tube's bias, one state
   double pitot_bias_sigma_mps = 0.07;  ///< m/s, 0..10: standard deviation of the pitot bias; 1 Pa at 12 m/s
   double pitot_bias_walk_rthz = 1e-3;  ///< m/s^2/sqrt(Hz), 0..1: random walk of the pitot bias
 };
 
 /// What the filter does about sensors that fail.
 struct DistrustConfig {
-  double gate_probability =
-      0.999;  ///< 0.5..0.999999: probability that a good measurement passes the chi-square gate
-  double gate_patience_s = 0.25;  ///< s, 0..1e6: time of disagreement after which a sensor counts as faulty
+  double gate_probability = 0.999;  ///< 0.5..0.999999: probability that a good measurement passes
+  double gate_patience_s = 0.25;    ///< s, 0..1e6: time of disagreement after which a sensor counts as faulty
   /// Leaves a faulty sensor out until it has agreed for gate_patience_s; false: believes it after that time.
   bool exclude = true;
   /// s, 0.001..1.5: interval between IMU samples above which samples are lost; the motion meanwhile is
   /// interpolated and uncertain. The scenario sets it to 1.5 intervals of its own IMU.
   double imu_gap_s = 0.0076;
   double gap_rate_sigma_radps = 2.0;  ///< rad/s, 0..50: standard deviation of the mean rate over such a gap
-  double gap_force_sigma_mps2 =
-      5.0;                      ///< m/s^2, 0..200: standard deviation of the mean specific force over a gap
+  double gap_force_sigma_mps2 = 5.0;  ///< m/s^2, 0..200: standard deviation of the mean force in it
   double longest_gap_s = 0.25;  ///< s, 0.01..10: longest gap that is integrated; a longer one counts as this
 };
 
@@ -281,13 +269,10 @@ struct FilterConfig {
   /// rad/s^2/sqrt(Hz), 0..1000: random walk of the angular rate, with the model angular_rate alone. The
   /// wing's roll accelerates at up to 50 rad/s^2 for 0.1 s.
   double rate_walk_rthz = 15.0;
-  bool smooth_frame = true;  ///< keeps corrections in flight from moving position and heading (FrameGain)
-  double max_rate_radps =
-      34.9;  ///< rad/s, 1..200: full scale of the gyro (2000 deg/s); larger rates are clamped
-  double max_force_mps2 =
-      157.0;  ///< m/s^2, 20..2000: full scale of the accelerometer (16 g); more is clamped
-  double force_low_pass_hz =
-      30.0;  ///< Hz, 0.1..1000: cut-off of the low-pass for the reported specific force
+  bool smooth_frame = true;      ///< keeps corrections in flight from moving position and heading (FrameGain)
+  double max_rate_radps = 34.9;  ///< rad/s, 1..200: full scale of the gyro (2000 deg/s)
+  double max_force_mps2 = 157.0;    ///< m/s^2, 20..2000: full scale of the accelerometer (16 g)
+  double force_low_pass_hz = 30.0;  ///< Hz, 0.1..1000: cut-off frequency of the reported force
   ExtraStatesConfig states;
   DistrustConfig distrust;
   AirspeedConfig airspeed;
@@ -296,8 +281,7 @@ struct FilterConfig {
   AltitudeConfig altitude;
   HeadingConfig heading;
   GroundVelocityConfig gps;
-  bool resightings =
-      true;  ///< corrects the velocity with obstacles seen at two depths (autopilot.resightings)
+  bool resightings = true;  ///< corrects the velocity with autopilot.resightings
   RestConfig rest;
 };
 

@@ -32,8 +32,7 @@ struct PushbroomConfig {
   /// Columns at the right end of the compared area that no block touches. The original's loop over columns
   /// leaves out a last block that ends with the image.
   int right_margin_px = 1;
-  int minimum_edge_sum =
-      860;  ///< smallest sum of the Laplacian over a block; each of the two images needs it
+  int minimum_edge_sum = 860;  ///< smallest sum of the Laplacian over a block, in each image
   /// A block matches where S = SAD / (sum of both blocks' Laplacians) is below this; exact to 1/333000.
   double score_limit = 54.0 / 333.0;
 
@@ -125,11 +124,10 @@ struct StereoBmConfig {
   int disparities = 112;        ///< number of disparities searched; a multiple of 16
   int texture_threshold = 427;  ///< a window with less texture gets no disparity (OpenCV's textureThreshold)
   int uniqueness_percent = 18;  ///< margin by which the best match must beat the second best
-  int prefilter_size_px =
-      105;                     ///< window of OpenCV's normalising prefilter; its default prefilter ignores it
-  int prefilter_cap = 61;      ///< limit of the prefiltered image (OpenCV's preFilterCap)
-  int speckle_window_px = 59;  ///< area below which a patch of disparity is removed, in pixels
-  int speckle_range = 30;      ///< largest step of disparity within a patch, in sixteenths of a pixel
+  int prefilter_size_px = 105;  ///< window of OpenCV's normalising prefilter (not its default)
+  int prefilter_cap = 61;       ///< limit of the prefiltered image (OpenCV's preFilterCap)
+  int speckle_window_px = 59;   ///< area below which a patch of disparity is removed, in pixels
+  int speckle_range = 30;       ///< largest step of disparity within a patch, in sixteenths of a pixel
 };
 
 /// How many paths StereoSGBM gathers costs along. Three is OpenCV's fast way, five its default.
@@ -145,13 +143,11 @@ struct StereoSgbmConfig {
   int disparities = 112;     ///< number of disparities searched; a multiple of 16
   int smoothness_1 = 8;      ///< cost of a disparity step of one pixel, times the window's area (OpenCV's P1)
   int smoothness_2 = 32;     ///< cost of a larger step, times the window's area (P2); more than smoothness_1
-  int uniqueness_percent =
-      10;                  ///< margin by which the best match must beat the second (OpenCV advises 5 to 15)
-  int prefilter_cap = 63;  ///< limit of the prefiltered image (OpenCV's preFilterCap)
-  int left_right_px = 1;   ///< left-right consistency: largest difference of disparity; -1: not checked
-  int speckle_window_px =
-      100;                   ///< area below which a patch of disparity is removed (OpenCV advises 50 to 200)
-  int speckle_range_px = 2;  ///< largest step of disparity within a patch (OpenCV advises 1 or 2)
+  int uniqueness_percent = 10;  ///< margin of the best match over the second (OpenCV advises 5 to 15)
+  int prefilter_cap = 63;       ///< limit of the prefiltered image (OpenCV's preFilterCap)
+  int left_right_px = 1;        ///< left-right consistency: largest difference of disparity; -1: not checked
+  int speckle_window_px = 100;  ///< area below which a patch is removed (OpenCV advises 50 to 200)
+  int speckle_range_px = 2;     ///< largest step of disparity within a patch (OpenCV advises 1 or 2)
   SgbmPaths paths = SgbmPaths::five;  ///< number of directions along which costs are summed
 };
 
@@ -213,13 +209,11 @@ struct LocalMapConfig {
   /// Distance behind the aircraft, along its heading, at which a point is forgotten. It is larger than the
   /// half span (0.43 m) and the swing of a wing tip in a turn, so that no point beside a wing is lost.
   double passed_m = 2.0;
-  int max_points = 5000;  ///< number of points beyond which the oldest are forgotten
-  double voxel_m =
-      0.10;  ///< side of the voxels; a detection in a point's voxel refreshes it; 0: all are kept
-  int min_neighbours =
-      2;  ///< other points near a point that make it trusted (the original wanted 3 with itself)
-  double neighbour_radius_m = 1.0;    ///< distance within which a point counts as a neighbour
-  bool seen_again = false;            ///< trusts a point only where a second frame saw it, too
+  int max_points = 5000;            ///< number of points beyond which the oldest are forgotten
+  double voxel_m = 0.10;            ///< side of a voxel; a detection in a point's voxel refreshes it; 0: none
+  int min_neighbours = 2;           ///< other points near a point that make it trusted (original: 2)
+  double neighbour_radius_m = 1.0;  ///< distance within which a point counts as a neighbour
+  bool seen_again = false;          ///< trusts a point only where a second frame saw it, too
   double seen_again_radius_m = 0.35;  ///< distance within which a point of another frame confirms a point
 };
 
@@ -247,13 +241,12 @@ struct ResightingsConfig {
   /// Largest level distance between the two places of one obstacle: an unknown wind of 5 m/s over the half
   /// second between 10 and 5 m.
   double match_m = 2.5;
-  double rival = 1.5;  ///< smallest ratio of the second nearest far cluster's distance to the nearest one's
+  double rival = 1.5;     ///< smallest ratio of distances, second nearest far cluster to nearest
   double oldest_s = 0.9;  ///< longest time between the two sightings
   /// Standard deviation of the measured displacement along the line of sight: what remains of a pixel's depth
   /// interval once its crossing is averaged, and of where a trunk's face lies.
   double along_sigma_m = 0.25;
-  double across_sigma_m =
-      0.10;  ///< standard deviation of the displacement across it; a block at 10 m is 0.13 m
+  double across_sigma_m = 0.10;  ///< standard deviation of the displacement across the line of sight
 };
 
 template <typename Visitor>

@@ -21,15 +21,14 @@ struct Airframe {
   double wing_lift_factor = 1.0;  ///< lift of the wing over that of a flat plate
   double wing_drag_factor = 1.0;  ///< drag of the wing over that of a flat plate
 
-  double elevon_area_m2 = 0.012508;  ///< area of one elevon
-  double elevon_hinge_x_m =
-      -0.12495;                  ///< x of the elevons' hinge in the body; negative: behind the centre of mass
-  double elevon_y_m = 0.276225;  ///< y of the left elevon's centre; the right one stands at minus this
-  double elevon_chord_m = 0.0402;     ///< chord of an elevon; its force acts at the middle, deflected
-  double elevon_lift_factor = 1.3;    ///< lift of an elevon over that of a flat plate
-  double elevon_drag_factor = 0.101;  ///< drag of an elevon over that of a flat plate
-  double elevon_min_rad = -0.90;      ///< lower stop of the elevons; trailing edge up is positive
-  double elevon_max_rad = 0.855;      ///< upper stop of the elevons; trailing edge up is positive
+  double elevon_area_m2 = 0.012508;    ///< area of one elevon
+  double elevon_hinge_x_m = -0.12495;  ///< x of the elevons' hinge; negative: behind the centre of mass
+  double elevon_y_m = 0.276225;        ///< y of the left elevon's centre; the right one stands at minus this
+  double elevon_chord_m = 0.0402;      ///< chord of an elevon; its force acts at the middle, deflected
+  double elevon_lift_factor = 1.3;     ///< lift of an elevon over that of a flat plate
+  double elevon_drag_factor = 0.101;   ///< drag of an elevon over that of a flat plate
+  double elevon_min_rad = -0.90;       ///< lower stop of the elevons; trailing edge up is positive
+  double elevon_max_rad = 0.855;       ///< upper stop of the elevons; trailing edge up is positive
 
   double winglet_area_m2 = 0.019441;  ///< area of one winglet
   double winglet_x_m = -0.08;   ///< x of a winglet's centre in the body; negative: behind the centre of mass

@@ -11,13 +11,11 @@ struct FlightModelConfig {
   /// Largest angle of attack. 25 deg: a flat plate never stalls, a real wing does (our assumption).
   double maximum_angle_of_attack_rad = 0.4363;
   double minimum_angle_of_attack_rad = -0.05;  ///< smallest angle of attack to which the nose is pushed down
-  double minimum_speed_mps =
-      8.0;  ///< airspeed below which the nose is not pulled up further; level flight ends
-  double bank_gain_per_s = 9.0;          ///< commanded roll rate per bank error
-  double maximum_roll_rate_radps = 7.5;  ///< largest roll rate at 12.27 m/s; it falls with the airspeed
-  double maximum_differential_rad =
-      0.50;                   ///< largest deflection of one elevon from the mean of both, for rolling
-  double roll_time_s = 0.06;  ///< time constant with which the roll rate follows its command
+  double minimum_speed_mps = 8.0;              ///< airspeed below which the nose is not pulled up further
+  double bank_gain_per_s = 9.0;                ///< commanded roll rate per bank error
+  double maximum_roll_rate_radps = 7.5;        ///< largest roll rate at 12.27 m/s; it falls with the airspeed
+  double maximum_differential_rad = 0.50;      ///< largest deflection from the mean of both elevons
+  double roll_time_s = 0.06;                   ///< time constant with which the roll rate follows its command
   double angle_of_attack_time_s = 0.17;  ///< time constant with which the angle of attack follows its command
   double climb_angle_time_s = 0.45;      ///< time constant in which a climb angle error is corrected
   double speed_gain_n_per_mps = 2.0;     ///< thrust added per speed error
@@ -66,8 +64,7 @@ struct ObstacleFieldConfig {
   double sigma_per_m = 0.010;    ///< growth of that uncertainty per metre flown since (docs/sources.md [15])
   double sigma_maximum_m = 0.3;  ///< uncertainty of a point at which the growth ends
   double half_span_m = 0.4318;   ///< half the span of the wing that must pass
-  double wing_radius_m =
-      0.09;  ///< radius of the capsule about the span: half the height of wing and winglets
+  double wing_radius_m = 0.09;   ///< radius of the capsule about the span: half the winglets' height
 };
 
 template <typename Visitor>
@@ -94,11 +91,9 @@ struct TrajectoryConfig {
   double comfortable_clearance_m = 0.7;  ///< clearance from which on it costs nothing
   double clearance_weight = 15.0;        ///< cost at zero clearance; it falls to none at the comfortable one
   double bank_weight = 1.0;              ///< cost per rad^2 of bank
-  double heading_weight =
-      6.0;  ///< cost per rad^2 of heading off the course: the cameras have not looked there
-  double altitude_weight = 1.0;  ///< cost per m^2 off the cruise altitude
-  double band_weight =
-      40.0;  ///< cost per m^2 by which a place is nearer to the band's limits than band_margin_m
+  double heading_weight = 6.0;           ///< cost per rad^2 of heading off the course: unseen ground
+  double altitude_weight = 1.0;          ///< cost per m^2 off the cruise altitude
+  double band_weight = 40.0;             ///< cost per m^2 within band_margin_m of the band's limits
   double band_margin_m = 0.8;         ///< distance from the altitude band's limits within which places cost
   double slow_weight = 2.0;           ///< cost per (m/s)^2 by which the airspeed is over 1 m/s below cruise
   double final_heading_weight = 4.0;  ///< cost per rad^2 of heading off the course at the end of the plan
@@ -132,10 +127,8 @@ void visit_fields(Visitor& visit, TrajectoryConfig& config) {
 /// The tree of manoeuvres that OMPL grows (SST, Li, Littlefield & Bekris 2016, in the space of bank and climb
 /// commands over time).
 struct ManoeuvreSearchConfig {
-  int iterations =
-      600;  ///< number of extensions that a search tries; a count and no time, so that runs repeat
-  double maximum_bank_rad =
-      1.57;  ///< largest bank command tried; a wing on edge passes where a level one cannot
+  int iterations = 600;            ///< number of extensions that a search tries; no time, so that runs repeat
+  double maximum_bank_rad = 1.57;  ///< largest bank command tried; on edge the wing needs least room
   double minimum_climb_mps = -1.5;  ///< lowest climb command tried; negative: a descent
   double maximum_climb_mps = 2.0;   ///< highest climb command tried
   double minimum_part_s = 0.08;     ///< shortest duration of one command
@@ -182,8 +175,7 @@ void visit_fields(Visitor& visit, ManoeuvreImprovementConfig& config) {
 }
 
 struct PlannerConfig {
-  bool use_ompl =
-      true;  ///< searches with OMPL; false: simple manoeuvres alone answer where the way is blocked
+  bool use_ompl = true;  ///< searches with OMPL; false: chooses among simple manoeuvres
   /// A plan is kept without a search while its cost is below this multiple of its cost when it was new.
   double kept_cost_ratio = 1.3;
   /// A new way replaces the plan in force where the plan in force costs this many times as much.
@@ -214,8 +206,7 @@ struct AutopilotConfig {
   double launch_acceleration_mps2 = 30;
   /// Time from the detected launch until throttle and control begin; the rail takes 0.25 s of it.
   double throttle_delay_s = 0.28;
-  double plan_latency_s =
-      0.006;  ///< simulated time that computing a plan takes, before the plan takes effect
+  double plan_latency_s = 0.006;  ///< simulated time that computing a plan takes
   /// Longest time between plans while the plan in force goes straight. A new obstacle near the way is planned
   /// for at once. 0: a plan at every replan, as far as plan_latency_s allows.
   double straight_period_s = 0;

@@ -122,8 +122,7 @@ struct ComputeConfig {
   /// 8.3: the original detector takes 1.0 ms there and filled the 8.3 ms of a frame at 120 Hz on a 1.7 GHz
   /// quad ARM Cortex-A9 (Barry & Tedrake 2015). A larger factor is a slower computer.
   double factor = 8.3;
-  double pushbroom_s =
-      0.0010;  ///< cost of one depth: the original detector with rectification (docs/sources.md [17])
+  double pushbroom_s = 0.0010;  ///< cost of one depth, with rectification (docs/sources.md [17])
   double more_depths = 0.4;  ///< cost of each further depth, as a share of the first's (docs/benchmarks.md)
   double stereo_bm_s = 0.0090;  ///< cost of StereoBM with 112 disparities on the paper's rig (docs/thesis.md)
   double stereo_sgbm_s = 0.0127;  ///< cost of StereoSGBM with 112 disparities and five paths (docs/thesis.md)
@@ -194,8 +193,7 @@ AutopilotSection planning_of(PlanningPreset preset);
 
 struct Scenario {
   std::string name = "unnamed";  ///< name of the run's folder: letters, digits and - _ . :
-  std::uint64_t seed =
-      1000;  ///< seed of the course, the wind and, unless sensors.seed says otherwise, the sensors
+  std::uint64_t seed = 1000;     ///< seed of course, wind and, without sensors.seed, sensors
   std::string rig = "long";  ///< stereo rig: a name in models/rigs, or a rig file, relative to the scenario
   Course course = Course::forest;  ///< kind of course; the group of the same name describes it
   double time_limit_s = 30;        ///< simulated time after which a flight ends

@@ -11,8 +11,7 @@ namespace understory {
 struct CameraConfig {
   bool lens_cap = false;    ///< makes the images black, but for noise: a check that vision matters
   double noise_gray = 2.0;  ///< standard deviation of the sensor noise, gray levels, independent per pixel
-  double view_distance_m =
-      40;  ///< distance beyond which obstacles are not drawn; they are a pixel or two wide
+  double view_distance_m = 40;  ///< distance beyond which obstacles are not drawn
 
   /// Time for which the shutter is open; a frame's time is its middle. Outdoors such cameras expose for some
   /// 0.1 to 5 ms (our assumption). 0: an instant.

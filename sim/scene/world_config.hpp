@@ -10,9 +10,8 @@ constexpr std::int64_t time_of_step_ns(std::int64_t step) { return step * 1'000'
 
 /// Contents and appearance of a scene.
 struct WorldConfig {
-  bool obstacles_visible = true;  ///< draws the obstacles (forest.invisible is the key)
-  bool obstacles_tangible =
-      true;  ///< lets the aircraft collide with the obstacles (forest.intangible is the key)
+  bool obstacles_visible = true;   ///< draws the obstacles (forest.invisible is the key)
+  bool obstacles_tangible = true;  ///< lets the aircraft collide (forest.intangible is the key)
   /// Standard deviation of the bark's brightness over its mean (models/README.md).
   double bark_contrast = 0.35;
   double ground_contrast = 0.30;   ///< standard deviation of the ground's brightness over its mean

@@ -12,25 +12,21 @@ namespace understory {
 /// resolution. Effects at zero are off; the grade `consumer` sets those of a real part
 /// (sim/sensors/sensor_grades.hpp, docs/sensors.md).
 struct ImuConfig {
-  double gyro_noise_radps = 0.0024;  ///< noise of one gyro sample, rms: 0.01 deg/s/sqrt(Hz) over 200 Hz
-  double gyro_bias_radps = 0.0087;   ///< standard deviation of the gyro's constant bias: 0.5 deg/s
-  double gyro_bias_instability_radps =
-      0;                              ///< floor of the gyro's Allan deviation (sim/sensors/bias_wander.hpp)
-  double gyro_walk_radpsps_rthz = 0;  ///< random walk of the gyro's bias (K of IEEE 952)
+  double gyro_noise_radps = 0.0024;        ///< noise of one gyro sample, rms: 0.01 deg/s/sqrt(Hz) over 200 Hz
+  double gyro_bias_radps = 0.0087;         ///< standard deviation of the gyro's constant bias: 0.5 deg/s
+  double gyro_bias_instability_radps = 0;  ///< floor of the gyro's Allan deviation
+  double gyro_walk_radpsps_rthz = 0;       ///< random walk of the gyro's bias (K of IEEE 952)
   double gyro_scale = 0;  ///< standard deviation of the gyro's scale error, per axis; 0.01: one per cent
-  double gyro_misalignment =
-      0;  ///< standard deviation of the share of one axis that the gyro shows on another
-  double gyro_vibration_radpspn =
-      0;  ///< amplitude of the propeller's vibration in the gyro per newton of thrust
+  double gyro_misalignment = 0;            ///< standard deviation of the cross-axis share of the gyro
+  double gyro_vibration_radpspn = 0;       ///< vibration in the gyro per newton of thrust
   double gyro_range_radps = 17.4533;       ///< largest rate that the gyro measures: 1000 deg/s
   double gyro_step_radps = 0.000532;       ///< resolution of the gyro: 16 bits over the range
   double accelerometer_noise_mps2 = 0.05;  ///< noise of one accelerometer sample, rms: 400 ug/sqrt(Hz)
   double accelerometer_bias_mps2 = 0.05;   ///< standard deviation of the accelerometer's constant bias: 5 mg
   double accelerometer_bias_instability_mps2 = 0;  ///< floor of the accelerometer's Allan deviation
   double accelerometer_walk_mps2ps_rthz = 0;       ///< random walk of the accelerometer's bias
-  double accelerometer_scale = 0;  ///< standard deviation of the accelerometer's scale error, per axis
-  double accelerometer_misalignment =
-      0;  ///< standard deviation of the share of one axis that shows on another
+  double accelerometer_scale = 0;         ///< standard deviation of the accelerometer's scale error, per axis
+  double accelerometer_misalignment = 0;  ///< standard deviation of its cross-axis share
   double accelerometer_vibration_mps2pn = 0;  ///< amplitude of the propeller's vibration per newton of thrust
   double accelerometer_range_mps2 = 156.9;    ///< largest specific force that is measured: 16 g
   double accelerometer_step_mps2 = 0.00479;   ///< resolution of the accelerometer: 2048 counts per g
@@ -97,11 +93,10 @@ void visit_fields(Visitor& visit, PitotConfig& config) {
 /// 0.3 m of noise, and an offset that wanders as a first-order Gauss-Markov process, zero at the first
 /// sample.
 struct BarometerConfig {
-  double noise_m = 0.3;  ///< noise of one sample, rms
-  double step_m = 0.1;   ///< resolution of the altitude
-  double drift_m = 0.5;  ///< standard deviation of the slowly wandering error
-  double drift_time_s =
-      60.0;  ///< time constant of the wandering error: weather, heat, pressure in the airframe
+  double noise_m = 0.3;        ///< noise of one sample, rms
+  double step_m = 0.1;         ///< resolution of the altitude
+  double drift_m = 0.5;        ///< standard deviation of the slowly wandering error
+  double drift_time_s = 60.0;  ///< time constant of the wandering error (weather, heat)
   /// Error of the altitude per newton of thrust, upwards. The propeller's suction lowers the static pressure
   /// ahead of it by T / 2A times 1 - x / sqrt(x^2 + R^2) at a distance x (momentum theory). An 8 inch disc
   /// (A = 0.032 m^2) makes 15.4 Pa per newton, 1.3 m of altitude, at the disc, 0.39 m at x = 0.1 m and 0.14 m
@@ -151,11 +146,9 @@ void visit_fields(Visitor& visit, MagnetometerConfig& config) {
 struct GpsConfig {
   bool enabled = false;  ///< whether the aircraft has a GPS receiver; the original's avoidance used none
   double delay_s = 0.2;  ///< time from the measurement of a fix to its arrival
-  double velocity_noise_mps = 0.2;  ///< noise of one velocity, rms per axis
-  double position_noise_m =
-      0.3;  ///< noise of one position that is new with every fix, rms per axis (typical)
-  double position_drift_m =
-      2.1;  ///< standard deviation of the slowly wandering position error, per level axis
+  double velocity_noise_mps = 0.2;    ///< noise of one velocity, rms per axis
+  double position_noise_m = 0.3;      ///< noise of one position, rms per axis (typical)
+  double position_drift_m = 2.1;      ///< standard deviation of the wandering error, per level axis
   double position_drift_time_s = 60;  ///< time constant of the wandering position error (typical)
   double vertical_factor = 1.5;       ///< ratio of vertical to level errors (typical)
 };
@@ -242,8 +235,7 @@ struct FaultConfig {
   FaultKind kind = FaultKind::dropout;        ///< kind of the failure (docs/sensors.md)
   double at_s = 0;           ///< simulated time at which the sensor fails; the catapult fires at 0.25 s
   double duration_s = 1000;  ///< time for which the sensor fails; the default is longer than any flight
-  double value =
-      0;  ///< size of a bias, limit or blocked reading, in the sensor's unit (rad/s, m/s^2, m/s, m, uT)
+  double value = 0;          ///< size of a bias, limit or blocked reading, in the sensor's unit
 };
 
 template <typename Visitor>
