@@ -66,10 +66,11 @@ void show(ProgressLine& line, const TuneFile& file, const TuneProgress& progress
 }
 
 int run_tune(const TuneArguments& arguments) {
-  const TuneFile file = load_tune_file(library_file(arguments.file, "tunings", "tuning"), scenario_file);
+  const fs::path tuning = library_file(arguments.file, "tunings", "tuning");
+  const TuneFile file = load_tune_file(tuning, scenario_file);
   const fs::path folder =
       arguments.out.empty() ? fs::path("results") / ("tune-" + file.name) : fs::path(arguments.out);
-  std::vector<fs::path> others{arguments.file};
+  std::vector<fs::path> others{tuning};
   for (const auto* folders : {&file.training_folders, &file.validation_folders})
     others.insert(others.end(), folders->begin(), folders->end());
   require_separate({folder}, others);
