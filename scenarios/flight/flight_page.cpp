@@ -24,20 +24,13 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t maximum_film_bytes = std::size_t{1} << 30;
 
-/// Depths at which the detector compares images; empty where it compares none, or all.
-std::vector<double> depths_of(const FlightLog& log) {
-  if (log.scenario.perception.detector != DetectorKind::pushbroom) return {};
-  const std::vector<double>& depths_m = log.scenario.perception.pushbroom.depths_m;
-  return depths_m.empty() ? std::vector{log.rig.rig.detection_depth_m} : depths_m;
-}
-
 /// "pushbroom at 10.1 m", "stereo_bm from 1.5 to 15 m".
 std::string words_of_detector(const FlightLog& log) {
   const PerceptionSection& perception = log.scenario.perception;
   const std::string& name = log.result.detector;
   switch (perception.detector) {
     case DetectorKind::pushbroom:
-      return fmt::format("{} at {:.1f} m", name, fmt::join(depths_of(log), " and "));
+      return fmt::format("{} at {:.1f} m", name, fmt::join(compared_depths_m(log), " and "));
     case DetectorKind::stereo_bm:
     case DetectorKind::stereo_sgbm:
       return fmt::format("{} from {:.1f} to {:.1f} m", name, perception.full_stereo.minimum_depth_m,
@@ -63,7 +56,7 @@ Json camera_of(const FlightLog& log) {
           {"cx", rig.center_left_x_px},
           {"cy", rig.center_y_px},
           {"T_body_camera", T_body_camera},
-          {"depths_m", depths_of(log)},
+          {"depths_m", compared_depths_m(log)},
           {"baseline_m", rig.baseline_m}};
 }
 

@@ -88,12 +88,9 @@ double away_m(const FlightLog& log, double t_s, const Obstacle& obstacle) {
 
 /// Intervals of depth within which the pushbroom can match something; none for other detectors.
 std::vector<DepthInterval> intervals_of(const FlightLog& log) {
-  if (log.scenario.perception.detector != DetectorKind::pushbroom) return {};
   const StereoRig& rig = log.rig.rig;
-  std::vector<double> depths_m = stated_depths_m(log.scenario.perception.pushbroom, rig);
-  if (depths_m.empty()) depths_m.push_back(rig.detection_depth_m);
   std::vector<DepthInterval> intervals;
-  for (const double depth_m : depths_m)
+  for (const double depth_m : compared_depths_m(log))
     intervals.push_back(rig.depths_around(std::round(rig.disparity_px(depth_m)), 0.5));
   return intervals;
 }
@@ -375,6 +372,12 @@ int pixels_in_view(const FlightLog& log, const Eigen::Isometry3d& T_world_body, 
       if (!is_hidden && ++pixels >= enough) return pixels;
     }
   return pixels;
+}
+
+std::vector<double> compared_depths_m(const FlightLog& log) {
+  if (log.scenario.perception.detector != DetectorKind::pushbroom) return {};
+  const std::vector<double> depths_m = stated_depths_m(log.scenario.perception.pushbroom, log.rig.rig);
+  return depths_m.empty() ? std::vector{log.rig.rig.detection_depth_m} : depths_m;
 }
 
 FlightStory story_of(const FlightLog& log) {

@@ -45,6 +45,9 @@ struct FlightStory {
 /// Of a log that is complete.
 FlightStory story_of(const FlightLog& log);
 
+/// Depths at which the pushbroom compares images; none for other detectors.
+std::vector<double> compared_depths_m(const FlightLog& log);
+
 /// How many pixels of the left image show an obstacle from a pose, counted up to `enough`: rays through the
 /// pixels' centres, the nearest obstacle counts. Nothing beyond the cameras' view distance is seen.
 int pixels_in_view(const FlightLog& log, const Eigen::Isometry3d& T_world_body, std::size_t obstacle,
