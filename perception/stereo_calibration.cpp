@@ -11,13 +11,14 @@ StereoRig rectified_rig(const StereoCalibration& calibration, double detection_d
   const auto expect = [&](bool holds, const char* expected) {
     if (!holds) throw std::runtime_error(calibration.name + ": " + expected);
   };
-  expect(left(0, 0) > 0, "P1: expected a positive focal length");
+  expect(left(0, 0) > 0, "P1: the focal length must be positive");
   expect(std::abs(left(0, 0) - left(1, 1)) < 1e-6 * left(0, 0) &&
              std::abs(right(0, 0) - left(0, 0)) < 1e-6 * left(0, 0) &&
              std::abs(right(1, 1) - left(0, 0)) < 1e-6 * left(0, 0),
-         "P1, P2: expected the same focal length in both, along both axes");
-  expect(std::abs(left(1, 2) - right(1, 2)) < 1e-6 * left(0, 0), "P1, P2: expected rows aligned");
-  expect(right(0, 3) < 0, "P2: expected a right camera to the right of the left one: P2(0,3) negative");
+         "P1, P2: the focal length must be the same in both, along both axes");
+  expect(std::abs(left(1, 2) - right(1, 2)) < 1e-6 * left(0, 0),
+         "P1, P2: the rows of both images must be aligned");
+  expect(right(0, 3) < 0, "P2: the right camera must lie to the right of the left one: P2(0,3) negative");
 
   StereoRig rig;
   rig.name = calibration.name;

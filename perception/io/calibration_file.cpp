@@ -29,13 +29,13 @@ std::string name_of(const fs::path& path) {
 void look_at(StereoRig& rig, double detection_depth_m, const fs::path& path) {
   rig.detection_depth_m = detection_depth_m;
   if (!(detection_depth_m >= minimum_depth_m && detection_depth_m <= maximum_depth_m))
-    refuse_input(path.string(), "detection depth",
-                 fmt::format("expected {} to {} m, was given {}", minimum_depth_m, maximum_depth_m,
-                             detection_depth_m));
+    refuse_input(
+        path.string(), "detection depth",
+        fmt::format("must be from {} to {} m, is {}", minimum_depth_m, maximum_depth_m, detection_depth_m));
   if (!rig.can_look_at(std::round(rig.disparity_px(detection_depth_m))))
     refuse_input(
         path.string(), "detection depth",
-        fmt::format("expected a depth more than a pixel of disparity nearer than infinity and inside "
+        fmt::format("must be a depth more than a pixel of disparity nearer than infinity and inside "
                     "the image, {:.4g} m lies at {:.1f} px with infinity at {:.1f} px",
                     detection_depth_m, rig.disparity_px(detection_depth_m), rig.infinity_disparity_px()));
 }
@@ -46,7 +46,7 @@ void require_in_range(const StereoRig& rig, const fs::path& path) {
                            const std::string& hint) {
     if (!(value >= minimum && value <= maximum))
       refuse_input(path.string(), key,
-                   fmt::format("expected {} to {}, found {:.6g}{}", minimum, maximum, value, hint));
+                   fmt::format("must be from {} to {}, is {:.6g}{}", minimum, maximum, value, hint));
   };
   require("focal length in px", rig.focal_px, minimum_focal_px, maximum_focal_px, "");
   require("baseline in m", rig.baseline_m, minimum_baseline_m, maximum_baseline_m,
@@ -65,7 +65,7 @@ bool is_rectified(const CameraCalibration& camera) {
 
 CalibratedRig from_rig_file(const fs::path& path, const CalibrationOptions& options) {
   if (options.meters_per_unit != 1)
-    refuse_input(path.string(), "unit", "expected metres: a rig file has no other");
+    refuse_input(path.string(), "unit", "a rig file is in metres: --unit is for OpenCV's files");
   CalibratedRig read{read_rig(path), std::nullopt};
   agreed_image_size(path.string(), ImageSize{read.rig.width_px, read.rig.height_px}, options);
   look_at(read.rig, options.detection_depth_m.value_or(read.rig.detection_depth_m), path);
@@ -92,18 +92,18 @@ ImageSize agreed_image_size(const std::string& file, std::optional<ImageSize> of
                             const CalibrationOptions& options) {
   const auto fail = [&](const std::string& expected) { refuse_input(file, "image size", expected); };
   const auto in_range = [](int size_px) { return size_px >= minimum_size_px && size_px <= maximum_size_px; };
-  if (options.width_px.has_value() != options.height_px.has_value()) fail("expected a width and a height");
+  if (options.width_px.has_value() != options.height_px.has_value())
+    fail("image_width and image_height belong together, one is missing");
   if (!options.width_px) {
-    if (!of_file)
-      fail("expected in the file (image_width, image_height) or with it (--size WxH), found none");
+    if (!of_file) fail("not in the file (image_width, image_height): name it with --size WxH");
     return *of_file;
   }
   const ImageSize given{*options.width_px, *options.height_px};
   if (!in_range(given.width_px) || !in_range(given.height_px))
-    fail(fmt::format("expected {} to {} px, was given {}x{}", minimum_size_px, maximum_size_px,
-                     given.width_px, given.height_px));
+    fail(fmt::format("must be from {} to {} px, is {}x{}", minimum_size_px, maximum_size_px, given.width_px,
+                     given.height_px));
   if (of_file && *of_file != given)
-    fail(fmt::format("expected the file's own, {}x{}, was given {}x{}", of_file->width_px, of_file->height_px,
+    fail(fmt::format("the file says {}x{}, --size says {}x{}", of_file->width_px, of_file->height_px,
                      given.width_px, given.height_px));
   return given;
 }
@@ -165,13 +165,13 @@ StereoRig read_rig(const std::filesystem::path& file) {
       T_body_camera_of(Eigen::Vector3d(left_camera_body_m.data()), pitch_down_deg * std::numbers::pi / 180);
   if (!rig.can_look_at(std::round(rig.disparity_px(rig.detection_depth_m))))
     map.fail("detection_depth_m",
-             "expected a depth more than a pixel nearer than infinity and inside the image");
+             "must be a depth more than a pixel of disparity nearer than infinity and inside the image");
   return rig;
 }
 
 CalibratedRig read_calibrated_rig(const fs::path& path, const CalibrationOptions& options) {
   if (!(options.meters_per_unit > 0 && options.meters_per_unit <= 1000))
-    refuse_input(path.string(), "unit", "expected a length above 0 and up to 1000 m");
+    refuse_input(path.string(), "unit", "must be above 0 and at most 1000 m");
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) {
     if (const auto folder = euroc_folder(path)) {

@@ -29,14 +29,13 @@ Eigen::Isometry3d pose(StrictMap& map, double meters_per_unit) {
   const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(data.data());
   const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
   if (!is_rotation(cv::Matx44d(data.data()).get_minor<3, 3>(0, 0)))
-    map.fail("T_BS", "expected a rotation in the first three rows and columns");
-  if (!(matrix.row(3) == Eigen::RowVector4d(0, 0, 0, 1)))
-    map.fail("T_BS", "expected a last row of 0, 0, 0, 1");
+    map.fail("T_BS", "the first three rows and columns must be a rotation");
+  if (!(matrix.row(3) == Eigen::RowVector4d(0, 0, 0, 1))) map.fail("T_BS", "the last row must be 0, 0, 0, 1");
   Eigen::Isometry3d T_body_sensor = Eigen::Isometry3d::Identity();
   T_body_sensor.linear() = Eigen::Quaterniond(rotation).normalized().toRotationMatrix();
   T_body_sensor.translation() = meters_per_unit * matrix.topRightCorner<3, 1>();
   if (T_body_sensor.translation().cwiseAbs().maxCoeff() > maximum_offset_m)
-    map.fail("T_BS", "expected a translation within 10 m");
+    map.fail("T_BS", "the translation must be at most 10 m");
   return T_body_sensor;
 }
 
@@ -54,7 +53,7 @@ void read_additions(StrictMap& map, Sensor& sensor) {
   if (!sensor.says_rectification) return;
   const std::vector<double> rotation = map.numbers("rectification", 9, -1.1, 1.1);
   sensor.camera.rectification = cv::Matx33d(rotation.data());
-  if (!is_rotation(sensor.camera.rectification)) map.fail("rectification", "expected a rotation, row by row");
+  if (!is_rotation(sensor.camera.rectification)) map.fail("rectification", "must be a rotation, row by row");
   const std::vector<double> pinhole =
       map.numbers("rectified_intrinsics", 3, minimum_center_px, maximum_focal_px);
   sensor.camera.projection =
@@ -68,13 +67,15 @@ Sensor read_sensor(const fs::path& file, double meters_per_unit) {
   sensor.T_body_sensor = pose(map, meters_per_unit);
   const std::vector<double> size = map.numbers("resolution", 2, minimum_size_px, maximum_size_px);
   if (size[0] != std::floor(size[0]) || size[1] != std::floor(size[1]))
-    map.fail("resolution", "expected whole numbers");
+    map.fail("resolution", "must be whole numbers");
   sensor.size = {static_cast<int>(size[0]), static_cast<int>(size[1])};
   require_text(map, "camera_model", "pinhole");
   const std::vector<double> pinhole = map.numbers("intrinsics", 4, minimum_center_px, maximum_focal_px);
   if (std::min(pinhole[0], pinhole[1]) < minimum_focal_px ||
       std::max(pinhole[2], pinhole[3]) > maximum_center_px)
-    map.fail("intrinsics", "expected fu, fv, cu, cv in px: a focal length is too short or a center too far");
+    map.fail(
+        "intrinsics",
+        "must be fu, fv, cu, cv in px: here a focal length is too short or a center too far from the image");
   sensor.camera.camera_matrix = cv::Matx33d(pinhole[0], 0, pinhole[2], 0, pinhole[1], pinhole[3], 0, 0, 1);
   require_text(map, "distortion_model", "radial-tangential");
   // EuRoC has four; cameras that need more of OpenCV's k1 k2 p1 p2 k3 k4 k5 k6 say them in that order.
@@ -98,7 +99,7 @@ EurocCalibration read_euroc_calibration(const fs::path& folder, const Calibratio
   const fs::path right_file = folder / "cam1" / "sensor.yaml";
   const Sensor left = read_sensor(folder / "cam0" / "sensor.yaml", options.meters_per_unit);
   const Sensor right = read_sensor(right_file, options.meters_per_unit);
-  if (left.size != right.size) refuse_input(right_file.string(), "resolution", "expected the same as cam0's");
+  if (left.size != right.size) refuse_input(right_file.string(), "resolution", "must be that of cam0");
   const ImageSize size = agreed_image_size(folder.string(), left.size, options);
 
   StereoCalibration calibration;
@@ -108,10 +109,10 @@ EurocCalibration read_euroc_calibration(const fs::path& folder, const Calibratio
   calibration.right = right.camera;
   calibration.T_body_left = left.T_body_sensor;
   if (left.says_rectification != right.says_rectification)
-    refuse_input(right_file.string(), "rectification", "expected in both cameras' files or in neither");
+    refuse_input(right_file.string(), "rectification", "must be in the files of both cameras or in neither");
   const Eigen::Isometry3d T_right_left = right.T_body_sensor.inverse() * left.T_body_sensor;
   if (T_right_left.translation().x() >= 0)
-    refuse_input(right_file.string(), "T_BS", "expected cam1 to the right of cam0, it lies to its left");
+    refuse_input(right_file.string(), "T_BS", "cam1 must lie to the right of cam0, here it lies to the left");
   if (left.says_rectification) {
     calibration.right.projection(0, 3) =
         -calibration.right.projection(0, 0) * T_right_left.translation().norm();
@@ -122,8 +123,7 @@ EurocCalibration read_euroc_calibration(const fs::path& folder, const Calibratio
   cv::eigen2cv(Eigen::Matrix3d(T_right_left.linear()), R_right_left);
   cv::eigen2cv(Eigen::Vector3d(T_right_left.translation()), t_right_m);
   if (!rectify_pair(calibration, R_right_left, t_right_m))
-    refuse_input(right_file.string(), "T_BS",
-                 "expected two cameras that cv::stereoRectify brings side by side");
+    refuse_input(right_file.string(), "T_BS", "cv::stereoRectify cannot bring the two cameras side by side");
   return {calibration, left.detection_depth_m};
 }
 

@@ -29,8 +29,8 @@ std::vector<fs::path> images_in(const fs::path& folder) {
     const bool is_hidden = entry->path().filename().string().starts_with('.');
     if (is_image_name(entry->path()) && !is_hidden) files.push_back(entry->path());
   }
-  expect(!error, folder.string() + ": expected a readable folder: " + error.message());
-  expect(!files.empty(), folder.string() + ": expected images, found none");
+  expect(!error, folder.string() + ": cannot read this folder: " + error.message());
+  expect(!files.empty(), folder.string() + ": there are no images in this folder");
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
     return comes_before(a.stem().string(), b.stem().string());
   });
@@ -53,7 +53,7 @@ void take_times(ImageSequence& sequence) {
   }
   for (std::size_t i = 0; i < times.size(); ++i) {
     expect(i == 0 || times[i] > times[i - 1],
-           sequence.pairs[i].left.string() + ": expected times in the names that increase");
+           sequence.pairs[i].left.string() + ": the times in the names must increase");
     sequence.pairs[i].t_ns = times[i];
   }
   sequence.timed = true;
@@ -159,16 +159,16 @@ std::vector<EurocImage> parse_euroc_images(std::string_view text, const std::str
     if (!t_ns || !is_named)
       fail_at_line(name, line.number, "expected 't,file name', t in nanoseconds from 0");
     if (!images.empty() && *t_ns <= images.back().t_ns)
-      fail_at_line(name, line.number, "expected times that increase from line to line");
+      fail_at_line(name, line.number, "times must increase from line to line");
     images.push_back({*t_ns, std::string(line.cells[1])});
   }
-  if (images.empty()) throw InputError(name + ": expected at least one image, found none");
+  if (images.empty()) throw InputError(name + ": lists no image");
   return images;
 }
 
 ImageSequence euroc_sequence(const fs::path& folder) {
   const auto root = euroc_folder(folder);
-  expect(root.has_value(), folder.string() + ": expected a EuRoC folder with mav0/cam0 and mav0/cam1");
+  expect(root.has_value(), folder.string() + ": not a EuRoC folder: that has mav0/cam0 and mav0/cam1");
   const auto listed = [&](const char* camera) {
     const fs::path list = *root / camera / "data.csv";
     return parse_euroc_images(read_file(list, maximum_table_bytes), list.string());
@@ -188,7 +188,7 @@ ImageSequence euroc_sequence(const fs::path& folder) {
     }
   }
   expect(!sequence.pairs.empty(),
-         root->string() + ": expected times that both cam0/data.csv and cam1/data.csv list, found none");
+         root->string() + ": cam0/data.csv and cam1/data.csv have no time in common");
   sequence.unpaired = static_cast<std::int64_t>(left.size() + right.size()) -
                       2 * static_cast<std::int64_t>(sequence.pairs.size());
   return sequence;
@@ -198,10 +198,9 @@ ImageSequence folder_sequence(const fs::path& left, const fs::path& right) {
   const std::vector<fs::path> left_files = images_in(left), right_files = images_in(right);
   if (const auto lone = first_unpaired(stems_of(left_files), stems_of(right_files))) {
     const bool is_left = lone->of_first;
-    throw InputError((is_left ? left_files : right_files)[lone->index].string() +
-                     ": expected its partner in " + (is_left ? right : left).string() + ", found none (" +
-                     std::to_string(left_files.size()) + " left images, " +
-                     std::to_string(right_files.size()) + " right)");
+    throw InputError((is_left ? left_files : right_files)[lone->index].string() + ": has no partner in " +
+                     (is_left ? right : left).string() + " (" + std::to_string(left_files.size()) +
+                     " left images, " + std::to_string(right_files.size()) + " right)");
   }
   ImageSequence sequence;
   for (std::size_t i = 0; i < left_files.size(); ++i)

@@ -26,13 +26,13 @@ struct Matrix {
 
 Matrix matrix(StrictMap& map, const std::string& key) {
   constexpr int maximum_side = 16;
-  if (map.type(key) != "opencv-matrix") map.fail(key, "expected an OpenCV matrix (opencv-matrix)");
+  if (map.type(key) != "opencv-matrix") map.fail(key, "must be an OpenCV matrix (opencv-matrix)");
   StrictMap fields = map.map(key);
   Matrix matrix;
   matrix.rows = fields.whole("rows", 0, maximum_side);
   matrix.cols = fields.whole("cols", 0, maximum_side);
   const std::string type = fields.text("dt");
-  if (type != "d" && type != "f") fields.fail("dt", "expected d or f, found '" + type + "'");
+  if (type != "d" && type != "f") fields.fail("dt", "must be d or f, is '" + type + "'");
   const auto count = static_cast<std::size_t>(matrix.rows * matrix.cols);
   matrix.values = fields.numbers("data", count, -maximum_value, maximum_value);
   return matrix;
@@ -42,7 +42,7 @@ template <int rows, int cols>
 cv::Matx<double, rows, cols> matrix_of_shape(StrictMap& map, const std::string& key) {
   const Matrix found = matrix(map, key);
   if (found.rows != rows || found.cols != cols)
-    map.fail(key, fmt::format("expected {} x {} numbers, found {} x {}", rows, cols, found.rows, found.cols));
+    map.fail(key, fmt::format("must have {} x {} numbers, has {} x {}", rows, cols, found.rows, found.cols));
   return cv::Matx<double, rows, cols>(found.values.data());
 }
 
@@ -51,7 +51,7 @@ bool in_range(double value, double minimum, double maximum) { return value >= mi
 /// 3x3.
 cv::Matx33d opencv_rotation(StrictMap& map, const std::string& key) {
   const auto rotation = matrix_of_shape<3, 3>(map, key);
-  if (!is_rotation(rotation)) map.fail(key, "expected a rotation: orthonormal, determinant 1");
+  if (!is_rotation(rotation)) map.fail(key, "must be a rotation: orthonormal, determinant 1");
   return rotation;
 }
 
@@ -59,14 +59,14 @@ cv::Matx33d opencv_rotation(StrictMap& map, const std::string& key) {
 cv::Matx33d opencv_camera_matrix(StrictMap& map, const std::string& key) {
   const auto camera = matrix_of_shape<3, 3>(map, key);
   if (camera(0, 1) != 0 || camera(1, 0) != 0 || camera(2, 0) != 0 || camera(2, 1) != 0 || camera(2, 2) != 1)
-    map.fail(key, "expected the form fx 0 cx, 0 fy cy, 0 0 1");
+    map.fail(key, "must have the form fx 0 cx, 0 fy cy, 0 0 1");
   for (const double focal_px : {camera(0, 0), camera(1, 1)})
     if (!in_range(focal_px, minimum_focal_px, maximum_focal_px))
-      map.fail(key, fmt::format("expected focal lengths from {} to {} px, found {}", minimum_focal_px,
+      map.fail(key, fmt::format("focal lengths must be from {} to {} px, one is {}", minimum_focal_px,
                                 maximum_focal_px, focal_px));
   for (const double center_px : {camera(0, 2), camera(1, 2)})
     if (!in_range(center_px, minimum_center_px, maximum_center_px))
-      map.fail(key, fmt::format("expected a principal point from {} to {} px, found {}", minimum_center_px,
+      map.fail(key, fmt::format("the principal point must be from {} to {} px, is {}", minimum_center_px,
                                 maximum_center_px, center_px));
   return camera;
 }
@@ -77,7 +77,7 @@ cv::Matx34d opencv_projection(StrictMap& map, const std::string& key) {
   const bool has_form = projection(0, 1) == 0 && projection(1, 0) == 0 && projection(1, 3) == 0 &&
                         projection.row(2) == cv::Matx14d(0, 0, 1, 0);
   if (!has_form)
-    map.fail(key, "expected the form f 0 cx t, 0 f cy 0, 0 0 1 0: cameras side by side, rectified");
+    map.fail(key, "must have the form f 0 cx t, 0 f cy 0, 0 0 1 0, of rectified cameras side by side");
   return projection;
 }
 
@@ -85,7 +85,7 @@ cv::Matx34d opencv_projection(StrictMap& map, const std::string& key) {
 cv::Vec3d opencv_translation(StrictMap& map, const std::string& key) {
   const Matrix found = matrix(map, key);
   if (std::min(found.rows, found.cols) != 1 || std::max(found.rows, found.cols) != 3)
-    map.fail(key, fmt::format("expected 3 x 1 numbers, found {} x {}", found.rows, found.cols));
+    map.fail(key, fmt::format("must have 3 x 1 numbers, has {} x {}", found.rows, found.cols));
   return cv::Vec3d(found.values.data());
 }
 
@@ -99,14 +99,14 @@ std::vector<double> opencv_distortion(StrictMap& map, const std::string& key) {
   const bool is_count = count == 4 || count == 5 || count == 8 || count == 12 || count == 14;
   if (std::min(found.rows, found.cols) != 1 || !is_count)
     map.fail(key,
-             fmt::format("expected 4, 5 or 8 coefficients in a row, found {} x {}", found.rows, found.cols));
+             fmt::format("must be 4, 5 or 8 coefficients in a row, has {} x {}", found.rows, found.cols));
   for (const double coefficient : found.values)
     if (std::abs(coefficient) > maximum_coefficient)
       map.fail(key,
-               fmt::format("expected coefficients within +-{}, found {}", maximum_coefficient, coefficient));
+               fmt::format("coefficients must be within +-{}, one is {}", maximum_coefficient, coefficient));
   for (std::size_t i = maximum_count; i < count; ++i)
     if (std::abs(found.values[i]) > coefficient_tolerance)
-      map.fail(key, "expected 4, 5 or 8 coefficients: thin prisms and tilted sensors are not supported");
+      map.fail(key, "only 4, 5 or 8 coefficients are supported: no thin prisms, no tilted sensors");
   found.values.resize(std::min(count, maximum_count));
   return found.values;
 }
@@ -138,7 +138,8 @@ StrictMap read_keys(const fs::path& path) {
   refuse_double_keys(all);
   const StrictMap keys(all);
   for (const char* key : {"M1", "D1", "M2", "D2"})
-    if (!keys.has(key)) keys.fail(key, fmt::format("expected this key in {0}.xml, {0}.yml or {0}.yaml", key));
+    if (!keys.has(key))
+      keys.fail(key, fmt::format("missing: it stands in {0}.xml, {0}.yml or {0}.yaml", key));
   return keys;
 }
 
@@ -154,7 +155,7 @@ void read_rectification(StrictMap& keys, StereoCalibration& calibration, double 
   calibration.left.projection = opencv_projection(keys, "P1");
   calibration.right.projection = opencv_projection(keys, "P2");
   if (calibration.left.projection(0, 3) != 0)
-    keys.fail("P1", "expected P1(0,3) to be 0: the left camera is the origin");
+    keys.fail("P1", "P1(0,3) must be 0: the left camera is the origin");
   calibration.right.projection(0, 3) *= meters_per_unit;
 }
 
@@ -162,7 +163,7 @@ void rectify(StrictMap& keys, StereoCalibration& calibration, double meters_per_
   const cv::Matx33d R_right_left = opencv_rotation(keys, "R");
   const cv::Vec3d t_right_m = opencv_translation(keys, "T") * meters_per_unit;
   if (!rectify_pair(calibration, R_right_left, t_right_m))
-    keys.fail("R", "expected two cameras that cv::stereoRectify brings side by side");
+    keys.fail("R", "cv::stereoRectify cannot bring the two cameras side by side");
 }
 
 }  // namespace

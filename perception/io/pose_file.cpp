@@ -39,11 +39,11 @@ TimedPose pose_in(const TableLine& line, const Form& form, const std::string& na
   };
   const Eigen::Vector3d position_world(number(1), number(2), number(3));
   if (!(position_world.cwiseAbs().maxCoeff() <= maximum_m))
-    fail_at_line(name, line.number, "expected a position within 1e8 m");
+    fail_at_line(name, line.number, "the position must be within 1e8 m");
   const auto& [w, x, y, z] = form.wxyz;
   const Eigen::Quaterniond q_world_body(number(w), number(x), number(y), number(z));
   if (!(std::abs(q_world_body.norm() - 1) < norm_tolerance))
-    fail_at_line(name, line.number, "expected a quaternion of length 1");
+    fail_at_line(name, line.number, "the quaternion must have length 1");
   TimedPose pose;
   pose.t_ns = *t_ns;
   pose.T_world_body = Eigen::Translation3d(position_world) * q_world_body.normalized();
@@ -65,10 +65,10 @@ std::vector<TimedPose> parse_poses(std::string_view text, const std::string& nam
   for (const TableLine& line : lines) {
     const TimedPose pose = pose_in(line, is_tum ? tum : euroc, name);
     if (!poses.empty() && pose.t_ns <= poses.back().t_ns)
-      fail_at_line(name, line.number, "expected times that increase from line to line");
+      fail_at_line(name, line.number, "times must increase from line to line");
     poses.push_back(pose);
   }
-  if (poses.empty()) throw InputError(name + ": expected at least one pose, found none");
+  if (poses.empty()) throw InputError(name + ": holds no pose");
   return poses;
 }
 

@@ -63,7 +63,7 @@ bool SideBySideVideo::read(StereoFrame& frame) {
   cv::Mat picture, gray;
   if (!capture_->read(picture)) return false;
   if (picture.cols != 2 * width_px_ || picture.rows != height_px_)
-    throw InputError(file_.string() + ": expected pictures of one size, found another in number " +
+    throw InputError(file_.string() + ": all pictures must have one size, another size begins at number " +
                      std::to_string(next_));
   if (picture.channels() == 3)
     cv::cvtColor(picture, gray, cv::COLOR_BGR2GRAY);
@@ -81,7 +81,7 @@ StereoRecording::StereoRecording(const std::vector<fs::path>& inputs) {
     if (!is_video_name(inputs[0])) throw InputError(inputs[0].string() + ": " + what_serves);
     video_ = std::make_unique<SideBySideVideo>(inputs[0]);
     first_file_ = inputs[0];
-    if (!video_->read(first_)) throw InputError(inputs[0].string() + ": expected pictures, found none");
+    if (!video_->read(first_)) throw InputError(inputs[0].string() + ": holds no pictures");
     return;
   }
   sequence_ = sequence_of(inputs);

@@ -11,12 +11,13 @@
 namespace understory {
 
 StrictMap::StrictMap(TextNode map, std::string prefix) : map_(std::move(map)), prefix_(std::move(prefix)) {
-  if (map_.kind != TextNode::Kind::map) refuse_input(map_.origin, map_.key, "expected a map of keys");
+  if (map_.kind != TextNode::Kind::map)
+    refuse_input(map_.origin, map_.key, "must be a map of keys and values");
 }
 
 std::string StrictMap::text(const std::string& key) {
   const TextNode& node = take(key);
-  if (node.kind != TextNode::Kind::scalar || node.text.empty()) fail(key, "expected text");
+  if (node.kind != TextNode::Kind::scalar || node.text.empty()) fail(key, "must be text");
   return node.text;
 }
 
@@ -26,7 +27,7 @@ double StrictMap::number(const std::string& key, double minimum, double maximum)
 
 int StrictMap::whole(const std::string& key, int minimum, int maximum) {
   const double value = number(key, minimum, maximum);
-  if (value != std::floor(value)) fail(key, "expected a whole number");
+  if (value != std::floor(value)) fail(key, "must be a whole number");
   return static_cast<int>(value);
 }
 
@@ -36,7 +37,7 @@ std::vector<double> StrictMap::numbers(const std::string& key, std::size_t count
   const bool is_list =
       list.kind == TextNode::Kind::list || (count == 0 && list.kind == TextNode::Kind::nothing);
   if (!is_list || list.children.size() != count)
-    fail(key, fmt::format("expected a list of {} numbers{}", count,
+    fail(key, fmt::format("must be a list of {} numbers{}", count,
                           is_list ? fmt::format(", found {}", list.children.size()) : ""));
   std::vector<double> values;
   for (const TextNode& child : list.children) values.push_back(number(child, key, minimum, maximum));
@@ -53,7 +54,7 @@ StrictMap StrictMap::map(const std::string& key) { return StrictMap(take(key), p
 void StrictMap::refuse_others() const {
   for (const TextNode& child : map_.children)
     if (std::find(known_.begin(), known_.end(), child.key) == known_.end())
-      fail(child.key, fmt::format("unknown key; expected {}", fmt::join(known_, ", ")));
+      fail(child.key, fmt::format("unknown key; known here: {}", fmt::join(known_, ", ")));
 }
 
 void StrictMap::fail(const std::string& key, const std::string& expected) const {
@@ -64,7 +65,7 @@ void StrictMap::fail(const std::string& key, const std::string& expected) const 
 const TextNode& StrictMap::take(const std::string& key) {
   known_.push_back(key);
   const TextNode* node = find_child(map_, key);
-  if (node == nullptr) fail(key, "expected this key, found none");
+  if (node == nullptr) fail(key, "missing");
   return *node;
 }
 
@@ -72,7 +73,7 @@ double StrictMap::number(const TextNode& node, const std::string& key, double mi
   const auto value = node.kind == TextNode::Kind::scalar ? number_in(node.text) : std::nullopt;
   if (value && *value >= minimum && *value <= maximum) return *value;
   refuse_input(node.origin, prefix_ + key,
-               fmt::format("expected a number from {} to {}{}", minimum, maximum,
+               fmt::format("must be a number from {} to {}{}", minimum, maximum,
                            node.kind == TextNode::Kind::scalar ? ", found '" + node.text + "'" : ""));
 }
 

@@ -89,9 +89,9 @@ std::string place_in(const std::string& file, int line) { return file + ":" + st
 std::string read_file(const std::filesystem::path& file, std::size_t maximum_bytes) {
   const std::string name = file.string();
   const auto refuse = [&](const char* found) {
-    refuse_input(name, "", std::string("expected a readable file") + found);
+    refuse_input(name, "", std::string("cannot read this file") + found);
   };
-  const std::string too_large = "expected at most " + std::to_string(maximum_bytes >> 20) + " MiB";
+  const std::string too_large = "must be at most " + std::to_string(maximum_bytes >> 20) + " MiB";
   const auto refuse_for_errno = [&] {
     const std::string lacking = lacking_resource(errno);
     if (!lacking.empty()) throw MachineError(name + ": " + lacking);

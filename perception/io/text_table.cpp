@@ -47,7 +47,7 @@ std::vector<TableLine> table_lines(std::string_view text, CellsParted parted, co
     if (!line.empty() && line.front() != '#') {
       lines.push_back({number, cells_of(line, parted)});
       cells += lines.back().cells.size();
-      if (cells > maximum_cells) fail_at_line(name, number, "expected at most 16 million cells so far");
+      if (cells > maximum_cells) fail_at_line(name, number, "a table must have at most 16 million cells");
     }
     text.remove_prefix(std::min(end + 1, text.size()));
   }

@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::size_t maximum_depth = 16;  // far above what any file of keys needs
 constexpr std::size_t maximum_nodes = 100'000;
-const std::string too_deep = "expected at most 16 levels of lists and maps in each other";
-const std::string too_many = "expected at most 100,000 values";
-const std::string not_a_map = "expected one YAML document with keys and values";
+const std::string too_deep = "lists and maps may be nested at most 16 deep";
+const std::string too_many = "a file may hold at most 100,000 values";
+const std::string not_a_map = "must be one YAML document with keys and values";
 
 std::size_t count_of(const TextNode& node) {
   std::size_t count = 1;
@@ -57,7 +57,7 @@ YamlFault likely_fault(const std::string& text) {
       if (c == quote && (quote == '\'' || before != '\\')) quote = 0;
     } else if (!is_comment) {
       if (is_indentation && c == '\t' && open.empty())
-        return {line, "expected blanks, found a tab before the key"};
+        return {line, "a key is indented with a tab: YAML wants blanks"};
       if (c == '#' && (before == ' ' || before == '\n' || before == '\t')) is_comment = true;
       if ((c == '"' || c == '\'') && begins_value) {
         quote = c;
@@ -74,7 +74,7 @@ YamlFault likely_fault(const std::string& text) {
     before = c;
     if (!is_comment && c != ' ' && c != '\t') last_word = c;
   }
-  if (quote != 0) return {quote_line, std::string("expected a second ") + quote + " that ends the text"};
+  if (quote != 0) return {quote_line, std::string("a text has no closing ") + quote};
   if (open.empty()) return {};
   return {open.back().line, std::string("expected a ") + (open.back().mark == '[' ? ']' : '}') +
                                 " that closes the " + open.back().mark};
@@ -97,7 +97,7 @@ class TreeBuilder : public YAML::EventHandler {
       }
     } catch (const YAML::Exception& error) {
       refuse_likely_fault();
-      refuse_input(place(error.mark), "", "expected YAML, `key: value` on a line of its own: " + error.msg);
+      refuse_input(place(error.mark), "", "not valid YAML (`key: value` on a line of its own): " + error.msg);
     }
     return std::move(root_);
   }
@@ -112,8 +112,7 @@ class TreeBuilder : public YAML::EventHandler {
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto named = anchored_.find(anchor);
     if (named == anchored_.end())
-      refuse_input(place(mark), "",
-                   "expected an alias of what ends before it, found one of what contains it");
+      refuse_input(place(mark), "", "an alias must not refer to the value that contains it");
     if (open_.size() + depth_of(named->second) > maximum_depth) refuse_input(place(mark), "", too_deep);
     count(count_of(named->second), place(mark));
     add(named->second, 0);
@@ -183,7 +182,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   [[noreturn]] void refuse_key(const TextNode& node) const {
     refuse_likely_fault();
-    refuse_input(node.origin, "", "expected a plain word as key");
+    refuse_input(node.origin, "", "a key must be a plain word");
   }
 
   void add(TextNode node, YAML::anchor_t anchor) {
@@ -229,7 +228,7 @@ class XmlReader {
     if (root.type() != pugi::node_element || std::string_view(root.name()) != "opencv_storage")
       fail(root.offset_debug(), std::string("expected <opencv_storage>, found <") + root.name() + ">");
     if (const pugi::xml_node next = root.next_sibling())
-      fail(next.offset_debug(), "expected nothing after </opencv_storage>");
+      fail(next.offset_debug(), "nothing may follow </opencv_storage>");
     return element(root, 1);
   }
 
@@ -246,7 +245,7 @@ class XmlReader {
       else if (child.type() == pugi::node_pcdata)
         add_words(child, node);
       else
-        fail(child.offset_debug(), "expected elements and values only");
+        fail(child.offset_debug(), "only elements and values may stand here");
     }
     classify(node);
     return node;
@@ -283,7 +282,7 @@ class XmlReader {
     } else if (std::none_of(children.begin(), children.end(), is_word)) {
       node.kind = TextNode::Kind::map;
     } else {
-      refuse_input(node.origin, node.key, "expected elements or values, not both");
+      refuse_input(node.origin, node.key, "holds elements and a value: only one of the two may stand here");
     }
   }
 
@@ -303,7 +302,7 @@ class XmlReader {
   }
 
   [[noreturn]] void fail(std::ptrdiff_t offset, const std::string& what) {
-    refuse_input(place(offset), "", "expected OpenCV's XML: " + what);
+    refuse_input(place(offset), "", "not valid XML of OpenCV: " + what);
   }
 
   const std::string& text_;
@@ -328,8 +327,7 @@ void refuse_double_keys(const TextNode& node, const std::string& path) {
     const std::string full = !in_map        ? path + "[" + std::to_string(i) + "]"
                              : path.empty() ? child.key
                                             : path + "." + child.key;
-    if (in_map && !seen.insert(child.key).second)
-      refuse_input(child.origin, full, "expected each key once, this one is given twice");
+    if (in_map && !seen.insert(child.key).second) refuse_input(child.origin, full, "this key is given twice");
     if (!child.children.empty()) refuse_double_keys(child, full);
   }
 }

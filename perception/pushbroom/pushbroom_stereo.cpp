@@ -47,7 +47,7 @@ struct RangeCheck {
   void operator()(const char* name, const T& field, Bound minimum, Bound maximum) {
     if constexpr (std::is_arithmetic_v<T>) {
       if (!(field >= minimum && field <= maximum))  // written so that nan is refused
-        fault = text_of(name, ": expected ", minimum, " to ", maximum, ", found ", field);
+        fault = text_of(name, ": must be from ", minimum, " to ", maximum, ", is ", field);
     } else if constexpr (requires { field.has_value(); }) {
       if (field) (*this)(name, *field, minimum, maximum);
     } else {
@@ -94,20 +94,19 @@ std::string fault_of(const PushbroomConfig& config, const StereoRig& rig) {
   range("depths_m", config.depths_m, 0.1, 1000.0);
   if (!range.fault.empty()) return range.fault;
   if (!config.depths_m.empty() && !config.disparities_px.empty())
-    return "disparities_px: expected these or depths_m, found both";
+    return "disparities_px and depths_m exclude each other: name one of them";
   const std::vector<int> disparities_px = disparities_of(config, rig);
   for (const auto& [name, thresholds] :
        {std::pair("depths_minimum_edge_sum", &config.depths_minimum_edge_sum),
         std::pair("depths_score_limit", &config.depths_score_limit)})
     if (!thresholds->empty() && thresholds->size() != disparities_px.size())
-      return text_of(name, ": expected as many as depths, ", disparities_px.size(), ", or none, found ",
+      return text_of(name, ": must be empty or have one value a depth (", disparities_px.size(), "), has ",
                      thresholds->size());
   for (std::size_t i = 0; i < disparities_px.size(); ++i) {
     if (rig.can_look_at(disparities_px[i])) continue;
     if (!config.disparities_px.empty())
-      return text_of("disparities_px: expected disparities the rig ", rig.name, " can look at, found ",
-                     disparities_px[i], " px");
-    return text_of("depths_m: expected depths the rig ", rig.name, " can look at, found ",
+      return text_of("disparities_px: the rig ", rig.name, " cannot look at ", disparities_px[i], " px");
+    return text_of("depths_m: the rig ", rig.name, " cannot look at ",
                    config.depths_m.empty() ? rig.detection_depth_m : config.depths_m[i], " m");
   }
   return "";

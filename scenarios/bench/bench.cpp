@@ -91,7 +91,7 @@ void add_detectors(const CalibratedRig& rig, const std::vector<StereoFrame>& raw
   dense.every_pixel = true;
   four.depths_m = depths_around(rig.rig, 4);
   detect(one_depth_name, paper, matching_name);
-  detect("detect, our rule", ours, matching_name);
+  detect("detect, robust parameters", ours, matching_name);
   detect("detect, 4 depths", four, one_depth_name);
   if (rig.calibration)
     cases.push_back(
@@ -101,7 +101,7 @@ void add_detectors(const CalibratedRig& rig, const std::vector<StereoFrame>& raw
   detect_raw("rectify and detect", paper);
   detect_raw("rectify and detect, two threads", two_threads);
   detect_raw("rectify and detect, every pixel", dense);
-  detect_raw("rectify and detect, our rule", ours);
+  detect_raw("rectify and detect, robust parameters", ours);
 }
 
 }  // namespace

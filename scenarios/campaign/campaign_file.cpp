@@ -106,7 +106,7 @@ std::size_t require_grid(const ConfigNode* grid, std::size_t variants) {
       return key == axis.key || key.starts_with(axis.key + ".") || key.starts_with(axis.key + "[");
     };
     if (std::ranges::none_of(known, is_named))
-      refuse_input(axis.origin, "grid." + axis.key, "expected a known key" + did_you_mean(axis.key, known));
+      refuse_input(axis.origin, "grid." + axis.key, "unknown key" + did_you_mean(axis.key, known));
     if (axis.key == "seed") refuse_key(axis, "grid.seed", seeds_decide);
     if (axis.kind != ConfigNode::Kind::list || axis.children.empty())
       refuse_key(axis, "grid." + axis.key, "a list of values");
@@ -159,12 +159,14 @@ std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, cons
     const std::uint64_t first = seed_of(std::string_view(range).substr(0, dots), where, range);
     const std::uint64_t last =
         dots == std::string::npos ? first : seed_of(std::string_view(range).substr(dots + 2), where, range);
-    if (last < first) throw ScenarioError(fmt::format("{}: expected first <= last, got '{}'", where, range));
+    if (last < first)
+      throw ScenarioError(
+          fmt::format("{}: the first seed must not be above the last, got '{}'", where, range));
     if (last - first >= maximum_flights - std::min(seeds.size(), maximum_flights - 1))
-      throw ScenarioError(fmt::format("{}: expected at most {} flights", where, maximum_flights));
+      throw ScenarioError(fmt::format("{}: a campaign may have at most {} flights", where, maximum_flights));
     for (std::uint64_t seed = first; seed <= last; ++seed) {
       if (!seen.insert(seed).second)
-        throw ScenarioError(fmt::format("{}: expected each seed once, {} is given twice", where, seed));
+        throw ScenarioError(fmt::format("{}: seed {} is given twice", where, seed));
       seeds.push_back(seed);
     }
   }
@@ -247,7 +249,7 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario,
             *scenarios, "scenarios",
             fmt::format("names of conditions of at most 200 characters, no '.' first; '{}' comes out", name));
       if (!seen.insert(name).second)
-        refuse_key(*scenarios, "scenarios", fmt::format("each condition once, '{}' comes out twice", name));
+        refuse_input(scenarios->origin, "scenarios", fmt::format("two conditions are called '{}'", name));
       campaign.conditions.push_back(
           {name, scenario_to_text(scenario), plain(path.stem().string()), variant.name, variant.grid});
       if (on_condition) on_condition(campaign.conditions.size(), conditions);

@@ -54,12 +54,12 @@ Json manifest_in(const CampaignFolder& folder) {
   const auto text = text_if_there(file);
   if (!text)
     throw ScenarioError(
-        fmt::format("{}: expected a campaign's results, with {}", folder.path.string(), manifest_name));
+        fmt::format("{}: not a folder of a campaign: {} is missing", folder.path.string(), manifest_name));
   const Json json = parse_json(*text);
   if (!json.is_object() || !json.contains("format"))
-    throw ScenarioError(fmt::format("{}: expected a campaign's description, whole", file.string()));
+    throw ScenarioError(fmt::format("{}: not a whole description of a campaign", file.string()));
   if (!json["format"].is_number_integer() || json["format"] != results_format)
-    throw ScenarioError(fmt::format("{}: format: expected {}, the results are of another version: {}",
+    throw ScenarioError(fmt::format("{}: format: must be {}, these results are of another version: {}",
                                     file.string(), results_format, json_text(json["format"])));
   return json;
 }
@@ -68,8 +68,10 @@ Json manifest_in(const CampaignFolder& folder) {
 void require_same(const CampaignFolder& folder, const Campaign& campaign) {
   const Campaign held = read_campaign(folder);
   const auto refuse = [&](const std::string& what) {
-    throw ScenarioError(fmt::format("{}: {}: expected as it was begun; --out names another folder",
-                                    (folder.path / manifest_name).string(), what));
+    throw ScenarioError(
+        fmt::format("{}: {}: the campaign was begun with another value: continue it with that one, or choose "
+                    "another --out",
+                    (folder.path / manifest_name).string(), what));
   };
   require_identity(folder, held, campaign.identity);
   if (held.seeds != campaign.seeds) refuse("seeds changed");
@@ -103,8 +105,9 @@ bool is_plain_name(const std::string& name) {
 void require_identity(const CampaignFolder& folder, const Campaign& held, const Identity& identity) {
   const std::string name = difference_of(held.identity, identity);
   if (!name.empty())
-    refuse_manifest(folder, name,
-                    "changed since the campaign began, expected as it was; --out names another folder");
+    refuse_manifest(
+        folder, name,
+        "changed since the campaign began: continue it with what it was begun with, or choose another --out");
 }
 
 std::optional<std::string> text_if_there(const fs::path& file) {
@@ -171,16 +174,16 @@ Campaign read_campaign(const CampaignFolder& folder) {
     campaign.renderer = json.at(key = "renderer");
     campaign.timeout_s = json.at(key = "timeout_s");
     if (campaign.timeout_s < 1 || campaign.timeout_s > 86400)
-      refuse_manifest(folder, key, "expected 1 to 86400");
+      refuse_manifest(folder, key, "must be from 1 to 86400");
     const auto is_renderer = [&](const auto& entry) { return entry.first == campaign.renderer; };
     if (std::ranges::none_of(renderer_names, is_renderer))
-      refuse_manifest(folder, "renderer", "expected osmesa, egl or auto");
+      refuse_manifest(folder, "renderer", "must be osmesa, egl or auto");
     for (const char* list : {"seeds", "conditions"})
       if (!json.at(key = list).is_array() || json[key].empty())
-        refuse_manifest(folder, key, "expected a list that is not empty");
+        refuse_manifest(folder, key, "must be a list with at least one entry");
     for (const Json& seed : json.at(key = "seeds")) {
       if (!seed.is_number_unsigned() || seed > std::uint64_t{1} << 32)
-        refuse_manifest(folder, key, "expected whole numbers from 0 to 2^32");
+        refuse_manifest(folder, key, "must be whole numbers from 0 to 2^32");
       campaign.seeds.push_back(seed);
     }
     for (const Json& held : json.at(key = "conditions")) {
@@ -189,20 +192,20 @@ Campaign read_campaign(const CampaignFolder& folder) {
       for (const auto& [name, value] : held.at("grid").items()) condition.grid.emplace_back(name, value);
       const bool is_new = names.insert(campaign.conditions.back().name).second;
       if (!is_plain_name(campaign.conditions.back().name) || !is_new)
-        refuse_manifest(folder, key, "expected names of letters, digits and . _ = -, each once");
+        refuse_manifest(folder, key, "must be different names of letters, digits and . _ = -");
     }
     if (json.contains(key = "identity"))
       for (const auto& [name, digest] : json.at(key).items()) campaign.identity.emplace_back(name, digest);
   } catch (const Json::exception&) {
-    refuse_manifest(folder, key, "expected as `understory campaign` writes it");
+    refuse_manifest(folder, key, "not as `understory campaign` writes it");
   }
   if (std::set(campaign.seeds.begin(), campaign.seeds.end()).size() != campaign.seeds.size())
-    refuse_manifest(folder, "seeds", "expected each once");
+    refuse_manifest(folder, "seeds", "must all be different");
   for (Condition& condition : campaign.conditions) {
     const auto text = text_if_there(folder.condition_file(condition));
     if (!text)
       throw ScenarioError(
-          fmt::format("{}: expected the condition's scenario", folder.condition_file(condition).string()));
+          fmt::format("{}: the condition's scenario is missing", folder.condition_file(condition).string()));
     condition.scenario_text = *text;
   }
   return campaign;
@@ -263,7 +266,8 @@ std::vector<FlightRow> read_campaign_rows(const fs::path& folder) {
   const fs::path file = folder / "flights.csv";
   const auto text = text_if_there(file);
   if (!text)
-    throw ScenarioError(fmt::format("{}: expected a campaign's results (flights.csv)", folder.string()));
+    throw ScenarioError(
+        fmt::format("{}: not a folder of a campaign's results: flights.csv is missing", folder.string()));
   return rows_from_csv(*text, file.string());
 }
 

@@ -163,7 +163,7 @@ void add_rows(const CampaignFolder& folder, const Campaign& campaign, const std:
     page.parts.emplace_back(name, read_file(track, maximum_json_bytes));
     const Json told = facts_in(page.parts.back().second);
     if (!told.is_object())
-      throw ScenarioError(fmt::format("{}: expected a flight's track, whole", track.string()));
+      throw ScenarioError(fmt::format("{}: not a whole track of a flight", track.string()));
     texts["reasons"].back() = told.value("sentence", "");
     texts["touched"].back() = told.value("touched_name", "");
     facts["tracks"][fmt::format("{}", i)] = name;

@@ -169,7 +169,7 @@ std::string to_csv(const std::vector<FlightRow>& rows) {
 std::vector<FlightRow> rows_from_csv(const std::string& text, const std::string& name) {
   const Table expected = empty_table(), table = table_from_csv(text, name);
   if (table.head != expected.head)
-    throw ScenarioError(fmt::format("{}:1: expected the columns of results format {}: {}", name,
+    throw ScenarioError(fmt::format("{}:1: must name the columns of results format {}: {}", name,
                                     results_format, fmt::join(expected.head, ",")));
   std::vector<FlightRow> rows;
   std::set<std::string> seen;
@@ -177,11 +177,10 @@ std::vector<FlightRow> rows_from_csv(const std::string& text, const std::string&
   for (const std::vector<std::string>& cells : table.rows) {
     auto cell = cells.begin();
     if (!take_row(rows.emplace_back(), [&](std::string_view) { return *cell++; }))
-      refuse_input(place_in(name, line), cells.front(), "expected a whole row, as understory writes it");
+      refuse_input(place_in(name, line), cells.front(), "not a whole row as understory writes it");
     const FlightRow& row = rows.back();
     if (!seen.insert(fmt::format("{} {}", row.condition, row.seed)).second)
-      refuse_input(place_in(name, line), cells.front(),
-                   "expected each condition and seed once, these are there twice");
+      refuse_input(place_in(name, line), cells.front(), "this condition and seed are there twice");
     for (const std::string& words : cells) line += static_cast<int>(std::ranges::count(words, '\n'));
     ++line;
   }

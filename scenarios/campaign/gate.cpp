@@ -27,8 +27,7 @@ std::map<std::string, RowsBySeed> by_condition(const std::vector<FlightRow>& row
   std::map<std::string, RowsBySeed> conditions;
   for (const FlightRow& row : rows)
     if (!conditions[row.condition].emplace(row.seed, &row).second)
-      throw ScenarioError(fmt::format("{}: expected each flight once, '{}' seed {} is there twice", side,
-                                      row.condition, row.seed));
+      throw ScenarioError(fmt::format("{}: '{}' seed {} is there twice", side, row.condition, row.seed));
   return conditions;
 }
 

@@ -41,7 +41,7 @@ fs::path data_root() {
   if (const char* given = std::getenv("UNDERSTORY_ROOT")) {
     if (has_data(given)) return given;
     throw ScenarioError(
-        fmt::format("UNDERSTORY_ROOT={}: expected a folder with models/ and scenarios/", given));
+        fmt::format("UNDERSTORY_ROOT={}: must be a folder with models/ and scenarios/", given));
   }
   std::error_code ignored;
   for (fs::path folder = fs::read_symlink("/proc/self/exe", ignored); folder.has_relative_path();) {
@@ -62,11 +62,11 @@ fs::path library_file(const std::string& argument, const char* folder, const cha
   const bool is_name = argument.find('/') == std::string::npos && !argument.ends_with(".yaml");
   const fs::path library = data_root() / "scenarios" / folder, named = library / (argument + ".yaml");
   if (is_name && fs::exists(named, ignored)) return named;
-  if (is_folder) throw ScenarioError(fmt::format("{}: expected a {} file, this is a folder", argument, noun));
-  if (!is_name) throw ScenarioError(fmt::format("{}: expected a readable {} file", argument, noun));
+  if (is_folder) throw ScenarioError(fmt::format("{}: must be a {} file, is a folder", argument, noun));
+  if (!is_name) throw ScenarioError(fmt::format("{}: cannot read this {} file", argument, noun));
   const std::vector<std::string> names = yaml_names(library);
-  throw ScenarioError(fmt::format("{}: expected a {} file, or one of the library: {}{}", argument, noun,
-                                  fmt::join(names, ", "), did_you_mean(argument, names)));
+  throw ScenarioError(fmt::format("{}: no such {} file, and none in the library, which has: {}{}", argument,
+                                  noun, fmt::join(names, ", "), did_you_mean(argument, names)));
 }
 
 std::vector<std::string> scenario_names() { return yaml_names(data_root() / "scenarios" / "library"); }
@@ -81,8 +81,8 @@ fs::path rig_path(const std::string& argument) {
   const bool is_name = argument.find_first_of("/.") == std::string::npos;
   const fs::path named = data_root() / "models" / "rigs" / (argument + ".yaml");
   if (is_name && fs::exists(named, ignored)) return named;
-  throw ScenarioError(fmt::format("{}: expected a rig file, a calibration's file or folder, or one of: {}",
-                                  argument, fmt::join(rig_names(), ", ")));
+  throw ScenarioError(fmt::format("{}: no such rig file or calibration; rigs of the library: {}", argument,
+                                  fmt::join(rig_names(), ", ")));
 }
 
 void add_settings_option(Command& command, std::vector<std::string>& settings) {

@@ -64,7 +64,7 @@ int run_bench(const BenchArguments& arguments) {
   require_writable(arguments.json);
   if (arguments.closed_loop) return run_closed_loop_bench(arguments);
   if (arguments.rig.empty() && !arguments.inputs.empty() && !euroc_folder(arguments.inputs.front()))
-    throw ScenarioError(fmt::format("{}: expected a rig (--rig): only EuRoC folders bring their own",
+    throw ScenarioError(fmt::format("{}: requires --rig: only EuRoC folders bring their calibration",
                                     arguments.inputs.front()));
   const std::filesystem::path rig_file = !arguments.rig.empty() ? rig_path(arguments.rig)
                                          : arguments.inputs.empty()
@@ -76,7 +76,7 @@ int run_bench(const BenchArguments& arguments) {
   if (!arguments.inputs.empty()) frames = bad_input_if_refused([&] { return recorded(arguments); });
   if (frames.empty()) frames = stereo_scenes(rig, arguments.pairs, 1);
   if (frames.front().left.cols != rig.rig.width_px || frames.front().left.rows != rig.rig.height_px)
-    throw ScenarioError(fmt::format("{}: expected images of {}x{}, as the rig has them",
+    throw ScenarioError(fmt::format("{}: images must have the size of the rig's, {}x{}",
                                     arguments.inputs.front(), rig.rig.width_px, rig.rig.height_px));
   ProgressLine line;
   const std::vector<BenchRow> rows = bench_detectors(rig, frames, arguments.rounds, [&](int round) {

@@ -133,8 +133,7 @@ int run_campaign(const CampaignArguments& arguments) {
   const CampaignFolder folder{arguments.out.empty() ? fs::path("results") / campaign.name
                                                     : fs::path(arguments.out)};
   if (folder.path.string().find('\n') != std::string::npos)  // --print-tasks prints a line for each flight
-    throw ScenarioError(
-        fmt::format("{}: expected a folder whose name has no line breaks", folder.path.string()));
+    throw ScenarioError(fmt::format("{}: the folder's name must not hold line breaks", folder.path.string()));
   require_separate({arguments.junit}, campaign.files);
   require_outside({arguments.junit}, folder.path, campaign_patterns);
   require_outside({arguments.junit}, folder.path, flight_patterns);

@@ -38,7 +38,7 @@ int run_detect(const DetectArguments& arguments) {
   options.output_folder = arguments.out;
   ProgressLine line;
   options.on_progress = [&](std::int64_t frames, std::int64_t expected, std::int64_t hits) {
-    line.show(fmt::format("{} of {} frames, {} hits", frames, expected, hits),
+    line.show(fmt::format("{} of {} frames, {} detections", frames, expected, hits),
               static_cast<std::size_t>(frames),
               static_cast<std::size_t>(std::max<std::int64_t>(0, expected - frames)));
   };
@@ -56,7 +56,7 @@ struct RigArguments : CalibrationArguments {
 int run_rig(const RigArguments& arguments) {
   const fs::path out = arguments.out;
   if (!out.empty() && out.extension() != ".svg")
-    throw ScenarioError(fmt::format("--out {}: expected a name that ends in .svg", arguments.out));
+    throw ScenarioError(fmt::format("--out {}: the name must end in .svg", arguments.out));
   const CalibrationOptions options = calibration_options(arguments);
   const fs::path path = rig_path(arguments.rig);
   require_separate({out}, {path});

@@ -62,7 +62,7 @@ Scenario scenario_of(const FlightArguments& arguments) {
   Scenario scenario = load_scenario(file, settings, with);
   std::error_code ignored;
   if (!fs::exists(rigs / (scenario.rig + ".yaml"), ignored) && !fs::is_regular_file(scenario.rig, ignored))
-    throw ScenarioError(fmt::format("{}: rig: expected a name in {} or a rig file, got '{}'",
+    throw ScenarioError(fmt::format("{}: rig: must be a name in {} or a rig file, got '{}'",
                                     where_given(file, settings, "rig", with), rigs.string(), scenario.rig));
   return scenario;
 }

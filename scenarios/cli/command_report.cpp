@@ -54,7 +54,7 @@ std::string digest_of(const fs::path& run) {
   if (!fs::exists(file, ignored)) return "";
   const auto json = parse_json(read_file(file, maximum_json_bytes));
   if (!json.is_object() || !json.contains("digest") || !json["digest"].is_string())
-    throw ScenarioError(fmt::format("{}: expected a flight's result with a digest", file.string()));
+    throw ScenarioError(fmt::format("{}: not a flight's result with a digest", file.string()));
   return json["digest"];
 }
 
@@ -62,7 +62,8 @@ Scenario scenario_of_run(const fs::path& run) {
   std::error_code ignored;
   if (!fs::exists(run / "scenario.yaml", ignored))
     throw ScenarioError(fmt::format(
-        "{}: expected the folder of a run, which holds scenario.yaml, or of a campaign", run.string()));
+        "{}: neither the folder of a run (with scenario.yaml) nor of a campaign (with campaign.json)",
+        run.string()));
   return load_scenario(run / "scenario.yaml");
 }
 
@@ -205,7 +206,9 @@ int report_campaign(const ReportArguments& arguments) {
 int run_report_of_either(const ReportArguments& arguments) {
   std::error_code ignored;
   if (fs::exists(fs::path(arguments.folder) / "campaign.json", ignored)) return report_campaign(arguments);
-  if (!arguments.baseline.empty()) throw ScenarioError("--baseline: expected a campaign's folder before it");
+  if (!arguments.baseline.empty())
+    throw ScenarioError(
+        "--baseline requires a campaign's folder: understory report CAMPAIGN --baseline OTHER");
   return run_report(arguments);
 }
 

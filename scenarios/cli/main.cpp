@@ -78,7 +78,7 @@ void add_hidden_commands(CommandLine& line) {
     else if (*what == "SCENARIO" || *what == "RIG")
       fmt::print("{}\n", fmt::join(*what == "RIG" ? rig_names() : scenario_names(), "\n"));
     else
-      throw ScenarioError(fmt::format("completion {}: expected bash, SCENARIO or RIG", *what));
+      throw ScenarioError(fmt::format("completion {}: must be bash, SCENARIO or RIG", *what));
     return exit_goal;
   });
 }

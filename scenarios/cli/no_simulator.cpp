@@ -11,7 +11,7 @@ void add_refusal(CommandLine& line, const std::string& name) {
   command.takes_anything();
   command.runs([name]() -> int {
     throw ScenarioError(name +
-                        ": expected a build with the simulator, this one has none (UNDERSTORY_SIM=OFF)");
+                        ": requires a build with the simulator (this one was made with UNDERSTORY_SIM=OFF)");
   });
 }
 
@@ -20,8 +20,9 @@ void add_refusal(CommandLine& line, const std::string& name) {
 std::vector<std::filesystem::path> record_suite(const std::filesystem::path& file,
                                                 const std::filesystem::path&, int, const FindScenario&,
                                                 const std::filesystem::path&) {
-  throw ScenarioError(file.string() +
-                      ": expected a folder: this build has no simulator to record with (UNDERSTORY_SIM=OFF)");
+  throw ScenarioError(
+      file.string() +
+      ": must be a folder of recordings: this build has no simulator to record with (UNDERSTORY_SIM=OFF)");
 }
 
 void add_fly_command(CommandLine& line) { add_refusal(line, "fly"); }

@@ -88,7 +88,7 @@ class ConfigReader {
   void finish() const {
     for (const ConfigNode& child : map_.children) {
       if (std::ranges::find(known_, child.key) != known_.end()) continue;
-      refuse_input(child.origin, full(child.key), "expected a known key" + did_you_mean(child.key, known_));
+      refuse_input(child.origin, full(child.key), "unknown key" + did_you_mean(child.key, known_));
     }
   }
 

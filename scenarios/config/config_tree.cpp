@@ -90,11 +90,11 @@ ConfigNode parse_assignment(const std::string& assignment) {
       (assignment.size() <= maximum_shown ? assignment : assignment.substr(0, maximum_shown) + "...");
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0) {
-    throw ScenarioError(fmt::format("{}: expected key=value, for instance forest.length_m=60", origin));
+    throw ScenarioError(fmt::format("{}: must be key=value, for instance forest.length_m=60", origin));
   }
   const std::string key = assignment.substr(0, equals);
   if (std::ranges::count(key, '.') >= maximum_levels)
-    throw ScenarioError(fmt::format("{}: expected at most {} levels of keys", origin, maximum_levels));
+    throw ScenarioError(fmt::format("{}: a key may have at most {} levels", origin, maximum_levels));
   return under_keys(parse_yaml_value(assignment.substr(equals + 1), origin, key), key);
 }
 

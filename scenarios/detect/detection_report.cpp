@@ -57,7 +57,7 @@ std::string to_report(const DetectionResult& result) {
         row("looked at", fmt::format("{:.2f} m ({} px; a pixel either way {:.2f} to {:.2f} m), rows 0 to {}",
                                      depth.depth_m, depth.disparity_px, depth.one_pixel.near_m,
                                      depth.one_pixel.far_m, result.last_row_px));
-  text += row("hits", hits_text(result.frames));
+  text += row("detections", hits_text(result.frames));
   if (result.rectified_here) text += row("rectify", times_text(result.frames, &FrameRecord::rectify_ms));
   text += row("detect", times_text(result.frames, &FrameRecord::detect_ms));
   if (result.remembered_points) text += row("map", map_text(result));

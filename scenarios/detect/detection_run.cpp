@@ -34,7 +34,7 @@ void check_principal_point(const StereoCalibration& calibration, const fs::path&
   if (is_central(u, calibration.width_px) && is_central(v, calibration.height_px)) return;
   const std::string size = fmt::format("{}x{}", calibration.width_px, calibration.height_px);
   throw std::runtime_error(fmt::format(
-      "{}: expected a principal point in the middle of the {} images, found ({:.0f}, {:.0f}): calibrated at "
+      "{}: the principal point must lie near the middle of the {} images, is ({:.0f}, {:.0f}): calibrated at "
       "another resolution? (--size {} says it was not)",
       rig.string(), size, u, v, size));
 }
@@ -57,16 +57,16 @@ CalibratedRig read_rig_for(cv::Size images, const fs::path& file, CalibrationOpt
 CalibratedRig rig_for(const DetectionOptions& options, const StereoRecording& recording) {
   const bool brings_its_own = options.inputs.size() == 1 && euroc_folder(options.inputs[0]).has_value();
   if (options.rig.empty() && !brings_its_own)
-    throw ScenarioError(fmt::format("{}: expected a rig (--rig): only EuRoC folders bring their own",
+    throw ScenarioError(fmt::format("{}: requires --rig: only EuRoC folders bring their calibration",
                                     options.inputs.front().string()));
   const fs::path file = options.rig.empty() ? options.inputs[0] : options.rig;
   const cv::Size images = recording.image_size();
   const CalibratedRig camera =
       bad_input_if_refused([&] { return read_rig_for(images, file, options.calibration); });
   if (images != cv::Size(camera.rig.width_px, camera.rig.height_px))
-    throw ScenarioError(fmt::format("{}: expected {}x{} as {} has, found {}x{}",
-                                    recording.first_file().string(), camera.rig.width_px,
-                                    camera.rig.height_px, file.string(), images.width, images.height));
+    throw ScenarioError(fmt::format("{}: must be {}x{} as {} says, is {}x{}", recording.first_file().string(),
+                                    camera.rig.width_px, camera.rig.height_px, file.string(), images.width,
+                                    images.height));
   return camera;
 }
 
@@ -87,15 +87,15 @@ std::vector<TimedPose> poses_for(const DetectionOptions& options, const StereoRe
   auto poses = bad_input_if_refused([&] { return read_poses(options.poses); });
   const auto images = recording.times();
   if (!images)
-    throw ScenarioError(fmt::format("--poses: expected images with times, found none in the names ({})",
+    throw ScenarioError(fmt::format("--poses requires images with times: their names hold none ({})",
                                     recording.first_file().string()));
   const auto seconds = [](std::int64_t t_ns) { return 1e-9 * static_cast<double>(t_ns); };
   const std::int64_t first_ns = poses.front().t_ns, last_ns = poses.back().t_ns;
   if (images->last_ns < first_ns || images->first_ns > last_ns)
-    throw ScenarioError(
-        fmt::format("{}: expected poses at the images' time, {:.3f} to {:.3f} s, found {:.3f} to {:.3f} s",
-                    options.poses.string(), seconds(images->first_ns), seconds(images->last_ns),
-                    seconds(first_ns), seconds(last_ns)));
+    throw ScenarioError(fmt::format(
+        "{}: the poses must cover the images' time, {:.3f} to {:.3f} s, they cover {:.3f} to {:.3f} s",
+        options.poses.string(), seconds(images->first_ns), seconds(images->last_ns), seconds(first_ns),
+        seconds(last_ns)));
   return poses;
 }
 
@@ -235,7 +235,7 @@ DetectionResult run_detection(const DetectionOptions& options) {
     OverlayMoment moment;
     moment.left = rectified.left;
     moment.hits = seen.hits;
-    moment.caption = fmt::format("frame {}: {} hits at {}", seen.frame, record.hits, depths);
+    moment.caption = fmt::format("frame {}: {} detections at {}", seen.frame, record.hits, depths);
     if (const auto T_world_camera = map.insert(seen, camera.rig)) {
       record.in_map = true;
       moment.remembered = map.map.points();

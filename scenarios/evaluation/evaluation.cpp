@@ -25,8 +25,8 @@ std::int64_t check(const EvaluationOptions& options) {
     const EvaluationRecording recording(folder);
     if (frames == 0) first = recording.rig();
     if (!is_same_rig(recording.rig(), first))
-      throw ScenarioError(fmt::format("{}: expected the rig of {}, found another: evaluate them apart",
-                                      folder.string(), options.folders.front().string()));
+      throw ScenarioError(fmt::format("{}: has another rig than {}: evaluate them apart", folder.string(),
+                                      options.folders.front().string()));
     frames += (static_cast<std::int64_t>(recording.frame_count()) + options.settings.every - 1) /
               options.settings.every;
   }

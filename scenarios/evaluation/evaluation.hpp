@@ -14,7 +14,7 @@
 
 namespace understory {
 
-/// What is evaluated, and against what: `pushbroom` is our rule, `map` that of the evaluations with memory,
+/// What is evaluated, and against what: `pushbroom` is the detector's parameter set, `map` the one of the evaluations with memory,
 /// `compute` the aircraft's computer, for what it finds at its own pace, `enabled` or not.
 struct EvaluationSettings : VisionConfig {
   int every = 1;  ///< every n-th frame only
@@ -25,7 +25,7 @@ struct EvaluationSettings : VisionConfig {
 enum AlgorithmIndex { our_rule, the_papers_rule, stereo_bm, stereo_sgbm, true_depth, at_random };
 inline constexpr std::size_t algorithm_count = 6, computed_count = 4;
 inline constexpr std::array<const char*, algorithm_count> algorithm_names{
-    "pushbroom, our rule", "pushbroom, the paper's rule", "StereoBM", "StereoSGBM", "true depth", "random"};
+    "pushbroom", "pushbroom, original", "StereoBM", "StereoSGBM", "true depth", "random"};
 /// Those that go through the paper's own evaluations.
 inline constexpr std::array<AlgorithmIndex, 3> published_algorithms{our_rule, the_papers_rule, at_random};
 
@@ -40,9 +40,9 @@ struct PrecisionRecallCurve {
   std::vector<Point> points = {};
 };
 
-/// A rule with its invariance filter off and on (the paper's figure), at one pixel.
+/// A parameter set with its invariance filter off and on (the paper's figure), at one pixel.
 struct InvarianceRow {
-  std::string rule;
+  std::string parameters;
   bool filter = false;
   std::int64_t hits = 0;
   Rates rates = {};  ///< of nothing where there is no true depth

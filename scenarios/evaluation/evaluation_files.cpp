@@ -83,7 +83,7 @@ Json sum_json(const EvaluationSum& sum) {
                              {"false_positives", to_json(sum.published[i].false_positives)},
                              {"false_negatives", to_json(sum.published[i].false_negatives)}});
   for (const InvarianceRow& row : sum.invariance) {
-    json["invariance"].push_back({{"rule", row.rule}, {"filter", row.filter}, {"hits", row.hits}});
+    json["invariance"].push_back({{"parameters", row.parameters}, {"filter", row.filter}, {"hits", row.hits}});
     json["invariance"].back().update(to_json(row.rates));
   }
   for (const PrecisionRecallCurve& curve : sum.curves) {
@@ -112,7 +112,7 @@ std::string evaluation_json(const Evaluation& evaluation) {
 
 /// Into the folder, and as a part of the page.
 SheetSection write_worst_frames(const Evaluation& evaluation, const fs::path& folder) {
-  SheetSection section{"The frames with the most false hits"};
+  SheetSection section{"The frames with the most false detections"};
   prepare_output_folder(folder);
   int number = 0;
   for (const WorstPicture& worst : worst_pictures(evaluation)) {
@@ -156,9 +156,9 @@ void write_evaluation(const Evaluation& evaluation, const fs::path& folder, cons
   if (evaluation.has_depth()) {
     write_plots("precision_recall.svg", {precision_recall_plot(evaluation)});
     write_plots("response.svg", {response_plot(evaluation)});
-    write_picture(folder / "heat_map.png", heat_maps(evaluation.all.tallies[our_rule], "our rule"));
+    write_picture(folder / "heat_map.png", heat_maps(evaluation.all.tallies[our_rule], "pushbroom"));
     write_picture(folder / "heat_map_paper.png",
-                  heat_maps(evaluation.all.tallies[the_papers_rule], "the paper's rule"));
+                  heat_maps(evaluation.all.tallies[the_papers_rule], "pushbroom, original"));
     page.insert(page.begin() + 1, write_worst_frames(evaluation, folder / "worst"));
   }
   if (evaluation.has_objects()) {

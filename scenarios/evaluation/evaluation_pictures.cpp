@@ -118,7 +118,7 @@ cv::Mat annotated_frame(const EvaluationFrame& frame, const StereoRig& rig, cons
     draw(hit.column_px, hit.row_px, is_true ? true_positive_colour : false_positive_colour, 2);
   }
   write_line(picture,
-             fmt::format("{} true positives (green), {} false (red), {} due blocks without a hit (yellow)",
+             fmt::format("{} true positives (green), {} false positives (red), {} false negatives (yellow)",
                          static_cast<int>(hits.size()) - false_positives, false_positives, missed),
              {8, picture.rows - 10});
   return picture;
@@ -138,7 +138,7 @@ std::vector<WorstPicture> worst_pictures(const Evaluation& evaluation) {
     const std::string caption =
         fmt::format("{}, frame {}", recording->folder.filename().string(), worst.index);
     write_line(picture, caption, {8, 18});
-    pictures.push_back({fmt::format("{}: {} false hits", caption, worst.false_hits), picture});
+    pictures.push_back({fmt::format("{}: {} false positives", caption, worst.false_hits), picture});
   }
   return pictures;
 }
@@ -178,9 +178,9 @@ std::vector<LinePlot> distances_plots(const Evaluation& evaluation) {
 LinePlot response_plot(const Evaluation& evaluation) {
   constexpr double bin_m = 0.5;
   LinePlot plot;
-  plot.title = "Obstacle blocks with a hit, over their true distance";
+  plot.title = "Recall over the true distance of the blocks";
   plot.x_label = "true distance, m";
-  plot.y_label = "% of blocks";
+  plot.y_label = "recall, %";
   for (const std::size_t i : {our_rule, the_papers_rule, stereo_bm, stereo_sgbm}) {
     Series series{.name = algorithm_names[i], .mark = Mark::line};
     const std::vector<Share>& response = evaluation.all.tallies[i].response;
@@ -211,7 +211,7 @@ LinePlot first_hits_plot(const Evaluation& evaluation) {
     }
     if (of == 0) continue;
     const std::string name = algorithm_names[i];
-    plot.series.push_back(reached((name + ", first hit").c_str(), first_m, of));
+    plot.series.push_back(reached((name + ", first detection").c_str(), first_m, of));
     plot.series.push_back(reached((name + ", third").c_str(), third_m, of));
     plot.series.back().mark = Mark::dashes;
     plot.series.back().colour = plot.series[plot.series.size() - 2].colour =

@@ -23,7 +23,7 @@ cv::Mat read_16_bit_image(const fs::path& file, const StereoRig& rig) {
   const cv::Mat image = read_gray_image(file, CV_16U);
   if (image.size() != cv::Size(rig.width_px, rig.height_px))
     throw std::runtime_error(
-        fmt::format("{}: expected a 16-bit gray image of {}x{}", file.string(), rig.width_px, rig.height_px));
+        fmt::format("{}: must be a 16-bit gray image of {}x{}", file.string(), rig.width_px, rig.height_px));
   return image;
 }
 
@@ -71,13 +71,13 @@ std::vector<RecordedObject> parse_recorded_objects(const std::string& text, cons
     if (!given || *given < 1 || *given > 65535) fail_at_line(name, line.number, expected);
     object.number = static_cast<int>(*given);
     if (std::ranges::find(objects, object.number, &RecordedObject::number) != objects.end())
-      fail_at_line(name, line.number, "expected each number once");
+      fail_at_line(name, line.number, "this number is there twice");
     object.name = line.cells[1];
     object.kind = line.cells[2];
     object.from_world = {number(3), number(4), number(5)};
     object.to_world = {number(6), number(7), number(8)};
     object.radius_m = number(9);
-    if (object.radius_m < 0) fail_at_line(name, line.number, "expected a radius from 0");
+    if (object.radius_m < 0) fail_at_line(name, line.number, "the radius must not be negative");
     objects.push_back(object);
   }
   return objects;
@@ -128,8 +128,8 @@ EvaluationFrame EvaluationRecording::frame(std::size_t index) {
   for (const auto& [file, image] :
        {std::pair(&files.left, &frame.pair.left), {&files.right, &frame.pair.right}})
     if (image->size() != size)
-      throw ScenarioError(fmt::format("{}: expected {}x{} as the calibration has, found {}x{}",
-                                      file->string(), size.width, size.height, image->cols, image->rows));
+      throw ScenarioError(fmt::format("{}: must be {}x{} as the calibration says, is {}x{}", file->string(),
+                                      size.width, size.height, image->cols, image->rows));
   if (rectifier_) frame.pair = rectifier_->rectify(frame.pair);
   frame.mean_gray = cv::mean(frame.pair.left)[0];
   if (!has_poses()) return frame;

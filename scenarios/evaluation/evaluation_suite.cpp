@@ -63,11 +63,12 @@ std::vector<SuiteRecording> recordings_of(const ConfigNode& entry, const ConfigN
   recording.scenario =
       scenario_beside(folder / "suite", *find_child(entry, "scenario"), scenario, find_scenario);
   if (find_child(entry, "path") != nullptr && find_child(entry, "walk_mps") != nullptr)
-    refuse_key(*find_child(entry, "walk_mps"), "recordings.walk_mps", "either path or walk_mps");
+    refuse_input(find_child(entry, "walk_mps")->origin, "recordings.walk_mps",
+                 "path and walk_mps exclude each other");
   if (const ConfigNode* height = find_child(entry, "height_m"); height != nullptr) {
     number_of(*height, "recordings.height_m", 0.3, 8);
     if (find_child(entry, "walk_mps") == nullptr)
-      refuse_key(*height, "recordings.height_m", "walk_mps beside it: it is the height of a walk");
+      refuse_input(height->origin, "recordings.height_m", "requires walk_mps: it is the height of a walk");
   }
   if (const ConfigNode* walk = find_child(entry, "walk_mps")) number_of(*walk, "recordings.walk_mps", 0.1, 5);
   if (find_child(entry, "path") != nullptr) {

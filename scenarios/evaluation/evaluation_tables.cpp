@@ -81,7 +81,7 @@ const std::vector<PublishedRow> published_rows{
     {"3 found within 2.0 m", &PublishedScores::false_negatives, within<4>, 0.913}};
 
 EvaluationTable published_table(const Evaluation& evaluation) {
-  Table table{{"scene", "evaluation", "the paper", "our rule", "the paper's rule", "random, here",
+  Table table{{"scene", "evaluation", "the paper", "pushbroom", "pushbroom, original", "random, here",
                "random, the paper"}};
   const auto add = [&](const EvaluationSum& sum) {
     for (const PublishedRow& row : published_rows) {
@@ -101,7 +101,7 @@ EvaluationTable published_table(const Evaluation& evaluation) {
 }
 
 EvaluationTable algorithms_table(const Evaluation& evaluation) {
-  Table table{{"algorithm", "hits/frame", "precision 0.25 m", "0.50 m", "1.00 m", "one pixel",
+  Table table{{"algorithm", "detections/frame", "precision 0.25 m", "0.50 m", "1.00 m", "one pixel",
                "recall 0.25 m", "0.50 m", "1.00 m", "one pixel", "F", "false/s", "found 1 m", "found 3 m",
                "ms/frame"}};
   const EvaluationSum& all = evaluation.all;
@@ -118,7 +118,7 @@ EvaluationTable algorithms_table(const Evaluation& evaluation) {
     table.rows.push_back(std::move(row));
   }
   return {"algorithms",
-          "Against the truth, all looking within one pixel of the detection depth; cost on one thread",
+          "Against the truth, each at blocks within one pixel of the detection depth; cost on one thread",
           std::move(table)};
 }
 
@@ -136,7 +136,7 @@ EvaluationTable intervals_table(const Evaluation& evaluation) {
 }
 
 EvaluationTable scenes_table(const Evaluation& evaluation) {
-  Table table{{"scene", "recordings", "s", "hits/frame", "precision", "recall", "false/s", "found 1 m", "of",
+  Table table{{"scene", "recordings", "s", "detections/frame", "precision", "recall", "false/s", "found 1 m", "of",
                "found 3 m", "of", "hidden"}};
   for_each_scene(evaluation, [&](const EvaluationSum& sum) {
     std::int64_t hidden = 0;
@@ -148,7 +148,7 @@ EvaluationTable scenes_table(const Evaluation& evaluation) {
               number_text(tally.false_per_second(), 0), share_text(near), near.of, share_text(far), far.of,
               hidden);
   });
-  return {"scenes", "Our rule in every scene, at one pixel", std::move(table)};
+  return {"scenes", "The pushbroom in every scene, at one pixel", std::move(table)};
 }
 
 EvaluationTable computer_table(const Evaluation& evaluation) {
@@ -163,14 +163,14 @@ EvaluationTable computer_table(const Evaluation& evaluation) {
          wilson_text(found_within(paced.sightings, 3))});
   }
   return {"computer",
-          "On the aircraft's computer (perception.compute), each looking as often as it can: "
+          "On the aircraft's computer (perception.compute), each at the frame rate that it can hold: "
           "obstacles with 95 % intervals after Wilson",
           std::move(table)};
 }
 
 EvaluationTable on_the_path_table(const Evaluation& evaluation) {
-  Table table{{"algorithm", "obstacles", "found", "hits each, median", "lowest tenth",
-               "first hit at, m, median", "third hit at, m, median"}};
+  Table table{{"algorithm", "obstacles", "found", "detections each, median", "lowest tenth",
+               "first detection at, m, median", "third detection at, m, median"}};
   for (std::size_t i = 0; i < algorithm_count; ++i) {
     Share found;
     std::vector<double> hits, first_m, third_m;
@@ -192,7 +192,7 @@ EvaluationTable on_the_path_table(const Evaluation& evaluation) {
 }
 
 EvaluationTable parts_table(const Evaluation& evaluation) {
-  Table table{{"by", "part", "hits", "precision", "blocks", "recall"}};
+  Table table{{"by", "part", "detections", "precision", "blocks", "recall"}};
   for (const auto& [name, bins] : evaluation.all.tallies[our_rule].parts)
     for (const auto& [bin, rates] : bins) {
       const std::size_t space = bin.find(' ');  // behind the number that sorts
@@ -200,11 +200,11 @@ EvaluationTable parts_table(const Evaluation& evaluation) {
       table.add(name, numbered ? bin.substr(space + 1) : bin, rates.precision.of, share_text(rates.precision),
                 rates.recall.of, share_text(rates.recall));
     }
-  return {"parts", "Our rule by parts, at one pixel", std::move(table)};
+  return {"parts", "The pushbroom by parts, at one pixel", std::move(table)};
 }
 
 EvaluationTable false_hits_table(const Evaluation& evaluation) {
-  Table table{{"on", "our rule", "the paper's rule", "StereoBM", "StereoSGBM"}};
+  Table table{{"on", "pushbroom", "pushbroom, original", "StereoBM", "StereoSGBM"}};
   const double seconds = evaluation.all.seconds;
   std::map<std::string, std::array<double, compared.size()>> per_second;
   for (const std::size_t i : compared)
@@ -214,14 +214,14 @@ EvaluationTable false_hits_table(const Evaluation& evaluation) {
     std::vector<std::string>& row = table.rows.emplace_back(1, what);
     for (const double rate : rates) row.push_back(number_text(rate, 1));
   }
-  return {"false_hits", "What false hits lie on, a second, at one pixel", std::move(table)};
+  return {"false_positives", "What false positives lie on: how many a second, at one pixel", std::move(table)};
 }
 
 EvaluationTable invariance_table(const Evaluation& evaluation) {
-  Table table{{"scene", "rule", "filter", "hits/frame", "precision", "recall", "false/frame"}};
+  Table table{{"scene", "parameters", "filter", "detections/frame", "precision", "recall", "false/frame"}};
   for_each_scene(evaluation, [&](const EvaluationSum& sum) {
     for (const InvarianceRow& row : sum.invariance)
-      table.add(sum.name, row.rule, row.filter ? "on" : "off", per_frame(row.hits, sum, 2),
+      table.add(sum.name, row.parameters, row.filter ? "on" : "off", per_frame(row.hits, sum, 2),
                 share_text(row.rates.precision), share_text(row.rates.recall),
                 per_frame(row.rates.precision.of - row.rates.precision.with, sum, 2));
   });

@@ -134,7 +134,7 @@ class Evaluator {
       paced_.emplace_back(recording_.objects(), rig.baseline_m, cost_s(i, settings.compute));
     for (const bool on : {false, true})
       for (const auto& [name, rule] :
-           {std::pair("the paper's", paper), std::pair("ours", settings.pushbroom)}) {
+           {std::pair("original", paper), std::pair("as given", settings.pushbroom)}) {
         PushbroomConfig filtered = rule;
         filtered.horizontal_invariance = on;
         invariance_.emplace_back(rig, filtered);

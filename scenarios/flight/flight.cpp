@@ -111,10 +111,10 @@ void Flight::advance() {
   try {
     aircraft_.step(controls_);
   } catch (const SimulationError& error) {
-    throw ScenarioError(
-        fmt::format("{}: airframe: {}, {:.3f} s into the flight; expected an aircraft that steps of 1/1200 "
-                    "s can follow (keys of airframe, actuators, mismatch, autopilot)",
-                    scenario_.name, error.what(), clock_.t_s()));
+    throw ScenarioError(fmt::format(
+        "{}: airframe: {}, {:.3f} s into the flight; the aircraft must be one that steps of 1/1200 "
+        "s can follow (keys of airframe, actuators, mismatch, autopilot)",
+        scenario_.name, error.what(), clock_.t_s()));
   }
   clock_.advance();
 }

@@ -337,7 +337,7 @@ std::string to_bytes(const FlightLog& log) {
 FlightLog flight_log_from_bytes(const std::string& bytes, const std::string& name,
                                 const std::filesystem::path& models_folder) {
   const auto refuse = [&](const char* what) { throw ScenarioError(fmt::format("{}: {}", name, what)); };
-  if (!bytes.starts_with(magic)) refuse("expected the log of a flight, flight.log");
+  if (!bytes.starts_with(magic)) refuse("not the log of a flight (flight.log)");
   const std::string_view packed = std::string_view(bytes).substr(magic.size());
   const unsigned long long size = ZSTD_getFrameContentSize(packed.data(), packed.size());
   if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > maximum_bytes)

@@ -137,7 +137,7 @@ FlightResult result_from_json(const std::string& text, const std::string& name) 
       const std::optional<Outcome> outcome = outcome_named(from.get<std::string>());
       if (!outcome)
         throw ScenarioError(
-            fmt::format("{}: outcome: expected goal, collision, ground, out_of_bounds or time", name));
+            fmt::format("{}: outcome: must be goal, collision, ground, out_of_bounds or time", name));
       value = *outcome;
     } else if (!from.is_null()) {  // null: the field's own default says nothing
       value = from.get<Value>();
@@ -149,7 +149,7 @@ FlightResult result_from_json(const std::string& text, const std::string& name) 
       result.points_on_obstacles.emplace_back(obstacle, count.get<std::int64_t>());
   return result;
 } catch (const Json::exception&) {
-  throw ScenarioError(fmt::format("{}: expected a flight's result of this version", name));
+  throw ScenarioError(fmt::format("{}: not a flight's result of this version", name));
 }
 
 std::vector<std::pair<std::string, std::string>> result_lines(const FlightResult& result) {

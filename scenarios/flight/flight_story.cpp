@@ -22,7 +22,6 @@ constexpr double degrees = 57.29577951308232;
 
 /// "left_wing_outer": "the outer left wing".
 std::string words_of_part(const std::string& part) {
-  if (part == "pod") return "the fuselage";
   std::vector<std::string> words{""};
   for (const char c : part) {
     if (c == '_')
@@ -195,7 +194,7 @@ void tell_of_obstacle(const FlightLog& log, const ObstacleStory& told, FlightSto
     const std::string text = fmt::format("{} was first detected {:.2f} s before the end, {:.1f} m away",
                                          obstacle.name, end_s - *told.detected_s, told.detected_m);
     story.events.push_back({*told.detected_s, "detected", text});
-    story.before.push_back(fmt::format("{}; {} hits in {} frames.", text, told.hits, told.frames_with_hits));
+    story.before.push_back(fmt::format("{}; {} detections in {} frames.", text, told.hits, told.frames_with_hits));
   } else {
     story.before.push_back(
         obstacle.name +

@@ -161,7 +161,7 @@ void refuse_output(const fs::path& file, int error) {
     throw MachineError(fmt::format("{}: {}", file.string(), lacking));
   if (error == ENOSPC || error == EDQUOT || error == EIO || error == EPIPE)
     throw MachineError(fmt::format("{}: {}", file.string(), std::strerror(error)));
-  throw ScenarioError(fmt::format("{}: expected a writable output: {}", file.string(), std::strerror(error)));
+  throw ScenarioError(fmt::format("{}: cannot write here: {}", file.string(), std::strerror(error)));
 }
 
 struct OutputFile::State {

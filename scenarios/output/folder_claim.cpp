@@ -184,8 +184,8 @@ void FolderClaim::lock(const fs::path& name, Manner manner) {
   struct stat before {};
   is_new_ = lstat(file.c_str(), &before) != 0;
   if (!is_new_ && !S_ISREG(before.st_mode))
-    throw ScenarioError(
-        fmt::format("{}: expected a file of understory's, this is none: move it away", file.string()));
+    throw ScenarioError(fmt::format(
+        "{}: understory did not write this file and will not replace it: move it away", file.string()));
   file_ = open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (file_ < 0 && errno == ENOENT) return;
   if (file_ < 0) refuse_output(name, errno);
@@ -211,8 +211,9 @@ void FolderClaim::read_list() {
   }
   if (!text.starts_with(header)) {
     is_new_ = false;
-    throw ScenarioError(fmt::format("{}: expected a file of understory's, this is none: move it away",
-                                    (folder_ / claim_name).string()));
+    throw ScenarioError(
+        fmt::format("{}: understory did not write this file and will not replace it: move it away",
+                    (folder_ / claim_name).string()));
   }
   std::size_t begin = header.size();
   for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
@@ -282,7 +283,7 @@ void FolderClaim::require_own(const std::vector<std::string>& patterns) {
     const fs::path within = folder_ / folder_in(pattern);
     const fs::file_status status = fs::symlink_status(within, ignored);
     if (!folder_in(pattern).empty() && fs::is_symlink(status))  // its files are not in this folder
-      throw ScenarioError(fmt::format("{}: expected a folder, this is a link", within.string()));
+      throw ScenarioError(fmt::format("{}: must be a folder, is a link", within.string()));
     if (!folder_in(pattern).empty() && fs::exists(status) && !fs::is_directory(status))
       refuse_output(within, ENOTDIR);
     if (pattern.find('*') == std::string::npos && fs::is_directory(folder_ / pattern, ignored))

@@ -40,12 +40,12 @@ std::string as_tum(const std::vector<TableLine>& lines, const std::string& name)
   if (head.size() < trajectory_head.size() ||
       !std::equal(trajectory_head.begin(), trajectory_head.end(), head.begin()))
     fail_at_line(name, lines.front().number,
-                 "expected t_s,x_m,y_m,z_m,qw,qx,qy,qz and more, as a flight writes them");
+                 "must name the columns t_s,x_m,y_m,z_m,qw,qx,qy,qz, as a flight writes them");
   for (std::size_t i = 1; i < lines.size(); ++i) {
     const auto& cell = lines[i].cells;
     if (cell.size() < 8)
       fail_at_line(name, lines[i].number,
-                   "expected t_s,x_m,y_m,z_m,qw,qx,qy,qz and more, as a flight writes them");
+                   "must name the columns t_s,x_m,y_m,z_m,qw,qx,qy,qz, as a flight writes them");
     for (; number < lines[i].number; ++number) text += '\n';
     fmt::format_to(std::back_inserter(text), "{} {} {} {} {} {} {} {}", cell[0], cell[1], cell[2], cell[3],
                    cell[5], cell[6], cell[7], cell[4]);
@@ -99,20 +99,19 @@ int line_of_pose(const std::filesystem::path& file, std::size_t pose) {
 std::vector<TimedPose> read_path(const std::filesystem::path& file) {
   const std::vector<TimedPose> poses = bad_input_if_refused([&] { return poses_in(file); });
   if (poses.size() < 2)
-    throw ScenarioError(
-        fmt::format("{}: expected at least two poses to go between, found one", file.string()));
+    throw ScenarioError(fmt::format("{}: a path needs at least two poses, here is one", file.string()));
   const double span_s = static_cast<double>(poses.back().t_ns - poses.front().t_ns) * 1e-9;
   if (span_s > longest_s)
-    throw ScenarioError(
-        fmt::format("{}: expected at most {} s from the first pose to the last, found {:.0f} s",
-                    file.string(), longest_s, span_s));
+    throw ScenarioError(fmt::format(
+        "{}: a path may take at most {} s from the first pose to the last, this one takes {:.0f} s",
+        file.string(), longest_s, span_s));
   for (std::size_t i = 1; i < poses.size(); ++i) {
     const Eigen::Isometry3d step = poses[i - 1].T_world_body.inverse() * poses[i].T_world_body;
     const double step_s = static_cast<double>(poses[i].t_ns - poses[i - 1].t_ns) * 1e-9;
     const auto fail_unless = [&](bool holds, const char* what) {
       if (!holds)
         refuse_input(place_in(file.string(), line_of_pose(file, i)), "",
-                     fmt::format("expected {} from the pose before", what));
+                     fmt::format("must be {} from the pose before", what));
     };
     fail_unless(step.translation().norm() <= fastest_mps * step_s, "at most 100 m/s");
     fail_unless(Eigen::AngleAxisd(step.linear()).angle() <= widest_turn_rad, "at most a quarter turn");
@@ -219,7 +218,7 @@ WalkPath walk_path(const WalkConfig& config, const Scenario& scenario, const Ste
   }
   if (!found)
     throw ScenarioError(fmt::format(
-        "--walk: expected a straight lane with {} m to every obstacle, found none in {} with seed {}",
+        "--walk: no straight lane with {} m to every obstacle in {} with seed {}: take another seed",
         shoulder_room_m, scenario.name, scenario.seed));
   std::mt19937_64 generator(seed_for(scenario.seed, "walk"));
   for (double& phase_rad : path.phases_rad)

@@ -159,8 +159,8 @@ void EurocRecording::add(const StereoFrame& frame, const StereoCameras& cameras)
 
 void EurocRecording::finish() {
   if (frames_ == 0)
-    throw ScenarioError(fmt::format("{}: expected at least one frame, the scenario's cameras gave none",
-                                    folder_.parent_path().string()));
+    throw ScenarioError(
+        fmt::format("{}: the scenario's cameras gave no frame", folder_.parent_path().string()));
   for (const char* camera : {"cam0", "cam1", "depth0", "objects0"})
     write_whole_file(folder_ / camera / "data.csv", image_header + image_lines_);
   write_whole_file(folder_ / "imu0/data.csv", imu_header + imu_lines_);

@@ -104,7 +104,7 @@ std::string packed_part(const std::string& facts, const PageArrays& arrays) {
 std::string page_html(const std::filesystem::path& data_root, const PageContent& content) {
   const std::filesystem::path file = data_root / "scenarios/report/page/built/page.html";
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw MachineError(fmt::format("{}: expected the page's program there", file.string()));
+  if (!stream) throw MachineError(fmt::format("{}: the page's program is missing", file.string()));
   std::string page{std::istreambuf_iterator<char>(stream), {}};
   std::string blocks =
       block("facts", "application/json", without_tags(with_arrays(content.facts, content.arrays))) +

@@ -46,32 +46,32 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
     throw ScenarioError(fmt::format("{}: {}", origin.empty() ? name : origin, what));
   };
   expect(is_plain_word(scenario.name),
-         "name: expected letters, digits, '-', '_' and '.', at most 100, no '.' first");
+         "name: must be letters, digits, '-', '_' and '.', at most 100, no '.' first");
   expect(scenario.forest.radius_min_m <= scenario.forest.radius_max_m,
-         "forest.radius_min_m: expected at most forest.radius_max_m");
+         "forest.radius_min_m: must be at most forest.radius_max_m");
   expect(scenario.band.minimum_altitude_m < scenario.band.maximum_altitude_m,
-         "band.minimum_altitude_m: expected less than band.maximum_altitude_m");
+         "band.minimum_altitude_m: must be below band.maximum_altitude_m");
   expect(scenario.band.cruise_altitude_m > scenario.band.minimum_altitude_m &&
              scenario.band.cruise_altitude_m < scenario.band.maximum_altitude_m,
-         "band.cruise_altitude_m: expected between band.minimum_altitude_m and band.maximum_altitude_m");
+         "band.cruise_altitude_m: must be between band.minimum_altitude_m and band.maximum_altitude_m");
   const double trees =
       scenario.forest.length_m * 2 * scenario.forest.half_width_m / scenario.forest.square_metres_per_tree;
   expect(scenario.course != Course::forest || trees <= maximum_obstacles,
-         fmt::format("forest.square_metres_per_tree: expected at most {} trees in the forest, it would have "
+         fmt::format("forest.square_metres_per_tree: a forest may have at most {} trees, this one would have "
                      "about {:.0f} "
                      "(length_m, half_width_m)",
                      maximum_obstacles, trees));
   const double palings = palings_of(scenario.fence, scenario.goal_x_m());
   expect(scenario.course != Course::fence || palings <= maximum_obstacles,
-         fmt::format("fence.spacing_m: expected at most {} palings, there would be about {:.0f}",
+         fmt::format("fence.spacing_m: a fence may have at most {} palings, this one would have about {:.0f}",
                      maximum_obstacles, palings));
   expect(scenario.goalposts.pass_minimum_m <= scenario.goalposts.pass_maximum_m,
-         "goalposts.pass_minimum_m: expected at most goalposts.pass_maximum_m");
+         "goalposts.pass_minimum_m: must be at most goalposts.pass_maximum_m");
   expect(scenario.fence.opening_m < 2 * scenario.fence.reach_m,
-         "fence.opening_m: expected less than twice fence.reach_m");
+         "fence.opening_m: must be less than twice fence.reach_m");
   expect(scenario.actuators.pitch_speed_mps == 0 ||
              scenario.actuators.pitch_speed_mps > scenario.actuators.thrust_speed_mps,
-         "actuators.pitch_speed_mps: expected 0 or more than actuators.thrust_speed_mps");
+         "actuators.pitch_speed_mps: must be 0 or more than actuators.thrust_speed_mps");
   const SensorsConfig& sensors = scenario.sensors.sensors;
   const std::pair<const char*, int> rates_hz[] = {{"autopilot.replan_", scenario.autopilot.replan_rate_hz},
                                                   {"cameras.", scenario.cameras.rate_hz},
@@ -81,7 +81,7 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
                                                   {"sensors.magnetometer_", sensors.magnetometer_rate_hz},
                                                   {"sensors.gps_", sensors.gps_rate_hz}};
   for (const auto& [key, rate_hz] : rates_hz)
-    expect(physics_rate_hz % rate_hz == 0, fmt::format("{}rate_hz: expected a rate that divides 1200", key));
+    expect(physics_rate_hz % rate_hz == 0, fmt::format("{}rate_hz: must divide 1200", key));
   const PerceptionSection& perception = scenario.perception;
   const StereoBmConfig& bm = perception.stereo_bm;
   const StereoSgbmConfig& sgbm = perception.stereo_sgbm;
@@ -89,21 +89,21 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
                                                      {"stereo_sgbm.window_px", sgbm.window_px},
                                                      {"stereo_bm.prefilter_size_px", bm.prefilter_size_px}};
   for (const auto& [key, number] : odd_numbers)
-    expect(number % 2 == 1, fmt::format("perception.{}: expected an odd number", key));
-  expect(bm.disparities % 16 == 0, "perception.stereo_bm.disparities: expected a multiple of 16");
-  expect(sgbm.disparities % 16 == 0, "perception.stereo_sgbm.disparities: expected a multiple of 16");
+    expect(number % 2 == 1, fmt::format("perception.{}: must be an odd number", key));
+  expect(bm.disparities % 16 == 0, "perception.stereo_bm.disparities: must be a multiple of 16");
+  expect(sgbm.disparities % 16 == 0, "perception.stereo_sgbm.disparities: must be a multiple of 16");
   expect(sgbm.smoothness_1 < sgbm.smoothness_2,
-         "perception.stereo_sgbm.smoothness_1: expected less than smoothness_2");
+         "perception.stereo_sgbm.smoothness_1: must be less than smoothness_2");
   expect(perception.full_stereo.minimum_depth_m < perception.full_stereo.maximum_depth_m,
-         "perception.full_stereo.minimum_depth_m: expected less than maximum_depth_m");
+         "perception.full_stereo.minimum_depth_m: must be less than maximum_depth_m");
   // The estimator remembers its state for a second and accepts frames up to half a second old.
   const double cost_s = perception.cost_s();
   expect(scenario.cameras.latency_s + cost_s + std::min(cost_s, 1.0 / scenario.cameras.rate_hz) <= 0.5,
-         "perception.compute.factor: expected a frame to be looked at within 0.5 s of its exposure");
+         "perception.compute.factor: a frame must be processed within 0.5 s of its exposure");
   for (std::size_t i = 0; i < scenario.faults.size(); ++i) {
     const FaultConfig& fault = scenario.faults[i];
     expect(can_have(fault.sensor, fault.kind),
-           fmt::format("faults[{}].kind: expected, for this sensor, {}", i, fault_kinds_of(fault.sensor)));
+           fmt::format("faults[{}].kind: must be, for this sensor, {}", i, fault_kinds_of(fault.sensor)));
   }
 }
 

@@ -19,11 +19,12 @@ void require_alike(const StereoRig& rectified, const StereoRig& rig, const fs::p
   const auto alike = [](double a, double b) { return std::abs(a - b) < 0.01 * b; };
   if (!alike(rectified.focal_px, rig.focal_px) || !alike(rectified.baseline_m, rig.baseline_m) ||
       rectified.width_px != rig.width_px || rectified.height_px != rig.height_px)
-    throw std::runtime_error(fmt::format(
-        "{}: expected the cameras of rig {}, {}x{} px, focal length {:.4g} px, baseline {:.4g} m, found "
-        "{}x{} px, {:.4g} px, {:.4g} m",
-        file.string(), rig.name, rig.width_px, rig.height_px, rig.focal_px, rig.baseline_m,
-        rectified.width_px, rectified.height_px, rectified.focal_px, rectified.baseline_m));
+    throw std::runtime_error(
+        fmt::format("{}: the cameras must be those of rig {}, {}x{} px, focal length {:.4g} px, baseline "
+                    "{:.4g} m, they are "
+                    "{}x{} px, {:.4g} px, {:.4g} m",
+                    file.string(), rig.name, rig.width_px, rig.height_px, rig.focal_px, rig.baseline_m,
+                    rectified.width_px, rectified.height_px, rectified.focal_px, rectified.baseline_m));
 }
 
 fs::path raw_file_of(const fs::path& rig_file) {
@@ -32,7 +33,7 @@ fs::path raw_file_of(const fs::path& rig_file) {
 
 CalibratedRig raw_rig(const fs::path& rig_file, const StereoRig& rig, double meters_per_unit) {
   const fs::path file = raw_file_of(rig_file);
-  if (!fs::exists(file)) throw std::runtime_error("expected the rig's calibration in " + file.string());
+  if (!fs::exists(file)) throw std::runtime_error("the rig's calibration is missing: " + file.string());
   CalibrationOptions options;
   options.meters_per_unit = meters_per_unit;
   options.detection_depth_m = rig.detection_depth_m;
@@ -53,7 +54,7 @@ std::vector<fs::path> rig_files_of(const Scenario& scenario, const fs::path& mod
   std::error_code ignored;
   const bool is_named = fs::exists(named, ignored);
   if (!is_named && !fs::exists(scenario.rig, ignored)) {
-    throw ScenarioError(fmt::format("rig: expected a name in {} or a rig file, got {}",
+    throw ScenarioError(fmt::format("rig: must be a name in {} or a rig file, got {}",
                                     named.parent_path().string(), scenario.rig));
   }
   const fs::path file = is_named ? named : fs::path(scenario.rig);

@@ -88,11 +88,10 @@ class VisionJudge : public Judge {
     for (const std::filesystem::path& folder : folders) {
       EvaluationRecording recording(folder);
       if (!recording.has_depth())
-        throw ScenarioError(
-            fmt::format("{}: expected true depth (mav0/depth0), found none", folder.string()));
+        throw ScenarioError(fmt::format("{}: has no true depth (mav0/depth0)", folder.string()));
       if (recordings_.empty()) rig_ = recording.rig();
       if (!is_same_rig(recording.rig(), rig_))
-        throw ScenarioError(fmt::format("{}: expected the rig of {}, found another (one tuning, one rig)",
+        throw ScenarioError(fmt::format("{}: has another rig than {}: one tuning is for one rig",
                                         folder.string(), folders.front().string()));
       const DetectionGrid grid(rig_, stated_depths_m(usual_, rig_), usual_.last_row_px);
       HeldRecording& held = recordings_.emplace_back();

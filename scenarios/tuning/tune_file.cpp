@@ -43,11 +43,12 @@ void read_range(const ConfigNode& node, const NumericKey& key, Parameter& parame
   const std::string expected = "{from: ..., to: ..., scale: linear | log, steps: ...} or {values: [...]}";
   parameter.from = value_of(required(node, "from", expected), name + ".from", key);
   parameter.to = value_of(required(node, "to", expected), name + ".to", key);
-  if (!(parameter.from < parameter.to)) refuse_key(node, name, "from less than to");
+  if (!(parameter.from < parameter.to)) refuse_input(node.origin, name, "from must be less than to");
   if (const ConfigNode* scale = find_child(node, "scale")) {
     if (scale->text != "linear" && scale->text != "log") refuse_key(*scale, name + ".scale", "linear | log");
     parameter.logarithmic = scale->text == "log";
-    if (parameter.logarithmic && parameter.from <= 0) refuse_key(node, name, "from above 0 for scale: log");
+    if (parameter.logarithmic && parameter.from <= 0)
+      refuse_input(node.origin, name, "scale: log requires from above 0");
   }
   if (const ConfigNode* steps = find_child(node, "steps"))
     parameter.steps = whole_number_of(*steps, name + ".steps", 2, 1000);
@@ -64,12 +65,13 @@ Parameter parameter_of(const ConfigNode& node, const NumericKey& key) {
     return parameter;
   }
   if (values->kind != ConfigNode::Kind::list || values->children.size() < 2 || node.children.size() > 1)
-    refuse_key(*values, name + ".values", "two values or more, and nothing beside them");
+    refuse_input(values->origin, name + ".values",
+                 "must be a list of two values or more, without from and to");
   for (const ConfigNode& value : values->children)
     parameter.values.push_back(value_of(value, name + ".values", key));
   std::ranges::sort(parameter.values);
   if (std::ranges::adjacent_find(parameter.values) != parameter.values.end())
-    refuse_key(*values, name + ".values", "each value once");
+    refuse_input(values->origin, name + ".values", "all values must be different");
   return parameter;
 }
 
@@ -87,7 +89,8 @@ void read_parameters(const ConfigNode& group, TuneFile& tune) {
     const NumericKey& key = key_of(node, keys);
     if (tune.over == TuningData::recordings && !matters_on_recordings(key.key))
       refuse_key(node, "parameters." + node.key,
-                 "a key of perception.pushbroom or perception.depths_m: recordings feel no other");
+                 "a key of perception.pushbroom or perception.depths_m: no other key changes anything on "
+                 "recordings");
     tune.space.parameters.push_back(parameter_of(node, key));
     tune.scenario_point.push_back(key.value);
     const std::size_t bracket = key.key.find('[');
@@ -115,7 +118,7 @@ void read_objective(const ConfigNode& group, TuneFile& tune) {
     if (node.key == "maximize" || node.key == "minimize") {
       for (const std::string& word : words_of(node, name, "a figure, or a list of such")) {
         const std::size_t figure = figure_of(node, name, word, tune.figures);
-        if (!aimed_at.insert(figure).second) refuse_key(node, name, "each figure once");
+        if (!aimed_at.insert(figure).second) refuse_input(node.origin, name, "this figure is named twice");
         tune.objective.goals.push_back({figure, node.key == "maximize"});
       }
       continue;
@@ -160,7 +163,9 @@ void read_search(const ConfigNode& group, TuneFile& tune) {
         whole_number_of(required(group, "trials", wanted), "search.trials", 1, maximum_trials);
     return;
   }
-  if (trials != nullptr) refuse_key(*trials, "search.trials", "none: a grid has as many as it has");
+  if (trials != nullptr)
+    refuse_input(trials->origin, "search.trials",
+                 "must not be given for a grid: it tries every combination once");
   double size = 1;
   for (const Parameter& parameter : tune.space.parameters) {
     if (parameter.values.empty() && parameter.steps == 0)
@@ -180,7 +185,7 @@ std::vector<fs::path> folders_of(const ConfigNode& node, const fs::path& file) {
     const fs::path beside = file.parent_path() / word;
     const fs::path folder = fs::is_directory(beside, ignored) ? beside : fs::path(word);
     if (!fs::is_directory(folder, ignored))
-      refuse_key(node, node.key, fmt::format("folders of recordings, there is no {}", word));
+      refuse_input(node.origin, node.key, fmt::format("there is no folder {}", word));
     folders.push_back(fs::canonical(folder));
   }
   return folders;
@@ -196,8 +201,8 @@ void read_data(const ConfigNode& top, const fs::path& file, TuneFile& tune) {
     tune.validation_seeds = seeds_in(top, "validation");
     for (const std::uint64_t seed : tune.validation_seeds)
       if (std::ranges::find(tune.training_seeds, seed) != tune.training_seeds.end())
-        refuse_key(*find_child(top, "validation"), "validation",
-                   fmt::format("no seed of training, {} is one", seed));
+        refuse_input(find_child(top, "validation")->origin, "validation",
+                     fmt::format("seed {} is a seed of training, too", seed));
     return;
   }
   const ConfigNode& training = required(top, "training", "folders of recordings");
@@ -208,13 +213,13 @@ void read_data(const ConfigNode& top, const fs::path& file, TuneFile& tune) {
   for (const fs::path& one : tune.validation_folders)
     for (const fs::path& other : tune.training_folders)
       if (holds(one, other) || holds(other, one))
-        refuse_key(validation, "validation",
-                   fmt::format("no recording of training, {} is one", one.string()));
+        refuse_input(validation.origin, "validation",
+                     fmt::format("{} is a recording of training, too", one.string()));
   for (const auto* some : {&tune.training_folders, &tune.validation_folders})
     for (const fs::path& folder : *some)
       if (!seen.insert(folder).second)
-        refuse_key(some == &tune.training_folders ? training : validation, "training",
-                   fmt::format("each recording once, {} is given twice", folder.string()));
+        refuse_input((some == &tune.training_folders ? training : validation).origin, "training",
+                     fmt::format("{} is given twice", folder.string()));
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ TrialLog::TrialLog(fs::path file, std::vector<std::string> parameters, std::vect
     Trial trial;
     trial.number = static_cast<int>(held_.size());
     if (!take_trial(text.substr(begin, end - begin), parameters_, figures_, trial))
-      throw ScenarioError(fmt::format("{}:{}: expected trial {}, whole, with this tuning's parameters",
+      throw ScenarioError(fmt::format("{}:{}: must be trial {}, whole, with this tuning's parameters",
                                       file_.string(), held_.size() + 1, held_.size()));
     held_.push_back(std::move(trial));
   }
@@ -101,7 +101,7 @@ Trial TrialLog::evaluate(const Point& point) {
   if (number < held_.size()) {
     trial = held_[number];
     if (trial.point != point)
-      throw ScenarioError(fmt::format("{}:{}: expected the parameters that this tuning tries there",
+      throw ScenarioError(fmt::format("{}:{}: must hold the parameters that this tuning tries there",
                                       file_.string(), number + 1));
   } else {
     trial = before != places_.end() ? evaluated_[before->second] : measure_(static_cast<int>(number), point);
@@ -116,7 +116,7 @@ Trial TrialLog::evaluate(const Point& point) {
 
 void TrialLog::finish() const {
   if (held_.size() > evaluated_.size())
-    throw ScenarioError(fmt::format("{}:{}: expected no further trial, this tuning makes {}", file_.string(),
+    throw ScenarioError(fmt::format("{}:{}: one trial too many: this tuning makes {}", file_.string(),
                                     evaluated_.size() + 1, evaluated_.size()));
 }
 
@@ -146,20 +146,21 @@ void prepare_tune_folder(const fs::path& folder, const TuneFile& file, const std
     const Json held = parse_json(text_if_there(manifest_file).value_or(""));
     if (!held.is_object())
       throw ScenarioError(
-          fmt::format("{}: expected what `understory tune` writes there, this is no JSON object; --out "
+          fmt::format("{}: not as `understory tune` writes it (no JSON object); --out "
                       "names another folder",
                       manifest_file.string()));
     for (const auto& [key, value] : manifest.items())
       if (!held.contains(key) || held[key] != value)
         throw ScenarioError(
-            fmt::format("{}: {} changed: expected as it was begun; --out names another folder",
+            fmt::format("{}: {} changed since the tuning began: continue it with what it was begun with, or "
+                        "choose another --out",
                         manifest_file.string(), key));
     return;
   }
   prepare_output_folder(folder);
   for (const char* log : {"trials.jsonl", "validation.jsonl", "sensitivity.jsonl"})
     if (fs::exists(folder / log))
-      throw ScenarioError(fmt::format("{}: {}: expected none in a new folder", folder.string(), log));
+      throw ScenarioError(fmt::format("{}: {}: must not be there in a new folder", folder.string(), log));
   write_whole_file(manifest_file, json_text(manifest, 1) + "\n");
 }
 

@@ -107,9 +107,8 @@ std::size_t choose_best(const TuneFile& file, const std::vector<Trial>& trials,
   const auto cost = [&](const Figures& some) { return fitness(file.objective, some).front(); };
   const auto minimum = std::ranges::min_element(figures, {}, cost);
   if (minimum->empty())
-    throw ScenarioError(
-        fmt::format("{}: expected a trial that can be measured, all were refused; the last: {}",
-                    (folder / "trials.jsonl").string(), trials.back().refused));
+    throw ScenarioError(fmt::format("{}: no trial could be measured, all were refused; the last: {}",
+                                    (folder / "trials.jsonl").string(), trials.back().refused));
   return static_cast<std::size_t>(minimum - figures.begin());
 }
 

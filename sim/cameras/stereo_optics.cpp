@@ -92,7 +92,7 @@ void StereoOptics::make_views() {
     std::for_each(camera.rays.begin<cv::Vec2d>(), camera.rays.end<cv::Vec2d>(), [&](const cv::Vec2d& ray) {
       if (!std::isnan(ray[0])) extent.extend(Eigen::Vector2d(ray[0], ray[1]));
     });
-    if (extent.isEmpty()) throw std::runtime_error("expected raw cameras whose distortion can be undone");
+    if (extent.isEmpty()) throw std::runtime_error("the distortion of these raw cameras cannot be undone");
     camera.center_x_px = margin_px - view_focal_px_ * extent.min().x();
     camera.center_y_px = margin_px - view_focal_px_ * extent.min().y();
     const Eigen::Vector2d size_px = view_focal_px_ * extent.sizes();

@@ -131,7 +131,7 @@ World build_world(const fs::path& models_folder, const Airframe& airframe,
   if (!model) throw SimulationError(aircraft_file.string() + ": MuJoCo refuses the scene: " + message);
   for (const char* name : {"aircraft", "left_elevon", "right_elevon"}) {
     if (mj_name2id(model.get(), mjOBJ_BODY, name) < 0) {
-      throw std::runtime_error(aircraft_file.string() + ": expected a body named \"" + name + "\"");
+      throw std::runtime_error(aircraft_file.string() + ": has no body named \"" + name + "\"");
     }
   }
   set_inertia(*model, airframe);

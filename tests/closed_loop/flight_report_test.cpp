@@ -147,7 +147,7 @@ FlightLog log_of(const Obstacle& obstacle, const std::vector<Eigen::Vector3d>& r
   log.moments[0].T_odometry_body = log.moments[0].T_world_body;
   log.result.outcome = Outcome::collision;
   log.result.touched = obstacle.name;
-  log.touch = {Contact::obstacle, "pod", {10, 0, 3}};
+  log.touch = {Contact::obstacle, "fuselage", {10, 0, 3}};
   for (const Eigen::Vector3d& place : remembered) {
     LogPoint& one = log.points.emplace_back();
     one.point.position_world = one.true_position_world = place;
@@ -356,11 +356,11 @@ TEST_F(ReportCommand, TakesARunWithoutAResultAndRefusesWhatIsNoRun) {
   EXPECT_EQ(here("report run --no-video --out page.html").status, 0);
   expect_part(file("page.html"), "id=\"facts\"");
   folder.write("run/result.json", "{");
-  refused("report run", "run/result.json: expected");
-  refused("report nowhere", "nowhere: expected the folder of a run");
-  refused("mcap nowhere", "nowhere: expected the folder of a run");
+  refused("report run", "run/result.json: not a flight's result");
+  refused("report nowhere", "nowhere: neither the folder of a run");
+  refused("mcap nowhere", "nowhere: neither the folder of a run");
   fs::remove(folder.path() / "run/scenario.yaml");
-  refused("report run", "run: expected the folder of a run");
+  refused("report run", "run: neither the folder of a run");
 }
 
 TEST_F(ReportCommand, KeepsWhatLogsAndPathsSay) {

@@ -45,36 +45,36 @@ TEST_F(BadInput, AliasesAreCopiesAndBounded) {
     bomb += "]\n";
   }
   const long before_mb = peak_mb();
-  EXPECT_EQ(of_yaml("bomb:\n" + bomb), "a.yaml:6: expected at most 100,000 values");
+  EXPECT_EQ(of_yaml("bomb:\n" + bomb), "a.yaml:6: a file may hold at most 100,000 values");
   EXPECT_LT(peak_mb() - before_mb, 200);
 
-  expect_part(of_yaml("a: &a [*a]\n"), "a.yaml:1: expected an alias of what ends before it");
+  expect_part(of_yaml("a: &a [*a]\n"), "a.yaml:1: an alias must not refer to the value that contains it");
   const std::string deep = "a: &a [[[[[[[x]]]]]]]\nb: &b [[[*a]]]\nc: &c [[[*b]]]\nd: &d [[[*c]]]\n";
-  EXPECT_EQ(of_yaml(deep), "a.yaml:4: expected at most 16 levels of lists and maps in each other");
+  EXPECT_EQ(of_yaml(deep), "a.yaml:4: lists and maps may be nested at most 16 deep");
 }
 
 TEST_F(BadInput, ValuesAndLevelsAreBounded) {
   std::string many = "a: [";
   for (int i = 0; i < 100'000; ++i) many += "1,";
-  EXPECT_EQ(of_yaml(many + "1]"), "a.yaml:1: expected at most 100,000 values");
+  EXPECT_EQ(of_yaml(many + "1]"), "a.yaml:1: a file may hold at most 100,000 values");
   EXPECT_EQ(of_yaml("a: [[[[[[[[[[[[[[[[[[[[x]]]]]]]]]]]]]]]]]]]]"),
-            "a.yaml:1: expected at most 16 levels of lists and maps in each other");
+            "a.yaml:1: lists and maps may be nested at most 16 deep");
   EXPECT_NE(of_yaml(std::string("a: ").append(500'000, '[')), "");
   std::string xml = "<opencv_storage>";
   for (int i = 0; i < 100'000; ++i) xml += "<a>1</a>";
   EXPECT_EQ(refusal_of([&] { parse_opencv_xml(xml + "</opencv_storage>", "a.xml"); }),
-            "a.xml:1: expected at most 100,000 values");
+            "a.xml:1: a file may hold at most 100,000 values");
   EXPECT_EQ(refusal_of([] { table_lines(std::string(20'000'000, ','), CellsParted::by_commas, "a.csv"); }),
-            "a.csv:1: expected at most 16 million cells so far");
+            "a.csv:1: a table must have at most 16 million cells");
 }
 
 TEST_F(BadInput, OnlyFilesOfModerateSizeAreRead) {
   const std::filesystem::path large = folder.write("large", "");
   std::filesystem::resize_file(large, std::uintmax_t{1} << 40);  // takes no room on the disk
-  EXPECT_EQ(refusal_of([&] { read_file(large); }), large.string() + ": expected at most 1 MiB");
-  EXPECT_EQ(refusal_of([&] { read_poses(large); }), large.string() + ": expected at most 256 MiB");
-  EXPECT_EQ(refusal_of([&] { read_gray_image(large); }), large.string() + ": expected at most 256 MiB");
-  const std::string found = ": expected a readable file";
+  EXPECT_EQ(refusal_of([&] { read_file(large); }), large.string() + ": must be at most 1 MiB");
+  EXPECT_EQ(refusal_of([&] { read_poses(large); }), large.string() + ": must be at most 256 MiB");
+  EXPECT_EQ(refusal_of([&] { read_gray_image(large); }), large.string() + ": must be at most 256 MiB");
+  const std::string found = ": cannot read this file";
   EXPECT_EQ(refusal_of([] { read_file("/dev/zero"); }), "/dev/zero" + found + ", this is a device");
   EXPECT_EQ(refusal_of([] { read_gray_image("/dev/zero"); }), "/dev/zero" + found + ", this is a device");
   EXPECT_EQ(refusal_of([&] { read_file(folder.path()); }),

@@ -46,29 +46,29 @@ const std::string d1 = "<D1 type_id=\"opencv-matrix\"><rows>1</rows><cols>8</col
 TEST_F(CalibrationFaults, OpenCvXml) {
   const std::string good = content_of(paper_xml);
   const std::vector<Fault> faults{
-      {"M1 type_id=\"opencv-matrix\"", "M1", ":6: M1: ", "expected an OpenCV matrix"},
+      {"M1 type_id=\"opencv-matrix\"", "M1", ":6: M1: ", "must be an OpenCV matrix"},
       {"<M1", "<M3", ":11: ", "tags mismatch"},
-      {m1, "<M1>", ":6: M1: ", "expected an OpenCV matrix"},
+      {m1, "<M1>", ":6: M1: ", "must be an OpenCV matrix"},
       {"<rows>3</rows><cols>3</cols>", "<rows>4</rows><cols>3</cols>",
        ":7: M1.data: ", "12 numbers, found 9"},
-      {"<rows>3</rows><cols>3</cols>", "<rows>1</rows><cols>9</cols>", ":6: M1: ", "expected 3 x 3"},
+      {"<rows>3</rows><cols>3</cols>", "<rows>1</rows><cols>9</cols>", ":6: M1: ", "must have 3 x 3"},
       {"<rows>3</rows>", "<rows>99999</rows>", ":6: M1.rows: ", "from 0 to 16"},
       {"<rows>3</rows>", "<rows>-3</rows>", ":6: M1.rows: ", "found '-3'"},
       {"<rows>3</rows>", "<rows>2.5</rows>", ":6: M1.rows: ", "whole number"},
-      {"<rows>3</rows>", "", ":6: M1.rows: ", "expected this key, found none"},
-      {"<dt>d</dt>", "<dt>u</dt>", ":6: M1.dt: ", "expected d or f"},
+      {"<rows>3</rows>", "", ":6: M1.rows: ", "missing"},
+      {"<dt>d</dt>", "<dt>u</dt>", ":6: M1.dt: ", "must be d or f"},
       {"1.9372085296386336e+02", ".Nan", ":8: M1.data: ", "found '.Nan'"},
       {"1.9372085296386336e+02", "inf", ":8: M1.data: ", "found 'inf'"},
-      {"1.9372085296386336e+02", "1e999", ":8: M1.data: ", "expected a number"},
+      {"1.9372085296386336e+02", "1e999", ":8: M1.data: ", "must be a number"},
       {"1.9372085296386336e+02", "wide", ":8: M1.data: ", "found 'wide'"},
       {"1.9372085296386336e+02", "", ":7: M1.data: ", "9 numbers, found 8"},
       {"1.9372085296386336e+02 0.", "1.9372085296386336e+02 0.5", ":6: M1: ", "the form fx 0 cx"},
       {"1.9372085296386336e+02", "-193.", ":6: M1: ", "focal lengths from"},
       {"1.9498008610933283e+02", "1e6", ":6: M1: ", "principal point"},
       {d1, replaced(d1, "8", "7"), ":13: D1.data: ", "7 numbers, found 8"},
-      {d1, replaced(replaced(d1, "1<", "2<"), "8", "4"), ":12: D1: ", "expected 4, 5 or 8 coefficients"},
+      {d1, replaced(replaced(d1, "1<", "2<"), "8", "4"), ":12: D1: ", "must be 4, 5 or 8 coefficients"},
       {"1.1664112259935457e+01", "1e7", ":12: D1: ", "coefficients within"},
-      {"9.9972472944430446e-01", "0.9", ":17: R1: ", "expected a rotation"},
+      {"9.9972472944430446e-01", "0.9", ":17: R1: ", "must be a rotation"},
       {"1.0569958496093750e+02 -6.3686387251681153e+03", "1.0569958496093750e+02 0.",
        ": P2: ", "to the right"},
       {"-6.3686387251681153e+03", "-6e8", ": baseline in m: ", "another unit"},
@@ -77,11 +77,11 @@ TEST_F(CalibrationFaults, OpenCvXml) {
       {"<image_width>376", "<image_width>1", ":4: image_width: ", "from 32 to 8192"},
       {"<image_width>376</image_width>", "", ": image_width: ", "found none"},
       {"<image_width>", "<image_height>240</image_height><image_width>",
-       ":5: image_height: ", "expected each key once"},
+       ":5: image_height: ", "this key is given twice"},
       {"P1 type_id", "P0 type_id", ":28: ", "tags mismatch"},
       {"<opencv_storage>", "<storage>", ":52: ", "tags mismatch"},
       {"</opencv_storage>", "</opencv_storage><more/>", ":52: ", "nothing after"},
-      {"<?xml version=\"1.0\"?>", "<!DOCTYPE a [<!ENTITY b \"c\">]>", ":1: ", "expected OpenCV's XML"},
+      {"<?xml version=\"1.0\"?>", "<!DOCTYPE a [<!ENTITY b \"c\">]>", ":1: ", "not valid XML of OpenCV"},
   };
   for (const Fault& fault : faults) {
     const auto file = folder.write("rig.xml", replaced(good, fault.from, fault.to));
@@ -110,7 +110,7 @@ TEST_F(CalibrationFaults, OpenCvYaml) {
   expect_line(complaint(file, options), file.string() + ": image size: ", "32 to 8192");
   options.width_px = 400;
   const std::vector<Fault> faults{
-      {"M1: !!opencv-matrix", "M1:", ":3: M1: ", "expected an OpenCV matrix"},
+      {"M1: !!opencv-matrix", "M1:", ":3: M1: ", "must be an OpenCV matrix"},
       {"data: [ 300., 0., 200., 0., 300.", "data: [ .Nan, 0., 200., 0., 300.", ":7: M1.data: ", "'.Nan'"},
       {"rows: 1\n   cols: 5", "rows: 5\n   cols: 3", ":22: D2.data: ", "15 numbers, found 5"},
       {"[ -0.2, 0., 0. ]", "[ -0.2, 0., 0. ", ":", "expected a ]"},
@@ -118,8 +118,8 @@ TEST_F(CalibrationFaults, OpenCvYaml) {
       {"[ -0.2, 0., 0. ]", "[ 0., -0.2, 0. ]", ": P2: ", "to the right"},
       {"[ -0.2, 0., 0. ]", "[ 0., 0., 0. ]", ":23: R: ", "side by side"},
       {"[ -0.2, 0., 0. ]", "[ -20., 0., 0. ]", ": baseline in m: ", "another unit"},
-      {"T:", "t:", ": T: ", "expected this key, found none"},
-      {"M2:", "M1:", ":8: M1: ", "expected each key once"},
+      {"T:", "t:", ": T: ", "missing"},
+      {"M2:", "M1:", ":8: M1: ", "this key is given twice"},
       {"M2:", "? [a]\n:", ":8: ", "plain word"},
       {"D1: !!opencv-matrix", "D1: &again [*again]\nD3: !!opencv-matrix", ":13: ", "of what contains it"},
       {"%YAML:1.0\n---\n", "%YAML:1.0\n---\na: 1\n---\n", ":4: ", "one YAML document"},
@@ -134,7 +134,7 @@ TEST_F(CalibrationFaults, Euroc) {
   const std::string good = euroc_sensor_text(euroc_left(), 300, 201);
   folder.write("cam1/sensor.yaml", euroc_sensor_text(euroc_right(), 302, 197));
   const std::vector<Fault> faults{
-      {"T_BS:", "T_SB:", ":3: T_BS: ", "expected this key, found none"},
+      {"T_BS:", "T_SB:", ":3: T_BS: ", "missing"},
       {"cols: 4", "cols: 3", ":6: T_BS.cols: ", "from 4 to 4"},
       {"data: [", "data: [1, ", ":8: T_BS.data: ", "16 numbers, found 17"},
       {"data: [", "data: [.inf, ", ":8: T_BS.data: ", "16 numbers"},
@@ -161,18 +161,18 @@ TEST_F(CalibrationFaults, Euroc) {
   expect_line(complaint(folder.path(), {1, 376, 240, 5.0}),
               folder.path().string() + ": image size: ", "400x300");
   std::filesystem::remove_all(folder.path() / "cam1");
-  expect_line(complaint(folder.path(), {}), folder.path().string(), "expected a readable file");
+  expect_line(complaint(folder.path(), {}), folder.path().string(), "cannot read this file");
 }
 
 TEST_F(CalibrationFaults, FilesAndFolders) {
-  expect_line(complaint("/nonexistent", {}), "/nonexistent: ", "expected a readable file");
+  expect_line(complaint("/nonexistent", {}), "/nonexistent: ", "cannot read this file");
   expect_line(complaint(folder.path(), {}), folder.path().string() + ": M1: ", "M1.xml, M1.yml or M1.yaml");
   expect_line(complaint("/dev/zero", {}), "/dev/zero: ", "this is a device");
   expect_line(complaint(folder.write("empty.xml", ""), {}), folder.path().string(),
-              "expected one YAML document");
+              "must be one YAML document");
   folder.write("M1.xml", content_of(paper_xml));
   folder.write("M1.yml", "M1: 3\n");
-  expect_line(complaint(folder.path(), {}), path("M1.yml") + ":1: M1: ", "expected each key once");
+  expect_line(complaint(folder.path(), {}), path("M1.yml") + ":1: M1: ", "this key is given twice");
   expect_line(complaint(paper_xml, {}), paper_xml.string() + ": baseline in m: ", "found 35.3038");
   expect_line(complaint(paper_xml, {0.01, {}, {}, 1e-3}),
               paper_xml.string() + ": detection depth: ", "0.1 to 1000");

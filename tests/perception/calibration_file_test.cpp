@@ -229,9 +229,9 @@ TEST_F(RigFile, NamesFileLineAndKeyOfEveryFault) {
   expect_complaint("focal_px: 180", "focal_pix: 180", "1: focal_px", "found none");
   expect_complaint("pitch_down_deg: 30", "pitch_down_deg: 30\ncolour: red", "12: colour", "unknown key");
   expect_complaint("height_px: 240", "height_px: 240\nwidth_px: 376", "4: width_px", "once");
-  expect_complaint("focal_px: 180", "focal_px: wide", "4: focal_px", "expected a number from 10 to 20000");
-  expect_complaint("focal_px: 180", "focal_px: [180]", "4: focal_px", "expected a number");
-  expect_complaint("focal_px: 180", "focal_px: .nan", "4: focal_px", "expected a number");
+  expect_complaint("focal_px: 180", "focal_px: wide", "4: focal_px", "must be a number from 10 to 20000");
+  expect_complaint("focal_px: 180", "focal_px: [180]", "4: focal_px", "must be a number");
+  expect_complaint("focal_px: 180", "focal_px: .nan", "4: focal_px", "must be a number");
   expect_complaint("baseline_m: 0.35", "baseline_m: -0.35", "5: baseline_m", "from 0.01 to 10");
   expect_complaint("width_px: 376", "width_px: 376.5", "2: width_px", "whole number");
   expect_complaint("[0.1, 0.2, 0.3]", "[0.1, 0.2]", "10: left_camera_body_m", "3 numbers");
@@ -304,17 +304,17 @@ TEST_F(RecordedEuroc, TakesOpenCvsLongerDistortions) {
   left.replace(left.find(four), four.size(), four + ", 0.01");
   EXPECT_EQ(rig_of(folder, left, right_text()).calibration->left.distortion.size(), 5u);
   left.replace(left.find(four), four.size(), "1, " + four);
-  expect_part(complaint_of(folder, left, right_text()), "expected a list of 4 numbers, found 6");
+  expect_part(complaint_of(folder, left, right_text()), "must be a list of 4 numbers, found 6");
 }
 
 TEST_F(RecordedEuroc, RefusesHalfARectification) {
   const auto refuses = [&](const std::string& left, const std::string& right, const std::string& part) {
     expect_part(complaint_of(folder, left_text() + left, right_text() + right), part);
   };
-  refuses(additions(205), "", "rectification: expected in both");
+  refuses(additions(205), "", "rectification: must be in the files of both");
   refuses("rectification: [1, 0, 0, 0, 1, 0, 0, 0, 1]\n", additions(180), "rectified_intrinsics");
   refuses("rectification: [1, 0, 0, 0, 1, 0, 0, 0, 0.9]\nrectified_intrinsics: [310, 205, 150]\n",
-          additions(180), "rectification: expected a rotation");
+          additions(180), "rectification: must be a rotation");
   refuses("rectification: [1, 0, 0, 0, 0, -1, 0, 1, 0]\nrectified_intrinsics: [320, 205, 150]\n",
           additions(180), "same focal length");
 }

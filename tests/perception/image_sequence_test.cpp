@@ -72,7 +72,7 @@ TEST_F(ImageSequencePairs, TakesTimesFromNames) {
   folder.write("l/9.8.png", "");
   folder.write("r/9.8.png", "");  // a time after 9.75, but a number before 75: order and times disagree
   expect_line(refusal_of([&] { folder_sequence(folder.path() / "l", folder.path() / "r"); }), "",
-              "9.75.png: expected times");
+              "9.75.png: the times");
 }
 
 TEST_F(ImageSequencePairs, SaysWhichImageHasNoPartner) {
@@ -82,11 +82,11 @@ TEST_F(ImageSequencePairs, SaysWhichImageHasNoPartner) {
   const auto pairing = [&] {
     return refusal_of([&] { folder_sequence(folder.path() / "l", folder.path() / "r"); });
   };
-  EXPECT_EQ(pairing(), path("l/2.png") + ": expected its partner in " + path("r") +
-                           ", found none (2 left images, 1 right)");
+  EXPECT_EQ(pairing(),
+            path("l/2.png") + ": has no partner in " + path("r") + ", found none (2 left images, 1 right)");
   std::filesystem::create_directories(folder.path() / "empty");
   expect_line(refusal_of([&] { folder_sequence(folder.path() / "empty", folder.path() / "r"); }), "",
-              "expected images");
+              "there are no images");
   expect_line(refusal_of([&] { folder_sequence(folder.path() / "none", folder.path() / "r"); }), "",
               "readable folder");
   expect_line(refusal_of([&] { single_pair(folder.path() / "l/1.png", folder.path() / "r/2.png"); }), "",
@@ -118,7 +118,7 @@ TEST_F(Euroc, PairsByTimeAndCountsTheRest) {
 }
 
 TEST_F(Euroc, RefusesWhatIsMissing) {
-  expect_line(refusal_of([&] { euroc_sequence(folder.path()); }), "", "expected a EuRoC folder");
+  expect_line(refusal_of([&] { euroc_sequence(folder.path()); }), "", "not a EuRoC folder");
   write("cam0", {"100"});
   write("cam1", {"200"});
   expect_line(refusal_of([&] { euroc_sequence(folder.path()); }), "", "found none");
@@ -137,8 +137,8 @@ TEST(EurocImages, NamesTheLineOfEveryFault) {
   EXPECT_EQ(reading("1,a.png\n2,b.png"), "");
   for (const char* broken : {"2", "2,", "x,b.png", "2,b.png,c", "-2,b.png", "2,../b.png", "2.5,b.png"})
     EXPECT_EQ(reading("1,a.png\n" + std::string(broken)).find("d:2: expected 't,file name'"), 0u) << broken;
-  EXPECT_EQ(reading("2,a.png\n2,b.png"), "d:2: expected times that increase from line to line");
-  EXPECT_EQ(reading("#t,name\n"), "d: expected at least one image, found none");
+  EXPECT_EQ(reading("2,a.png\n2,b.png"), "d:2: times must increase from line to line");
+  EXPECT_EQ(reading("#t,name\n"), "d: lists no image");
 }
 
 }  // namespace

@@ -100,21 +100,20 @@ TEST(PoseFile, NamesTheLineOfEveryFault) {
   EXPECT_EQ(complaint(good + "1 0 0 0 0 0 0 1 0\n").find("p:2: expected 't tx"), 0u);
   EXPECT_EQ(complaint(good + "1 0 0 0 0 0 zero 1\n").find("p:2: expected 't tx"), 0u);
   EXPECT_EQ(complaint(good + "1 0 nan 0 0 0 0 1\n").find("p:2: expected 't tx"), 0u);
-  EXPECT_EQ(complaint(good + "# all is well\n1 0 0 0 0 0 0 0.5\n"), "p:3: expected a quaternion of length 1");
-  EXPECT_EQ(complaint(good + "1 0 0 0 0 0 0 0\n"), "p:2: expected a quaternion of length 1");
-  EXPECT_EQ(complaint(good + "1 1e9 0 0 0 0 0 1\n"), "p:2: expected a position within 1e8 m");
-  EXPECT_EQ(complaint(good + good), "p:2: expected times that increase from line to line");
+  EXPECT_EQ(complaint(good + "# all is well\n1 0 0 0 0 0 0 0.5\n"), "p:3: the quaternion must have length 1");
+  EXPECT_EQ(complaint(good + "1 0 0 0 0 0 0 0\n"), "p:2: the quaternion must have length 1");
+  EXPECT_EQ(complaint(good + "1 1e9 0 0 0 0 0 1\n"), "p:2: the position must be within 1e8 m");
+  EXPECT_EQ(complaint(good + good), "p:2: times must increase from line to line");
   EXPECT_EQ(complaint("-1 0 0 0 0 0 0 1\n").find("p:1: expected 't tx"), 0u);
-  EXPECT_EQ(complaint("# nothing\n"), "p: expected at least one pose, found none");
+  EXPECT_EQ(complaint("# nothing\n"), "p: holds no pose");
   EXPECT_EQ(complaint("5,0,0,0,1,0,0\n").find("p:1: expected 't,px"), 0u);
   EXPECT_EQ(complaint("5.5,0,0,0,1,0,0,0\n").find("p:1: expected 't,px"), 0u);
-  EXPECT_EQ(complaint("5,0,0,0,1,0,0,0\n4,0,0,0,1,0,0,0\n"),
-            "p:2: expected times that increase from line to line");
+  EXPECT_EQ(complaint("5,0,0,0,1,0,0,0\n4,0,0,0,1,0,0,0\n"), "p:2: times must increase from line to line");
   EXPECT_EQ(refusal_of([] { read_poses("/nonexistent"); }),
-            "/nonexistent: expected a readable file: No such file or directory");
+            "/nonexistent: cannot read this file: No such file or directory");
   EXPECT_EQ(refusal_of([] { read_poses("/dev/zero"); }),
-            "/dev/zero: expected a readable file, this is a device");
-  EXPECT_EQ(refusal_of([] { read_poses("/tmp"); }), "/tmp: expected a readable file, this is a folder");
+            "/dev/zero: cannot read this file, this is a device");
+  EXPECT_EQ(refusal_of([] { read_poses("/tmp"); }), "/tmp: cannot read this file, this is a folder");
 }
 
 }  // namespace

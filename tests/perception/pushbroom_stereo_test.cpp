@@ -64,7 +64,7 @@ struct Case {
 };
 
 void PrintTo(const Case& test, std::ostream* out) {
-  *out << test.rig << (test.robust ? " robust" : " paper's rule");
+  *out << test.rig << (test.robust ? " robust" : " original");
 }
 
 class OnPlanes : public testing::TestWithParam<Case> {
@@ -317,21 +317,19 @@ TEST(PushbroomStereo, RefusesRulesThatCannotBeMeant) {
   };
   EXPECT_EQ(fault_of(robust_pushbroom(), rig), "");
   for (const int threads : {0, -1, 65})
-    expect_fault("threads: expected 1 to 64, found " + std::to_string(threads),
+    expect_fault("threads: must be from 1 to 64, is " + std::to_string(threads),
                  [&](PushbroomConfig& config) { config.threads = threads; });
-  expect_fault("score_limit: expected 0 to 10, found nan",
+  expect_fault("score_limit: must be from 0 to 10, is nan",
                [](PushbroomConfig& config) { config.score_limit = std::nan(""); });
-  expect_fault("depths_m: expected depths the rig long can look at, found 900 m",
-               [](PushbroomConfig& config) {
-                 config.depths_m = {10, 900};
-               });
-  expect_fault("depths_m: expected 0.1 to 1000, found -1",
+  expect_fault("depths_m: the rig long cannot look at 900 m", [](PushbroomConfig& config) {
+    config.depths_m = {10, 900};
+  });
+  expect_fault("depths_m: must be from 0.1 to 1000, is -1",
                [](PushbroomConfig& config) { config.depths_m = {-1}; });
-  expect_fault("disparities_px: expected disparities the rig long can look at, found 20 px",
-               [](PushbroomConfig& config) {
-                 config.disparities_px = {30, 20};
-               });
-  expect_fault("disparities_px: expected these or depths_m, found both", [](PushbroomConfig& config) {
+  expect_fault("disparities_px: the rig long cannot look at 20 px", [](PushbroomConfig& config) {
+    config.disparities_px = {30, 20};
+  });
+  expect_fault("disparities_px and depths_m exclude each other", [](PushbroomConfig& config) {
     config.depths_m = {10};
     config.disparities_px = {30};
   });

@@ -113,7 +113,7 @@ TEST_F(Recording, RefusesWhatIsNoPairOfGrayImagesOfOneSize) {
   expect_complaint({good, folder.path() / "none.png"}, "none.png: found no such file");
   expect_complaint({good, folder.path()}, "expected a EuRoC folder, two folders");
   expect_complaint({good}, "good.png: expected a EuRoC folder, two folders");
-  expect_complaint({folder.path()}, "expected a EuRoC folder");
+  expect_complaint({folder.path()}, "not a EuRoC folder");
   expect_complaint({folder.write("noise.mp4", "no video")}, "noise.mp4: expected a video");
 }
 

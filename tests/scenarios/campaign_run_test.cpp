@@ -160,9 +160,9 @@ TEST_F(CampaignRun, RefusesFoldersThatAreNotItsOwn) {
   expect_refusal("campaign " + campaign + out("results"),
                  "holds a campaign already: --resume goes on with it");
   expect_refusal("campaign " + blind("seeds: 1..2\n") + out("results") + " --resume", "seeds changed");
-  expect_refusal("campaign " + campaign + " --out /proc/nowhere", "expected a writable output");
-  expect_refusal("campaign /nowhere.yaml", "expected a readable");
-  expect_refusal("collect " + path.string(), "expected a campaign's results");
+  expect_refusal("campaign " + campaign + " --out /proc/nowhere", "cannot write here");
+  expect_refusal("campaign /nowhere.yaml", "cannot read this");
+  expect_refusal("collect " + path.string(), "not a folder of a campaign");
   expect_refusal(
       "campaign " + file("rig.yaml", "scenario: clear\nseeds: 1\ngrid: {rig: [monocle]}\n") + out("rig"),
       "condition clear-rig=monocle");

@@ -72,8 +72,8 @@ TEST_F(CampaignFile, PutsFilesOfKeysUnderItsOwn) {
   EXPECT_EQ(tuned.forest.length_m, 33);
   EXPECT_EQ(tuned.forest.half_width_m, 13);
   folder.write("tuned.yaml", "forest: {lenght_m: 33}\n");
-  expect_part(refusal_of(text(keys.string())), "tuned.yaml:1: forest.lenght_m: expected a known key");
-  expect_part(refusal_of(text("none.yaml")), "none.yaml: expected a readable");
+  expect_part(refusal_of(text(keys.string())), "tuned.yaml:1: forest.lenght_m: unknown key");
+  expect_part(refusal_of(text("none.yaml")), "none.yaml: cannot read this");
 }
 
 TEST_F(CampaignFile, KeysOverAllConditionsLeaveTheirNames) {
@@ -96,34 +96,32 @@ TEST_F(CampaignFile, RefusesBadFilesInOneLineWithFileLineAndKey) {
     const char* text;
     const char* part;
   } cases[] = {
-      {"scenario: forest\nseeds: 1..3\nsead: 4\n",
-       "speed.yaml:3: sead: expected a known key (did you mean seeds?)"},
+      {"scenario: forest\nseeds: 1..3\nsead: 4\n", "speed.yaml:3: sead: unknown key (did you mean seeds?)"},
       {"scenario: forest\nseeds: []\n", "speed.yaml:2: seeds: expected the seeds to fly"},
       {"scenario: forest\nseeds:\n", "speed.yaml:2: seeds: expected the seeds to fly"},
       {"scenario: forest\n", "seeds: expected the seeds to fly"},
-      {"scenario: forest\nseeds: 3..1\n", "speed.yaml:2: seeds: expected first <= last, got '3..1'"},
+      {"scenario: forest\nseeds: 3..1\n",
+       "speed.yaml:2: seeds: the first seed must not be above the last, got '3..1'"},
       {"scenario: forest\nseeds: 1:3\n", "speed.yaml:2: seeds: expected first..last"},
-      {"scenario: forest\nseeds: [1..5, 4]\n",
-       "speed.yaml:2: seeds: expected each seed once, 4 is given twice"},
-      {"scenario: forest\nseeds: 0..4000000000\n", "speed.yaml:2: seeds: expected at most"},
+      {"scenario: forest\nseeds: [1..5, 4]\n", "speed.yaml:2: seeds: seed 4 is given twice"},
+      {"scenario: forest\nseeds: 0..4000000000\n", "speed.yaml:2: seeds: a campaign may have at most"},
       {"seeds: 1..3\n", "scenarios: expected the scenarios to fly"},
       {"scenarios: [forest, forest]\nseeds: 1\n",
-       "speed.yaml:1: scenarios: expected each condition once, 'forest'"},
+       "speed.yaml:1: scenarios: two conditions are called 'forest"},
       {"scenario: wood\nseeds: 1\n", "speed.yaml:1: scenario: wood: expected one of the library"},
       {"scenario: forest\nseeds: 1\noverrides:\n  - {name: a}\n  - {name: a}\n",
        "'forest-a' comes out twice"},
       {"scenario: forest\nseeds: 1\noverrides:\n  - {name: a/b}\n",
        "speed.yaml:4: overrides.name: expected a name"},
       {"scenario: forest\nseeds: 1\noverrides: fast\n", "speed.yaml:3: overrides: expected a list"},
-      {"scenario: forest\nseeds: 1\noverrides:\n  - {name: a, sets: {}}\n",
-       "overrides.sets: expected a known key"},
+      {"scenario: forest\nseeds: 1\noverrides:\n  - {name: a, sets: {}}\n", "overrides.sets: unknown key"},
       {"scenario: forest\nseeds: 1\ngrid:\n  forest.length_m: 30\n",
        "speed.yaml:4: grid.forest.length_m: expected a list"},
       {"scenario: forest\nseeds: 1\ngrid:\n  forest.lenght_m: [30]\n",
-       "speed.yaml:4: grid.forest.lenght_m: expected a known key (did you mean forest.length_m?)"},
+       "speed.yaml:4: grid.forest.lenght_m: unknown key (did you mean forest.length_m?)"},
       {"scenario: forest\nseeds: 1\ngrid:\n  forest.length_m: [30, -1]\n", "speed.yaml:4: forest.length_m"},
       {"scenario: forest\nseeds: 1\ntimeout_s: soon\n", "speed.yaml:3: timeout_s: expected a number from 1"},
-      {"scenario: forest\nseeds: 1\nseeds: 2\n", "speed.yaml:3: seeds: expected each key once"},
+      {"scenario: forest\nseeds: 1\nseeds: 2\n", "speed.yaml:3: seeds: this key is given twice"},
   };
   for (const auto& one : cases) expect_part(refusal_of(one.text), one.part);
 }

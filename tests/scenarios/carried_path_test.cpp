@@ -131,14 +131,15 @@ TEST(PathFile, WhatNobodyCanBeCarriedAlongIsRefused) {
     EXPECT_NE(complaint(text).find(part), std::string::npos) << complaint(text);
     EXPECT_EQ(complaint(text).find('\n'), std::string::npos);
   };
-  expect_complaint("", "expected at least one pose");
-  expect_complaint("0 0 0 4 0 0 0 1\n", "expected at least two poses");
-  expect_complaint("0 0 0 4 0 0 0 1\n0 1 0 4 0 0 0 1\n", "path:2: expected times that increase");
-  expect_complaint("0 0 0 4 0 0 0 1\n1 101 0 4 0 0 0 1\n", "path:2: expected at most 100 m/s");
-  expect_complaint("0 0 0 4 0 0 0 1\n1 1 0 4 1 0 0 0\n", "expected at most a quarter turn");
-  expect_complaint("t_s,x_m,y_m,z_m,qw,qx,qy,qz\n", "expected at least one pose");
-  expect_complaint("t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,4,1,0,0,0\n\n1,2,3\n", "path:4: expected t_s,x_m");
-  expect_complaint("t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,4,1,0,0,0\n\n1,2,3,a,1,0,0,0\n", "path:4: expected");
+  expect_complaint("", "holds no pose");
+  expect_complaint("0 0 0 4 0 0 0 1\n", "needs at least two poses");
+  expect_complaint("0 0 0 4 0 0 0 1\n0 1 0 4 0 0 0 1\n", "path:2: times must increase");
+  expect_complaint("0 0 0 4 0 0 0 1\n1 101 0 4 0 0 0 1\n", "path:2: must be at most 100 m/s");
+  expect_complaint("0 0 0 4 0 0 0 1\n1 1 0 4 1 0 0 0\n", "must be at most a quarter turn");
+  expect_complaint("t_s,x_m,y_m,z_m,qw,qx,qy,qz\n", "holds no pose");
+  expect_complaint("t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,4,1,0,0,0\n\n1,2,3\n",
+                   "path:4: must name the columns t_s,x_m");
+  expect_complaint("t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,4,1,0,0,0\n\n1,2,3,a,1,0,0,0\n", "path:4: must name");
 }
 
 TEST(PathFile, ThinningKeepsBothEndsAndADistance) {

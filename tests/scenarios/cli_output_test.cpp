@@ -21,15 +21,15 @@ using understory::support::understory;
 TEST(CliOutput, AnOutputThatCannotBeWrittenIsRefusedBeforeTheWork) {
   const TemporaryFolder folder;
   const std::string nowhere = (folder.path() / "none" / "file").string();
-  expect_refusal("rig long --out " + nowhere + ".svg", "expected a writable output");
-  expect_refusal("bench --rounds 100000 --json " + nowhere, "expected a writable output");
-  expect_refusal("gate --baseline a --candidate b --junit " + nowhere, "expected a writable output");
+  expect_refusal("rig long --out " + nowhere + ".svg", "cannot write here");
+  expect_refusal("bench --rounds 100000 --json " + nowhere, "cannot write here");
+  expect_refusal("gate --baseline a --candidate b --junit " + nowhere, "cannot write here");
 #ifdef UNDERSTORY_HAS_SIM
   const std::string endless = "fly forest --set forest.length_m=400 --set forest.intangible=true ";
-  expect_refusal(endless + "--row " + nowhere, "expected a writable output");
-  expect_refusal(endless + "--junit " + nowhere, "expected a writable output");
-  expect_refusal(endless + "--out /dev/null/run", "expected a writable output");
-  expect_refusal(endless + "--junit /proc/none", "expected a writable output");
+  expect_refusal(endless + "--row " + nowhere, "cannot write here");
+  expect_refusal(endless + "--junit " + nowhere, "cannot write here");
+  expect_refusal(endless + "--out /dev/null/run", "cannot write here");
+  expect_refusal(endless + "--junit /proc/none", "cannot write here");
 #endif
 }
 
@@ -135,7 +135,7 @@ TEST(CliOutput, NoCommandWritesIntoAFolderThatAnotherWritesInto) {
                "over: flights\ntraining: 1\nvalidation: 2\n");
   for (const std::string& command :
        {std::string("detect rec"), std::string("evaluate rec"), campaign, std::string("tune tune.yaml")}) {
-    expect_refusal(command + " --out /dev/null/x", "expected a writable output", 2, in_folder);
+    expect_refusal(command + " --out /dev/null/x", "cannot write here", 2, in_folder);
     const std::string locked = in_folder + "mkdir -p out && flock out/.understory ";
     expect_refusal(command + " --out out", "out: another understory writes there at this moment", 2, locked);
   }

@@ -192,26 +192,25 @@ TEST(Cli, BadRigsAreNamedInOneLine) {
   const Folder folder;
   expect_refusal("rig", "FILE");
   expect_refusal("rig nowhere", "or one of: long, paper");
-  expect_refusal("rig " + raw_rigs + "paper.xml", "paper.xml: baseline in m: expected 0.01 to 10");
+  expect_refusal("rig " + raw_rigs + "paper.xml", "paper.xml: baseline in m: must be from 0.01 to 10");
   expect_refusal("rig " + raw_rigs + "long.xml --unit ft", "--unit ft: must be one of m, cm, mm");
   for (const char* size : {"376", "376x", "x240", "376x240x8", "wide"})
     expect_refusal("rig " + raw_rigs + "long.xml --size " + size, "must be WIDTHxHEIGHT");
-  expect_refusal("rig " + raw_rigs + "long.xml --size 640x480",
-                 "image size: expected the file's own, 376x240");
+  expect_refusal("rig " + raw_rigs + "long.xml --size 640x480", "image size: the file says 376x240");
   expect_refusal("rig " + raw_rigs + "long.xml --depth deep", "--depth");
   expect_refusal("rig " + raw_rigs + "long.xml --depth nan",
                  "--depth nan: must be a number from 0.1 to 1000");
   expect_refusal("rig " + raw_rigs + "long.xml --depth 800", "nearer than infinity");
-  expect_refusal("rig " + folder.path.string(), "M1: expected this key in M1.xml");
+  expect_refusal("rig " + folder.path.string(), "M1: missing: it stands in M1.xml");
   expect_refusal("rig " + folder.file("rig.yaml", "name: [\n"), "rig.yaml:");
-  expect_refusal("rig " + folder.file("rig.xml", "<opencv_storage><M1>"), "rig.xml:1: expected OpenCV's XML");
+  expect_refusal("rig " + folder.file("rig.xml", "<opencv_storage><M1>"),
+                 "rig.xml:1: not valid XML of OpenCV");
 }
 
 TEST(Cli, APictureThatCannotBeWrittenIsBadInput) {
   const Folder folder;
-  expect_refusal("rig long --out " + (folder.path / "none" / "rig.svg").string(),
-                 "expected a writable output");
-  expect_refusal("rig long --out " + (folder.path / "rig.xyz").string(), "expected a name that ends in .svg");
+  expect_refusal("rig long --out " + (folder.path / "none" / "rig.svg").string(), "cannot write here");
+  expect_refusal("rig long --out " + (folder.path / "rig.xyz").string(), "the name must end in .svg");
 }
 
 #ifdef UNDERSTORY_HAS_SIM
@@ -224,9 +223,9 @@ TEST(Cli, BadScenariosAreNamedByFileLineAndKey) {
                  "a.yaml:3: forest.lenght_m");
   expect_refusal("fly " + folder.file("b.yaml", "name: [\n"), "b.yaml:");
   expect_refusal("fly clear --set forest.length_m=-1", "--set forest.length_m=-1: forest.length_m: expected");
-  expect_refusal("fly " + folder.file("c.yaml", ""), "c.yaml:1: expected one YAML document");
+  expect_refusal("fly " + folder.file("c.yaml", ""), "c.yaml:1: must be one YAML document");
   expect_refusal("fly " + folder.file("d.yaml", "forest: &again [*again]\n"),
-                 "d.yaml:1: expected an alias of what ends before it");
+                 "d.yaml:1: an alias must not refer to the value that contains it");
   std::string bomb = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
   for (int i = 1; i < 9; ++i) {
     const std::string alias = "*a" + std::to_string(i - 1), name = "a" + std::to_string(i);
@@ -234,30 +233,29 @@ TEST(Cli, BadScenariosAreNamedByFileLineAndKey) {
     for (int copy = 1; copy < 10; ++copy) bomb += ", " + alias;
     bomb += "]\n";
   }
-  expect_refusal("fly " + folder.file("bomb.yaml", bomb), "expected at most 100,000 values");
-  expect_refusal("fly /dev/zero", "/dev/zero: expected a readable file, this is a device");
-  expect_refusal("fly " + folder.file("e.yaml", "name: a/b\n"), "e.yaml:1: name: expected letters");
+  expect_refusal("fly " + folder.file("bomb.yaml", bomb), "a file may hold at most 100,000 values");
+  expect_refusal("fly /dev/zero", "/dev/zero: cannot read this file, this is a device");
+  expect_refusal("fly " + folder.file("e.yaml", "name: a/b\n"), "e.yaml:1: name: must be letters");
   expect_refusal("fly " + folder.file("f.yaml", "cameras:\n  rate_hz: 7\n"),
-                 "f.yaml:2: cameras.rate_hz: expected");
+                 "f.yaml:2: cameras.rate_hz: must divide");
   expect_refusal("fly " + folder.file("g.yaml", "name: a\nname: b\n"),
-                 "g.yaml:2: name: expected each key once");
-  expect_refusal("fly " + folder.file("h.yaml", "name: a\nrig: none\n"), "h.yaml:2: rig: expected a name");
+                 "g.yaml:2: name: this key is given twice");
+  expect_refusal("fly " + folder.file("h.yaml", "name: a\nrig: none\n"), "h.yaml:2: rig: must be a name");
   expect_refusal("fly " + folder.path.string(), "this is a folder");
   expect_refusal("fly clear --set rig=none --out " + folder.path.string(),
-                 "--set rig=none: rig: expected a name");
-  expect_refusal("fly clear --set rig=" + folder.file("rig.yaml", "name: a\n"),
-                 "rig.yaml:1: width_px: expected");
+                 "--set rig=none: rig: must be a name");
+  expect_refusal("fly clear --set rig=" + folder.file("rig.yaml", "name: a\n"), "rig.yaml:1: width_px: ");
   expect_refusal("fly clear --set 'forest={clear_m: 9, clear_m: 9}'",
-                 "forest.clear_m: expected each key once");
+                 "forest.clear_m: this key is given twice");
   expect_refusal("fly clear --seed x", "seed: expected a whole number");
   expect_refusal("fly clear --set 'perception.depths_m=[10, 900]' --out " + folder.path.string(),
-                 "perception.depths_m: expected depths the rig long can look at, found 900 m");
+                 "perception.depths_m: the rig long cannot look at 900 m");
 }
 
 TEST(Cli, AnUnwritableFolderIsBadInput) {
   const Folder folder;
   const std::string in_the_way = folder.file("file", "");
-  expect_refusal("fly clear --out " + in_the_way + "/run", "expected a writable output");
+  expect_refusal("fly clear --out " + in_the_way + "/run", "cannot write here");
 }
 
 TEST(Cli, ARendererIsOneOfThree) {
@@ -311,7 +309,7 @@ TEST(Cli, AnyWorkingDirectoryServes) {
 
 #else
 
-TEST(Cli, WithoutASimulatorItSaysSo) { expect_refusal("fly clear", "expected a build with the simulator"); }
+TEST(Cli, WithoutASimulatorItSaysSo) { expect_refusal("fly clear", "requires a build with the simulator"); }
 
 #endif
 

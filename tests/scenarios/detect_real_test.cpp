@@ -101,7 +101,7 @@ TEST_F(DetectReal, AVehicleAtRestRemembersEachPointOnce) {
 
 TEST_F(DetectReal, ACalibrationOfAnotherResolutionIsRefused) {
   support::expect_refusal("detect " + euroc.string() + " --rig paper --out " + folder.path().string(),
-                          "expected 376x240 as");
+                          "must be 376x240 as");
 }
 
 }  // namespace

@@ -190,8 +190,9 @@ TEST_F(Detect, FramesOutsideThePosesAreReportedAndLeftOutOfTheMap) {
   expect_part(outcome.text, "frames outside the poses' time, left out: 2");
   EXPECT_EQ(positions_in(found("map.ply")).size(), expected(frames, tuned_pushbroom("paper"))[1].hits.size());
   const std::string later = folder.write("later.csv", "9500000000,0,0,0,1,0,0,0\n").string();
-  support::expect_refusal("detect " + folders() + to_out() + " --poses " + later,
-                          "later.csv: expected poses at the images' time, 1.000 to 3.000 s, found 9.500");
+  support::expect_refusal(
+      "detect " + folders() + to_out() + " --poses " + later,
+      "later.csv: the poses must cover the images' time, 1.000 to 3.000 s, they cover 9.500");
 }
 
 TEST_F(Detect, BadInputIsOneLineAndLeavesNoResult) {
@@ -201,39 +202,39 @@ TEST_F(Detect, BadInputIsOneLineAndLeavesNoResult) {
     support::expect_refusal(arguments, part);
   };
   refuse("detect", "INPUT");
-  refuse("detect " + folders() + " --out " + out, "expected a rig (--rig)");
-  refuse("detect " + folders() + " --rig none --out " + out, "none: expected a rig file");
+  refuse("detect " + folders() + " --out " + out, "requires --rig");
+  refuse("detect " + folders() + " --rig none --out " + out, "none: no such rig file");
   refuse(detect + " --size 752", "--size 752: must be WIDTHxHEIGHT");
   refuse(detect + " --depth 4000", "depth");
   refuse(detect + " --preset best", "--preset");
   refuse(detect + " --rectify cubic", "--rectify");
   refuse(detect + " --unit inch", "--unit");
-  refuse(detect + " --set perception.pushbroom.edges=3", "perception.pushbroom.edges: expected a known key");
+  refuse(detect + " --set perception.pushbroom.edges=3", "perception.pushbroom.edges: unknown key");
   refuse(detect + " --set perception.depths_m=[4.8,900]",
-         "perception.depths_m: expected depths the rig paper can look at, found 900 m");
+         "perception.depths_m: the rig paper cannot look at 900 m");
   refuse(detect + " --set perception.pushbroom.depths_score_limit=[0.1,0.2,0.3]",
-         "perception.pushbroom.depths_score_limit: expected as many as depths, 2, or none, found 3");
+         "perception.pushbroom.depths_score_limit: must be empty or have one value a depth (2), has 3");
   refuse(detect + " --poses " + folder.write("p.txt", "0 0 0 0 0 0 0 1\n1 0 0\n").string(),
          "p.txt:2: expected");
   refuse(detect + " --poses " + folder.write("q.txt", "0 0 0 0 0 0 0 1\n").string(),
-         "expected images with times");
+         "requires images with times");
   refuse("detect " + folders() + " --rig paper --out " + folder.write("taken", "").string() + "/out",
-         "expected a writable output");
+         "cannot write here");
   refuse("detect " + left + " " + (folder.path() / "none").string() + to_out(),
          "none: found no such file or folder");
   cv::imwrite(left + "/a1.png", cv::Mat(rig.height_px, rig.width_px, CV_16UC1, cv::Scalar(5)));
   refuse(detect, "left/a1.png: expected an 8-bit gray image, found 16-bit gray");
   cv::imwrite(left + "/a1.png", cv::Mat(480, 752, CV_8UC1, cv::Scalar(5)));
   cv::imwrite(right + "/a1.png", cv::Mat(480, 752, CV_8UC1, cv::Scalar(5)));
-  refuse(detect, "left/a1.png: expected 376x240 as");
+  refuse(detect, "left/a1.png: must be 376x240 as");
   std::string sizeless = support::content_of(fs::path(UNDERSTORY_SOURCE_DIR) / "models/rigs/raw/paper.xml");
   for (const char* line : {"<image_width>376</image_width>", "<image_height>240</image_height>"})
     sizeless.replace(sizeless.find(line), std::string(line).size(), "");
   refuse("detect " + left + "/a1.png " + right + "/a1.png --unit cm --out " + out + " --rig " +
              folder.write("sizeless.xml", sizeless).string(),
-         "expected a principal point in the middle of the 752x480 images");
+         "the principal point must lie near the middle of the 752x480 images");
   fs::remove(right + "/a2.png");
-  refuse(detect, "left/a2.png: expected its partner in");
+  refuse(detect, "left/a2.png: has no partner in");
   EXPECT_FALSE(fs::exists(fs::path(out)));
 }
 

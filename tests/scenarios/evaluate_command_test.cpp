@@ -82,10 +82,10 @@ TEST(EvaluateCommand, RecordsASuiteAndJudgesIt) {
   EXPECT_EQ(figures(out), figures(again));
 
   expect_refusal("evaluate " + folders + " --set perception.pushbroom.edge=3 --out " + again.string(),
-                 "perception.pushbroom.edge: expected a known key");
+                 "perception.pushbroom.edge: unknown key");
   fs::remove(out / "recordings/short-1008/mav0/depth0/data" /
              fs::directory_iterator(out / "recordings/short-1008/mav0/depth0/data")->path().filename());
-  expect_refusal("evaluate " + folders + " --out " + again.string(), "expected a readable file");
+  expect_refusal("evaluate " + folders + " --out " + again.string(), "cannot read this file");
 }
 
 TEST(EvaluateCommand, WrongInputIsRefusedInOneLine) {
@@ -98,9 +98,10 @@ TEST(EvaluateCommand, WrongInputIsRefusedInOneLine) {
     expect_refusal("evaluate " + file.string() + out, part);
   };
   refuses("recordings: []\n", "recordings: expected a list");
-  refuses("recording: 1\n", "recording: expected a known key (did you mean recordings?)");
+  refuses("recording: 1\n", "recording: unknown key (did you mean recordings?)");
   refuses("recordings:\n  - {name: a, scenario: forest}\n", "recordings.seeds: expected the seeds to fly");
-  refuses("recordings:\n  - {name: a, scenario: forest, seeds: 3..1}\n", "expected first <= last");
+  refuses("recordings:\n  - {name: a, scenario: forest, seeds: 3..1}\n",
+          "the first seed must not be above the last");
   refuses("recordings:\n  - {name: a/b, scenario: forest, seeds: 1}\n", "recordings.name: expected a name");
   refuses("recordings:\n  - {name: a, scenario: nowhere, seeds: 1}\n", "nowhere");
   refuses("recordings:\n  - {name: a, scenario: forest, seeds: 1, path: no.tum}\n", "no.tum");

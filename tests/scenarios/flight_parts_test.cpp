@@ -126,7 +126,7 @@ TEST(Compute, FramesThatWouldComeTooLateForTheEstimatorAreRefused) {
     scenario_from_text("perception: {detector: stereo_sgbm, compute: {enabled: true, factor: 100}}", "here");
   };
   support::expect_part(support::refusal_of<ScenarioError>(refused),
-                       "perception.compute.factor: expected a frame to be looked at");
+                       "perception.compute.factor: a frame must be processed");
 }
 
 TEST(RunDigest, EveryBitAndTheOrderCount) {

@@ -45,11 +45,11 @@ TEST(RecordCommand, WrongArgumentsAreBadInput) {
   expect_refusal("record forest --walk --height 20" + out, "--height");
   expect_refusal("record forest --height 2" + out, "--height requires --walk");
   expect_refusal("record forest --walk --set forest.square_metres_per_tree=4" + out, "straight lane");
-  expect_refusal("record forest --path nowhere.tum" + out, "nowhere.tum: expected a readable file");
+  expect_refusal("record forest --path nowhere.tum" + out, "nowhere.tum: cannot read this file");
   expect_refusal("record forest --path scenarios/paths/level.tum --walk" + out, "--path and --walk exclude");
   expect_refusal("record forest --path scenarios/paths/level.tum --height 2" + out,
                  "--height requires --walk");
-  expect_refusal("record forest --set rig=none" + out, "rig: expected a name");
+  expect_refusal("record forest --set rig=none" + out, "rig: must be a name");
   expect_refusal("record forest --out /proc/none", "/proc/none");
   EXPECT_FALSE(fs::exists(folder.path() / "out"));
 }

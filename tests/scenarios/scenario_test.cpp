@@ -197,15 +197,15 @@ TEST(Scenario, FullStereosNumbersAreRefusedInOneLineWhereOpenCvWouldThrow) {
     return refusal_of<ScenarioError>([&] { scenario_from_text(text, "a.yaml"); });
   };
   EXPECT_EQ(refusal("band: {least_altitude_m: 1}"),  // as keys were called in 0.1
-            "a.yaml:1: band.least_altitude_m: expected a known key (did you mean minimum_altitude_m?)");
+            "a.yaml:1: band.least_altitude_m: unknown key (did you mean minimum_altitude_m?)");
   EXPECT_EQ(refusal("perception:\n  stereo_bm: {window_px: 6}\n"),
-            "a.yaml:2: perception.stereo_bm.window_px: expected an odd number");
+            "a.yaml:2: perception.stereo_bm.window_px: must be an odd number");
   EXPECT_EQ(refusal("perception:\n  stereo_sgbm: {disparities: 100}\n"),
-            "a.yaml:2: perception.stereo_sgbm.disparities: expected a multiple of 16");
+            "a.yaml:2: perception.stereo_sgbm.disparities: must be a multiple of 16");
   EXPECT_EQ(refusal("perception:\n  stereo_sgbm: {smoothness_1: 40}\n"),
-            "a.yaml:2: perception.stereo_sgbm.smoothness_1: expected less than smoothness_2");
+            "a.yaml:2: perception.stereo_sgbm.smoothness_1: must be less than smoothness_2");
   EXPECT_EQ(refusal("perception: {full_stereo: {minimum_depth_m: 20}}"),
-            "a.yaml:1: perception.full_stereo.minimum_depth_m: expected less than maximum_depth_m");
+            "a.yaml:1: perception.full_stereo.minimum_depth_m: must be less than maximum_depth_m");
   EXPECT_EQ(
       refusal("perception: {detector: stereo}"),
       "a.yaml:1: perception.detector: expected pushbroom | stereo_bm | stereo_sgbm | true_depth | none, "
@@ -257,7 +257,7 @@ TEST(Scenario, FaultsAreReadWrittenAndChecked) {
     scenario_from_text("seed: 1\nfaults:\n  - sensor: barometer\n    kind: block\n", "a.yaml");
   };
   EXPECT_EQ(refusal_of<ScenarioError>(refused),
-            "a.yaml:4: faults[0].kind: expected, for this sensor, freeze | dropout | bias | saturate");
+            "a.yaml:4: faults[0].kind: must be, for this sensor, freeze | dropout | bias | saturate");
 }
 
 TEST(Scenario, TheAircraftThatFliesMayDifferFromTheStacks) {
@@ -342,7 +342,7 @@ TEST_F(ScenarioRig, APathIsLookedForBesideTheFileThatGivesIt) {
 
 TEST_F(ScenarioRig, SaysInOneLineWhatIsWrongWithARawRig) {
   expect_part(refusal_for({"rig=paper", "cameras.raw=true"}), "cameras.raw_unit_m");
-  expect_part(refusal_for({"rig=nowhere", "cameras.raw=true"}), "rig: expected");
+  expect_part(refusal_for({"rig=nowhere", "cameras.raw=true"}), "rig: must be");
   const fs::path file = folder.path() / "own.yaml";
   fs::copy_file(models / "rigs/long.yaml", file);
   expect_part(refusal_for({"rig=" + file.string(), "cameras.raw=true"}), "own.xml");

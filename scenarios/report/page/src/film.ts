@@ -34,7 +34,7 @@ export function add_film(place: HTMLElement, times: Numbers, clock: Clock): void
     video.playsInline = true;
     video.preload = "auto";
     video.setAttribute("aria-label", "What the left camera saw");
-    video.addEventListener("error", () => (caption.textContent = "This browser does not play the film (H.264)."));
+    video.addEventListener("error", () => (caption.textContent = "This browser does not play the video (H.264)."));
     // Decoding its text and its first picture takes longer than all the rest, and a video holds up the page's load.
     const show_film = () => (video.src = URL.createObjectURL(new Blob([take_bytes("film")!], { type: "video/mp4" })));
     if (document.readyState === "complete") show_film();
