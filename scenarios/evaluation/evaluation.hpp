@@ -14,8 +14,9 @@
 
 namespace understory {
 
-/// What is evaluated, and against what: `pushbroom` is the detector's parameter set, `map` the one of the evaluations with memory,
-/// `compute` the aircraft's computer, for what it finds at its own pace, `enabled` or not.
+/// What is evaluated, and against what: `pushbroom` is the detector's parameter set, `map` the one of the
+/// evaluations with memory, `compute` the aircraft's computer, for what it finds at its own pace, `enabled`
+/// or not.
 struct EvaluationSettings : VisionConfig {
   int every = 1;  ///< every n-th frame only
 };

@@ -83,7 +83,8 @@ Json sum_json(const EvaluationSum& sum) {
                              {"false_positives", to_json(sum.published[i].false_positives)},
                              {"false_negatives", to_json(sum.published[i].false_negatives)}});
   for (const InvarianceRow& row : sum.invariance) {
-    json["invariance"].push_back({{"parameters", row.parameters}, {"filter", row.filter}, {"hits", row.hits}});
+    json["invariance"].push_back(
+        {{"parameters", row.parameters}, {"filter", row.filter}, {"hits", row.hits}});
     json["invariance"].back().update(to_json(row.rates));
   }
   for (const PrecisionRecallCurve& curve : sum.curves) {

@@ -136,8 +136,8 @@ EvaluationTable intervals_table(const Evaluation& evaluation) {
 }
 
 EvaluationTable scenes_table(const Evaluation& evaluation) {
-  Table table{{"scene", "recordings", "s", "detections/frame", "precision", "recall", "false/s", "found 1 m", "of",
-               "found 3 m", "of", "hidden"}};
+  Table table{{"scene", "recordings", "s", "detections/frame", "precision", "recall", "false/s", "found 1 m",
+               "of", "found 3 m", "of", "hidden"}};
   for_each_scene(evaluation, [&](const EvaluationSum& sum) {
     std::int64_t hidden = 0;
     const Share near = found_within(sum.sightings[our_rule], 1),
@@ -214,7 +214,8 @@ EvaluationTable false_hits_table(const Evaluation& evaluation) {
     std::vector<std::string>& row = table.rows.emplace_back(1, what);
     for (const double rate : rates) row.push_back(number_text(rate, 1));
   }
-  return {"false_positives", "What false positives lie on: how many a second, at one pixel", std::move(table)};
+  return {"false_positives", "What false positives lie on: how many a second, at one pixel",
+          std::move(table)};
 }
 
 EvaluationTable invariance_table(const Evaluation& evaluation) {

@@ -194,7 +194,8 @@ void tell_of_obstacle(const FlightLog& log, const ObstacleStory& told, FlightSto
     const std::string text = fmt::format("{} was first detected {:.2f} s before the end, {:.1f} m away",
                                          obstacle.name, end_s - *told.detected_s, told.detected_m);
     story.events.push_back({*told.detected_s, "detected", text});
-    story.before.push_back(fmt::format("{}; {} detections in {} frames.", text, told.hits, told.frames_with_hits));
+    story.before.push_back(
+        fmt::format("{}; {} detections in {} frames.", text, told.hits, told.frames_with_hits));
   } else {
     story.before.push_back(
         obstacle.name +
