@@ -159,9 +159,7 @@ std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, cons
     const std::uint64_t first = seed_of(std::string_view(range).substr(0, dots), where, range);
     const std::uint64_t last =
         dots == std::string::npos ? first : seed_of(std::string_view(range).substr(dots + 2), where, range);
-    if (last < first)
-      throw ScenarioError(
-          fmt::format("{}: the first seed must not be above the last, got '{}'", where, range));
+    if (last < first) throw ScenarioError(fmt::format("{}: '{}' ends before it begins", where, range));
     if (last - first >= maximum_flights - std::min(seeds.size(), maximum_flights - 1))
       throw ScenarioError(fmt::format("{}: a campaign may have at most {} flights", where, maximum_flights));
     for (std::uint64_t seed = first; seed <= last; ++seed) {

@@ -68,10 +68,8 @@ Json manifest_in(const CampaignFolder& folder) {
 void require_same(const CampaignFolder& folder, const Campaign& campaign) {
   const Campaign held = read_campaign(folder);
   const auto refuse = [&](const std::string& what) {
-    throw ScenarioError(
-        fmt::format("{}: {}: the campaign was begun with another value: continue it with that one, or choose "
-                    "another --out",
-                    (folder.path / manifest_name).string(), what));
+    throw ScenarioError(fmt::format("{}: {}: the campaign was begun with another one; choose another --out",
+                                    (folder.path / manifest_name).string(), what));
   };
   require_identity(folder, held, campaign.identity);
   if (held.seeds != campaign.seeds) refuse("seeds changed");
@@ -104,10 +102,7 @@ bool is_plain_name(const std::string& name) {
 
 void require_identity(const CampaignFolder& folder, const Campaign& held, const Identity& identity) {
   const std::string name = difference_of(held.identity, identity);
-  if (!name.empty())
-    refuse_manifest(
-        folder, name,
-        "changed since the campaign began: continue it with what it was begun with, or choose another --out");
+  if (!name.empty()) refuse_manifest(folder, name, "changed since the campaign began; choose another --out");
 }
 
 std::optional<std::string> text_if_there(const fs::path& file) {
@@ -266,8 +261,7 @@ std::vector<FlightRow> read_campaign_rows(const fs::path& folder) {
   const fs::path file = folder / "flights.csv";
   const auto text = text_if_there(file);
   if (!text)
-    throw ScenarioError(
-        fmt::format("{}: not a folder of a campaign's results: flights.csv is missing", folder.string()));
+    throw ScenarioError(fmt::format("{}: not a campaign's results: flights.csv is missing", folder.string()));
   return rows_from_csv(*text, file.string());
 }
 

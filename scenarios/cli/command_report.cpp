@@ -61,9 +61,8 @@ std::string digest_of(const fs::path& run) {
 Scenario scenario_of_run(const fs::path& run) {
   std::error_code ignored;
   if (!fs::exists(run / "scenario.yaml", ignored))
-    throw ScenarioError(fmt::format(
-        "{}: neither the folder of a run (with scenario.yaml) nor of a campaign (with campaign.json)",
-        run.string()));
+    throw ScenarioError(
+        fmt::format("{}: neither the folder of a run (with scenario.yaml) nor of a campaign", run.string()));
   return load_scenario(run / "scenario.yaml");
 }
 
@@ -207,8 +206,7 @@ int run_report_of_either(const ReportArguments& arguments) {
   std::error_code ignored;
   if (fs::exists(fs::path(arguments.folder) / "campaign.json", ignored)) return report_campaign(arguments);
   if (!arguments.baseline.empty())
-    throw ScenarioError(
-        "--baseline requires a campaign's folder: understory report CAMPAIGN --baseline OTHER");
+    throw ScenarioError("--baseline requires the folder of a campaign before it");
   return run_report(arguments);
 }
 

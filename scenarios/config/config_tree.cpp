@@ -157,8 +157,8 @@ void require_known_keys(const ConfigNode& map, const std::vector<std::string>& k
   for (const ConfigNode& node : map.children) {
     if (std::ranges::find(known, node.key) != known.end()) continue;
     const std::string near = did_you_mean(node.key, known);
-    refuse_key(node, within + node.key,
-               near.empty() ? fmt::format("one of {}", fmt::join(known, ", ")) : "a known key" + near);
+    refuse_input(node.origin, within + node.key,
+                 "unknown key" + (near.empty() ? fmt::format(", known: {}", fmt::join(known, ", ")) : near));
   }
 }
 

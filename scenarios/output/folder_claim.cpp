@@ -184,8 +184,7 @@ void FolderClaim::lock(const fs::path& name, Manner manner) {
   struct stat before {};
   is_new_ = lstat(file.c_str(), &before) != 0;
   if (!is_new_ && !S_ISREG(before.st_mode))
-    throw ScenarioError(fmt::format(
-        "{}: understory did not write this file and will not replace it: move it away", file.string()));
+    throw ScenarioError(fmt::format("{}: understory did not write this file: move it away", file.string()));
   file_ = open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (file_ < 0 && errno == ENOENT) return;
   if (file_ < 0) refuse_output(name, errno);
@@ -212,8 +211,7 @@ void FolderClaim::read_list() {
   if (!text.starts_with(header)) {
     is_new_ = false;
     throw ScenarioError(
-        fmt::format("{}: understory did not write this file and will not replace it: move it away",
-                    (folder_ / claim_name).string()));
+        fmt::format("{}: understory did not write this file: move it away", (folder_ / claim_name).string()));
   }
   std::size_t begin = header.size();
   for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {

@@ -71,8 +71,7 @@ UnfinishedFolder::UnfinishedFolder(const fs::path& target, const std::string& ki
                           !fs::exists(part / claim_name, ignored) &&
                           !(fs::is_directory(part, ignored) && fs::is_empty(part, ignored));
   if (is_foreign)
-    throw ScenarioError(fmt::format(
-        "{}: understory did not leave this here and will not replace it: move it away", part.string()));
+    throw ScenarioError(fmt::format("{}: understory did not write this folder: move it away", part.string()));
   claim_.emplace(part, kind, name);
   part_.emplace(part);
   empty(part);

@@ -37,15 +37,13 @@ std::string as_tum(const std::vector<TableLine>& lines, const std::string& name)
   std::string text;
   int number = 1;
   const auto& head = lines.front().cells;
+  const std::string columns = "must have the columns t_s,x_m,y_m,z_m,qw,qx,qy,qz first";
   if (head.size() < trajectory_head.size() ||
       !std::equal(trajectory_head.begin(), trajectory_head.end(), head.begin()))
-    fail_at_line(name, lines.front().number,
-                 "must name the columns t_s,x_m,y_m,z_m,qw,qx,qy,qz, as a flight writes them");
+    fail_at_line(name, lines.front().number, columns);
   for (std::size_t i = 1; i < lines.size(); ++i) {
     const auto& cell = lines[i].cells;
-    if (cell.size() < 8)
-      fail_at_line(name, lines[i].number,
-                   "must name the columns t_s,x_m,y_m,z_m,qw,qx,qy,qz, as a flight writes them");
+    if (cell.size() < 8) fail_at_line(name, lines[i].number, columns);
     for (; number < lines[i].number; ++number) text += '\n';
     fmt::format_to(std::back_inserter(text), "{} {} {} {} {} {} {} {}", cell[0], cell[1], cell[2], cell[3],
                    cell[5], cell[6], cell[7], cell[4]);

@@ -151,10 +151,8 @@ void prepare_tune_folder(const fs::path& folder, const TuneFile& file, const std
                       manifest_file.string()));
     for (const auto& [key, value] : manifest.items())
       if (!held.contains(key) || held[key] != value)
-        throw ScenarioError(
-            fmt::format("{}: {} changed since the tuning began: continue it with what it was begun with, or "
-                        "choose another --out",
-                        manifest_file.string(), key));
+        throw ScenarioError(fmt::format("{}: {} changed since the tuning began; choose another --out",
+                                        manifest_file.string(), key));
     return;
   }
   prepare_output_folder(folder);

@@ -226,9 +226,9 @@ TEST_F(RigFile, ReadsEveryKey) {
 }
 
 TEST_F(RigFile, NamesFileLineAndKeyOfEveryFault) {
-  expect_complaint("focal_px: 180", "focal_pix: 180", "1: focal_px", "found none");
+  expect_complaint("focal_px: 180", "focal_pix: 180", "1: focal_px", "missing");
   expect_complaint("pitch_down_deg: 30", "pitch_down_deg: 30\ncolour: red", "12: colour", "unknown key");
-  expect_complaint("height_px: 240", "height_px: 240\nwidth_px: 376", "4: width_px", "once");
+  expect_complaint("height_px: 240", "height_px: 240\nwidth_px: 376", "4: width_px", "twice");
   expect_complaint("focal_px: 180", "focal_px: wide", "4: focal_px", "must be a number from 10 to 20000");
   expect_complaint("focal_px: 180", "focal_px: [180]", "4: focal_px", "must be a number");
   expect_complaint("focal_px: 180", "focal_px: .nan", "4: focal_px", "must be a number");
@@ -316,7 +316,7 @@ TEST_F(RecordedEuroc, RefusesHalfARectification) {
   refuses("rectification: [1, 0, 0, 0, 1, 0, 0, 0, 0.9]\nrectified_intrinsics: [310, 205, 150]\n",
           additions(180), "rectification: must be a rotation");
   refuses("rectification: [1, 0, 0, 0, 0, -1, 0, 1, 0]\nrectified_intrinsics: [320, 205, 150]\n",
-          additions(180), "same focal length");
+          additions(180), "must be the same in both");
 }
 
 }  // namespace

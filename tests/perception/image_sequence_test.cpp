@@ -82,13 +82,12 @@ TEST_F(ImageSequencePairs, SaysWhichImageHasNoPartner) {
   const auto pairing = [&] {
     return refusal_of([&] { folder_sequence(folder.path() / "l", folder.path() / "r"); });
   };
-  EXPECT_EQ(pairing(),
-            path("l/2.png") + ": has no partner in " + path("r") + ", found none (2 left images, 1 right)");
+  EXPECT_EQ(pairing(), path("l/2.png") + ": has no partner in " + path("r") + " (2 left images, 1 right)");
   std::filesystem::create_directories(folder.path() / "empty");
   expect_line(refusal_of([&] { folder_sequence(folder.path() / "empty", folder.path() / "r"); }), "",
               "there are no images");
   expect_line(refusal_of([&] { folder_sequence(folder.path() / "none", folder.path() / "r"); }), "",
-              "readable folder");
+              "cannot read this folder");
   expect_line(refusal_of([&] { single_pair(folder.path() / "l/1.png", folder.path() / "r/2.png"); }), "",
               "r/2.png: expected");
 }
@@ -121,13 +120,13 @@ TEST_F(Euroc, RefusesWhatIsMissing) {
   expect_line(refusal_of([&] { euroc_sequence(folder.path()); }), "", "not a EuRoC folder");
   write("cam0", {"100"});
   write("cam1", {"200"});
-  expect_line(refusal_of([&] { euroc_sequence(folder.path()); }), "", "found none");
+  expect_line(refusal_of([&] { euroc_sequence(folder.path()); }), "", "no time in common");
   write("cam1", {"100"});
   std::filesystem::remove(folder.path() / "mav0/cam1/data/100.png");
   expect_line(refusal_of([&] { euroc_sequence(folder.path()); }), "",
               "cam1/data/100.png: expected the image");
   std::filesystem::remove(folder.path() / "mav0/cam1/data.csv");
-  expect_line(refusal_of([&] { euroc_sequence(folder.path()); }), "", "cam1/data.csv: expected a readable");
+  expect_line(refusal_of([&] { euroc_sequence(folder.path()); }), "", "cam1/data.csv: cannot read this file");
 }
 
 TEST(EurocImages, NamesTheLineOfEveryFault) {

@@ -329,10 +329,11 @@ TEST(PushbroomStereo, RefusesRulesThatCannotBeMeant) {
   expect_fault("disparities_px: the rig long cannot look at 20 px", [](PushbroomConfig& config) {
     config.disparities_px = {30, 20};
   });
-  expect_fault("disparities_px and depths_m exclude each other", [](PushbroomConfig& config) {
-    config.depths_m = {10};
-    config.disparities_px = {30};
-  });
+  expect_fault("disparities_px and depths_m exclude each other: name one of them",
+               [](PushbroomConfig& config) {
+                 config.depths_m = {10};
+                 config.disparities_px = {30};
+               });
 }
 
 TEST(PushbroomStereo, RefusesImagesOfAnotherSizeOrKind) {

@@ -138,8 +138,9 @@ TEST(PathFile, WhatNobodyCanBeCarriedAlongIsRefused) {
   expect_complaint("0 0 0 4 0 0 0 1\n1 1 0 4 1 0 0 0\n", "must be at most a quarter turn");
   expect_complaint("t_s,x_m,y_m,z_m,qw,qx,qy,qz\n", "holds no pose");
   expect_complaint("t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,4,1,0,0,0\n\n1,2,3\n",
-                   "path:4: must name the columns t_s,x_m");
-  expect_complaint("t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,4,1,0,0,0\n\n1,2,3,a,1,0,0,0\n", "path:4: must name");
+                   "path:4: must have the columns t_s,x_m");
+  expect_complaint("t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,4,1,0,0,0\n\n1,2,3,a,1,0,0,0\n",
+                   "path:4: expected 't tx");
 }
 
 TEST(PathFile, ThinningKeepsBothEndsAndADistance) {

@@ -164,7 +164,7 @@ TEST(CliOutput, ASignalStopsACampaignThatGoesOnLater) {
                                       "{forest.length_m: 400, forest.intangible: true}}]\n")
                                .string();
   const Outcome stopped = understory("campaign " + file + " --out " + (folder.path() / "results").string(),
-                                     "timeout --preserve-status -s TERM 2");
+                                     "timeout --preserve-status -s TERM 5");
   EXPECT_EQ(stopped.status, 143);
   EXPECT_NE(stopped.text.find("stopped with 0 of 3 flights over; --resume goes on\n"), std::string::npos)
       << stopped.text;

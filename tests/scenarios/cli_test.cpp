@@ -191,7 +191,7 @@ TEST(Cli, RigDrawsWhatItSays) {
 TEST(Cli, BadRigsAreNamedInOneLine) {
   const Folder folder;
   expect_refusal("rig", "FILE");
-  expect_refusal("rig nowhere", "or one of: long, paper");
+  expect_refusal("rig nowhere", "rigs of the library: long, paper");
   expect_refusal("rig " + raw_rigs + "paper.xml", "paper.xml: baseline in m: must be from 0.01 to 10");
   expect_refusal("rig " + raw_rigs + "long.xml --unit ft", "--unit ft: must be one of m, cm, mm");
   for (const char* size : {"376", "376x", "x240", "376x240x8", "wide"})
@@ -241,7 +241,7 @@ TEST(Cli, BadScenariosAreNamedByFileLineAndKey) {
   expect_refusal("fly " + folder.file("g.yaml", "name: a\nname: b\n"),
                  "g.yaml:2: name: this key is given twice");
   expect_refusal("fly " + folder.file("h.yaml", "name: a\nrig: none\n"), "h.yaml:2: rig: must be a name");
-  expect_refusal("fly " + folder.path.string(), "this is a folder");
+  expect_refusal("fly " + folder.path.string(), "is a folder");
   expect_refusal("fly clear --set rig=none --out " + folder.path.string(),
                  "--set rig=none: rig: must be a name");
   expect_refusal("fly clear --set rig=" + folder.file("rig.yaml", "name: a\n"), "rig.yaml:1: width_px: ");
