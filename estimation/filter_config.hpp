@@ -15,9 +15,12 @@ enum class FilterModel {
 
 /// The pitot tube measures the speed through the air along body x, plus a bias that remains after zeroing.
 struct AirspeedConfig {
-  double usable_mps = 6.0;  ///< m/s, 0..20: airspeed below which readings are ignored, because they are poor
-  /// m/s, 0.01..10: standard deviation of one reading at 12 m/s; slower readings are worse, since pressure
-  /// grows with the square of the speed. 1.5 Pa of noise are 0.11 m/s; the bias is a state of its own.
+  /// m/s, 0..20: pitot readings below this airspeed are ignored as inaccurate, unless the estimated airspeed
+  /// exceeds 1.5 times this
+  double usable_mps = 6.0;
+  /// m/s, 0.01..10: Standard deviation of one pitot reading at 12 m/s. At lower airspeeds it is larger, since
+  /// pressure grows with the square of the speed. Pressure noise of 1.5 Pa and the sensor's resolution give
+  /// 0.11 m/s; the bias is a separate state.
   double sigma_mps = 0.12;
 };
 
@@ -38,16 +41,22 @@ enum class SideslipModel {
 /// body's x-y plane at the winglets. So a_y = -k V v with k = rho S / m (docs/sources.md [3]: identified
 /// flat-plate model).
 struct SideslipConfig {
-  /// Measurement of sideways motion: the winglets' side force, v_y = 0 as the original assumed, or none.
+  /// How the sideways velocity is measured. lateral_force: from the winglets' side force; zero: assumed to be
+  /// 0, as in the original; off: not at all.
   SideslipModel model = SideslipModel::lateral_force;
   double air_density_kgpm3 = 1.204;    ///< kg/m^3, 0.1..2: air density that the filter assumes
   double winglets_area_m2 = 0.038882;  ///< m^2, 1e-4..2: area of both winglets together (docs/sources.md [3])
   double mass_kg = 0.648412;           ///< kg, 0.05..20: mass that the filter assumes
-  /// m, -5..5: mean position of the two winglets in the body; their y cancels.
+  /// m, -5..5: mean position of the two winglets, in body axes from the centre of mass; y is 0 by symmetry
   Eigen::Vector3d winglets_body_m{-0.08, 0.0, 0.081954};
-  double sigma_mps2 = 0.05;       ///< m/s^2, 0.01..50: standard deviation of one reading of the lateral force
-  double model_error = 0.15;      ///< 0..1: error of the force model, as a share (docs/sources.md [15])
-  double zero_sigma_mps = 2.236;  ///< m/s, 0.01..50: standard deviation of v_y = 0 (original)
+  /// m/s^2, 0.01..50: standard deviation of one reading of the lateral specific force
+  double sigma_mps2 = 0.05;
+  /// 0..1: standard deviation of the side force model's error, as a share of the predicted force
+  /// (docs/sources.md [15])
+  double model_error = 0.15;
+  /// m/s, 0.01..50: standard deviation of the assumption that the sideways velocity is 0, for the model zero
+  /// (the original's value)
+  double zero_sigma_mps = 2.236;
 };
 
 template <typename Visitor>
@@ -72,19 +81,21 @@ void visit_fields(Visitor& visit, SideslipConfig& config) {
 /// therefore balances the pitch damping: D q / (arm m) (docs/sources.md [3], identified model; trim checks
 /// within 0.1 %).
 struct AngleOfAttackConfig {
-  /// Measures the angle of attack from the normal force. With the right wing it takes 0.01 m off the drift
-  /// over 10 m; with a wing 20 % wrong in lift or mass it adds up to 0.2 m (docs/model_mismatch.md).
+  /// Corrects the angle of attack with the normal specific force. With a correct wing model it reduces the
+  /// drift over 10 m by 0.01 m; with lift or mass 20 % wrong it adds up to 0.2 m (docs/model_mismatch.md).
   bool enabled = false;
   double air_density_kgpm3 = 1.204;    ///< kg/m^3, 0.1..2: air density that the filter assumes
   double wing_area_m2 = 0.1811;        ///< m^2, 0.01..5: wing area that the filter assumes
   double mass_kg = 0.648412;           ///< kg, 0.05..20: mass that the filter assumes
   double pitch_damping_nmspr = 0.115;  ///< N m s/rad, 0..10: pitch damping that the filter assumes
   double elevon_arm_m = 0.145;  ///< m, 0.01..5: distance of the elevons' force behind the centre of mass
-  /// m/s^2, 0.01..100: standard deviation of one reading. It is large on purpose, because the error of a
-  /// wrong wing does not average out over 200 samples a second: with 1 m/s^2 a wing 15 % wrong raises the
-  /// drift over 10 m from 0.24 to 0.41 m (95 %, in dodges).
+  /// m/s^2, 0.01..100: Standard deviation of one reading of the normal specific force. It is large on
+  /// purpose, because the error of a wrong wing model does not average out over 200 samples a second. With 1
+  /// m/s^2, a wing model 15 % wrong raises the drift over 10 m from 0.24 to 0.41 m (95th percentile, in
+  /// dodges).
   double sigma_mps2 = 6.0;
-  double model_error = 0.15;  ///< 0..1: error of the force model, as a share of the force
+  /// 0..1: standard deviation of the normal force model's error, as a share of the predicted force
+  double model_error = 0.15;
 };
 
 template <typename Visitor>
@@ -104,13 +115,22 @@ void visit_fields(Visitor& visit, AngleOfAttackConfig& config) {
 /// thrust, so that the barometer reads too high by metres per newton: another state, where wash_sigma_m_per_n
 /// is not zero.
 struct AltitudeConfig {
-  double sigma_m = 0.31;  ///< m, 0.01..100: standard deviation of one reading: noise 0.3 m, steps of 0.1 m
-  double offset_sigma_m = 0.3;  ///< m, 0..10: standard deviation of the offset before the readings at rest
-  double offset_walk_m_rts = 0.09;  ///< m/sqrt(s), 0..10: random walk of the offset: weather and heat
-  /// m/N, 0..10: standard deviation of the barometer's error per newton of thrust; 0: no such state.
+  /// m, 0.01..100: standard deviation of one barometer reading: 0.3 m of noise and a resolution of 0.1 m
+  double sigma_m = 0.31;
+  /// m, 0..10: initial standard deviation of the barometer's offset, before the filter estimates it at rest
+  /// on the catapult
+  double offset_sigma_m = 0.3;
+  /// m/sqrt(s), 0..10: random walk of the barometer's offset, which changes with weather and temperature
+  double offset_walk_m_rts = 0.09;
+  /// m/N, 0..10: Initial standard deviation of the barometer error that the propeller causes, per newton of
+  /// thrust. 0: this error is not estimated.
   double wash_sigma_m_per_n = 0;
-  double noise_m = 0.3;           ///< m, 0.01..100: noise of one reading about its slow error
-  double drift_walk_m_rts = 0.1;  ///< m/sqrt(s), 0..10: random walk of odometry against altitude
+  /// m, 0.01..100: standard deviation of one barometer reading in the separate filter that tracks the drift
+  /// of the estimated height
+  double noise_m = 0.3;
+  /// m/sqrt(s), 0..10: random walk of the estimated height's drift, in the separate filter that tracks it
+  /// with the barometer
+  double drift_walk_m_rts = 0.1;
 };
 
 template <typename Visitor>
@@ -126,12 +146,15 @@ void visit_fields(Visitor& visit, AltitudeConfig& config) {
 /// The magnetometer's field, rotated into the world by the estimated attitude (which compensates the tilt),
 /// points to magnetic north, world y. Only its horizontal direction is used, not its strength or inclination.
 struct HeadingConfig {
-  bool enabled = true;  ///< corrects the heading with the magnetometer
-  /// rad, 0.01..3: standard deviation of one heading. A hard-iron error of 0.5 uT against a horizontal field
-  /// of 19 uT is 0.027 rad and lasts the flight, and a tilt error enters 2.4 fold: the magnetometer holds the
-  /// heading over minutes, the gyro over seconds.
+  /// uses the magnetometer; with smooth_frame it corrects the heading only before the launch, and other
+  /// states in flight
+  bool enabled = true;
+  /// rad, 0.01..3: Standard deviation of one magnetometer heading. It is large, because the main errors last
+  /// the whole flight: a hard-iron error of 0.5 uT in a horizontal field of 19 uT turns the heading by 0.027
+  /// rad, and a tilt error turns it by 2.4 times the tilt.
   double sigma_rad = 0.35;
-  double minimum_horizontal_ut = 5.0;  ///< uT, 0..100: horizontal field below which a reading is ignored
+  /// uT, 0..100: magnetometer readings with a weaker horizontal field than this are ignored
+  double minimum_horizontal_ut = 5.0;
 };
 
 template <typename Visitor>
@@ -158,25 +181,35 @@ void visit_fields(Visitor& visit, GroundVelocityConfig& config) {
 /// On the catapult the aircraft stands still at a known place: velocity and rate are zero, the specific force
 /// is gravity.
 struct RestConfig {
-  double window_s = 0.1;  ///< s, 0.01..1: time over which the IMU's samples must hardly vary at rest
-  /// m/s^2, 0.01..10: largest standard deviation of the specific force at rest, per axis; five times the
-  /// noise of one reading.
+  /// s, 0.01..1: length of the time window over which the filter tests whether the aircraft is at rest
+  double window_s = 0.1;
+  /// m/s^2, 0.01..10: rest test: largest standard deviation of the specific force within rest.window_s, per
+  /// axis; five times the noise of one reading
   double force_deviation_mps2 = 0.25;
-  double rate_deviation_radps = 0.012;  ///< rad/s, 1e-4..1: largest deviation of the rate at rest
-  /// m/s^2, 0.01..10: largest difference between gravity and the mean specific force at rest.
+  /// rad/s, 1e-4..1: rest test: largest standard deviation of the angular rate within rest.window_s, per axis
+  double rate_deviation_radps = 0.012;
+  /// m/s^2, 0.01..10: rest test: largest difference between gravity and the magnitude of the mean specific
+  /// force within rest.window_s
   double force_tolerance_mps2 = 0.6;
-  /// rad/s, 0.001..5: largest mean angular rate at rest; six times a bias of 0.5 deg/s.
+  /// rad/s, 0.001..5: rest test: largest magnitude of the mean angular rate within rest.window_s; six times a
+  /// gyro bias of 0.5 deg/s
   double rate_tolerance_radps = 0.05;
-  double velocity_sigma_mps = 0.02;  ///< m/s, 1e-4..1: standard deviation of the zero velocity at rest
-  double position_sigma_m = 0.01;    ///< m, 1e-4..1: standard deviation of the place at rest
-  double force_sigma_mps2 = 0.1;  ///< m/s^2, 0.001..10: noise of one reading that serves as a level at rest
-  /// m/s^2, 0..1: accelerometer bias that stays in the attitude as a tilt, however long the rest.
+  /// m/s, 1e-4..1: standard deviation of the zero velocity that the filter uses as a measurement at rest
+  double velocity_sigma_mps = 0.02;
+  /// m, 1e-4..1: standard deviation of the known position that the filter uses as a measurement at rest
+  double position_sigma_m = 0.01;
+  /// m/s^2, 0.001..10: standard deviation of one accelerometer reading that the filter uses at rest to
+  /// measure roll and pitch
+  double force_sigma_mps2 = 0.1;
+  /// m/s^2, 0..1: Accelerometer bias, which at rest cannot be told from tilt. At the launch it adds to the
+  /// uncertainty of roll and pitch, unless the filter estimates the bias.
   double accelerometer_bias_mps2 = 0.05;
-  /// m/s^2, 5..150: acceleration along body x above which two samples in a row mean the launch. The original
-  /// waited for 45 (docs/sources.md [2]); a rail of 1.5 m to 12 m/s gives 48 and a share of gravity.
+  /// m/s^2, 5..150: The filter detects the launch when two IMU samples in a row exceed this specific force
+  /// along body x. The original's threshold was 45 (docs/sources.md [2]); a rail of 1.5 m that accelerates to
+  /// 12 m/s gives 48 plus a share of gravity.
   double launch_threshold_mps2 = 30.0;
-  /// m/s, 0..5: uncertainty of the speed after the launch, because firing and release fall anywhere within a
-  /// sample interval: 48 m/s^2 over 5 ms each.
+  /// m/s, 0..5: Standard deviation added to the forward speed at the launch, because the catapult's start and
+  /// release each fall anywhere within a 5 ms sample interval at 48 m/s^2.
   double launch_speed_sigma_mps = 0.1;
 };
 
@@ -197,82 +230,112 @@ void visit_fields(Visitor& visit, RestConfig& config) {
 
 /// Where the flight begins, and how well that is known. Standard deviations are one sigma.
 struct StartConfig {
-  /// m, -1e4..1e4: start on the catapult: 1.5 m of rail, rising 0.20 rad, below the release point (0,
-  /// 0, 1.5). The scenario sets it from its own catapult.
+  /// m, -1e4..1e4: Position at the start, on the catapult: 1.5 m back along a rail that rises by 0.20 rad to
+  /// the release point (0, 0, 1.5). The scenario computes it from its launch keys.
   Eigen::Vector3d position_world_m{-1.470, 0.0, 1.202};
-  double yaw_rad = 0.0;      ///< rad, -3.15..3.15: heading at the start, to the left of world x
-  double pitch_rad = 0.398;  ///< rad, -1.5..1.5: pitch at the start, nose up; measured anew at rest
-  double roll_rad = 0.0;     ///< rad, -3.15..3.15: roll at the start, left wing up; measured anew at rest
-  bool in_flight = false;    ///< starts in flight with velocity_body_mps, without a catapult
-  Eigen::Vector3d velocity_body_mps{0, 0, 0};  ///< m/s, -50..50: velocity at a start in flight, body axes
-  double tilt_sigma_rad = 0.02;      ///< rad, 0..1: standard deviation of roll and pitch at the start
-  double yaw_sigma_rad = 0.02;       ///< rad, 0..3: standard deviation of the heading at the start
-  double velocity_sigma_mps = 0.15;  ///< m/s, 0..10: standard deviation of the velocity (docs/sources.md [2])
+  double yaw_rad = 0.0;  ///< rad, -3.15..3.15: heading at the start: angle from world x, positive to the left
+  /// rad, -1.5..1.5: pitch at the start, positive nose up; the filter measures it again while at rest on the
+  /// catapult
+  double pitch_rad = 0.398;
+  /// rad, -3.15..3.15: roll at the start, positive left wing up; the filter measures it again while at rest
+  /// on the catapult
+  double roll_rad = 0.0;
+  /// starts the filter in flight, with start.velocity_body_mps; false: at rest on the catapult
+  bool in_flight = false;
+  /// m/s, -50..50: velocity over ground at the start, in body axes; used only with start.in_flight
+  Eigen::Vector3d velocity_body_mps{0, 0, 0};
+  double tilt_sigma_rad = 0.02;  ///< rad, 0..1: standard deviation of roll and pitch at the start
+  double yaw_sigma_rad = 0.02;   ///< rad, 0..3: standard deviation of the heading at the start
+  /// m/s, 0..10: initial standard deviation of the velocity, per axis (docs/sources.md [2])
+  double velocity_sigma_mps = 0.15;
   double horizontal_sigma_m = 0.01;  ///< m, 0..100: standard deviation of x and y at the start
   double vertical_sigma_m = 0.01;    ///< m, 0..100: standard deviation of z at the start
-  double gyro_bias_sigma_radps = 0.0087;  ///< rad/s, 0..1: standard deviation of the gyro bias
+  /// rad/s, 0..1: initial standard deviation of the gyro's bias, per axis
+  double gyro_bias_sigma_radps = 0.0087;
 };
 
 /// The states beside the base's twelve, each a switch.
 struct ExtraStatesConfig {
-  bool accelerometer_bias = true;               ///< estimates the accelerometer's bias, three states
-  double accelerometer_bias_sigma_mps2 = 0.05;  ///< m/s^2, 0..5: standard deviation of that bias; 5 mg
-  double accelerometer_bias_walk_rthz = 1e-3;   ///< m/s^3/sqrt(Hz), 0..1: random walk of that bias
-  bool wind = false;                            ///< estimates the steady wind, two states
-  double wind_sigma_mps = 3.0;   ///< m/s, 0..30: standard deviation of the wind before the launch, per axis
+  bool accelerometer_bias = true;  ///< estimates the accelerometer's bias as three further states
+  /// m/s^2, 0..5: initial standard deviation of the accelerometer's bias, per axis; 0.05 m/s^2 is 5 mg
+  double accelerometer_bias_sigma_mps2 = 0.05;
+  double accelerometer_bias_walk_rthz =
+      1e-3;           ///< m/s^3/sqrt(Hz), 0..1: random walk of the accelerometer bias
+  bool wind = false;  ///< estimates the steady horizontal wind as two further states
+  /// m/s, 0..30: initial standard deviation of the steady wind, per horizontal axis
+  double wind_sigma_mps = 3.0;
   double wind_walk_rthz = 0.05;  ///< m/s^2/sqrt(Hz), 0..10: random walk of the steady wind
-  bool gust = false;             ///< estimates gusts, two states
-  double gust_sigma_mps = 0.6;   ///< m/s, 0..20: standard deviation of gusts, per axis (MIL-F-8785C)
-  double gust_length_m = 30.0;   ///< m, 0.1..2000: length of gusts (MIL-F-8785C at 4 m)
-  bool pitot_bias = true;        ///< estimates the pitot tube's bias, one state
-  double pitot_bias_sigma_mps = 0.07;  ///< m/s, 0..10: standard deviation of the pitot bias; 1 Pa at 12 m/s
-  double pitot_bias_walk_rthz = 1e-3;  ///< m/s^2/sqrt(Hz), 0..1: random walk of the pitot bias
+  bool gust = false;             ///< estimates horizontal gusts as two further states
+  /// m/s, 0..20: standard deviation of the gust velocity, per horizontal axis (MIL-F-8785C)
+  double gust_sigma_mps = 0.6;
+  /// m, 0.1..2000: distance flown over which gusts decorrelate, the turbulence length scale (MIL-F-8785C, at
+  /// a height of 4 m)
+  double gust_length_m = 30.0;
+  bool pitot_bias = true;  ///< estimates the pitot tube's bias as one further state
+  /// m/s, 0..10: initial standard deviation of the pitot tube's bias; 0.07 m/s is 1 Pa at 12 m/s
+  double pitot_bias_sigma_mps = 0.07;
+  double pitot_bias_walk_rthz = 1e-3;  ///< m/s^2/sqrt(Hz), 0..1: random walk of the pitot tube's bias
 };
 
 /// What the filter does about sensors that fail.
 struct DistrustConfig {
-  double gate_probability = 0.999;  ///< 0.5..0.999999: probability that a good measurement passes
-  double gate_patience_s = 0.25;    ///< s, 0..1e6: time of disagreement after which a sensor counts as faulty
-  /// Leaves a faulty sensor out until it has agreed for gate_patience_s; false: believes it after that time.
+  /// 0.5..0.999999: probability that the outlier test (chi-square) accepts a measurement from a healthy
+  /// sensor
+  double gate_probability = 0.999;
+  /// s, 0..1e6: a sensor counts as faulty once its measurements have failed the outlier test for longer than
+  /// this
+  double gate_patience_s = 0.25;
+  /// Ignores a faulty sensor until its measurements have passed the outlier test for gate_patience_s. false:
+  /// uses its measurements although they fail the test.
   bool exclude = true;
-  /// s, 0.001..1.5: interval between IMU samples above which samples are lost; the motion meanwhile is
-  /// interpolated and uncertain. The scenario sets it to 1.5 intervals of its own IMU.
+  /// s, 0.001..1.5: Interval between IMU samples above which the filter assumes that samples were lost: it
+  /// interpolates the motion and adds uncertainty. The scenario sets it to 1.5 sample intervals of its IMU.
   double imu_gap_s = 0.0076;
-  double gap_rate_sigma_radps = 2.0;  ///< rad/s, 0..50: standard deviation of the mean rate over such a gap
-  double gap_force_sigma_mps2 = 5.0;  ///< m/s^2, 0..200: standard deviation of the mean force in it
-  double longest_gap_s = 0.25;  ///< s, 0.01..10: longest gap that is integrated; a longer one counts as this
+  /// rad/s, 0..50: standard deviation of the angular rate interpolated across lost IMU samples
+  double gap_rate_sigma_radps = 2.0;
+  /// m/s^2, 0..200: standard deviation of the specific force interpolated across lost IMU samples
+  double gap_force_sigma_mps2 = 5.0;
+  /// s, 0.01..10: longest interval between IMU samples that the filter integrates in full; a longer one is
+  /// integrated as this long
+  double longest_gap_s = 0.25;
 };
 
 /// The error-state Kalman filter. Defaults fit a consumer IMU at 200 Hz, a 1 psi pitot and a barometer, tuned
 /// for little drift of the relative position over 10 m of flight (docs/estimator.md).
 struct FilterConfig {
-  /// Meaning of three states: the gyro's bias, or the angular rate as in the paper (docs/estimator.md).
+  /// Meaning of three of the filter's states. gyro_bias: the gyro's bias; angular_rate: the angular rate,
+  /// which the gyro then measures, as in the original's filter (docs/estimator.md).
   FilterModel model = FilterModel::gyro_bias;
   StartConfig start;
   double gravity_mps2 = 9.81;  ///< m/s^2, 1..20: gravity that the filter assumes
-  /// rad/s/sqrt(Hz), 0..1: noise of the gyro. A consumer part has 0.01 deg/s/sqrt(Hz) = 1.7e-4; sampling at
-  /// 200 Hz loses as much again.
+  /// rad/s/sqrt(Hz), 0..1: Noise density of the gyro. A consumer part has 0.01 deg/s/sqrt(Hz) = 1.7e-4; the
+  /// default is twice that, because sampling at 200 Hz adds an error as large.
   double gyro_noise_radps_rthz = 3.5e-4;
-  /// m/s^2/sqrt(Hz), 0..10: noise of the accelerometer. 0.05 m/s^2 at 200 Hz is 0.0035.
+  /// m/s^2/sqrt(Hz), 0..10: Noise density of the accelerometer. Noise of 0.05 m/s^2 per sample at 200 Hz is a
+  /// density of 0.0035.
   double accelerometer_noise_mps2_rthz = 0.005;
-  /// 0..1: scale error and misalignment of the gyro, as a share of the rate. The error lasts as long as a
-  /// turn, so it counts as noise that grows with the rate.
+  /// 0..1: Scale error and misalignment of the gyro, as a share of the angular rate. The error keeps its sign
+  /// during a turn; the filter models it as noise that grows with the angular rate.
   double gyro_scale = 0;
-  /// 0..1: scale error and misalignment of the accelerometer, as a share of the specific force less gravity.
+  /// 0..1: scale error and misalignment of the accelerometer, as a share of the specific force's magnitude
+  /// minus gravity
   double accelerometer_scale = 0;
   /// m/s^2/N, 0..100: amplitude of the propeller's vibration in the accelerometer, per newton of thrust.
   double vibration_mps2pn = 0;
-  /// 1..100: number of IMU samples over which lateral and normal force are averaged before they correct.
-  /// Averaging keeps the product of two vibrating numbers from becoming a bias of the airspeed.
+  /// 1..100: Number of IMU samples that are averaged into one correction by the lateral or normal force.
+  /// Averaging keeps vibration from biasing the estimated airspeed.
   int force_samples = 1;
   double gyro_bias_walk_rthz = 1e-5;  ///< rad/s^2/sqrt(Hz), 0..1: random walk of the gyro's bias
-  /// rad/s^2/sqrt(Hz), 0..1000: random walk of the angular rate, with the model angular_rate alone. The
-  /// wing's roll accelerates at up to 50 rad/s^2 for 0.1 s.
+  /// rad/s^2/sqrt(Hz), 0..1000: Random walk of the angular rate; used only with the model angular_rate. The
+  /// aircraft's roll accelerates at up to 50 rad/s^2 for 0.1 s.
   double rate_walk_rthz = 15.0;
-  bool smooth_frame = true;      ///< keeps corrections in flight from moving position and heading (FrameGain)
-  double max_rate_radps = 34.9;  ///< rad/s, 1..200: full scale of the gyro (2000 deg/s)
-  double max_force_mps2 = 157.0;    ///< m/s^2, 20..2000: full scale of the accelerometer (16 g)
-  double force_low_pass_hz = 30.0;  ///< Hz, 0.1..1000: cut-off frequency of the reported force
+  /// keeps corrections in flight from changing position and heading, so that mapped obstacles stay in place;
+  /// false: corrections change all states (FrameGain)
+  bool smooth_frame = true;
+  double max_rate_radps = 34.9;   ///< rad/s, 1..200: full scale of the gyro (2000 deg/s)
+  double max_force_mps2 = 157.0;  ///< m/s^2, 20..2000: full scale of the accelerometer (16 g)
+  /// Hz, 0.1..1000: cut-off frequency of the low-pass filter on the specific force in the estimated state
+  double force_low_pass_hz = 30.0;
   ExtraStatesConfig states;
   DistrustConfig distrust;
   AirspeedConfig airspeed;
@@ -281,7 +344,8 @@ struct FilterConfig {
   AltitudeConfig altitude;
   HeadingConfig heading;
   GroundVelocityConfig gps;
-  bool resightings = true;  ///< corrects the velocity with autopilot.resightings
+  /// corrects the velocity with the displacements that autopilot.resightings measures
+  bool resightings = true;
   RestConfig rest;
 };
 

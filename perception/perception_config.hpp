@@ -11,50 +11,60 @@ namespace understory {
 /// The parameters of the detector. The defaults are those of the original's public code (Barry & Tedrake
 /// 2015); each test is a switch of its own.
 struct PushbroomConfig {
-  /// Depths at which the detector looks for obstacles; empty: the rig's detection depth alone. The preset
-  /// `tuned` names two for the rig `paper`.
+  /// Depths at which the pushbroom detector looks for obstacles; empty: only the detection depth in the rig's
+  /// file. The preset `tuned` sets two for the rig `paper`.
   std::vector<double> depths_m;
-  /// The minimum_edge_sum of each depth, in the order of depths_m; empty: all depths share one.
+  /// One minimum_edge_sum for each depth, in the order of depths_m; empty: minimum_edge_sum holds for all.
   std::vector<double> depths_minimum_edge_sum;
-  /// The score_limit of each depth, in the order of depths_m; empty: all depths share one.
+  /// One score_limit for each depth, in the order of depths_m; empty: score_limit holds for all.
   std::vector<double> depths_score_limit;
-  /// Whole disparities to look at, in place of depths_m, as the original's configuration files state them
-  /// (docs/sources.md [2]); empty: those nearest to depths_m.
+  /// Whole-pixel disparities to search, as the original's configuration files state them (docs/sources.md
+  /// [2]); empty: those nearest to depths_m.
   std::vector<int> disparities_px;
-  /// Whole disparity of an infinitely distant point; none: the calibration's, rounded.
+  /// Whole-pixel disparity of an infinitely distant point in the invariance and uniqueness tests; ~: the
+  /// calibration's, rounded.
   std::optional<int> infinity_px;
-  int threads = 1;           ///< threads that search one pair; the detections do not depend on it
-  int stride_px = 5;         ///< distance between neighbouring blocks along rows and columns; 5: side by side
-  bool every_pixel = false;  ///< searches a block at every pixel and keeps the best of each 5x5 pixels
-  /// Top edge of the lowest row of blocks, for an image of 240 rows; it scales with the image's height. The
-  /// ground lies below. The original's lastValidPixelRow, 205, is the end of its lowest blocks.
+  int threads = 1;    ///< number of threads that search one stereo pair; it does not change the detections
+  int stride_px = 5;  ///< step from one block to the next along rows and columns; 5: side by side
+  /// matches a block at every pixel and keeps the best of each 5x5 positions; ignores stride_px
+  bool every_pixel = false;
+  /// Top edge of the lowest row of blocks, for an image of 240 rows; it scales with the image's height. Lower
+  /// rows show the ground. The original's lastValidPixelRow, 205, is the bottom edge of its lowest blocks.
   int last_row_px = 200;
-  /// Columns at the right end of the compared area that no block touches. The original's loop over columns
-  /// leaves out a last block that ends with the image.
+  /// Columns at the right end of the compared area that no block touches. The original skips a block that
+  /// ends exactly at the image's edge, which is a margin of 1.
   int right_margin_px = 1;
-  int minimum_edge_sum = 860;  ///< smallest sum of the Laplacian over a block, in each image
-  /// A block matches where S = SAD / (sum of both blocks' Laplacians) is below this; exact to 1/333000.
+  /// smallest sum of the Laplacian over a block, in each image; blocks with less texture are skipped
+  int minimum_edge_sum = 860;
+  /// A block matches where its score, SAD / (sum of the Laplacian over both blocks), is below this. The limit
+  /// is rounded to 1/333000.
   double score_limit = 54.0 / 333.0;
 
-  bool horizontal_invariance = true;  ///< rejects a block that also matches near infinite depth
-  int invariance_columns_px = 3;   ///< columns searched on each side of infinite depth by the invariance test
-  int invariance_rows_px = 8;      ///< rows searched above and below a block by the invariance test
-  int invariance_row_step_px = 2;  ///< distance between the rows searched by the invariance test
-  double invariance_score_limit = 108.0 / 333.0;  ///< score below which the invariance test finds a match
+  /// rejects a block that also matches near where an infinitely distant point would lie
+  bool horizontal_invariance = true;
+  /// columns that the invariance test searches on each side of an infinitely distant point's column
+  int invariance_columns_px = 3;
+  int invariance_rows_px = 8;      ///< rows that the invariance test searches above and below a block
+  int invariance_row_step_px = 2;  ///< step between the rows that the invariance test searches
+  /// score below which a block counts as a match in the invariance test
+  double invariance_score_limit = 108.0 / 333.0;
 
-  bool uniqueness = false;  ///< rejects a block that matches nearly as well at another disparity of its row
-  double uniqueness_ratio = 2.0;  ///< smallest ratio of any other disparity's SAD to that of the match
-  /// Nearest depth at which the uniqueness test searches for other matches; it begins at infinity. The paper
-  /// ignores nearer points.
+  /// rejects a block that matches nearly as well at another disparity in the same row
+  bool uniqueness = false;
+  /// factor by which the SAD at any disparity more than one pixel away must exceed the match's SAD
+  double uniqueness_ratio = 2.0;
+  /// The uniqueness test searches for other matches from infinity to this depth. The paper ignores nearer
+  /// points.
   double uniqueness_minimum_depth_m = 1.5;
 
-  /// Places a detection at the vertex of the parabola through the SADs of its disparity and the two
-  /// neighbours, at most half a pixel away, where its own SAD is the smallest of the three.
+  /// Refines a disparity to the vertex of the parabola through the SADs at the match and one pixel to either
+  /// side. It moves by half a pixel at most, and only if the match's SAD is the smallest.
   bool subpixel = false;
 
-  bool isolation = false;            ///< rejects a detection without enough others near it in the same frame
-  int isolation_minimum_points = 3;  ///< smallest number of detections near each other, itself included
-  double isolation_radius_m = 1.0;   ///< distance within which the isolation test counts detections
+  bool isolation = false;  ///< rejects a detection that has too few others near it in the same frame
+  /// detections, itself included, that a detection needs within isolation_radius_m to be kept
+  int isolation_minimum_points = 3;
+  double isolation_radius_m = 1.0;  ///< distance within which the isolation test counts other detections
 };
 
 /// The paper's rule as the original's code has it: its hits, their order and their scores, wherever the
@@ -119,15 +129,19 @@ void visit_fields(Visitor& visit, PushbroomConfig& config) {
 /// OpenCV's StereoBM with the settings of the paper's evaluation (Barry & Tedrake 2015; public evaluation
 /// code). Disparities count from the rig's infinity, so 2 .. 113 px are parallax.
 struct StereoBmConfig {
-  int window_px = 5;            ///< side of the square that is matched; odd
-  int min_disparity_px = 2;     ///< smallest disparity searched, counted from the rig's infinity
-  int disparities = 112;        ///< number of disparities searched; a multiple of 16
+  int window_px = 5;         ///< side of the square matching window; odd
+  int min_disparity_px = 2;  ///< smallest disparity searched, relative to that of an infinitely distant point
+  int disparities = 112;     ///< number of disparities searched; a multiple of 16
   int texture_threshold = 427;  ///< a window with less texture gets no disparity (OpenCV's textureThreshold)
-  int uniqueness_percent = 18;  ///< margin by which the best match must beat the second best
-  int prefilter_size_px = 105;  ///< window of OpenCV's normalising prefilter (not its default)
-  int prefilter_cap = 61;       ///< limit of the prefiltered image (OpenCV's preFilterCap)
-  int speckle_window_px = 59;   ///< area below which a patch of disparity is removed, in pixels
-  int speckle_range = 30;       ///< largest step of disparity within a patch, in sixteenths of a pixel
+  /// percentage by which any other match must cost more than the best (OpenCV's uniquenessRatio)
+  int uniqueness_percent = 18;
+  /// no effect: window of OpenCV's normalising prefilter, but its x-Sobel prefilter is in use
+  int prefilter_size_px = 105;
+  int prefilter_cap = 61;  ///< limit to which the prefiltered image is clipped (OpenCV's preFilterCap)
+  /// connected patches of disparity with up to this many pixels are removed; 0: none are
+  int speckle_window_px = 59;
+  /// largest disparity step between neighbours within a patch, in sixteenths of a pixel
+  int speckle_range = 30;
 };
 
 /// How many paths StereoSGBM gathers costs along. Three is OpenCV's fast way, five its default.
@@ -138,17 +152,23 @@ inline constexpr std::array<std::pair<std::string_view, SgbmPaths>, 3> sgbm_path
 /// OpenCV's StereoSGBM (Hirschmueller 2008). The paper flew none: the search is StereoBM's above, the rest
 /// the values that OpenCV's documentation of cv::StereoSGBM and its sample stereo_match.cpp suggest.
 struct StereoSgbmConfig {
-  int window_px = 5;         ///< side of the square that is matched; odd (OpenCV advises 3 to 11)
-  int min_disparity_px = 2;  ///< smallest disparity searched, counted from the rig's infinity
+  int window_px = 5;         ///< side of the square matching window; odd (OpenCV advises 3 to 11)
+  int min_disparity_px = 2;  ///< smallest disparity searched, relative to that of an infinitely distant point
   int disparities = 112;     ///< number of disparities searched; a multiple of 16
-  int smoothness_1 = 8;      ///< cost of a disparity step of one pixel, times the window's area (OpenCV's P1)
-  int smoothness_2 = 32;     ///< cost of a larger step, times the window's area (P2); more than smoothness_1
-  int uniqueness_percent = 10;  ///< margin of the best match over the second (OpenCV advises 5 to 15)
-  int prefilter_cap = 63;       ///< limit of the prefiltered image (OpenCV's preFilterCap)
-  int left_right_px = 1;        ///< left-right consistency: largest difference of disparity; -1: not checked
-  int speckle_window_px = 100;  ///< area below which a patch is removed (OpenCV advises 50 to 200)
-  int speckle_range_px = 2;     ///< largest step of disparity within a patch (OpenCV advises 1 or 2)
-  SgbmPaths paths = SgbmPaths::five;  ///< number of directions along which costs are summed
+  /// penalty for a disparity step of one pixel; OpenCV's P1 is this times the window's area
+  int smoothness_1 = 8;
+  /// penalty for a larger step, more than smoothness_1; OpenCV's P2 is this times the window's area
+  int smoothness_2 = 32;
+  /// percentage by which the best match must cost less than any other (OpenCV advises 5 to 15)
+  int uniqueness_percent = 10;
+  int prefilter_cap = 63;  ///< limit to which the prefiltered image is clipped (OpenCV's preFilterCap)
+  /// largest difference between left-to-right and right-to-left disparity; -1 and 0 act as 1
+  int left_right_px = 1;
+  /// connected patches with up to this many pixels are removed (OpenCV advises 50 to 200)
+  int speckle_window_px = 100;
+  /// largest disparity step between neighbours within a patch (OpenCV advises 1 or 2)
+  int speckle_range_px = 2;
+  SgbmPaths paths = SgbmPaths::five;  ///< number of directions along which matching costs are summed
 };
 
 template <typename Visitor>
@@ -181,16 +201,21 @@ void visit_fields(Visitor& visit, StereoSgbmConfig& config) {
 
 /// Which pixels of a depth image become detections.
 struct FullStereoCrop {
-  double minimum_depth_m = 1.5;  ///< nearest depth that is used (Barry & Tedrake 2015 ignore nearer points)
-  /// Farthest depth that is used. At 15 m a pixel of disparity is 3.5 m of depth on the paper's rig and 1.7 m
-  /// on the long rig: farther obstacles cannot be placed (our choice).
+  /// smallest depth of a detection (Barry & Tedrake 2015 ignore nearer points)
+  double minimum_depth_m = 1.5;
+  /// Largest depth of a detection. At 15 m a pixel of disparity spans 3.5 m of depth on the paper's rig and
+  /// 1.7 m on the long rig: farther obstacles cannot be placed (our choice).
   double maximum_depth_m = 15;
-  /// Distance below the optical axis beyond which detections are dropped, because the ground begins there:
-  /// the pushbroom's last row lies 2.6 m (long rig) and 2.8 m (paper's rig) below at its depth.
+  /// Detections farther below the optical axis than this are dropped, because they show the ground. At its
+  /// detection depth the pushbroom's last row lies 2.7 m (long rig) and 2.8 m (paper's rig) below the axis.
   double maximum_below_m = 2.7;
-  int cell_px = 5;  ///< side of the square that gives at most one detection; the pushbroom's block
-  int minimum_pixels_per_cell = 5;  ///< matched pixels within the depths that make a detection (our choice)
-  int last_row_px = 205;            ///< top edge of the lowest row of cells, for an image of 240 rows
+  /// side of the square image cells, each of which gives at most one detection; as large as the pushbroom
+  /// detector's block
+  int cell_px = 5;
+  /// number of matched pixels within the depth limits that a cell needs to give a detection (our choice)
+  int minimum_pixels_per_cell = 5;
+  /// lowest image row that may be the top edge of a cell, for an image of 240 rows; scaled to other heights
+  int last_row_px = 205;
 };
 
 template <typename Visitor>
@@ -205,16 +230,25 @@ void visit_fields(Visitor& visit, FullStereoCrop& crop) {
 
 /// Which points the map keeps, and which of them it trusts.
 struct LocalMapConfig {
-  double max_age_s = 4.0;  ///< age at which a point is forgotten (the original remembered 2 to 4 s)
-  /// Distance behind the aircraft, along its heading, at which a point is forgotten. It is larger than the
-  /// half span (0.43 m) and the swing of a wing tip in a turn, so that no point beside a wing is lost.
+  /// time since its last detection beyond which a map point is deleted (the original: 2 to 4 s)
+  double max_age_s = 4.0;
+  /// The map deletes a point that lies farther behind the aircraft than this, along the heading. The distance
+  /// exceeds the half span (0.43 m) and the swing of a wing tip in a turn, so that no point beside a wing is
+  /// deleted.
   double passed_m = 2.0;
-  int max_points = 5000;            ///< number of points beyond which the oldest are forgotten
-  double voxel_m = 0.10;            ///< side of a voxel; a detection in a point's voxel refreshes it; 0: none
-  int min_neighbours = 2;           ///< other points near a point that make it trusted (original: 2)
-  double neighbour_radius_m = 1.0;  ///< distance within which a point counts as a neighbour
-  bool seen_again = false;          ///< trusts a point only where a second frame saw it, too
-  double seen_again_radius_m = 0.35;  ///< distance within which a point of another frame confirms a point
+  int max_points = 5000;  ///< largest number of points in the map; beyond it the oldest are deleted
+  /// side of the map's voxels; a detection in a voxel that already holds a point replaces that point; 0:
+  /// every detection adds a point
+  double voxel_m = 0.10;
+  /// number of neighbours that a map point needs for the planner to use it (original: 2)
+  int min_neighbours = 2;
+  /// distance within which two map points count as neighbours of each other
+  double neighbour_radius_m = 1.0;
+  /// the planner uses a map point only after a second frame has detected it, or another point within
+  /// seen_again_radius_m
+  bool seen_again = false;
+  /// distance within which a map point from another frame confirms a map point, with seen_again
+  double seen_again_radius_m = 0.35;
 };
 
 template <typename Visitor>
@@ -233,20 +267,23 @@ void visit_fields(Visitor& visit, LocalMapConfig& config) {
 struct ResightingsConfig {
   bool enabled = false;          ///< measures the velocity over ground from obstacles seen at two depths
   std::vector<double> depths_m;  ///< the detector's depths; the autopilot's composition sets them, no key
-  /// Level distance from a cluster's centre within which detections of one depth join it. While a trunk
-  /// crosses one pixel's depth interval (1.6 m at 10 m), its places smear over as much in the odometry frame.
+  /// Horizontal distance from a cluster's centre within which detections at the same depth join the cluster.
+  /// While the aircraft flies through the depth interval of a pixel (1.6 m at 10 m), the measured positions
+  /// of a trunk spread over the same length.
   double cluster_m = 2.0;
-  int minimum_hits = 8;    ///< smallest number of detections that make a cluster usable
-  double settle_s = 0.04;  ///< time without a detection after which the near cluster is complete
-  /// Largest level distance between the two places of one obstacle: an unknown wind of 5 m/s over the half
-  /// second between 10 and 5 m.
+  int minimum_hits = 8;    ///< smallest number of detections in a cluster that is used
+  double settle_s = 0.04;  ///< time without a new detection after which a cluster is complete
+  /// Largest horizontal distance between the far and the near cluster of one obstacle: the drift in an
+  /// unknown wind of 5 m/s during the 0.5 s of flight from 10 to 5 m of depth.
   double match_m = 2.5;
-  double rival = 1.5;     ///< smallest ratio of distances, second nearest far cluster to nearest
-  double oldest_s = 0.9;  ///< longest time between the two sightings
-  /// Standard deviation of the measured displacement along the line of sight: what remains of a pixel's depth
-  /// interval once its crossing is averaged, and of where a trunk's face lies.
+  /// a near cluster is matched only if the second nearest far cluster is at least this many times as far away
+  /// as the nearest
+  double rival = 1.5;
+  double oldest_s = 0.9;  ///< longest time between the far and the near sighting of one obstacle
+  /// Standard deviation of the measured displacement along the line of sight. It covers the depth error of a
+  /// pixel that averaging leaves, and the unknown position of the trunk's surface.
   double along_sigma_m = 0.25;
-  double across_sigma_m = 0.10;  ///< standard deviation of the displacement across the line of sight
+  double across_sigma_m = 0.10;  ///< standard deviation of the measured displacement across the line of sight
 };
 
 template <typename Visitor>

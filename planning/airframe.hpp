@@ -16,29 +16,31 @@ struct Airframe {
   double air_density_kgpm3 = 1.204;       ///< density of the air: sea level, 20 degrees C
 
   double span_m = 0.8636;         ///< distance between the wing tips
-  double chord_m = 0.2097;        ///< mean chord: the area over the span
+  double chord_m = 0.2097;        ///< mean chord: wing area divided by span
   double wing_area_m2 = 0.1811;   ///< area of the wing
-  double wing_lift_factor = 1.0;  ///< lift of the wing over that of a flat plate
-  double wing_drag_factor = 1.0;  ///< drag of the wing over that of a flat plate
+  double wing_lift_factor = 1.0;  ///< ratio of the wing's lift to that of a flat plate
+  double wing_drag_factor = 1.0;  ///< ratio of the wing's drag to that of a flat plate
 
   double elevon_area_m2 = 0.012508;    ///< area of one elevon
   double elevon_hinge_x_m = -0.12495;  ///< x of the elevons' hinge; negative: behind the centre of mass
-  double elevon_y_m = 0.276225;        ///< y of the left elevon's centre; the right one stands at minus this
-  double elevon_chord_m = 0.0402;      ///< chord of an elevon; its force acts at the middle, deflected
-  double elevon_lift_factor = 1.3;     ///< lift of an elevon over that of a flat plate
-  double elevon_drag_factor = 0.101;   ///< drag of an elevon over that of a flat plate
-  double elevon_min_rad = -0.90;       ///< lower stop of the elevons; trailing edge up is positive
-  double elevon_max_rad = 0.855;       ///< upper stop of the elevons; trailing edge up is positive
+  double elevon_y_m = 0.276225;        ///< y of the left elevon's centre; the right elevon mirrors it
+  /// chord of an elevon; its force acts at mid-chord of the deflected surface
+  double elevon_chord_m = 0.0402;
+  double elevon_lift_factor = 1.3;    ///< ratio of an elevon's lift to that of a flat plate
+  double elevon_drag_factor = 0.101;  ///< ratio of an elevon's drag to that of a flat plate
+  double elevon_min_rad = -0.90;      ///< smallest elevon deflection; trailing edge up is positive
+  double elevon_max_rad = 0.855;      ///< largest elevon deflection; trailing edge up is positive
 
   double winglet_area_m2 = 0.019441;  ///< area of one winglet
-  double winglet_x_m = -0.08;   ///< x of a winglet's centre in the body; negative: behind the centre of mass
-  double winglet_y_m = 0.4318;  ///< y of the left winglet; the right one stands at minus this
-  double winglet_z_m = 0.081954;  ///< height of a winglet's centre above the centre of mass
+  double winglet_x_m = -0.08;         ///< x of the winglets' centres; negative: behind the centre of mass
+  double winglet_y_m = 0.4318;        ///< y of the left winglet; the right winglet mirrors it
+  double winglet_z_m = 0.081954;      ///< height of a winglet's centre above the centre of mass
 
-  double body_drag_area_m2 = 0.0443;  ///< drag of the body along x over the dynamic pressure
-  Eigen::Vector3d rate_damping_nmspr{0.074, 0.115, 0.0};  ///< damping moment per angular rate about x, y, z
-  double max_thrust_n = 5.34;                             ///< thrust at full throttle
-  double input_delay_s = 0.020;                           ///< time from a command to the actuators
+  double body_drag_area_m2 = 0.0443;  ///< drag of the body along x, divided by the dynamic pressure
+  /// damping moment per unit of angular rate, about body x, y, z
+  Eigen::Vector3d rate_damping_nmspr{0.074, 0.115, 0.0};
+  double max_thrust_n = 5.34;    ///< thrust at full throttle
+  double input_delay_s = 0.020;  ///< time from an autopilot command until the actuators receive it
 };
 
 /// Every field by name, for loading, saving, --set and tuning: visit(name, field, minimum, maximum).

@@ -8,17 +8,22 @@ namespace understory {
 /// model and the path follower both read these numbers, so that the aircraft flies as planned.
 struct FlightModelConfig {
   double cruise_speed_mps = 12.0;  ///< airspeed that the throttle holds; 12.8 m/s is the fastest level flight
-  /// Largest angle of attack. 25 deg: a flat plate never stalls, a real wing does (our assumption).
+  /// Largest commanded angle of attack, 25 deg: the flat-plate model never stalls, but a real wing does (our
+  /// assumption).
   double maximum_angle_of_attack_rad = 0.4363;
-  double minimum_angle_of_attack_rad = -0.05;  ///< smallest angle of attack to which the nose is pushed down
-  double minimum_speed_mps = 8.0;              ///< airspeed below which the nose is not pulled up further
-  double bank_gain_per_s = 9.0;                ///< commanded roll rate per bank error
-  double maximum_roll_rate_radps = 7.5;        ///< largest roll rate at 12.27 m/s; it falls with the airspeed
-  double maximum_differential_rad = 0.50;      ///< largest deflection from the mean of both elevons
-  double roll_time_s = 0.06;                   ///< time constant with which the roll rate follows its command
+  double minimum_angle_of_attack_rad = -0.05;  ///< smallest commanded angle of attack
+  /// airspeed at and below which the limit of the angle of attack is reduced to 60 %; the reduction begins
+  /// 0.5 m/s above it
+  double minimum_speed_mps = 8.0;
+  double bank_gain_per_s = 9.0;  ///< commanded roll rate per radian of bank error
+  /// largest commanded roll rate at 12.27 m/s; the limit is proportional to the airspeed
+  double maximum_roll_rate_radps = 7.5;
+  /// largest differential elevon deflection: that of each elevon from the mean of both
+  double maximum_differential_rad = 0.50;
+  double roll_time_s = 0.06;             ///< time constant with which the roll rate follows its command
   double angle_of_attack_time_s = 0.17;  ///< time constant with which the angle of attack follows its command
-  double climb_angle_time_s = 0.45;      ///< time constant in which a climb angle error is corrected
-  double speed_gain_n_per_mps = 2.0;     ///< thrust added per speed error
+  double climb_angle_time_s = 0.45;      ///< time constant of the control loop for the climb angle
+  double speed_gain_n_per_mps = 2.0;     ///< thrust added per m/s of airspeed below cruise_speed_mps
 };
 
 template <typename Visitor>
@@ -39,9 +44,9 @@ void visit_fields(Visitor& visit, FlightModelConfig& config) {
 /// Time constants of the inner loops. The outer laws (bank to roll rate, climb to angle of attack, speed to
 /// thrust) are those of the flight model, so that the aircraft answers as planned.
 struct PathFollowerConfig {
-  double pitch_time_s = 0.05;            ///< time constant in which a pitch rate error is corrected
-  double angle_of_attack_time_s = 0.09;  ///< time constant in which an angle of attack error is corrected
-  double roll_time_s = 0.05;             ///< time constant in which a roll rate error is corrected
+  double pitch_time_s = 0.05;            ///< time constant of the control loop for the pitch rate
+  double angle_of_attack_time_s = 0.09;  ///< time constant of the control loop for the angle of attack
+  double roll_time_s = 0.05;             ///< time constant of the control loop for the roll rate
 };
 
 template <typename Visitor>
@@ -53,18 +58,25 @@ void visit_fields(Visitor& visit, PathFollowerConfig& config) {
 
 /// How the planner turns remembered points into upright columns with a size.
 struct ObstacleFieldConfig {
-  double cell_m = 0.15;       ///< side of the horizontal cells; points of one cell become one upright column
-  double column_gap_m = 1.2;  ///< gap in height between points of a cell at which a new column starts
-  double vertical_reach_m = 0.4;  ///< length by which a column extends above and below its outermost points
-  /// Columns reach down to the ground, as trees and posts do, so that the aircraft does not pass under the
-  /// part of a trunk that it saw with its nose up. A false detection in the air then blocks every height: it
-  /// pays in wind (docs/decisions/017).
+  /// side of the horizontal grid cells; the map points in one cell become one vertical column
+  double cell_m = 0.15;
+  /// height gap between the points of a cell above which they become separate columns
+  double column_gap_m = 1.2;
+  /// length by which a column extends above its highest and below its lowest point
+  double vertical_reach_m = 0.4;
+  /// Extends columns down to the ground, as trees and posts do, so that the aircraft does not fly below the
+  /// part of a trunk that it has seen. A false detection in the air then blocks all heights below it, so it
+  /// is worthwhile only in wind (docs/decisions/017).
   bool stands_on_ground = false;
-  double sigma_zero_m = 0.05;    ///< uncertainty of a point when it is seen; the planner adds it to its size
-  double sigma_per_m = 0.010;    ///< growth of that uncertainty per metre flown since (docs/sources.md [15])
-  double sigma_maximum_m = 0.3;  ///< uncertainty of a point at which the growth ends
-  double half_span_m = 0.4318;   ///< half the span of the wing that must pass
-  double wing_radius_m = 0.09;   ///< radius of the capsule about the span: half the winglets' height
+  /// position uncertainty of a map point when it is detected; the planner enlarges obstacles by it
+  double sigma_zero_m = 0.05;
+  /// growth of a map point's position uncertainty per metre flown since its last detection (docs/sources.md
+  /// [15])
+  double sigma_per_m = 0.010;
+  double sigma_maximum_m = 0.3;  ///< upper limit of a map point's position uncertainty
+  double half_span_m = 0.4318;   ///< half of the wing span that the planner assumes
+  /// radius of the capsule from wing tip to wing tip that represents the wing: half the winglets' height
+  double wing_radius_m = 0.09;
 };
 
 template <typename Visitor>
@@ -82,25 +94,42 @@ void visit_fields(Visitor& visit, ObstacleFieldConfig& config) {
 
 /// The cost of a trajectory and its limits. Costs are dimensionless, per second of flight.
 struct TrajectoryConfig {
-  double step_s = 0.02;     ///< time between the computed places of a trajectory
-  double horizon_m = 14.0;  ///< distance ahead that a plan covers: the detection depth and some more
-  double minimum_clearance_m = -0.05;  ///< smallest clearance that a new plan may have
-  /// Smallest clearance at which the plan in force is kept; smaller than minimum_clearance_m, so that noise
-  /// does not discard a plan.
+  double step_s = 0.02;     ///< time step of a predicted trajectory
+  double horizon_m = 14.0;  ///< distance along the course that a plan covers; more than the detection depth
+  /// smallest clearance to obstacles and altitude limits that a new plan may have; negative: a small overlap
+  /// is allowed
+  double minimum_clearance_m = -0.05;
+  /// Smallest clearance that the plan in force may have and still be kept. It is smaller than
+  /// minimum_clearance_m, so that noise does not discard a plan.
   double minimum_kept_clearance_m = -0.08;
-  double comfortable_clearance_m = 0.7;  ///< clearance from which on it costs nothing
-  double clearance_weight = 15.0;        ///< cost at zero clearance; it falls to none at the comfortable one
-  double bank_weight = 1.0;              ///< cost per rad^2 of bank
-  double heading_weight = 6.0;           ///< cost per rad^2 of heading off the course: unseen ground
-  double altitude_weight = 1.0;          ///< cost per m^2 off the cruise altitude
-  double band_weight = 40.0;             ///< cost per m^2 within band_margin_m of the band's limits
-  double band_margin_m = 0.8;         ///< distance from the altitude band's limits within which places cost
-  double slow_weight = 2.0;           ///< cost per (m/s)^2 by which the airspeed is over 1 m/s below cruise
-  double final_heading_weight = 4.0;  ///< cost per rad^2 of heading off the course at the end of the plan
-  double heading_gain = 1.6;          ///< commanded bank per heading error while the course is held
-  double maximum_course_bank_rad = 0.6;  ///< largest bank while the course is held
-  double altitude_gain_per_s = 1.2;      ///< commanded climb per altitude error while the course is held
-  double maximum_climb_mps = 2.0;        ///< largest climb or descent while the course is held
+  double comfortable_clearance_m = 0.7;  ///< clearance beyond which the distance to obstacles adds no cost
+  /// cost per second of flight at zero clearance to obstacles; it falls quadratically to 0 at
+  /// comfortable_clearance_m
+  double clearance_weight = 15.0;
+  double bank_weight = 1.0;  ///< weight of the squared bank angle (in rad^2) in the cost per second of flight
+  /// weight of the squared angle (in rad^2) between flight direction and course in the cost per second of
+  /// flight; off the course lies unseen ground
+  double heading_weight = 6.0;
+  /// weight of the squared difference (in m^2) from the cruise altitude in the cost per second of flight
+  double altitude_weight = 1.0;
+  /// weight of the squared intrusion (in m^2) into the altitude margin band_margin_m in the cost per second
+  /// of flight
+  double band_weight = 40.0;
+  double band_margin_m = 0.8;  ///< distance from the altitude limits within which band_weight adds cost
+  /// weight of the squared airspeed deficit (in (m/s)^2) in the cost per second of flight; the deficit counts
+  /// from 1 m/s below cruise_speed_mps
+  double slow_weight = 2.0;
+  /// weight of the squared angle (in rad^2) between flight direction and course in the cost at the end of a
+  /// plan
+  double final_heading_weight = 4.0;
+  /// commanded bank per heading error while the aircraft follows the course without a manoeuvre
+  double heading_gain = 1.6;
+  /// largest commanded bank while the aircraft follows the course without a manoeuvre
+  double maximum_course_bank_rad = 0.6;
+  /// commanded climb rate per altitude error while the aircraft follows the course without a manoeuvre
+  double altitude_gain_per_s = 1.2;
+  /// largest commanded climb or sink rate while the aircraft follows the course without a manoeuvre
+  double maximum_climb_mps = 2.0;
 };
 
 template <typename Visitor>
@@ -127,17 +156,24 @@ void visit_fields(Visitor& visit, TrajectoryConfig& config) {
 /// The tree of manoeuvres that OMPL grows (SST, Li, Littlefield & Bekris 2016, in the space of bank and climb
 /// commands over time).
 struct ManoeuvreSearchConfig {
-  int iterations = 600;            ///< number of extensions that a search tries; no time, so that runs repeat
-  double maximum_bank_rad = 1.57;  ///< largest bank command tried; on edge the wing needs least room
-  double minimum_climb_mps = -1.5;  ///< lowest climb command tried; negative: a descent
-  double maximum_climb_mps = 2.0;   ///< highest climb command tried
-  double minimum_part_s = 0.08;     ///< shortest duration of one command
-  double maximum_part_s = 0.48;     ///< longest duration of one command
-  int maximum_parts = 4;            ///< largest number of commands before the course is held again
-  double hint_share = 0.3;          ///< share of the commands tried that lie near those of the plan in force
-  double extreme_share = 0.2;       ///< share of the commands tried that bank fully, to either side
-  double selection_radius = 0.6;    ///< SST's selection radius, in the metric of manoeuvre_search.cpp
-  double pruning_radius = 0.15;     ///< SST's pruning radius: nearer nodes of higher cost are dropped
+  /// number of tree extensions per search; a count instead of a time limit, so that runs are repeatable
+  int iterations = 600;
+  /// largest bank that the search commands; with the wing vertical the aircraft needs the least width
+  double maximum_bank_rad = 1.57;
+  double minimum_climb_mps = -1.5;  ///< lowest climb rate that the search commands; negative: a descent
+  double maximum_climb_mps = 2.0;   ///< highest climb rate that the search commands
+  double minimum_part_s = 0.08;     ///< shortest duration of one command within a manoeuvre
+  double maximum_part_s = 0.48;     ///< longest duration of one command within a manoeuvre
+  /// largest number of commands in a manoeuvre; after the last the aircraft returns to its course
+  int maximum_parts = 4;
+  /// share of the random commands that are drawn near a command of the plan in force
+  double hint_share = 0.3;
+  double extreme_share = 0.2;  ///< share of the random commands that use the full bank, to either side
+  /// SST's selection radius; distance 1 is 1 m, 0.3 rad of heading or 0.8 rad of bank
+  double selection_radius = 0.6;
+  /// SST's pruning radius: of nodes within it only the cheapest is kept; distance 1 is 1 m, 0.3 rad of
+  /// heading or 0.8 rad of bank
+  double pruning_radius = 0.15;
 };
 
 template <typename Visitor>
@@ -158,11 +194,11 @@ void visit_fields(Visitor& visit, ManoeuvreSearchConfig& config) {
 /// Random changes to a manoeuvre that are kept where they lower its cost. A tree of random commands finds a
 /// way, but seldom the best version of it.
 struct ManoeuvreImprovementConfig {
-  int iterations = 60;             ///< number of changed manoeuvres that are tried
-  double bank_sigma_rad = 0.35;    ///< standard deviation of the change to one command's bank
-  double climb_sigma_mps = 0.6;    ///< standard deviation of the change to one command's climb
-  double duration_sigma_s = 0.08;  ///< standard deviation of the change to one command's duration
-  double maximum_bank_rad = 1.57;  ///< largest bank that a change may reach
+  int iterations = 60;           ///< number of random variants of a manoeuvre that are tried
+  double bank_sigma_rad = 0.35;  ///< standard deviation of the random change to the bank of one command
+  double climb_sigma_mps = 0.6;  ///< standard deviation of the random change to the climb rate of one command
+  double duration_sigma_s = 0.08;  ///< standard deviation of the random change to the duration of one command
+  double maximum_bank_rad = 1.57;  ///< largest bank of a command after a random change
 };
 
 template <typename Visitor>
@@ -175,13 +211,16 @@ void visit_fields(Visitor& visit, ManoeuvreImprovementConfig& config) {
 }
 
 struct PlannerConfig {
-  bool use_ompl = true;  ///< searches with OMPL; false: chooses among simple manoeuvres
-  /// A plan is kept without a search while its cost is below this multiple of its cost when it was new.
+  bool use_ompl = true;  ///< searches manoeuvres with OMPL; false: chooses among predefined manoeuvres
+  /// When a new map point lies near it, the plan in force is kept without a search while its cost is at most
+  /// this multiple of its original cost, plus 1.
   double kept_cost_ratio = 1.3;
-  /// A new way replaces the plan in force where the plan in force costs this many times as much.
+  /// A newly found manoeuvre replaces a usable plan in force only if that plan costs more than this many
+  /// times as much.
   double change_cost_ratio = 1.5;
-  int refresh_replans = 12;  ///< number of replans after which a kept plan is compared with a new search
-  double refresh_s = 1;      ///< time after which a kept plan is compared with a new search
+  /// number of replans after which a plan that was kept is compared with a newly searched one
+  int refresh_replans = 12;
+  double refresh_s = 1;  ///< time after which a plan that was kept is compared with a newly searched one
   ObstacleFieldConfig field;
   TrajectoryConfig trajectory;
   ManoeuvreSearchConfig search;
@@ -202,16 +241,17 @@ void visit_fields(Visitor& visit, PlannerConfig& config) {
 }
 
 struct AutopilotConfig {
-  /// Acceleration along body x above which two IMU samples in a row mean that the catapult has fired.
+  /// The autopilot detects the launch when two IMU samples in a row exceed this specific force along body x.
   double launch_acceleration_mps2 = 30;
-  /// Time from the detected launch until throttle and control begin; the rail takes 0.25 s of it.
+  /// Time from launch detection until thrust, control and planning begin. The aircraft is on the catapult's
+  /// rail for about 0.25 s of it.
   double throttle_delay_s = 0.28;
   double plan_latency_s = 0.006;  ///< simulated time that computing a plan takes
-  /// Longest time between plans while the plan in force goes straight. A new obstacle near the way is planned
-  /// for at once. 0: a plan at every replan, as far as plan_latency_s allows.
+  /// Longest time between plans while the current plan flies straight. A new map point near the planned path
+  /// triggers a plan at once. 0: plans at replan_rate_hz, as far as plan_latency_s allows.
   double straight_period_s = 0;
-  /// Longest time between plans while the plan in force avoids an obstacle. A new obstacle near the way is
-  /// planned for at once. 0: a plan at every replan.
+  /// Longest time between plans while the current plan avoids an obstacle. A new map point near the planned
+  /// path triggers a plan at once. 0: plans at replan_rate_hz, as far as plan_latency_s allows.
   double avoiding_period_s = 0;
   LocalMapConfig map;
   ResightingsConfig resightings;

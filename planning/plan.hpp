@@ -61,17 +61,26 @@ struct Plan {
 
 /// How the replans of a flight were answered. straight + solved + kept + fallback is their number.
 struct PlannerCounts {
-  std::int64_t replans = 0;         ///< how often a plan was made
-  std::int64_t straight = 0;        ///< nothing within comfortable clearance of the straight way
-  std::int64_t solved = 0;          ///< OMPL's answer of this replan taken
-  std::int64_t kept = 0;            ///< the plan in force still good
-  std::int64_t kept_ompl = 0;       ///< of `kept`: the rest of an OMPL answer; the others go straight
-  std::int64_t fallback = 0;        ///< no free manoeuvre found: the primitive with the maximum clearance
-  std::int64_t obstacle_ahead = 0;  ///< straight on would come nearer than the minimum clearance
-  std::int64_t obstacle_ahead_ompl = 0;  ///< of those: flown on an OMPL answer, of this replan or kept
+  std::int64_t replans = 0;  ///< number of plans made
+  /// number of plans that fly straight on, because no obstacle comes within comfortable clearance
+  std::int64_t straight = 0;
+  std::int64_t solved = 0;  ///< number of plans that use a manoeuvre found by OMPL in the same replan
+  std::int64_t kept = 0;    ///< number of plans that continue the plan in force, because it is still good
+  /// number of plans counted in kept that continue a manoeuvre found by OMPL; the other kept plans fly
+  /// straight on
+  std::int64_t kept_ompl = 0;
+  /// number of plans that use the predefined manoeuvre with the largest clearance, because no free manoeuvre
+  /// was found
+  std::int64_t fallback = 0;
+  /// number of plans made where straight flight would violate the minimum clearance to obstacles or altitude
+  /// limits
+  std::int64_t obstacle_ahead = 0;
+  /// number of plans counted in obstacle_ahead that use a manoeuvre found by OMPL, in this replan or an
+  /// earlier one
+  std::int64_t obstacle_ahead_ompl = 0;
   std::int64_t searches =
-      0;                   ///< how often OMPL was asked (a kept plan is searched against anew now and then)
-  std::int64_t found = 0;  ///< how often it answered with a free manoeuvre
+      0;  ///< number of OMPL searches, including those that compare a kept plan with a new one
+  std::int64_t found = 0;  ///< number of OMPL searches that found a free manoeuvre
 };
 
 /// Every count by name, for results, rows and sums: visit(name, count).

@@ -11,7 +11,7 @@ namespace understory {
 
 /// A campaign to be gated against another one.
 struct GatedCampaign {
-  std::string baseline;  ///< its name
+  std::string baseline;  ///< name of the scenario
   Comparison comparison;
   GateVerdict verdict;
 };

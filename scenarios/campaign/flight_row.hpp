@@ -26,15 +26,19 @@ enum class RunStatus {
 /// One flight of a campaign: a row of flights.csv, a line of flights.jsonl. Nothing in it depends on the
 /// machine's speed, so that a campaign flown again gives the same rows. `id` is unique within a campaign.
 struct FlightRow : FlightMeasures {
-  std::string id;                         ///< "<condition>-<seed>"
-  std::string condition;                  ///< scenario and overrides, by name
-  std::uint64_t seed = 0;                 ///< of course and sensors
-  RunStatus status = RunStatus::refused;  ///< flown, crashed, hung, killed or refused
-  std::string reason;                     ///< why it was not flown, one line; empty for a flown one
-  std::string outcome;                    ///< flight_result.hpp's word for its outcome; empty unless flown
-  double cruise_speed_mps = 0;            ///< asked, as the next two
-  double square_metres_per_tree = 0;      ///< of the forest
-  double goal_m = 0;                      ///< x of the goal plane
+  std::string id;          ///< name of the flight: "<condition>-<seed>"
+  std::string condition;   ///< name of the campaign's condition: a scenario with overrides
+  std::uint64_t seed = 0;  ///< the scenario's seed, for course, wind and, without sensors.seed, sensors
+  /// flown: with an outcome; crashed: the program failed; hung: took longer than the campaign allows; killed:
+  /// from outside; refused: bad input
+  RunStatus status = RunStatus::refused;
+  std::string reason;  ///< why the flight has no outcome, in one line; empty if status is flown
+  /// how the flight ended: how the flight ended: goal, collision, ground (touched), out_of_bounds (sides or
+  /// altitude limits) or time (limit reached); empty unless status is flown
+  std::string outcome;
+  double cruise_speed_mps = 0;        ///< commanded cruise airspeed
+  double square_metres_per_tree = 0;  ///< mean ground area per tree of the forest
+  double goal_m = 0;                  ///< x coordinate of the goal plane
   bool flown() const { return status == RunStatus::flown; }
   bool reached_goal() const { return flown() && outcome == "goal"; }
 };

@@ -91,13 +91,15 @@ void add_settings_option(Command& command, std::vector<std::string>& settings) {
 }
 
 void add_with_option(Command& command, std::vector<std::string>& with) {
-  command.texts("--with", "FILE", with,
-                "YAML file of keys that override the scenario's, for example best.yaml of tune; repeatable");
+  command.texts(
+      "--with", "FILE", with,
+      "YAML file of keys and values to override, for example best.yaml written by tune; repeatable");
 }
 
 void add_vision_options(Command& command, VisionConfigSources& sources) {
   command.choice("--preset", sources.preset, pushbroom_preset_names,
-                 "parameter set of the pushbroom detector; tuned: tuned for the recordings' rig");
+                 "parameter set of the pushbroom detector: tuned (found by search for this rig), robust "
+                 "(before tuning) or original (Barry & Tedrake 2015)");
   add_with_option(command, sources.with);
   command.texts("--set", "KEY=VALUE", sources.settings,
                 "override a key of perception or autopilot.map, for example perception.depths_m=[10.1,7,5]; "
@@ -106,7 +108,8 @@ void add_vision_options(Command& command, VisionConfigSources& sources) {
 
 void add_renderer_option(Command& command, RendererKind& renderer) {
   command.choice("--renderer", renderer, renderer_names,
-                 "OpenGL backend: osmesa (CPU), egl (a GPU if there is one, else the CPU), auto");
+                 "OpenGL backend: osmesa (CPU), egl (a GPU if there is one, else the CPU), auto (egl if "
+                 "there is a GPU, else osmesa)");
 }
 
 void add_jobs_option(Command& command, int& jobs, const std::string& what) {
@@ -121,7 +124,7 @@ void add_calibration_options(Command& command, CalibrationArguments& arguments) 
   command.choice("--unit", arguments.meters_per_unit, meters_per_unit,
                  "unit of the lengths in the calibration");
   command.text("--size", "WxH", arguments.size,
-               "size of the calibrated images, for example 376x240, where the files do not state it");
+               "image size that the calibration is for, for example 376x240, if its files do not state it");
   command.number("--depth", arguments.depth_m, 0.1, 1000,
                  "detection depth in metres (default: the rig file's, else 10)");
 }

@@ -98,21 +98,26 @@ void add_bench_command(CommandLine& line) {
   Command& command = line.add(
       {"bench", "time the detector against OpenCV's remap, StereoBM and StereoSGBM, or time whole flights",
        "understory bench --pairs 16 --json bench.json"});
-  const auto inputs = command.texts("INPUT", "FILE", arguments->inputs,
-                                    "recorded pairs, as for detect (default: rendered pairs)");
+  const auto inputs =
+      command.texts("INPUT", "FILE", arguments->inputs,
+                    "recorded stereo pairs, in any form that detect accepts (default: rendered pairs)");
   command.text("--rig", "RIG", arguments->rig,
-               "rig or calibration, as for rig (default: the long rig's raw cameras, or INPUT's)");
+               "rig or calibration file, in any form that understory rig accepts (default: INPUT's "
+               "calibration, or the raw cameras of the long rig)");
   add_calibration_options(command, *arguments);
-  command.whole("--pairs", arguments->pairs, 1, 10000, "number of rendered pairs");
+  command.whole("--pairs", arguments->pairs, 1, 10000,
+                "number of pairs to render, or largest number to read from INPUT");
   command.whole("--rounds", arguments->rounds, 1, 100000, "number of times that all pairs are timed");
   command.text("--json", "FILE", arguments->json, "also write the table as JSON");
   command
       .flag("--closed-loop", arguments->closed_loop,
-            "time whole flights of the library's forests, one and two at a time")
+            "time whole flights in the library's forests, first one flight at a time, then two in parallel")
       .excludes(inputs);
   command.whole("--flights", arguments->flights, 1, 1000,
-                "with --closed-loop: number of flights of each forest");
-  add_settings_option(command, arguments->settings);
+                "with --closed-loop: number of flights in each forest");
+  command.texts(
+      "--set", "KEY=VALUE", arguments->settings,
+      "with --closed-loop: override a key of the scenarios, for example forest.length_m=30; repeatable");
   add_renderer_option(command, arguments->renderer);
   command.runs([arguments] { return run_bench(*arguments); });
 }

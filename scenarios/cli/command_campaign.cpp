@@ -201,10 +201,10 @@ int run_shard(const ShardArguments& arguments) {
 
 void add_campaign_command(CommandLine& line) {
   const auto arguments = std::make_shared<CampaignArguments>();
-  Command& command =
-      line.add({"campaign", "fly many seeds in many conditions, each flight in a process of its own",
-                "understory campaign gate --out results/gate", "every flight was flown, whatever its outcome",
-                "a flight could not be flown"});
+  Command& command = line.add(
+      {"campaign", "fly every seed under every condition of a campaign, each flight in its own process",
+       "understory campaign gate --out results/gate", "every flight was flown, whatever its outcome",
+       "a flight could not be flown"});
   command
       .text("file", "FILE", arguments->file,
             "campaign file, or a name in scenarios/campaigns (docs/campaigns.md)")
@@ -221,11 +221,12 @@ void add_campaign_command(CommandLine& line) {
   command.texts("--sbatch", "OPTION", arguments->slurm.options,
                 "with slurm: an option for sbatch, for example --sbatch=--partition=short; repeatable");
   command.flag("--no-wait", arguments->no_wait, "with slurm: return after the job is submitted");
-  command.flag("--resume", arguments->resume, "continue the campaign that the folder holds");
+  command.flag("--resume", arguments->resume, "continue the unfinished campaign in the results folder");
   command.flag("--force", arguments->force,
-               "allow a folder that holds other files; none of them is replaced");
-  command.flag("--print-tasks", arguments->print_tasks,
-               "print a command for each flight and fly nothing; collect gathers the results later");
+               "accept a results folder that holds other files; these are not replaced");
+  command.flag(
+      "--print-tasks", arguments->print_tasks,
+      "print one command per flight instead of flying; after running them, gather the results with collect");
   command.text("--junit", "FILE", arguments->junit, "write each flight as a JUnit test case (XML)");
   command.flag("--keep-runs", arguments->keeps_runs, "keep the run folder of each flight in FOLDER/runs");
   command.runs([arguments] { return run_campaign(*arguments); });
@@ -234,11 +235,11 @@ void add_campaign_command(CommandLine& line) {
 void add_shard_command(CommandLine& line) {
   const auto arguments = std::make_shared<ShardArguments>();
   Command& command =
-      line.add({"shard", "fly a share of a campaign, as campaign --engine slurm submits it",
-                "understory shard results/gate --number 0 --of 8", "the share's flights were flown"});
+      line.add({"shard", "fly one shard (part) of a campaign; campaign --engine slurm submits such shards",
+                "understory shard results/gate --number 0 --of 8", "the flights of the shard were flown"});
   command.text("folder", "FOLDER", arguments->folder, "results folder of the campaign").required();
-  command.whole("--number", arguments->number, 0, 9999, "number of the share, from 0").required();
-  command.whole("--of", arguments->of, 1, 10000, "number of shares").required();
+  command.whole("--number", arguments->number, 0, 9999, "number of the shard, from 0").required();
+  command.whole("--of", arguments->of, 1, 10000, "number of shards").required();
   command.whole("--jobs", arguments->jobs, 1, 1024, "number of flights at a time");
   command.runs([arguments] { return run_shard(*arguments); });
 }

@@ -79,7 +79,7 @@ void add_gate_command(CommandLine& line) {
   Command& command =
       line.add({"gate", "compare two campaigns flight by flight and say whether a change may pass",
                 "understory gate --baseline results/before --candidate results/after", "the change may pass",
-                "success fell too far"});
+                "success dropped too far, or flights are missing or could not be flown"});
   command
       .text("--baseline", "FOLDER", arguments->baseline, "results folder of the campaign before the change")
       .required();
@@ -87,7 +87,7 @@ void add_gate_command(CommandLine& line) {
       .text("--candidate", "FOLDER", arguments->candidate, "results folder of the campaign with the change")
       .required();
   command.number("--max-drop", arguments->rule.max_drop, 0, 1,
-                 "largest drop of the share of goals that a condition may have");
+                 "fail if, in any condition, the share of flights that reach the goal drops by more than X");
   command.text("--junit", "FILE", arguments->junit, "write the comparison as JUnit test cases (XML)");
   command.runs([arguments] { return run_gate(*arguments); });
 }

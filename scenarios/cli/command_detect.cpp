@@ -75,7 +75,7 @@ void add_detect_command(CommandLine& line) {
   const auto arguments = std::make_shared<DetectArguments>();
   Command& command = line.add({"detect", "detect obstacles in recorded stereo images",
                                "understory detect left/ right/ --rig calibration/ --out detections",
-                               "every pair was searched"});
+                               "every stereo pair was processed"});
   command.texts("INPUT", "FILE", arguments->inputs,
                 "EuRoC folder; folders of left and right images; a left and a right image; or a side-by-side "
                 "video",
@@ -85,10 +85,11 @@ void add_detect_command(CommandLine& line) {
                "calibration)");
   add_calibration_options(command, *arguments);
   command.choice("--rectify", arguments->options.interpolation, interpolation_names,
-                 "how raw images are rectified: to the nearest pixel or bilinear");
+                 "how raw images are rectified: nearest pixel or bilinear interpolation");
   add_vision_options(command, arguments->options.vision);
   command.text("--poses", "FILE", arguments->poses,
-               "poses of the body, TUM (t tx ty tz qx qy qz qw) or EuRoC ground truth; also writes map.ply");
+               "file of body poses, TUM (t tx ty tz qx qy qz qw) or EuRoC ground truth; with it, map.ply is "
+               "written too");
   command.text("--out", "FOLDER", arguments->out, "results folder");
   command.flag("--video", arguments->options.video, "write one video instead of a picture per frame");
   command.runs([arguments] { return run_detect(*arguments); });
@@ -103,8 +104,9 @@ void add_rig_command(CommandLine& line) {
             "rig file, OpenCV XML or YAML file or a folder of them, EuRoC folder, or a name in models/rigs")
       .required();
   add_calibration_options(command, *arguments);
-  command.text("--out", "FILE", arguments->out,
-               "draw the rig from above, and the columns compared, into this .svg");
+  command.text(
+      "--out", "FILE", arguments->out,
+      "write an .svg drawing of the rig from above and of the image columns that the detector compares");
   command.runs([arguments] { return run_rig(*arguments); });
 }
 

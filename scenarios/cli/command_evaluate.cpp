@@ -67,13 +67,14 @@ int run_evaluate(EvaluateArguments arguments) {
 
 void add_evaluate_command(CommandLine& line) {
   const auto arguments = std::make_shared<EvaluateArguments>();
-  Command& command =
-      line.add({"evaluate", "compare detections with the recorded truth, and with StereoBM as the paper did",
-                "understory evaluate recordings/forest --out evaluations/forest"});
-  command.texts(
-      "INPUT", "FILE", arguments->inputs,
-      "recordings (EuRoC folders of `record`); or one evaluation file, or a name in scenarios/evaluations",
-      1);
+  Command& command = line.add(
+      {"evaluate",
+       "compare detections with the recorded ground truth, and with StereoBM as in Barry & Tedrake 2015",
+       "understory evaluate recordings/forest --out evaluations/forest"});
+  command.texts("INPUT", "FILE", arguments->inputs,
+                "folders written by record, in EuRoC layout; or one evaluation file, or its name in "
+                "scenarios/evaluations",
+                1);
   add_vision_options(command, arguments->vision);
   command.whole("--every", arguments->every, 1, 1000, "use every N-th frame only");
   add_jobs_option(command, arguments->jobs, "recordings");

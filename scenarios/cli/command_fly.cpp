@@ -91,7 +91,8 @@ Command::Added add_flight_options(Command& command, FlightArguments& arguments, 
                                   const std::string& force) {
   command.text("scenario", "SCENARIO", arguments.scenario, "scenario file, or a name in scenarios/library")
       .required();
-  command.text("--seed", "N", arguments.seed, "seed of course and sensors; overrides the scenario's");
+  command.text("--seed", "N", arguments.seed,
+               "random seed for the obstacle course and the sensor noise; overrides the scenario's seed");
   add_with_option(command, arguments.with);
   add_settings_option(command, arguments.settings);
   const Command::Added folder = command.text("--out", "FOLDER", arguments.out, out);
@@ -278,18 +279,21 @@ std::string renderer_of_this_machine() {
 
 void add_fly_command(CommandLine& line) {
   const auto arguments = std::make_shared<FlyArguments>();
-  Command& command =
-      line.add({"fly", "fly a scenario once and keep what happened in a run folder",
-                "understory fly forest --seed 7 --video", "the aircraft reached the goal", "it did not"});
+  Command& command = line.add({"fly", "fly a scenario once and write the results to a run folder",
+                               "understory fly forest --seed 7 --video", "the aircraft reached the goal",
+                               "the aircraft did not reach the goal"});
   add_flight_options(command, *arguments, "run folder (default: runs/SCENARIO-SEED)",
-                     "a run of another configuration in the folder");
-  command.text("--row", "FILE", arguments->row,
-               "write the flight's row of results as JSON, and make no run folder");
+                     "the run in the folder, even if it has another configuration");
+  command.text(
+      "--row", "FILE", arguments->row,
+      "write the flight's results as JSON, as one row of a campaign; without --out, write no run folder");
   command.text("--track", "FILE", arguments->track,
-               "write a lost flight's track, which the page of a campaign replays");
+               "if the flight is lost, write its track, which a campaign's report page replays");
   command.text("--junit", "FILE", arguments->junit, "write the flight as a JUnit test case (XML)");
-  command.flag("--video", arguments->video, "also make a video, flight.mp4, and a picture of it, still.png");
-  command.flag("--report", arguments->report, "also make a page with replay, charts and video, report.html");
+  command.flag(
+      "--video", arguments->video,
+      "also write a video (flight.mp4) and a picture of the frame with the most detections (still.png)");
+  command.flag("--report", arguments->report, "also write report.html, a page with replay, charts and video");
   command.runs([arguments] { return run_fly(*arguments); });
 }
 
@@ -299,13 +303,17 @@ void add_record_command(CommandLine& line) {
       line.add({"record",
                 "record images, true depth and poses of a flight, a walk or a given path as a EuRoC data set",
                 "understory record forest --out recordings/forest", "the recording is complete"});
-  add_flight_options(command, *arguments, "folder of the recording", "a recording in the folder").required();
+  add_flight_options(command, *arguments, "folder of the recording", "the run or recording in the folder")
+      .required();
   command.flag_or_number("--walk", 1.4, arguments->walk_mps, 0.1, 5.0,
-                         "walk through the course instead of flying; --walk=SPEED sets the speed in m/s");
-  command.text("--path", "FILE", arguments->path,
-               "move the cameras along the poses in a file: TUM, EuRoC, or a run's trajectory.csv");
-  command.number("--height", arguments->height_m, 0.3, 8.0,
-                 fmt::format("height of the walk in metres (default: {})", WalkConfig{}.height_m));
+                         "move the cameras through the course at walking speed instead of flying; "
+                         "--walk=SPEED sets the speed in m/s (default: 1.4)");
+  command.text(
+      "--path", "FILE", arguments->path,
+      "move the cameras along the poses in a file: TUM format, EuRoC format, or a run's trajectory.csv");
+  command.number(
+      "--height", arguments->height_m, 0.3, 8.0,
+      fmt::format("with --walk: height above the ground in metres (default: {})", WalkConfig{}.height_m));
   command.runs([arguments] { return run_record(*arguments); });
 }
 

@@ -254,12 +254,15 @@ void add_keys_command(CommandLine& line) {
   Command& command = line.add({"keys", "print each key of a scenario: value, unit, range, meaning, source",
                                "understory keys dense --against forest"});
   const auto scenario = command.text("scenario", "SCENARIO", arguments->scenario,
-                                     "scenario whose values are printed (default: the defaults)");
+                                     "scenario whose values are printed (without it: the default values)");
   command
-      .text("--against", "SCENARIO", arguments->against, "print only the keys in which this scenario differs")
+      .text("--against", "SCENARIO", arguments->against,
+            "print only the keys in which the two scenarios differ, with both values")
       .needs(scenario);
-  const auto json = command.flag("--json", arguments->json, "print JSON");
-  command.flag("--markdown", arguments->markdown, "print docs/keys.md, which also has the columns of results")
+  const auto json = command.flag("--json", arguments->json, "print the keys as JSON");
+  command
+      .flag("--markdown", arguments->markdown,
+            "print the keys and the columns of results as Markdown, in the form of docs/keys.md")
       .excludes(json);
   command.runs([arguments] { return run_keys(*arguments); });
 }

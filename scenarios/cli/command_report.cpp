@@ -243,27 +243,31 @@ void add_again_options(Command& command, AgainArguments& arguments, const char* 
 void add_report_command(CommandLine& line) {
   const auto arguments = std::make_shared<ReportArguments>();
   Command& command =
-      line.add({"report", "make a page (HTML) of a flight, with video, replay and charts, or of a campaign",
+      line.add({"report", "write an HTML page about a flight (video, replay, charts) or about a campaign",
                 "understory report runs/forest-7", "the page was written",
-                "the page was written, but the repeated flight has another digest, or the gate fails"});
+                "the page was written, but the repeated flight differs from the run (another digest), or the "
+                "gate fails"});
   add_again_options(command, *arguments, "folder of a run or of a campaign",
-                    "file of the page (default: FOLDER/report.html)");
+                    "file name of the page (default: FOLDER/report.html)");
   command.text("--baseline", "FOLDER", arguments->baseline,
-               "for a campaign: results folder that it is compared with by the gate");
+               "for a campaign: results folder of the campaign before the change; adds the comparison and "
+               "verdict of gate");
   command.flag("--no-video", arguments->no_video,
-               "leave the video out: the page is made at once from the run's log");
+               "make the page without video from the run's flight.log; this takes no new flight");
   command.runs([arguments] { return run_report_of_either(*arguments); });
 }
 
 void add_mcap_command(CommandLine& line) {
   const auto arguments = std::make_shared<McapArguments>();
-  Command& command = line.add({"mcap", "write a log (MCAP) of a flight for Foxglove and Rerun",
-                               "understory mcap runs/forest-7", "the log was written",
-                               "the log was written, but the repeated flight has another digest"});
-  add_again_options(command, *arguments, "folder of a run", "file of the log (default: FOLDER/flight.mcap)");
-  command.flag("--zstd", arguments->compress, "compress the log with zstd");
+  Command& command =
+      line.add({"mcap", "write a flight as an MCAP file for Foxglove and Rerun",
+                "understory mcap runs/forest-7", "the MCAP file was written",
+                "the MCAP file was written, but the repeated flight differs from the run (another digest)"});
+  add_again_options(command, *arguments, "folder of a run",
+                    "name of the MCAP file (default: FOLDER/flight.mcap)");
+  command.flag("--zstd", arguments->compress, "compress the MCAP file with zstd");
   command.flag("--no-images", arguments->no_images,
-               "leave the images out: the log is made at once from the run's log");
+               "make the MCAP file without images from the run's flight.log; this takes no new flight");
   command.runs([arguments] { return run_mcap(*arguments); });
 }
 

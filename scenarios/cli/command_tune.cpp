@@ -118,18 +118,20 @@ int run_tune(const TuneArguments& arguments) {
 
 void add_tune_command(CommandLine& line) {
   const auto arguments = std::make_shared<TuneArguments>();
-  Command& command = line.add({"tune", "search the values of keys that do best on recordings or flights",
-                               "understory tune long --out results/tuned",
-                               "the search is over; best.yaml holds the values found, if they are better"});
+  Command& command = line.add(
+      {"tune", "search for the values of keys that give the best results on recordings or in flights",
+       "understory tune long --out results/tuned",
+       "the search is complete; best.yaml holds the best values, unless the scenario's own values are as "
+       "good"});
   command
       .text("file", "FILE", arguments->file, "tuning file, or a name in scenarios/tunings (docs/tuning.md)")
       .required();
   command.text("--out", "FOLDER", arguments->out, "results folder (default: results/tune-NAME)");
   add_jobs_option(command, arguments->jobs, "flights or recordings");
   add_renderer_option(command, arguments->renderer);
-  command.flag("--resume", arguments->resume, "continue the tuning that the folder holds");
+  command.flag("--resume", arguments->resume, "continue the unfinished tuning in the results folder");
   command.flag("--force", arguments->force,
-               "allow a folder that holds other files; none of them is replaced");
+               "accept a results folder that holds other files; these are not replaced");
   command.runs([arguments] { return run_tune(*arguments); });
 }
 

@@ -89,8 +89,8 @@ std::string manual_page(const std::deque<Command>& commands) {
   for (const Command& command : commands)
     if (!command.hidden()) page += section_of(command);
   page += ".SH EXIT STATUS\n";
-  for (const auto& [status, meaning] :
-       exit_statuses({"", "", "", "done, or the goal was reached", "it was not"}))
+  for (const auto& [status, meaning] : exit_statuses({"", "", "", "done, or the goal was reached",
+                                                      "the goal was not reached, or the result is negative"}))
     page += fmt::format(".TP\n.B {}\n{}\n", status, troff(meaning));
   page +=
       ".SH ENVIRONMENT\n"

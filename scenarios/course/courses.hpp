@@ -10,15 +10,20 @@ namespace understory {
 /// A forest in the launch frame: x ahead, y to the left. Its length also sets the goal plane of every other
 /// course.
 struct ForestConfig {
-  double square_metres_per_tree = 49;  ///< mean ground area per tree; 49: 204 trees per hectare, 7 m apart
-  double radius_min_m = 0.10;          ///< smallest radius of a trunk; radii are uniform up to radius_max_m
-  double radius_max_m = 0.25;          ///< largest radius of a trunk
-  double clear_m = 15;                 ///< x at which the forest begins: room for launch and climb
-  double length_m = 60;                ///< length of the forest; the goal plane stands at clear_m + length_m
-  double half_width_m = 25;   ///< half the width of the forest; a flight beyond it has left the course
-  double trunk_height_m = 9;  ///< height of the trunks: above the altitude band, so that none is flown over
-  bool invisible = false;     ///< leaves the trees out of the images; they still collide
-  bool intangible = false;    ///< lets the aircraft pass through the trees; they are still drawn
+  /// mean ground area per tree; 49 m^2: 204 trees per hectare, one per 7 m x 7 m
+  double square_metres_per_tree = 49;
+  double radius_min_m = 0.10;  ///< smallest trunk radius; radii are drawn uniformly up to forest.radius_max_m
+  double radius_max_m = 0.25;  ///< largest radius of a trunk
+  double clear_m = 15;         ///< x at which the forest begins; the launch is at x = 0
+  /// length of the forest; the goal of every course is the plane x = clear_m + length_m
+  double length_m = 60;
+  /// half the width of the forest; on every course, a flight that strays farther to the side ends
+  double half_width_m = 25;
+  /// height of the trunks; the default is above the altitude band, so that no flight passes over them
+  double trunk_height_m = 9;
+  bool invisible = false;  ///< hides the obstacles of any course from the cameras; they still collide
+  /// lets the aircraft pass through the obstacles of any course; they are still drawn
+  bool intangible = false;
 };
 
 template <typename Visitor>
@@ -44,17 +49,19 @@ std::vector<Obstacle> poisson_forest(const ForestConfig& config, std::uint64_t s
 /// uprights 18 ft 6 in apart inside, at least 30 ft above the ground; top of the crossbar 10 ft above the
 /// ground.
 struct GoalpostsConfig {
-  double ahead_m = 35;     ///< x of the near upright
-  double width_m = 5.639;  ///< distance between the insides of the uprights
-  /// Angle of the goal's plane; 0: straight across the course. The far upright stands farther ahead. At 0 it
-  /// would pass outside the cameras' view at the detection depth (our choice; the paper gives no angle).
+  double ahead_m = 35;     ///< x of the near upright, the one that the course (y = 0) passes closest to
+  double width_m = 5.639;  ///< clear width between the two uprights
+  /// Angle by which the goal is turned so that its far upright stands farther ahead; 0: square to the course.
+  /// At 0 the far upright would be outside the cameras' view at the detection depth (our choice; the paper
+  /// gives no angle).
   double turn_rad = 0.7;
   double height_m = 9.144;        ///< height of the uprights
   double crossbar_top_m = 3.048;  ///< height of the crossbar's upper edge
-  double radius_m = 0.084;        ///< radius of uprights and crossbar; a crossbar is 6 5/8 in wide
-  /// Smallest distance between the course and the near upright's surface; the seed draws the distance.
+  double radius_m = 0.084;        ///< radius of uprights and crossbar; a real crossbar is 6 5/8 in wide
+  /// smallest distance that the seed may draw from the course (y = 0) to the near upright's surface
   double pass_minimum_m = 0.5;
-  double pass_maximum_m = 2.0;  ///< largest distance between the course and the near upright's surface
+  /// largest distance that the seed may draw from the course (y = 0) to the near upright's surface
+  double pass_maximum_m = 2.0;
 };
 
 template <typename Visitor>
@@ -76,9 +83,10 @@ std::vector<Obstacle> goalposts(const GoalpostsConfig& config, std::uint64_t see
 /// A facade of equal windows across the way behind the goal (sim/scene/meshes.hpp): repeated texture, which
 /// misled the paper's detector without its invariance filter (docs/sources.md [1]).
 struct WindowsConfig {
-  double behind_goal_m = 12;  ///< distance of the facade behind the goal plane; flights end before it
-  double width_m = 60;        ///< width of the facade
-  double height_m = 20;       ///< height of the facade
+  /// distance from the goal plane to the facade behind it; flights end at the goal plane
+  double behind_goal_m = 12;
+  double width_m = 60;   ///< width of the facade
+  double height_m = 20;  ///< height of the facade
 };
 
 template <typename Visitor>
@@ -101,9 +109,10 @@ struct FenceConfig {
   double rail_radius_m = 0.04;    ///< radius of a rail that carries palings
   double beside_m = 3.5;          ///< y of the fence that runs along the course
   double first_across_m = 30;     ///< x of the first fence across the course
-  double across_apart_m = 25;     ///< distance between the fences across the course, up to the goal
-  double reach_m = 15;            ///< half length of the fences across the course
-  double opening_m = 3;           ///< width of the opening in the fences across the course, at y = 0
+  /// distance between successive fences across the course; the last stands before the goal
+  double across_apart_m = 25;
+  double reach_m = 15;   ///< distance from y = 0 to each end of the fences across the course
+  double opening_m = 3;  ///< width of the opening in the fences across the course, at y = 0
 };
 
 template <typename Visitor>

@@ -24,8 +24,7 @@ Flight::Flight(const Scenario& scenario, const FlightMachine& machine, std::vect
     : scenario_(scenario),
       observers_(std::move(observers)),
       rig_(rig_of(scenario, machine.models_folder)),
-      obstacles_(course_obstacles(scenario)),
-      world_(stopwatch_.time("setup", [&] { return world_of(scenario, machine.models_folder, obstacles_); })),
+      world_(stopwatch_.time("setup", [&] { return world_of(scenario, machine.models_folder); })),
       aircraft_(aircraft_of(scenario, world_)),
       cameras_(needs_images(scenario, observers_)
                    ? stopwatch_.time("context",
@@ -34,7 +33,7 @@ Flight::Flight(const Scenario& scenario, const FlightMachine& machine, std::vect
       sensors_(scenario),
       drops_(scenario.cameras.drop_probability, seed_for(scenario.sensor_seed(), "camera_drops")),
       computer_(nanoseconds(scenario.perception.cost_s())),
-      detector_(detector_of(scenario, rig_, obstacles_, history_)),
+      detector_(detector_of(scenario, rig_, world_.obstacles, history_)),
       state_source_(state_source_of(scenario, history_)),
       autopilot_(autopilot_config_of(scenario, rig_.rig), scenario.airframe, rig_.rig, scenario.mission(),
                  *detector_, *state_source_, seed_for(scenario.seed, "planner")),

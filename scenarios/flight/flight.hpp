@@ -68,7 +68,7 @@ class Flight {
 
   const Scenario& scenario() const { return scenario_; }
   const CalibratedRig& rig() const { return rig_; }
-  const std::vector<Obstacle>& obstacles() const { return obstacles_; }
+  const std::vector<Obstacle>& obstacles() const { return world_.obstacles; }
 
   /// The time of truth(). After step() it is the next step, for which nothing has been done yet.
   const FlightClock& clock() const { return clock_; }
@@ -114,7 +114,6 @@ class Flight {
   Scenario scenario_;
   std::vector<FlightObserver*> observers_;
   CalibratedRig rig_;
-  std::vector<Obstacle> obstacles_;
   World world_;
   Aircraft aircraft_;
   std::unique_ptr<StereoCameras> cameras_;
@@ -135,8 +134,7 @@ class Flight {
 // Makes the parts of a flight from a scenario. All throw in one line.
 
 /// The compiled scene. MachineError where the project's models do not compile.
-World world_of(const Scenario& scenario, const std::filesystem::path& models_folder,
-               const std::vector<Obstacle>& obstacles);
+World world_of(const Scenario& scenario, const std::filesystem::path& models_folder);
 
 /// Its cameras, on `rig` of rig_of. MachineError where no GL library can be loaded.
 std::unique_ptr<StereoCameras> cameras_of(const Scenario& scenario, const World& world,

@@ -78,7 +78,7 @@ struct FlightLog {
   std::vector<Eigen::Vector3d> hits_camera;  ///< left camera's frame, of all frames
   std::vector<LogPoint> points;              ///< in order of from_ns
   std::vector<LogPlan> plans;
-  Touch touch;  ///< at the end
+  Touch touch;  ///< distance between estimated and true position at the end of the flight
   FlightResult result;
 };
 

@@ -14,6 +14,7 @@
 #include "scenarios/config/named_seed.hpp"
 #include "scenarios/flight/oracles.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
 
 namespace understory {
@@ -29,10 +30,12 @@ std::unique_ptr<ObstacleDetector> full_stereo_of(const CalibratedRig& cameras, c
 
 }  // namespace
 
-World world_of(const Scenario& scenario, const std::filesystem::path& models_folder,
-               const std::vector<Obstacle>& obstacles) {
+World world_of(const Scenario& scenario, const std::filesystem::path& models_folder) {
+  const Wood wood = course_wood(scenario);
   try {
-    return build_world(models_folder, scenario.flown_airframe(), obstacles, scenario.world_config());
+    WorldConfig config = scenario.world_config();
+    config.woods = woods_of(scenario);
+    return build_world(models_folder, scenario.flown_airframe(), wood.obstacles, config, wood.trees);
   } catch (const SimulationError& error) {
     if (write_config(scenario.airframe) == write_config(Airframe())) throw MachineError(error.what());
     throw ScenarioError(fmt::format("{}: airframe: {}", scenario.name, error.what()));
@@ -61,7 +64,8 @@ Aircraft aircraft_of(const Scenario& scenario, const World& world) {
   try {
     const Wind wind(scenario.wind_world_mps, scenario.wind, scenario.stand(),
                     seed_for(scenario.seed, "wind"));
-    return Aircraft(*world.model, scenario.flown_airframe(), scenario.launch, wind, scenario.actuators);
+    return Aircraft(*world.model, scenario.flown_airframe(), scenario.launch, wind, scenario.actuators,
+                    scenario.forest.intangible ? std::vector<Obstacle>{} : world.obstacles);
   } catch (const std::runtime_error& error) {
     throw ScenarioError(error.what());
   }

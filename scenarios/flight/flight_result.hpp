@@ -56,21 +56,22 @@ struct StageTiming {
 
 /// What a result and a campaign's row say of a flight that was flown.
 struct FlightMeasures {
-  double distance_m = 0;      ///< flown: true path length since release
-  double progress_m = 0;      ///< maximum true x reached
-  double mean_speed_mps = 0;  ///< true, over ground, since release
-  /// True; +infinity (empty in CSV, null in JSON) without obstacles.
+  double distance_m = 0;      ///< true length of the flown path since release
+  double progress_m = 0;      ///< largest true x coordinate reached
+  double mean_speed_mps = 0;  ///< mean true speed over ground since release
+  /// Smallest true distance between aircraft and obstacles. Without obstacles it is infinite: empty in CSV,
+  /// null in JSON.
   double minimum_clearance_m = std::numeric_limits<double>::infinity();
-  double position_error_mean_m = 0;    ///< estimate against truth, since release
-  double position_error_max_m = 0;     ///< the largest
-  std::int64_t detections = 0;         ///< hits, all frames
-  std::int64_t remembered_points = 0;  ///< points ever taken into the map
-  /// Fewest points remembered within 0.5 m of an obstacle; -1 (empty, null): not counted, since there are
-  /// more than eight obstacles or none.
+  double position_error_mean_m = 0;    ///< mean distance between estimated and true position since release
+  double position_error_max_m = 0;     ///< largest distance between estimated and true position since release
+  std::int64_t detections = 0;         ///< number of detections in all frames
+  std::int64_t remembered_points = 0;  ///< number of points added to the map during the flight
+  /// Number of points added to the map within 0.5 m of the obstacle that has the fewest. Empty in CSV and
+  /// null in JSON on a course with no obstacle or more than eight.
   std::int64_t minimum_points_on_an_obstacle = -1;
   PlannerCounts planner;
-  double simulated_s = 0;  ///< since the start at rest
-  std::string digest;      ///< of the flight, bit for bit: equal flights have equal digests
+  double simulated_s = 0;  ///< simulated time from the start at rest to the end of the flight
+  std::string digest;      ///< hash of the flight's data; flights that agree bit for bit have equal digests
 };
 
 template <typename Visitor, typename Measures>
@@ -92,22 +93,27 @@ void visit_fields(Visitor& visit, Measures& measures) {
 
 /// One flight in numbers: what result.json holds.
 struct FlightResult : FlightMeasures {
-  Outcome outcome = Outcome::time;     ///< goal, collision, ground, out_of_bounds or time
-  std::string scenario;                ///< its name
-  std::uint64_t seed = 0;              ///< of the course
-  std::uint64_t sensor_seed = 0;       ///< of the sensors' noise
-  std::string detector;                ///< perception.detector
-  std::string state_source;            ///< estimation.source
-  std::string touched;                 ///< name of the nearest obstacle at a collision; else empty
-  double position_error_end_m = 0;     ///< at the end
-  double attitude_error_max_rad = 0;   ///< the largest, since release
-  double velocity_error_mean_mps = 0;  ///< estimate against truth, since release
-  std::int64_t frames = 0;             ///< that the stack received
-  double wall_s = 0;                   ///< that the flight took on its machine
-  std::string renderer;                ///< OpenGL's name of what drew; empty without images
-  /// Of each obstacle on a course of at most eight: remembered points within 0.5 m of it.
+  /// how the flight ended: goal, collision, ground (touched), out_of_bounds (sides or altitude limits) or
+  /// time (limit reached)
+  Outcome outcome = Outcome::time;
+  std::string scenario;           ///< name of the scenario
+  std::uint64_t seed = 0;         ///< the scenario's seed, for course and wind
+  std::uint64_t sensor_seed = 0;  ///< seed of the sensors' noise
+  std::string detector;           ///< value of perception.detector
+  std::string state_source;       ///< value of estimation.source
+  /// name of the obstacle nearest to the aircraft at a collision; empty without a collision
+  std::string touched;
+  double position_error_end_m = 0;  ///< distance between estimated and true position at the end of the flight
+  double attitude_error_max_rad = 0;   ///< largest angle between estimated and true attitude since release
+  double velocity_error_mean_mps = 0;  ///< mean magnitude of the velocity error since release
+  std::int64_t frames = 0;             ///< number of stereo frames that the autopilot processed
+  double wall_s = 0;                   ///< wall time that the program took to simulate the flight
+  std::string renderer;  ///< name of the OpenGL renderer that drew the images; empty without images
+  /// Number of points added to the map within 0.5 m of each obstacle, by its name; only on courses of at most
+  /// eight obstacles.
   std::vector<std::pair<std::string, std::int64_t>> points_on_obstacles;
-  std::vector<StageTiming> timings;  ///< wall time of each stage of the loop: count, mean, maximum, total
+  /// wall time of each stage of the simulation: count, mean, maximum and total
+  std::vector<StageTiming> timings;
 };
 
 /// All but the two lists.

@@ -35,7 +35,7 @@ Carried carry_recorded(const Scenario& scenario, const Carriage& carriage, const
   const Stopwatch stopwatch;
   EurocRecording recording(options.output_folder, scenario, carriage.rig,
                            static_cast<double>(carriage.end_ns) * 1e-9);
-  const World world = world_of(scenario, options.models_folder, carriage.obstacles);
+  const World world = world_of(scenario, options.models_folder);
   const auto cameras = cameras_of(scenario, world, carriage.rig, options.renderer);
   Imu imu(scenario.sensors.sensors.imu, seed_for(scenario.sensor_seed(), "imu"));
   Carried carried;

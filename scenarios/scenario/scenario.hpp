@@ -82,9 +82,9 @@ struct VisitorWithout {
 /// Altitudes within which the flight must stay after it has climbed into them; leaving them ends it. A flight
 /// over the trees or along the ground would prove nothing.
 struct BandConfig {
-  double minimum_altitude_m = 1;   ///< altitude below which a flight ends, once it has been above it
+  double minimum_altitude_m = 1;   ///< a flight that has climbed to this altitude ends when it falls below it
   double maximum_altitude_m = 6;   ///< altitude above which a flight ends
-  double cruise_altitude_m = 4.5;  ///< altitude that the planner holds where the way is free
+  double cruise_altitude_m = 4.5;  ///< target altitude of the planner when no obstacle is in the way
 };
 
 /// How the scene looks. Whether obstacles are seen or felt is the course's business: forest.invisible,
@@ -95,21 +95,23 @@ struct WorldSection {
 
 struct CameraSection {
   CameraConfig cameras;
-  int rate_hz = 120;  ///< stereo pairs per second; divides 1200 (Barry & Tedrake 2015: 120 Hz)
-  /// Time from the end of the exposure until the stack has the frame: a parameter, never a measurement. The
-  /// frame's time is the middle of its left exposure.
+  int rate_hz = 120;  ///< stereo pairs per second; must divide 1200 (Barry & Tedrake 2015: 120 Hz)
+  /// Time from the end of the exposure until the stack receives the frame: a setting, never a measured time.
+  /// A frame's timestamp is the middle of its left exposure.
   double latency_s = 0.008;
-  double drop_probability = 0;  ///< probability that a frame never arrives, for each frame by itself
-  /// Gives the stack raw images, distorted and unrectified, which it rectifies with the calibration
-  /// raw/NAME.xml beside the rig's file (models/rigs/raw).
+  double drop_probability = 0;  ///< probability that a frame is lost, independently for each frame
+  /// Gives the stack raw (distorted, unrectified) images. It rectifies them with the calibration raw/NAME.xml
+  /// in the folder of the rig file NAME.yaml (models/rigs/raw).
   bool raw = false;
-  double raw_unit_m = 1;  ///< unit of the translations in that calibration; 0.01 (cm) for the paper's rig
+  /// unit of length in the calibration file that cameras.raw reads; 0.01 (cm) for rig paper
+  double raw_unit_m = 1;
 };
 
 struct SensorSection {
   std::uint64_t seed = 0;  ///< seed of the noise of all sensors and cameras; 0: the scenario's seed
-  /// Quality from which the keys beside it start: nominal has white noise and constant biases, consumer and
-  /// rough have all errors of real parts, ideal has none (docs/sensors.md).
+  /// Quality class that sets the defaults of all sensors keys. ideal: no errors; nominal: white noise,
+  /// constant biases, barometer drift; consumer: all errors of real parts; rough: three times those
+  /// (docs/sensors.md).
   SensorGrade grade = SensorGrade::nominal;
   SensorsConfig sensors;
 };
@@ -117,15 +119,23 @@ struct SensorSection {
 /// What a pair costs the aircraft's computer, in simulated time, never measured during a flight. Off: every
 /// frame is looked at without delay. docs/thesis.md has the source of the numbers.
 struct ComputeConfig {
-  bool enabled = false;  ///< charges the aircraft's computer for each frame; off: detection takes no time
-  /// Time on the aircraft's computer over time on one thread of the machine that measured the costs below.
-  /// 8.3: the original detector takes 1.0 ms there and filled the 8.3 ms of a frame at 120 Hz on a 1.7 GHz
-  /// quad ARM Cortex-A9 (Barry & Tedrake 2015). A larger factor is a slower computer.
+  /// simulates the time that the aircraft's computer needs for each stereo pair; false: detection takes no
+  /// time
+  bool enabled = false;
+  /// Ratio of the time on the aircraft's computer to the time on one thread of the machine that measured the
+  /// other perception.compute keys. 8.3: the original detector takes 1.0 ms on that machine, and on a 1.7 GHz
+  /// quad ARM Cortex-A9 it filled the 8.3 ms of a frame at 120 Hz (Barry & Tedrake 2015). A larger factor is
+  /// a slower computer.
   double factor = 8.3;
-  double pushbroom_s = 0.0010;  ///< cost of one depth, with rectification (docs/sources.md [17])
-  double more_depths = 0.4;  ///< cost of each further depth, as a share of the first's (docs/benchmarks.md)
-  double stereo_bm_s = 0.0090;  ///< cost of StereoBM with 112 disparities on the paper's rig (docs/thesis.md)
-  double stereo_sgbm_s = 0.0127;  ///< cost of StereoSGBM with 112 disparities and five paths (docs/thesis.md)
+  /// pushbroom detector's time per pair at one depth, rectification included, before compute.factor
+  /// (docs/sources.md [17])
+  double pushbroom_s = 0.0010;
+  /// pushbroom detector's time for each further depth, as a share of compute.pushbroom_s (docs/benchmarks.md)
+  double more_depths = 0.4;
+  /// StereoBM's time per pair with 112 disparities on the paper's rig, before compute.factor (docs/thesis.md)
+  double stereo_bm_s = 0.0090;
+  /// StereoSGBM's time per pair with 112 disparities and five paths, before compute.factor (docs/thesis.md)
+  double stereo_sgbm_s = 0.0127;
 };
 
 template <typename Visitor>
@@ -139,10 +149,11 @@ void visit_fields(Visitor& visit, ComputeConfig& config) {
 }
 
 struct PerceptionSection {
-  /// Detector of the aircraft. true_depth is an oracle, none flies blind; neither looks at images.
+  /// Obstacle detector. true_depth gets exact depths from the simulator, none detects nothing; neither looks
+  /// at images.
   DetectorKind detector = DetectorKind::pushbroom;
-  /// Parameter set from which perception.pushbroom starts; keys given there win. tuned: numbers and depths
-  /// tuned for the rig; robust: before tuning; original: the paper's.
+  /// Parameter set for perception.pushbroom and perception.depths_m; keys given there win. tuned: numbers and
+  /// depths tuned for the rig; robust: before tuning; original: the original aircraft's.
   PushbroomPreset preset = PushbroomPreset::tuned;
   PushbroomConfig pushbroom = tuned_pushbroom("long");
   StereoBmConfig stereo_bm;
@@ -173,18 +184,20 @@ struct PerceptionSection {
 };
 
 struct EstimationSection {
-  StateKind source = StateKind::filter;  ///< source of the aircraft's state; truth is an oracle
-  /// Parameter set from which estimation.filter starts; keys given there win. original: the original
-  /// aircraft's; windy: with wind and gusts as states.
+  /// source of the aircraft's state for the flight stack: the estimator (filter) or the simulator's exact
+  /// state (truth)
+  StateKind source = StateKind::filter;
+  /// Preset values of estimation.filter; keys that the scenario gives in estimation.filter override them.
+  /// tuned: the default; original: the original aircraft's filter; windy: estimates wind and gusts, too.
   FilterPreset preset = FilterPreset::tuned;
   FilterConfig filter;
 };
 
 struct AutopilotSection {
-  /// Parameter set of planning; keys given beside it win. economical plans when something new comes near,
-  /// thorough all the time.
+  /// Preset values of the planning keys; keys that the scenario gives in autopilot override them. economical:
+  /// plans when a new obstacle comes near the plan, else seldom; thorough: plans continually.
   PlanningPreset preset = PlanningPreset::economical;
-  int replan_rate_hz = 120;  ///< rate at which the planner may act; divides 1200
+  int replan_rate_hz = 120;  ///< highest rate at which the autopilot starts plans; must divide 1200
   AutopilotConfig autopilot;
 };
 
@@ -192,12 +205,16 @@ struct AutopilotSection {
 AutopilotSection planning_of(PlanningPreset preset);
 
 struct Scenario {
-  std::string name = "unnamed";  ///< name of the run's folder: letters, digits and - _ . :
-  std::uint64_t seed = 1000;     ///< seed of course, wind and, without sensors.seed, sensors
-  std::string rig = "long";  ///< stereo rig: a name in models/rigs, or a rig file, relative to the scenario
-  Course course = Course::forest;  ///< kind of course; the group of the same name describes it
+  /// name of the run, whose folder is runs/NAME-SEED; letters, digits, '-', '_' and '.'
+  std::string name = "unnamed";
+  /// seed of course, wind and the planner's search; also of sensor noise if sensors.seed is 0
+  std::uint64_t seed = 1000;
+  /// stereo rig: a name in models/rigs, or the path of a rig file relative to the scenario file
+  std::string rig = "long";
+  Course course = Course::forest;  ///< kind of course; the keys that begin with the same word describe it
   double time_limit_s = 30;        ///< simulated time after which a flight ends
-  Eigen::Vector3d wind_world_mps = Eigen::Vector3d::Zero();  ///< mean wind at wind.reference_height_m
+  /// velocity of the mean wind, in world axes, at wind.reference_height_m
+  Eigen::Vector3d wind_world_mps = Eigen::Vector3d::Zero();
   WindConfig wind;
   BandConfig band;
   ForestConfig forest;

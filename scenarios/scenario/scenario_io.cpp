@@ -11,6 +11,7 @@
 #include "scenarios/config/config_reader.hpp"
 #include "scenarios/config/config_writer.hpp"
 #include "scenarios/config/keys.hpp"
+#include "scenarios/config/named_seed.hpp"
 #include "scenarios/scenario/filter_for_sensors.hpp"
 #include "sim/aircraft/aerodynamics.hpp"
 #include "sim/scene/world_config.hpp"
@@ -176,6 +177,22 @@ Scenario compose(const Sources& sources, const std::string& name) {
   return scenario;
 }
 
+std::vector<Obstacle> obstacles_as_planted(const Scenario& scenario) {
+  switch (scenario.course) {
+    case Course::forest:
+      return poisson_forest(scenario.forest, scenario.seed);
+    case Course::goalposts:
+      return goalposts(scenario.goalposts, scenario.seed);
+    case Course::windows:
+      return windows(scenario.windows, scenario.goal_x_m());
+    case Course::fence:
+      return fence(scenario.fence, scenario.goal_x_m());
+    case Course::clear:
+      break;
+  }
+  return {};
+}
+
 }  // namespace
 
 AutopilotSection planning_of(PlanningPreset preset) {
@@ -222,21 +239,17 @@ std::vector<Key> keys_of(Scenario scenario) {
 
 std::string scenario_to_text(const Scenario& scenario) { return write_config(scenario); }
 
-std::vector<Obstacle> course_obstacles(const Scenario& scenario) {
-  switch (scenario.course) {
-    case Course::forest:
-      return poisson_forest(scenario.forest, scenario.seed);
-    case Course::goalposts:
-      return goalposts(scenario.goalposts, scenario.seed);
-    case Course::windows:
-      return windows(scenario.windows, scenario.goal_x_m());
-    case Course::fence:
-      return fence(scenario.fence, scenario.goal_x_m());
-    case Course::clear:
-      break;
-  }
-  return {};
+Wood course_wood(const Scenario& scenario) {
+  std::vector<Obstacle> obstacles = obstacles_as_planted(scenario);
+  if (scenario.world.world.scenery == Scenery::plain) return {std::move(obstacles), {}};
+  return grow(obstacles, woods_of(scenario), seed_for(scenario.seed, "trees"));
 }
+
+WoodsConfig woods_of(const Scenario& scenario) {
+  return drawn(scenario.world.world.woods, seed_for(scenario.seed, "woods"));
+}
+
+std::vector<Obstacle> course_obstacles(const Scenario& scenario) { return course_wood(scenario).obstacles; }
 
 /// The groups of a scenario that the keys stand in.
 struct PerceptionKeys {

@@ -8,6 +8,7 @@
 
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/scenario/scenario.hpp"
+#include "sim/scene/trees.hpp"
 
 namespace understory {
 
@@ -37,7 +38,10 @@ std::vector<Key> keys_of(Scenario scenario);
 /// The effective scenario, every default written, as YAML that reads back to the same scenario.
 std::string scenario_to_text(const Scenario& scenario);
 
-/// The obstacles of the scenario's course and seed.
+/// The obstacles of the scenario's course and seed; of a forest with scenery `woods` also its trees.
+Wood course_wood(const Scenario& scenario);
+/// The look of a scenario's woods: what its keys leave open is drawn from its seed.
+WoodsConfig woods_of(const Scenario& scenario);
 std::vector<Obstacle> course_obstacles(const Scenario& scenario);
 
 /// What a scenario says of seeing, for commands that look at recordings: the detectors' and the map's numbers

@@ -29,10 +29,18 @@ Controls within_limits(const Controls& controls, const Airframe& airframe) {
           std::clamp(controls.thrust_n, 0.0, airframe.max_thrust_n)};
 }
 
+/// Where geoms of the pool wait (build_world).
+constexpr double pool_below_m = -500;
+
+std::pair<int, int> cell_of(const Eigen::Vector3d& place_world, double cell_m) {
+  return {static_cast<int>(std::floor(place_world.x() / cell_m)),
+          static_cast<int>(std::floor(place_world.y() / cell_m))};
+}
+
 }  // namespace
 
-Aircraft::Aircraft(const mjModel& model, const Airframe& airframe, const LaunchConfig& launch, Wind wind,
-                   const ActuatorsConfig& actuators)
+Aircraft::Aircraft(mjModel& model, const Airframe& airframe, const LaunchConfig& launch, Wind wind,
+                   const ActuatorsConfig& actuators, const std::vector<Obstacle>& pooled)
     : model_(model),
       data_(mj_makeData(&model)),
       airframe_(airframe),
@@ -54,6 +62,7 @@ Aircraft::Aircraft(const mjModel& model, const Airframe& airframe, const LaunchC
   rail_attitude_ =
       pitched_up(launch.climb_angle_rad + release_angle_of_attack_rad(airframe, launch.speed_mps));
   read_outline();
+  read_pool(pooled);
   delay_line_.resize(1 + static_cast<std::size_t>(steps_in(airframe.input_delay_s)));
   follow_rail();
   update_moment();
@@ -83,6 +92,7 @@ void Aircraft::read_outline() {
     if (model_.geom_bodyid[geom] == body_ && model_.geom_contype[geom] != 0) {
       reach_m_ = std::max(reach_m_, centre.norm() + model_.geom_rbound[geom]);
     } else if (model_.geom_type[geom] == mjGEOM_CAPSULE && model_.geom_conaffinity[geom] != 0) {
+      if (centre.z() < pool_below_m) continue;
       const mjtNum* turn = model_.geom_quat + 4 * geom;
       const Eigen::Vector3d axis =
           Eigen::Quaterniond(turn[0], turn[1], turn[2], turn[3]) * Eigen::Vector3d::UnitZ();
@@ -117,16 +127,63 @@ AircraftShape Aircraft::shape() const {
   return shape;
 }
 
-bool Aircraft::anything_near() const {
+bool Aircraft::NearObstacle::is_near(const Eigen::Vector3d& centre, double reach_m) const {
+  const Eigen::Vector3d offset = centre - centre_world;
+  const double along_m = std::clamp(offset.dot(axis_world), -half_length_m, half_length_m);
+  const double near_m = reach_m + radius_m;
+  return (offset - along_m * axis_world).squaredNorm() < near_m * near_m;
+}
+
+/// Each obstacle into the cell of its centre. Cells are so wide that one within reach lies in the aircraft's
+/// cell or in one of the eight around it.
+void Aircraft::read_pool(const std::vector<Obstacle>& pooled) {
+  first_pooled_ = mj_name2id(&model_, mjOBJ_GEOM, "pool_0");
+  if (first_pooled_ < 0) return;
+  std::vector<NearObstacle> pieces;
+  for (const Obstacle& obstacle : pooled) {
+    const Eigen::Vector3d half = 0.5 * (obstacle.to_world - obstacle.from_world);
+    pieces.push_back({obstacle.from_world + half, half.normalized(), half.norm(), obstacle.radius_m});
+    cell_m_ = std::max(cell_m_, reach_m_ + half.norm() + obstacle.radius_m);
+  }
+  for (const NearObstacle& piece : pieces) cells_[cell_of(piece.centre_world, cell_m_)].push_back(piece);
+}
+
+bool Aircraft::anything_near() {
   const Eigen::Map<const Eigen::Vector3d> centre(data_->qpos);
-  if (centre.z() < reach_m_) return true;
-  return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const NearObstacle& obstacle) {
-    const Eigen::Vector3d offset = centre - obstacle.centre_world;
-    const double along_m =
-        std::clamp(offset.dot(obstacle.axis_world), -obstacle.half_length_m, obstacle.half_length_m);
-    const double near_m = reach_m_ + obstacle.radius_m;
-    return (offset - along_m * obstacle.axis_world).squaredNorm() < near_m * near_m;
-  });
+  const auto is_near = [&](const NearObstacle& obstacle) { return obstacle.is_near(centre, reach_m_); };
+  if (first_pooled_ < 0)
+    return centre.z() < reach_m_ || std::any_of(obstacles_.begin(), obstacles_.end(), is_near);
+  std::vector<const NearObstacle*> near;
+  const auto [column, row] = cell_of(centre, cell_m_);
+  for (int x = column - 1; x <= column + 1; ++x)
+    for (int y = row - 1; y <= row + 1; ++y)
+      if (const auto cell = cells_.find({x, y}); cell != cells_.end())
+        for (const NearObstacle& obstacle : cell->second)
+          if (is_near(obstacle)) near.push_back(&obstacle);
+  place_pool(near);
+  return centre.z() < reach_m_ || !near.empty();
+}
+
+/// MuJoCo's geoms of the pool take place and size of these obstacles; the others go below the ground.
+void Aircraft::place_pool(const std::vector<const NearObstacle*>& near) {
+  if (near.size() > pooled_geoms)
+    throw SimulationError("more than " + std::to_string(pooled_geoms) +
+                          " branches within the aircraft's reach");
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const auto geom = static_cast<std::size_t>(first_pooled_) + i;
+    const NearObstacle& obstacle = *near[i];
+    const Eigen::Quaterniond turn =
+        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), obstacle.axis_world);
+    vector_at(model_.geom_pos + 3 * geom) = obstacle.centre_world;
+    model_.geom_quat[4 * geom] = turn.w();
+    vector_at(model_.geom_quat + 4 * geom + 1) = turn.vec();
+    model_.geom_size[3 * geom] = obstacle.radius_m;
+    model_.geom_size[3 * geom + 1] = obstacle.half_length_m;
+    model_.geom_rbound[geom] = obstacle.half_length_m + obstacle.radius_m;
+  }
+  for (int i = static_cast<int>(near.size()); i < pooled_; ++i)
+    vector_at(model_.geom_pos + 3 * (first_pooled_ + i)) = Eigen::Vector3d(0, 0, 2 * pool_below_m);
+  pooled_ = static_cast<int>(near.size());
 }
 
 /// Kinematics, contacts and velocity terms of the new step: mj_step1. MuJoCo checks every pair of geoms,

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "planning/airframe.hpp"
@@ -48,11 +50,12 @@ class Aircraft {
  public:
   /// Keeps a reference to the model. The launch rail points along world x; the release point is the world's
   /// (0, 0). Throws std::runtime_error where the rail would begin underground. The time step is the model's
-  /// (1/1200 s from build_world; tests of convergence set others, whole numbers of hertz).
-  Aircraft(const mjModel_& model, const Airframe& airframe, const LaunchConfig& launch, Wind wind,
-           const ActuatorsConfig& actuators = {});
+  /// (1/1200 s from build_world; tests of convergence set others, whole numbers of hertz). `pooled` are the
+  /// obstacles of a model with pooled geoms (build_world), none else; such a model serves one aircraft.
+  Aircraft(mjModel_& model, const Airframe& airframe, const LaunchConfig& launch, Wind wind,
+           const ActuatorsConfig& actuators = {}, const std::vector<Obstacle>& pooled = {});
   /// In a steady wind.
-  Aircraft(const mjModel_& model, const Airframe& airframe, const LaunchConfig& launch,
+  Aircraft(mjModel_& model, const Airframe& airframe, const LaunchConfig& launch,
            const Eigen::Vector3d& wind_world_mps)
       : Aircraft(model, airframe, launch, Wind(wind_world_mps)) {}
 
@@ -81,11 +84,15 @@ class Aircraft {
     Eigen::Vector3d axis_world;
     double half_length_m;
     double radius_m;
+    /// Whether a sphere about `centre` reaches it.
+    bool is_near(const Eigen::Vector3d& centre, double reach_m) const;
   };
 
   std::int64_t t_ns() const { return step_ * 1'000'000'000 / rate_hz_; }
   void read_outline();
-  bool anything_near() const;
+  void read_pool(const std::vector<Obstacle>& pooled);
+  bool anything_near();
+  void place_pool(const std::vector<const NearObstacle*>& near);
   void update_moment();
   Controls delayed(const Controls& controls);
   void follow_rail();
@@ -96,7 +103,7 @@ class Aircraft {
   void set_elevons();
   void read_truth(const Eigen::Vector3d& rail_acceleration_world_mps2);
 
-  const mjModel_& model_;
+  mjModel_& model_;
   DataPointer data_;
   Airframe airframe_;
   LaunchConfig launch_;
@@ -113,6 +120,11 @@ class Aircraft {
   int ground_geom_ = 0;
   double reach_m_ = 0;  ///< from the centre of mass to the farthest corner of the collision boxes
   std::vector<NearObstacle> obstacles_;
+  /// Of a model with pooled geoms: obstacles by cells of the ground, and the pool's first geom.
+  std::map<std::pair<int, int>, std::vector<NearObstacle>> cells_;
+  double cell_m_ = 1;
+  int pooled_ = 0;  ///< geoms of the pool that lie at an obstacle now
+  int first_pooled_ = -1;
   Truth truth_;
 };
 

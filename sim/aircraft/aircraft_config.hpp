@@ -11,7 +11,7 @@ struct LaunchConfig {
   double speed_mps = 12.0;        ///< speed along the catapult at release (our assumption)
   double altitude_m = 1.5;        ///< height of the release point
   double climb_angle_rad = 0.20;  ///< slope of the catapult's rail
-  double rail_length_m = 1.5;     ///< length of the rail; from rest to 12 m/s it takes 48 m/s^2
+  double rail_length_m = 1.5;     ///< length of the rail; to reach 12 m/s on 1.5 m takes 48 m/s^2
   double rest_s = 0.25;           ///< time at rest on the rail before the catapult fires
 };
 
@@ -29,22 +29,26 @@ void visit_fields(Visitor& visit, LaunchConfig& config) {
 /// cannot separate delay from lag (docs/flight_model.md), so the values in the comments are typical and none
 /// is fitted.
 struct ActuatorsConfig {
-  double elevon_time_s = 0;      ///< time constant of the servos; 0: none; 0.030 in docs/sources.md [14]
-  double elevon_rate_radps = 0;  ///< largest rate of the servos; 0: no limit; 8.7 is 0.12 s per 60 deg
-  double motor_time_s = 0;       ///< time constant of the thrust; 0: none; about 0.05 with a 7 inch propeller
-  /// Airspeed at which the propeller's thrust is zero: pitch times revolutions, 5 in at 10,000 rpm is 21 m/s.
-  /// The thrust falls linearly up to it (nearly true of measured propellers: Brandt & Selig 2011, "Propeller
-  /// Performance Data at Low Reynolds Numbers"). 0: the thrust does not depend on the airspeed.
+  /// time constant of the elevon servos' lag; 0: no lag; 0.030 in docs/sources.md [14]
+  double elevon_time_s = 0;
+  /// maximum rate of the elevon servos; 0: no limit; 8.7 rad/s is 0.12 s per 60 deg
+  double elevon_rate_radps = 0;
+  /// time constant of the thrust's lag; 0: no lag; about 0.05 with a 7 inch propeller
+  double motor_time_s = 0;
+  /// Airspeed at which the propeller's thrust reaches zero: pitch times revolutions, 21 m/s for 5 in at
+  /// 10,000 rpm. Thrust falls linearly with airspeed (nearly true of measured propellers: Brandt & Selig
+  /// 2011, "Propeller Performance Data at Low Reynolds Numbers"). 0: thrust does not depend on airspeed.
   double pitch_speed_mps = 0;
-  /// Airspeed at which the thrust equals the command: the identified model's trim. The thrust is larger below
-  /// it.
+  /// Airspeed at which the thrust equals the command: the identified model's trim. At lower airspeed the
+  /// thrust is larger. Unused if pitch_speed_mps is 0.
   double thrust_speed_mps = 12.27;
-  /// Share of the slipstream's speed that reaches the elevons. The disc (radius 0.09 m) is behind and inboard
-  /// of the elevons (from 0.13 m out), so 0.1 is a guess.
+  /// Share of the slipstream's extra speed that the elevons meet. The propeller disc (radius 0.09 m) is
+  /// behind and inboard of the elevons (from 0.13 m out), so a value like 0.1 is a guess.
   double propwash_share = 0;
   double propeller_diameter_m = 0.18;  ///< diameter of the propeller: 7 in, as drawn in models/airframe
-  /// Motor torque per thrust, D C_P / (2 pi C_T): 0.014 m with C_P / C_T = 0.5 (Brandt & Selig 2011).
-  /// Positive: the propeller turns clockwise seen from behind and rolls the aircraft to the left.
+  /// Motor torque per newton of thrust, D C_P / (2 pi C_T): 0.014 m with C_P / C_T = 0.5 (Brandt & Selig
+  /// 2011). Positive: the propeller turns clockwise seen from behind, and the reaction rolls the aircraft to
+  /// the left.
   double torque_per_thrust_m = 0;
 };
 
@@ -63,11 +67,15 @@ void visit_fields(Visitor& visit, ActuatorsConfig& config) {
 /// Difference between the aircraft that flies and the airframe that the stack believes in, in percent of the
 /// stack's value: 10 is a tenth more, 0 the same.
 struct MismatchConfig {
-  double mass_percent = 0;     ///< difference in airframe.mass_kg and, in proportion, airframe.inertia_kgm2
-  double lift_percent = 0;     ///< difference in airframe.wing_lift_factor and airframe.elevon_lift_factor
-  double drag_percent = 0;     ///< difference in the drag of wing, elevons and body
-  double damping_percent = 0;  ///< difference in airframe.rate_damping_nmspr
-  double delay_percent = 0;    ///< difference in airframe.input_delay_s, rounded to physics steps of 0.83 ms
+  /// change of the flown aircraft's mass and inertia from airframe.mass_kg and airframe.inertia_kgm2
+  double mass_percent = 0;
+  /// change of the flown aircraft's lift factors from airframe.wing_lift_factor and .elevon_lift_factor
+  double lift_percent = 0;
+  /// change of the flown aircraft's wing, elevon and body drag from that of the airframe keys
+  double drag_percent = 0;
+  double damping_percent = 0;  ///< change of the flown aircraft's damping from airframe.rate_damping_nmspr
+  /// change of the flown aircraft's delay from airframe.input_delay_s; rounded to physics steps of 0.83 ms
+  double delay_percent = 0;
 };
 
 template <typename Visitor>
@@ -85,10 +93,13 @@ Airframe mismatched(Airframe airframe, const MismatchConfig& mismatch);
 /// One discrete gust of MIL-F-8785C: from start_s on it builds up as half a cosine over the distance flown
 /// through the air, amplitude / 2 (1 - cos(pi x / length)), and then stays.
 struct GustConfig {
-  double start_s = 2;    ///< simulated time at which the gust begins; the standard launch releases at 0.5 s
-  double length_m = 10;  ///< distance over which the gust builds up (MIL-F-8785C: tuned to the excited mode)
+  /// simulated time at which the gust begins; by default the catapult releases the aircraft at 0.5 s
+  double start_s = 2;
+  /// distance flown while the gust grows to full velocity (MIL-F-8785C: tuned to the mode to be excited)
+  double length_m = 10;
   Eigen::Vector3d amplitude_world_mps =
-      Eigen::Vector3d::Zero();  ///< velocity of the full gust; zero: no gust
+      /// velocity that the fully grown gust adds to the wind, in world axes; zero: no gust
+      Eigen::Vector3d::Zero();
 };
 
 template <typename Visitor>
@@ -100,21 +111,22 @@ void visit_fields(Visitor& visit, GustConfig& config) {
 
 /// Wind beside the mean. Everything is off by default.
 struct WindConfig {
-  double reference_height_m = 6.096;  ///< height at which wind_world_mps holds: 20 ft (MIL-F-8785C)
-  /// Roughness length of the wind's logarithmic profile, mean(h) = mean(reference) ln(h / roughness) /
-  /// ln(reference / roughness) above 3 ft. MIL-F-8785C: 0.0457 (0.15 ft) at airfields, 0.61 (2 ft) elsewhere.
-  /// 0: the same wind at all heights.
+  /// height at which the mean wind is wind_world_mps; 20 ft in MIL-F-8785C
+  double reference_height_m = 6.096;
+  /// Roughness length of the logarithmic wind profile, mean(h) = mean(reference) ln(h / roughness) /
+  /// ln(reference / roughness); below 3 ft the wind is that at 3 ft. MIL-F-8785C: 0.0457 (0.15 ft) at
+  /// airfields, 0.61 (2 ft) elsewhere. 0: the same wind at all heights.
   double roughness_m = 0;
-  /// Strength of the Dryden turbulence, as the mean wind at 20 ft that would make it (MIL-F-8785C: 7.7, 15.4
-  /// and 23.2 m/s are light, moderate and severe). 0: none.
+  /// Strength of the Dryden turbulence, stated as the mean wind at 20 ft that would cause it. MIL-F-8785C:
+  /// 7.7 m/s is light, 15.4 moderate, 23.2 severe turbulence. 0: none.
   double turbulence_wind20_mps = 0;
   GustConfig gust;
-  /// Share of the wind, its gusts included, that reaches a place inside the forest and below its crowns.
+  /// Wind inside the forest, below the tops of its trunks, as a share of the wind outside, gusts included.
   /// Andrews 2012 (USDA RMRS-GTR-266), wind adjustment factors from Albini & Baughman 1979: 0.1 to 0.2 under
   /// closed crowns, 0.3 partly sheltered. 1: no shelter.
   double shelter_factor = 1;
-  /// Distance from the forest's edge over which the shelter grows to its full strength: a canopy's height or
-  /// more (Belcher, Jerram & Hunt 2003, adjustment of wind to a canopy).
+  /// Distance inwards from the forest's edge over which the wind falls linearly to wind.shelter_factor: a
+  /// canopy's height or more (Belcher, Jerram & Hunt 2003, adjustment of wind to a canopy).
   double shelter_edge_m = 10;
 };
 

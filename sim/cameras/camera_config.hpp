@@ -9,32 +9,33 @@ namespace understory {
 /// Effects of the cameras on the image. All but noise_gray are off by default and then cost neither
 /// arithmetic nor random draws. docs/cameras.md measures each effect and its cost.
 struct CameraConfig {
-  bool lens_cap = false;    ///< makes the images black, but for noise: a check that vision matters
-  double noise_gray = 2.0;  ///< standard deviation of the sensor noise, gray levels, independent per pixel
+  bool lens_cap = false;  ///< makes the images black except for noise, to check that flights depend on vision
+  double noise_gray = 2.0;      ///< standard deviation of the sensor noise, independent for each pixel
   double view_distance_m = 40;  ///< distance beyond which obstacles are not drawn
 
-  /// Time for which the shutter is open; a frame's time is its middle. Outdoors such cameras expose for some
-  /// 0.1 to 5 ms (our assumption). 0: an instant.
+  /// Exposure time. A frame's timestamp is the middle of its left exposure. Outdoors such cameras expose for
+  /// some 0.1 to 5 ms (our assumption). 0: an instant.
   double exposure_s = 0;
-  /// Number of pictures that are rendered over the exposure and averaged; each costs a rendering. At 4 ms
-  /// more than four change nothing for the planner.
+  /// Number of images rendered at times spread over the exposure and averaged; each costs a rendering. At 4
+  /// ms of exposure, more than four change nothing for the planner.
   int exposure_views = 4;
-  double light = 1;  ///< light that a pixel gathers, over that of the rendering; less than 1 at dusk
-  double gain = 1;   ///< gain of the amplifier behind the pixel
-  /// Electrons in a pixel at gray 255 and gain 1; their number varies by its root (shot noise). Some 10,000
-  /// in a pixel of 6 um (our assumption). 0: no shot noise.
+  /// light that reaches a pixel, as a factor on the rendered brightness; less than 1 at dusk
+  double light = 1;
+  double gain = 1;  ///< factor by which the camera amplifies a pixel's signal
+  /// Electrons in a pixel at gray 255 and gain 1; N electrons have shot noise of sqrt(N) rms. Some 10,000 in
+  /// a pixel of 6 um (our assumption). 0: no shot noise.
   double full_well_e = 0;
-  /// Exponent n of the falloff cos^n of the angle to the optical axis: 4 for a plain lens (the cosine-fourth
-  /// law), 0 for none.
+  /// Exponent n of the vignetting, a falloff with cos^n of the angle to the optical axis: 4 for a plain lens
+  /// (the cosine-fourth law), 0 for none.
   double vignetting_power = 0;
 
-  /// Height by which the right image stands lower than the stack believes, in pixels of the camera's image.
+  /// Distance by which the right image lies lower than the stack assumes, in pixels of the camera's image.
   double vertical_misalignment_px = 0;
-  /// Displacement of the right camera from where the stack believes it, along its rectified axes (x right, y
-  /// down, z forward): a bent baseline.
+  /// Displacement of the right camera from its calibrated position, along its rectified axes (x right, y
+  /// down, z forward): a bent baseline. The stack does not know it.
   Eigen::Vector3d flex_position_m = Eigen::Vector3d::Zero();
-  /// Rotation of the right camera from what the stack believes, about its rectified axes, as a rotation
-  /// vector.
+  /// Rotation vector of the right camera from its calibrated orientation, about its rectified axes. The stack
+  /// does not know it.
   Eigen::Vector3d flex_rotation_rad = Eigen::Vector3d::Zero();
   double right_delay_s = 0;  ///< time by which the right image is exposed later than the left
 

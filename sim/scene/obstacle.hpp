@@ -10,10 +10,10 @@
 namespace understory {
 
 /// Kind of an obstacle, for people.
-enum class ObstacleKind { trunk, post, crossbar, rail, wall };
+enum class ObstacleKind { trunk, post, crossbar, rail, wall, branch };
 
-inline constexpr std::array<std::string_view, 5> obstacle_kind_names{"trunk", "post", "crossbar", "rail",
-                                                                     "wall"};
+inline constexpr std::array<std::string_view, 6> obstacle_kind_names{"trunk", "post", "crossbar",
+                                                                     "rail",  "wall", "branch"};
 constexpr std::string_view word_for(ObstacleKind kind) {
   return obstacle_kind_names[static_cast<std::size_t>(kind)];
 }
@@ -33,6 +33,7 @@ struct Obstacle {
   double texture_turn_rad = 0;  ///< rotates the bark about the axis, so that no two trunks look the same
   double texture_shift = 0;     ///< 0 .. 1: shifts the bark along the axis
   ObstacleKind kind = ObstacleKind::trunk;
+  int tree = -1;  ///< number of the tree that it is a piece of; -1: it stands alone
 };
 
 }  // namespace understory

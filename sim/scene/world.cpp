@@ -73,6 +73,13 @@ void write_collisions(std::ostream& xml, const std::vector<Obstacle>& obstacles)
   }
 }
 
+/// Far below the ground until the aircraft places them.
+void write_pool(std::ostream& xml) {
+  for (int i = 0; i < pooled_geoms; ++i)
+    xml << "<geom name='pool_" << i << "' type='capsule' group='3' contype='0' conaffinity='1' condim='1'"
+        << " size='.1 1' pos='0 0 -1000'/>\n";
+}
+
 /// The extent is fixed, because the near and far planes depend on it (0.1 m and 120 m) and one more tree
 /// would move them. No multisampling, because it ruins depth. Nothing is drawn into MuJoCo's own offscreen
 /// buffer, so one pixel is enough. A contact (condim 1) is one row of constraints, and there are no others.
@@ -80,7 +87,8 @@ void write_collisions(std::ostream& xml, const std::vector<Obstacle>& obstacles)
 /// is kept small.
 std::string scene_xml(const Airframe& airframe, const std::vector<Obstacle>& obstacles,
                       const WorldConfig& config) {
-  const SceneryXml scenery = scenery_xml(obstacles, config);
+  const bool woods = config.scenery == Scenery::woods;
+  const SceneryXml scenery = woods ? SceneryXml{} : scenery_xml(obstacles, config);
   std::ostringstream xml;
   xml.imbue(std::locale::classic());
   xml.precision(17);
@@ -94,7 +102,10 @@ std::string scene_xml(const Airframe& airframe, const std::vector<Obstacle>& obs
       << "<global offwidth='1' offheight='1'/></visual>\n"
       << "<asset>" << scenery.assets << "</asset>\n<worldbody>\n"
       << "<geom name='ground' type='plane' size='0 0 1' group='3' contype='0' conaffinity='1' condim='1'/>\n";
-  if (config.obstacles_tangible) write_collisions(xml, obstacles);
+  if (woods)
+    write_pool(xml);
+  else if (config.obstacles_tangible)
+    write_collisions(xml, obstacles);
   xml << scenery.bodies << "\n</worldbody>\n</mujoco>\n";
   return xml.str();
 }
@@ -117,7 +128,8 @@ void DeleteModel::operator()(mjModel_* model) const { mj_deleteModel(model); }
 void DeleteData::operator()(mjData_* data) const { mj_deleteData(data); }
 
 World build_world(const fs::path& models_folder, const Airframe& airframe,
-                  const std::vector<Obstacle>& obstacles, const WorldConfig& config) {
+                  const std::vector<Obstacle>& obstacles, const WorldConfig& config,
+                  const std::vector<Tree>& trees) {
   mju_user_error = raise_error;
   mju_user_warning = raise_error;
 
@@ -137,7 +149,7 @@ World build_world(const fs::path& models_folder, const Airframe& airframe,
   set_inertia(*model, airframe);
   model->vis.quality.shadowsize = 0;  // unused by the cameras, and expensive
   model->vis.quality.offsamples = 0;
-  return {std::move(model), obstacles, config};
+  return {std::move(model), obstacles, config, trees};
 }
 
 }  // namespace understory

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "planning/airframe.hpp"
-#include "sim/scene/obstacle.hpp"
+#include "sim/scene/trees.hpp"
 #include "sim/scene/world_config.hpp"
 
 struct mjModel_;  // MuJoCo's, opaque to whoever does not include it
@@ -40,11 +40,18 @@ struct World {
   ModelPointer model;
   std::vector<Obstacle> obstacles;
   WorldConfig config = {};
+  std::vector<Tree> trees = {};  ///< of woods: what to draw beside the obstacles
 };
 
+/// Capsules of a world of woods that collide at a time: those nearest to the aircraft, which moves them
+/// there. A wood has thousands of pieces, and MuJoCo checks every pair of geoms.
+inline constexpr int pooled_geoms = 64;
+
 /// Composes models/airframe/delta_wing.xml with the obstacles and compiles it. Throws std::runtime_error,
-/// naming the file, where MuJoCo refuses it. Mass and inertia come from `airframe`.
+/// naming the file, where MuJoCo refuses it. Mass and inertia come from `airframe`. With scenery `woods` the
+/// model has the pooled geoms "pool_<number>" and no scenery: sim/render/woods_pass draws it.
 World build_world(const std::filesystem::path& models_folder, const Airframe& airframe,
-                  const std::vector<Obstacle>& obstacles, const WorldConfig& config);
+                  const std::vector<Obstacle>& obstacles, const WorldConfig& config,
+                  const std::vector<Tree>& trees = {});
 
 }  // namespace understory

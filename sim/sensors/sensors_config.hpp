@@ -12,26 +12,35 @@ namespace understory {
 /// resolution. Effects at zero are off; the grade `consumer` sets those of a real part
 /// (sim/sensors/sensor_grades.hpp, docs/sensors.md).
 struct ImuConfig {
-  double gyro_noise_radps = 0.0024;        ///< noise of one gyro sample, rms: 0.01 deg/s/sqrt(Hz) over 200 Hz
-  double gyro_bias_radps = 0.0087;         ///< standard deviation of the gyro's constant bias: 0.5 deg/s
-  double gyro_bias_instability_radps = 0;  ///< floor of the gyro's Allan deviation
-  double gyro_walk_radpsps_rthz = 0;       ///< random walk of the gyro's bias (K of IEEE 952)
-  double gyro_scale = 0;  ///< standard deviation of the gyro's scale error, per axis; 0.01: one per cent
-  double gyro_misalignment = 0;            ///< standard deviation of the cross-axis share of the gyro
-  double gyro_vibration_radpspn = 0;       ///< vibration in the gyro per newton of thrust
-  double gyro_range_radps = 17.4533;       ///< largest rate that the gyro measures: 1000 deg/s
-  double gyro_step_radps = 0.000532;       ///< resolution of the gyro: 16 bits over the range
-  double accelerometer_noise_mps2 = 0.05;  ///< noise of one accelerometer sample, rms: 400 ug/sqrt(Hz)
-  double accelerometer_bias_mps2 = 0.05;   ///< standard deviation of the accelerometer's constant bias: 5 mg
-  double accelerometer_bias_instability_mps2 = 0;  ///< floor of the accelerometer's Allan deviation
-  double accelerometer_walk_mps2ps_rthz = 0;       ///< random walk of the accelerometer's bias
-  double accelerometer_scale = 0;         ///< standard deviation of the accelerometer's scale error, per axis
-  double accelerometer_misalignment = 0;  ///< standard deviation of its cross-axis share
-  double accelerometer_vibration_mps2pn = 0;  ///< amplitude of the propeller's vibration per newton of thrust
-  double accelerometer_range_mps2 = 156.9;    ///< largest specific force that is measured: 16 g
-  double accelerometer_step_mps2 = 0.00479;   ///< resolution of the accelerometer: 2048 counts per g
-  /// Frequency of the vibration at 1 N of thrust; the thrust grows with its square. 1 / (D^2 sqrt(C_T rho))
-  /// with an 8 inch propeller (0.203 m) and a thrust coefficient of 0.1 (typical).
+  /// rms noise of one gyro sample, per axis: 0.01 deg/s/sqrt(Hz) at 200 Hz
+  double gyro_noise_radps = 0.0024;
+  /// standard deviation of the gyro's bias, constant in a flight: 0.5 deg/s
+  double gyro_bias_radps = 0.0087;
+  double gyro_bias_instability_radps = 0;  ///< bias instability of the gyro: the floor of its Allan deviation
+  double gyro_walk_radpsps_rthz = 0;       ///< rate random walk of the gyro's bias (K of IEEE 952)
+  /// standard deviation of the gyro's scale factor error, per axis; 0.01: one per cent
+  double gyro_scale = 0;
+  double gyro_misalignment = 0;  ///< standard deviation of the gyro's cross-axis sensitivity
+  /// amplitude of the propeller's vibration in the gyro, per newton of thrust
+  double gyro_vibration_radpspn = 0;
+  double gyro_range_radps = 17.4533;  ///< largest rate that the gyro measures: 1000 deg/s
+  double gyro_step_radps = 0.000532;  ///< resolution of the gyro: plus and minus 1000 deg/s in 16 bits
+  /// rms noise of one accelerometer sample, per axis: 360 ug/sqrt(Hz) at 200 Hz
+  double accelerometer_noise_mps2 = 0.05;
+  /// standard deviation of the accelerometer's bias, constant in a flight: 5 mg
+  double accelerometer_bias_mps2 = 0.05;
+  /// bias instability of the accelerometer: the floor of its Allan deviation
+  double accelerometer_bias_instability_mps2 = 0;
+  double accelerometer_walk_mps2ps_rthz = 0;  ///< random walk of the accelerometer's bias
+  double accelerometer_scale = 0;  ///< standard deviation of the accelerometer's scale factor error, per axis
+  /// standard deviation of the accelerometer's cross-axis sensitivity
+  double accelerometer_misalignment = 0;
+  /// amplitude of the propeller's vibration in the accelerometer, per newton of thrust
+  double accelerometer_vibration_mps2pn = 0;
+  double accelerometer_range_mps2 = 156.9;   ///< largest specific force that the accelerometer measures: 16 g
+  double accelerometer_step_mps2 = 0.00479;  ///< resolution of the accelerometer: 2048 counts per g
+  /// Frequency of the propeller's vibration at 1 N of thrust; it grows with the square root of the thrust. 1
+  /// / (D^2 sqrt(C_T rho)) with an 8 inch propeller (0.203 m) and a thrust coefficient of 0.1 (typical).
   double propeller_hz_at_1n = 70;
 };
 
@@ -64,16 +73,18 @@ void visit_fields(Visitor& visit, ImuConfig& config) {
 /// noise and bias dominate.
 struct PitotConfig {
   double pressure_noise_pa = 1.5;  ///< noise of one pressure sample, rms
-  double pressure_bias_pa = 1.0;  ///< standard deviation of the bias that remains after zeroing on the ground
-  double pressure_range_pa = 6894;  ///< largest pressure that is measured: 1 psi
-  double pressure_step_pa = 1.05;  ///< resolution of the pressure: 13107 counts over plus and minus the range
-  double bias_mps = 0.0;           ///< further constant error of the airspeed, for experiments
-  double dead_zone_pa = 0;         ///< pressure below which the reading is zero, as drivers do on the ground
-  /// Angle between air and tube up to which the reading is correct. Total-pressure tubes keep within 1 % up
+  /// standard deviation of the pressure bias that remains after zeroing on the ground
+  double pressure_bias_pa = 1.0;
+  double pressure_range_pa = 6894;  ///< largest differential pressure that the sensor measures: 1 psi
+  double pressure_step_pa = 1.05;   ///< resolution of the pressure: the span from -1 to 1 psi in 13107 counts
+  double bias_mps = 0.0;            ///< constant offset added to the measured airspeed, for experiments
+  /// differential pressure below which the reading is set to zero, as drivers do on the ground
+  double dead_zone_pa = 0;
+  /// Largest angle between airflow and tube without a pressure loss. Total-pressure tubes keep within 1 % up
   /// to about 10 to 25 deg, by the shape of the nose (Gracey, Letko & Russell 1951, NACA TN 2331).
   double recovery_angle_rad = 0.26;
-  /// Share of the pressure lost per square radian beyond recovery_angle_rad; 2: a quarter is lost 20 deg
-  /// farther (typical); 0: no loss.
+  /// Share of the pressure lost per square radian of airflow angle beyond recovery_angle_rad. 2: a quarter is
+  /// lost 20 deg beyond it (typical); 0: no loss.
   double recovery_loss = 0;
 };
 
@@ -93,14 +104,14 @@ void visit_fields(Visitor& visit, PitotConfig& config) {
 /// 0.3 m of noise, and an offset that wanders as a first-order Gauss-Markov process, zero at the first
 /// sample.
 struct BarometerConfig {
-  double noise_m = 0.3;        ///< noise of one sample, rms
+  double noise_m = 0.3;        ///< rms noise of one altitude sample
   double step_m = 0.1;         ///< resolution of the altitude
-  double drift_m = 0.5;        ///< standard deviation of the slowly wandering error
-  double drift_time_s = 60.0;  ///< time constant of the wandering error (weather, heat)
-  /// Error of the altitude per newton of thrust, upwards. The propeller's suction lowers the static pressure
-  /// ahead of it by T / 2A times 1 - x / sqrt(x^2 + R^2) at a distance x (momentum theory). An 8 inch disc
-  /// (A = 0.032 m^2) makes 15.4 Pa per newton, 1.3 m of altitude, at the disc, 0.39 m at x = 0.1 m and 0.14 m
-  /// at 0.2 m, with 11.8 Pa per metre.
+  double drift_m = 0.5;        ///< standard deviation of the altitude's slow drift
+  double drift_time_s = 60.0;  ///< time constant of the altitude's slow drift (weather, heat)
+  /// Altitude error per newton of thrust; positive: reads too high. At a distance x ahead of the propeller,
+  /// suction lowers the static pressure by T / 2A times 1 - x / sqrt(x^2 + R^2) (momentum theory). An 8 inch
+  /// disc (A = 0.032 m^2) makes 15.4 Pa per newton at the disc. At 11.8 Pa per metre this is 1.3 m of
+  /// altitude, 0.39 m at x = 0.1 m and 0.14 m at 0.2 m.
   double wash_m_per_n = 0;
 };
 
@@ -119,12 +130,12 @@ void visit_fields(Visitor& visit, BarometerConfig& config) {
 struct MagnetometerConfig {
   double field_ut = 48.0;            ///< strength of the magnetic field
   double inclination_rad = 1.16937;  ///< angle of the field below the horizon: 67 deg
-  double noise_ut = 0.5;             ///< noise of one sample, rms per axis
-  double hard_iron_ut = 0.5;         ///< standard deviation of the constant error, per axis
-  /// Standard deviation of the six numbers of the symmetric matrix by which iron on board distorts the field
-  /// (soft iron and scale), as shares of the field.
+  double noise_ut = 0.5;             ///< rms noise of one magnetometer sample, per axis
+  double hard_iron_ut = 0.5;  ///< standard deviation of the hard-iron bias, constant in a flight, per axis
+  /// Standard deviation of the six independent elements of the symmetric matrix that distorts the field (soft
+  /// iron and scale error), relative to the field.
   double soft_iron = 0;
-  double range_ut = 130.0;  ///< largest field that is measured, per axis
+  double range_ut = 130.0;  ///< largest field that the magnetometer measures, per axis
   double step_ut = 0.073;   ///< resolution of the field; 0: exact
 };
 
@@ -144,13 +155,15 @@ void visit_fields(Visitor& visit, MagnetometerConfig& config) {
 /// position's error wanders with satellites and reflections: a first-order Gauss-Markov process that starts
 /// in its stationary distribution. Across a forest it is nearly constant.
 struct GpsConfig {
-  bool enabled = false;  ///< whether the aircraft has a GPS receiver; the original's avoidance used none
-  double delay_s = 0.2;  ///< time from the measurement of a fix to its arrival
-  double velocity_noise_mps = 0.2;    ///< noise of one velocity, rms per axis
-  double position_noise_m = 0.3;      ///< noise of one position, rms per axis (typical)
-  double position_drift_m = 2.1;      ///< standard deviation of the wandering error, per level axis
-  double position_drift_time_s = 60;  ///< time constant of the wandering position error (typical)
-  double vertical_factor = 1.5;       ///< ratio of vertical to level errors (typical)
+  /// whether the aircraft has a GPS receiver; the original aircraft avoided obstacles without one
+  bool enabled = false;
+  double delay_s = 0.2;             ///< time from the measurement of a fix to its arrival
+  double velocity_noise_mps = 0.2;  ///< rms noise of a GPS velocity, per axis
+  double position_noise_m = 0.3;    ///< rms white noise of a GPS position, per horizontal axis (typical)
+  /// standard deviation of the GPS position's slow drift, per horizontal axis
+  double position_drift_m = 2.1;
+  double position_drift_time_s = 60;  ///< time constant of the GPS position's slow drift (typical)
+  double vertical_factor = 1.5;  ///< ratio of the vertical to the horizontal GPS position error (typical)
 };
 
 template <typename Visitor>
@@ -166,11 +179,11 @@ void visit_fields(Visitor& visit, GpsConfig& config) {
 
 /// Rates must divide 1200 Hz (divides_physics_rate; whoever loads a scenario checks).
 struct SensorsConfig {
-  int imu_rate_hz = 200;          ///< samples of the IMU per second; divides 1200
-  int pitot_rate_hz = 50;         ///< samples of the pitot tube per second; divides 1200
-  int barometer_rate_hz = 50;     ///< samples of the barometer per second; divides 1200
-  int magnetometer_rate_hz = 50;  ///< samples of the magnetometer per second; divides 1200
-  int gps_rate_hz = 5;  ///< fixes of the GPS receiver per second, where sensors.gps.enabled; divides 1200
+  int imu_rate_hz = 200;          ///< IMU samples per second; must divide 1200
+  int pitot_rate_hz = 50;         ///< pitot tube samples per second; must divide 1200
+  int barometer_rate_hz = 50;     ///< barometer samples per second; must divide 1200
+  int magnetometer_rate_hz = 50;  ///< magnetometer samples per second; must divide 1200
+  int gps_rate_hz = 5;            ///< GPS fixes per second, if sensors.gps.enabled; must divide 1200
   ImuConfig imu;
   PitotConfig pitot;
   BarometerConfig barometer;
@@ -233,9 +246,10 @@ inline constexpr std::array<std::pair<std::string_view, FaultKind>, 5> fault_kin
 struct FaultConfig {
   FaultySensor sensor = FaultySensor::pitot;  ///< sensor that fails
   FaultKind kind = FaultKind::dropout;        ///< kind of the failure (docs/sensors.md)
-  double at_s = 0;           ///< simulated time at which the sensor fails; the catapult fires at 0.25 s
+  double at_s = 0;  ///< simulated time at which the sensor fails; by default the catapult fires at 0.25 s
   double duration_s = 1000;  ///< time for which the sensor fails; the default is longer than any flight
-  double value = 0;          ///< size of a bias, limit or blocked reading, in the sensor's unit
+  /// bias: what is added to the reading; saturate: its limit; block: the reading; in the sensor's unit
+  double value = 0;
 };
 
 template <typename Visitor>

@@ -21,8 +21,8 @@ TEST(Keys, ACommentBesideAFieldIsItsMeaningWithUnitAndSource) {
   const Key speed = understory::key_of_field("AirspeedConfig", "usable_mps");
   EXPECT_EQ(speed.unit, "m/s");
   EXPECT_EQ(speed.meaning,
-            "airspeed below which readings are ignored, because they are poor");  // "m/s, 0..20: " is for the
-                                                                                  // header
+            "pitot readings below this airspeed are ignored as inaccurate, unless the estimated "
+            "airspeed exceeds 1.5 times this");  // "m/s, 0..20: " is for the header
   const Key several_lines = understory::key_of_field("FilterConfig", "rate_walk_rthz");
   EXPECT_EQ(several_lines.unit, "rad/s^2/sqrt(Hz)");
   EXPECT_NE(several_lines.meaning.find("50 rad/s^2 for 0.1 s."), std::string::npos) << several_lines.meaning;

@@ -112,7 +112,7 @@ TrialConfig graded_trial(const FlightTrace& flight, std::uint64_t sensor_seed) {
 /// A filter that flies keeps some margin, but knows how good it is.
 void check_margins(Section& section, const std::vector<Consistency>& all, const std::string& where) {
   for (const Consistency& one : all) {
-    const std::string what = one.name + ": mean over dimension, " + where;
+    const std::string what = one.name + ": mean divided by dimension, " + where;
     section.checks.push_back(at_least(what, one.mean_over_degrees, 0.7, ""));
     section.checks.push_back(at_most(what, one.mean_over_degrees, 1.6, ""));
   }
