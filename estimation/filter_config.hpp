@@ -54,8 +54,8 @@ struct SideslipConfig {
   /// 0..1: standard deviation of the side force model's error, as a share of the predicted force
   /// (docs/sources.md [15])
   double model_error = 0.15;
-  /// m/s, 0.01..50: standard deviation of the assumption that the sideways velocity is 0, for the model zero
-  /// (the original's value)
+  /// m/s, 0.01..50: with `model: zero`, standard deviation of the assumed measurement that the sideways
+  /// velocity is 0; the default is the original aircraft's
   double zero_sigma_mps = 2.236;
 };
 
@@ -317,8 +317,8 @@ struct FilterConfig {
   /// 0..1: Scale error and misalignment of the gyro, as a share of the angular rate. The error keeps its sign
   /// during a turn; the filter models it as noise that grows with the angular rate.
   double gyro_scale = 0;
-  /// 0..1: scale error and misalignment of the accelerometer, as a share of the specific force's magnitude
-  /// minus gravity
+  /// 0..1: standard deviation of the accelerometer's scale error and misalignment. The filter models them as
+  /// noise that grows with the difference between specific force and gravity.
   double accelerometer_scale = 0;
   /// m/s^2/N, 0..100: amplitude of the propeller's vibration in the accelerometer, per newton of thrust.
   double vibration_mps2pn = 0;

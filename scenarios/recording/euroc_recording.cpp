@@ -61,6 +61,9 @@ EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario,
     : folder_(folder / "mav0"),
       rig_(rig.rig),
       truth_every_steps_(physics_rate_hz / scenario.sensors.sensors.imu_rate_hz) {
+  // Their images number trees, objects.csv would number pieces.
+  if (scenario.world.world.scenery == Scenery::woods)
+    throw ScenarioError(scenario.name + ": world.scenery: woods cannot be recorded yet, only flown");
   const std::vector<Obstacle> obstacles = course_obstacles(scenario);
   require_free_space(folder_, expected_bytes(scenario, rig.rig, expected_s));
   for (const char* sensor :

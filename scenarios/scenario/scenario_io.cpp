@@ -59,8 +59,7 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
       scenario.forest.length_m * 2 * scenario.forest.half_width_m / scenario.forest.square_metres_per_tree;
   expect(scenario.course != Course::forest || trees <= maximum_obstacles,
          fmt::format("forest.square_metres_per_tree: a forest may have at most {} trees, this one would have "
-                     "about {:.0f} "
-                     "(length_m, half_width_m)",
+                     "about {:.0f} (length_m, half_width_m)",
                      maximum_obstacles, trees));
   const double palings = palings_of(scenario.fence, scenario.goal_x_m());
   expect(scenario.course != Course::fence || palings <= maximum_obstacles,
@@ -68,6 +67,9 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
                      maximum_obstacles, palings));
   expect(scenario.goalposts.pass_minimum_m <= scenario.goalposts.pass_maximum_m,
          "goalposts.pass_minimum_m: must be at most goalposts.pass_maximum_m");
+  expect(scenario.world.world.scenery == Scenery::plain || scenario.course == Course::forest ||
+             scenario.course == Course::clear,
+         "world.scenery: woods requires the course forest or clear");
   expect(scenario.fence.opening_m < 2 * scenario.fence.reach_m,
          "fence.opening_m: must be less than twice fence.reach_m");
   expect(scenario.actuators.pitch_speed_mps == 0 ||

@@ -104,6 +104,16 @@ Eye chase_eye(const Eigen::Isometry3d& T_world_body, int width_px, int height_px
   return eye;
 }
 
+/// The wood of a world, within the rectangle that its trees fill.
+WoodsMesh woods_mesh(const World& world) {
+  Eigen::AlignedBox2d stand;
+  for (const Tree& tree : world.trees)
+    stand.extend(Eigen::Vector2d(world.obstacles[tree.first].from_world.head<2>()));
+  if (stand.isEmpty()) stand = Eigen::AlignedBox2d(Eigen::Vector2d(0, -25), Eigen::Vector2d(60, 25));
+  const std::uint64_t seed = world.trees.empty() ? 1 : world.trees.front().seed;
+  return woods_mesh(world.obstacles, world.trees, stand, world.config.woods, seed);
+}
+
 struct StereoCameras::Implementation {
   const mjModel& model;
   StereoRig rig;
@@ -116,12 +126,12 @@ struct StereoCameras::Implementation {
   PoseHistory poses;
 
   Implementation(const mjModel& model_, const StereoRig& rig_, const CameraConfig& config_, CameraSeeds seeds,
-                 const std::optional<StereoCalibration>& raw, RendererKind renderer)
+                 const std::optional<StereoCalibration>& raw, RendererKind renderer, const WoodsMesh* woods)
       : model(model_),
         rig(rig_),
         config(config_),
         optics(rig, config, raw),
-        scene(model, config.view_distance_m, 2 * rig.width_px, rig.height_px, renderer),
+        scene(model, config.view_distance_m, 2 * rig.width_px, rig.height_px, renderer, woods),
         response(config, falloff_of(optics, config), seeds.shot),
         noise(config.noise_gray, seeds.noise),
         exposure_ns(config.exposure_ns()),
@@ -156,7 +166,10 @@ StereoCameras::StereoCameras(const World& world, const StereoRig& rig, const Cam
                              CameraSeeds seeds, const std::optional<StereoCalibration>& raw,
                              RendererKind renderer) {
   paint_textures(*world.model, world.config);
-  implementation_ = std::make_unique<Implementation>(*world.model, rig, config, seeds, raw, renderer);
+  std::optional<WoodsMesh> woods;
+  if (world.config.scenery == Scenery::woods) woods = woods_mesh(world);
+  implementation_ = std::make_unique<Implementation>(*world.model, rig, config, seeds, raw, renderer,
+                                                     woods ? &*woods : nullptr);
 }
 
 StereoCameras::~StereoCameras() = default;

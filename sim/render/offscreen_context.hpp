@@ -37,6 +37,8 @@ class OffscreenContext {
   /// Textures are looked up in the nearest level of their pyramid, bilinearly: blending two levels doubles
   /// the cost.
   void use_nearest_mipmap(unsigned texture) const;
+  /// The OpenGL function of this name; the context must be current.
+  void* function(const char* name) const { return backend_->function(name); }
   /// The OpenGL implementation's own name and version.
   std::string renderer() const;
 

@@ -108,7 +108,7 @@ struct SceneRenderer::Scene {
 };
 
 SceneRenderer::SceneRenderer(const mjModel& model, double view_distance_m, int width_px, int height_px,
-                             RendererKind renderer)
+                             RendererKind renderer, const WoodsMesh* woods)
     : model_(model),
       view_distance_m_(view_distance_m),
       gl_({.renderer = renderer}),
@@ -120,10 +120,12 @@ SceneRenderer::SceneRenderer(const mjModel& model, double view_distance_m, int w
   mjv_makeScene(&model_, &scene_->shown, model_.ngeom + 100);
   plain_rendering(scene_->shown);
   gather_scenery();
+  if (woods != nullptr) woods_ = std::make_unique<WoodsPass>(*woods, gl_);
 }
 
 SceneRenderer::~SceneRenderer() {
-  gl_.make_current(64, 64);  // MuJoCo deletes its GL objects in the current context
+  gl_.make_current(64, 64);  // both delete their GL objects in the current context
+  woods_.reset();
   mjv_freeScene(&scene_->shown);
   mjr_freeContext(&scene_->context);
 }
@@ -205,9 +207,14 @@ void SceneRenderer::fill_scene(const std::array<Eye, 2>& eyes) {
   light(scene_->shown);
 }
 
-const std::uint8_t* SceneRenderer::render(const std::array<Eye, 2>& eyes) {
+const std::uint8_t* SceneRenderer::render(const std::array<Eye, 2>& eyes, WoodsDrawing drawing) {
   // Another renderer may have drawn since.
   gl_.make_current(2 * eyes[0].width_px, eyes[0].height_px);
+  if (woods_ != nullptr) {
+    for (const std::size_t eye : {0, 1})
+      woods_->draw(eyes, eye, eye == 0 ? 0 : eyes[0].width_px, drawing, {}, eye == 0);
+    return gl_.finished_pixels();
+  }
   fill_scene(eyes);
   scene_->shown.stereo = mjSTEREO_SIDEBYSIDE;
   mjr_render({0, 0, 2 * eyes[0].width_px, eyes[0].height_px}, &scene_->shown, &scene_->context);
@@ -229,7 +236,7 @@ cv::Mat SceneRenderer::left_depth(const std::array<Eye, 2>& eyes) {
 TrueView SceneRenderer::true_left_view(const std::array<Eye, 2>& eyes) {
   scene_->shown.flags[mjRND_SEGMENT] = scene_->shown.flags[mjRND_IDCOLOR] =
       1;  // flat: a geom's number for its colour
-  const std::uint8_t* pixels = render(eyes);
+  const std::uint8_t* pixels = render(eyes, WoodsDrawing::numbers);
   scene_->shown.flags[mjRND_SEGMENT] = scene_->shown.flags[mjRND_IDCOLOR] = 0;
   return {read_depth(eyes[0]), object_numbers(pixels, 2 * eyes[0].width_px, eyes[0])};
 }
@@ -252,6 +259,7 @@ cv::Mat SceneRenderer::colour_with_aircraft(const mjData& data, const Eye& eye) 
   scene_->shown.stereo = mjSTEREO_NONE;
   gl_.make_current(eye.width_px, eye.height_px);
   mjr_render({0, 0, eye.width_px, eye.height_px}, &scene_->shown, &scene_->context);
+  if (woods_ != nullptr) woods_->draw({eye, eye}, 0, 0, WoodsDrawing::shaded, {.near_m = 60}, false);
   return colour_with_sky(gl_.finished_pixels(), eye);
 }
 

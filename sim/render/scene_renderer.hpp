@@ -7,6 +7,7 @@
 
 #include "sim/render/eye.hpp"
 #include "sim/render/offscreen_context.hpp"
+#include "sim/render/woods_pass.hpp"
 #include "sim/scene/world.hpp"
 
 namespace understory {
@@ -15,9 +16,10 @@ namespace understory {
 class SceneRenderer {
  public:
   /// Keeps a reference to the model. The size is that of the first picture; others may follow. Throws
-  /// std::runtime_error in one line where no GL library can be loaded.
+  /// std::runtime_error in one line where no GL library can be loaded. With `woods` these are drawn as the
+  /// scenery, and of the model only the aircraft.
   SceneRenderer(const mjModel_& model, double view_distance_m, int width_px, int height_px,
-                RendererKind renderer);
+                RendererKind renderer, const WoodsMesh* woods = nullptr);
   ~SceneRenderer();
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;
@@ -42,7 +44,7 @@ class SceneRenderer {
   void update_scene(const mjData_& data, bool with_aircraft);
   void fill_scene(const std::array<Eye, 2>& eyes);
   /// RGBA of both eyes side by side, as OffscreenContext::finished_pixels.
-  const std::uint8_t* render(const std::array<Eye, 2>& eyes);
+  const std::uint8_t* render(const std::array<Eye, 2>& eyes, WoodsDrawing drawing = WoodsDrawing::shaded);
   /// Of the left eye's view as last rendered.
   cv::Mat read_depth(const Eye& eye);
 
@@ -51,6 +53,7 @@ class SceneRenderer {
   bool culls_ = true;
   OffscreenContext gl_;
   std::unique_ptr<Scene> scene_;
+  std::unique_ptr<WoodsPass> woods_;
 };
 
 }  // namespace understory

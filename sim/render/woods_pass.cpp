@@ -1,0 +1,390 @@
+#include "sim/render/woods_pass.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/render/offscreen_context.hpp"
+#include "sim/scene/textures.hpp"
+
+namespace understory {
+namespace {
+
+// From the OpenGL 2.0 specification: the headers are not needed for so few.
+enum : unsigned {
+  gl_float = 0x1406,
+  gl_unsigned_int = 0x1405,
+  gl_unsigned_byte_type = 0x1401,
+  gl_triangles = 0x0004,
+  gl_array_buffer = 0x8892,
+  gl_element_array_buffer = 0x8893,
+  gl_static_draw = 0x88E4,
+  gl_vertex_shader = 0x8B31,
+  gl_fragment_shader = 0x8B30,
+  gl_compile_status = 0x8B81,
+  gl_link_status = 0x8B82,
+  gl_texture_2d = 0x0DE1,
+  gl_texture0 = 0x84C0,
+  gl_rgba_format = 0x1908,
+  gl_linear = 0x2601,
+  gl_nearest_mipmap = 0x2701,
+  gl_min_filter = 0x2801,
+  gl_mag_filter = 0x2800,
+  gl_all_attrib_bits = 0xFFFFF,
+  gl_client_all = 0xFFFFFFFF,
+  gl_depth_test = 0x0B71,
+  gl_cull_face = 0x0B44,
+  gl_blend = 0x0BE2,
+  gl_scissor_test = 0x0C11,
+  gl_lequal = 0x0203,
+  gl_color_bit = 0x4000,
+  gl_depth_bit = 0x0100,
+  gl_unpack = 0x0CF5
+};
+
+constexpr const char* vertex_source = R"(#version 110
+attribute vec3 position;
+attribute vec2 texture;
+attribute vec4 tint;
+attribute vec4 object;
+uniform mat4 clip_from_world;
+uniform vec3 eye;
+uniform vec3 to_sun;
+uniform float haze_m;
+varying vec2 at;
+varying vec3 colour;
+varying vec3 dappled;
+varying float clear;
+varying vec4 number;
+void main() {
+  gl_Position = clip_from_world * vec4(position, 1.0);
+  at = texture;
+  colour = tint.rgb * 2.0;
+  vec2 shadow = position.xy - to_sun.xy * (position.z / max(to_sun.z, 0.2));
+  dappled = vec3(shadow / 16.0, tint.a);
+  clear = exp(-distance(position, eye) / haze_m);
+  number = object;
+})";
+constexpr const char* shaded_source = R"(#version 110
+uniform sampler2D picture;
+uniform sampler2D dapple;
+uniform vec3 haze;
+varying vec2 at;
+varying vec3 colour;
+varying vec3 dappled;
+varying float clear;
+void main() {
+  vec4 texel = texture2D(picture, at);
+  if (texel.a < 0.4) discard;
+  float light = mix(1.0, texture2D(dapple, dappled.xy).r * 2.0, dappled.z);
+  gl_FragColor = vec4(mix(haze, texel.rgb * colour * light, clear), 1.0);
+})";
+constexpr const char* numbers_source = R"(#version 110
+uniform sampler2D picture;
+varying vec2 at;
+varying vec4 number;
+void main() {
+  if (texture2D(picture, at).a < 0.4) discard;
+  gl_FragColor = vec4(number.rg, 0.0, 1.0);
+})";
+
+/// The few functions that are needed, looked up once.
+struct Gl {
+  explicit Gl(const OffscreenContext& context) {
+    const auto find = [&](auto& function, const char* name) {
+      function = as_function<std::remove_reference_t<decltype(function)>>(context.function(name));
+      if (function == nullptr) throw std::runtime_error(std::string("this OpenGL has no ") + name);
+    };
+    find(CreateShader, "glCreateShader"), find(ShaderSource, "glShaderSource"),
+        find(CompileShader, "glCompileShader");
+    find(GetShaderiv, "glGetShaderiv"), find(CreateProgram, "glCreateProgram"),
+        find(AttachShader, "glAttachShader");
+    find(BindAttribLocation, "glBindAttribLocation"), find(LinkProgram, "glLinkProgram"),
+        find(GetProgramiv, "glGetProgramiv");
+    find(UseProgram, "glUseProgram"), find(DeleteProgram, "glDeleteProgram"),
+        find(DeleteShader, "glDeleteShader");
+    find(GetUniformLocation, "glGetUniformLocation"), find(UniformMatrix4fv, "glUniformMatrix4fv");
+    find(Uniform3f, "glUniform3f"), find(Uniform1f, "glUniform1f"), find(Uniform1i, "glUniform1i");
+    find(GenBuffers, "glGenBuffers"), find(BindBuffer, "glBindBuffer"), find(BufferData, "glBufferData");
+    find(DeleteBuffers, "glDeleteBuffers"), find(VertexAttribPointer, "glVertexAttribPointer");
+    find(EnableVertexAttribArray, "glEnableVertexAttribArray"),
+        find(DisableVertexAttribArray, "glDisableVertexAttribArray");
+    find(MultiDrawElements, "glMultiDrawElements"), find(ActiveTexture, "glActiveTexture");
+    find(GenTextures, "glGenTextures"), find(BindTexture, "glBindTexture"), find(TexImage2D, "glTexImage2D");
+    find(TexParameteri, "glTexParameteri"), find(DeleteTextures, "glDeleteTextures"),
+        find(PixelStorei, "glPixelStorei");
+    find(Enable, "glEnable"), find(Disable, "glDisable"), find(DepthFunc, "glDepthFunc"),
+        find(DepthMask, "glDepthMask");
+    find(DepthRange, "glDepthRange"), find(ColorMask, "glColorMask"), find(Viewport, "glViewport"),
+        find(Clear, "glClear");
+    find(ClearColor, "glClearColor"), find(PushAttrib, "glPushAttrib"), find(PopAttrib, "glPopAttrib");
+    find(PushClientAttrib, "glPushClientAttrib"), find(PopClientAttrib, "glPopClientAttrib");
+  }
+  unsigned (*CreateShader)(unsigned);
+  void (*ShaderSource)(unsigned, int, const char* const*, const int*);
+  void (*CompileShader)(unsigned);
+  void (*GetShaderiv)(unsigned, unsigned, int*);
+  unsigned (*CreateProgram)();
+  void (*AttachShader)(unsigned, unsigned);
+  void (*BindAttribLocation)(unsigned, unsigned, const char*);
+  void (*LinkProgram)(unsigned);
+  void (*GetProgramiv)(unsigned, unsigned, int*);
+  void (*UseProgram)(unsigned);
+  void (*DeleteProgram)(unsigned);
+  void (*DeleteShader)(unsigned);
+  int (*GetUniformLocation)(unsigned, const char*);
+  void (*UniformMatrix4fv)(int, int, unsigned char, const float*);
+  void (*Uniform3f)(int, float, float, float);
+  void (*Uniform1f)(int, float);
+  void (*Uniform1i)(int, int);
+  void (*GenBuffers)(int, unsigned*);
+  void (*BindBuffer)(unsigned, unsigned);
+  void (*BufferData)(unsigned, std::ptrdiff_t, const void*, unsigned);
+  void (*DeleteBuffers)(int, const unsigned*);
+  void (*VertexAttribPointer)(unsigned, int, unsigned, unsigned char, int, const void*);
+  void (*EnableVertexAttribArray)(unsigned);
+  void (*DisableVertexAttribArray)(unsigned);
+  void (*MultiDrawElements)(unsigned, const int*, unsigned, const void* const*, int);
+  void (*ActiveTexture)(unsigned);
+  void (*GenTextures)(int, unsigned*);
+  void (*BindTexture)(unsigned, unsigned);
+  void (*TexImage2D)(unsigned, int, int, int, int, int, unsigned, unsigned, const void*);
+  void (*TexParameteri)(unsigned, unsigned, int);
+  void (*DeleteTextures)(int, const unsigned*);
+  void (*PixelStorei)(unsigned, int);
+  void (*Enable)(unsigned);
+  void (*Disable)(unsigned);
+  void (*DepthFunc)(unsigned);
+  void (*DepthMask)(unsigned char);
+  void (*DepthRange)(double, double);
+  void (*ColorMask)(unsigned char, unsigned char, unsigned char, unsigned char);
+  void (*Viewport)(int, int, int, int);
+  void (*Clear)(unsigned);
+  void (*ClearColor)(float, float, float, float);
+  void (*PushAttrib)(unsigned);
+  void (*PopAttrib)();
+  void (*PushClientAttrib)(unsigned);
+  void (*PopClientAttrib)();
+};
+
+/// Clip coordinates of OpenGL from the world, column by column.
+Eigen::Matrix4f clip_from_world(const Eye& eye) {
+  const double left = -(eye.center_x_px + 0.5), right = eye.width_px - 0.5 - eye.center_x_px;
+  const double top = eye.center_y_px + 0.5, bottom = -(eye.height_px - 0.5 - eye.center_y_px);
+  Eigen::Matrix4d projection = Eigen::Matrix4d::Zero();
+  projection(0, 0) = 2 * eye.focal_px / (right - left);
+  projection(0, 2) = (right + left) / (right - left);
+  projection(1, 1) = 2 * eye.focal_px / (top - bottom);
+  projection(1, 2) = (top + bottom) / (top - bottom);
+  projection(2, 2) = -(far_m + near_m) / (far_m - near_m);
+  projection(2, 3) = -2 * far_m * near_m / (far_m - near_m);
+  projection(3, 2) = -1;
+  Eigen::Isometry3d T_camera_world = eye.T_world_camera.inverse();
+  Eigen::Matrix4d flipped = T_camera_world.matrix();  // OpenCV's y looks down and its z ahead
+  flipped.row(1) *= -1;
+  flipped.row(2) *= -1;
+  return (projection * flipped).cast<float>();
+}
+
+/// Half as large: colour averaged with its alpha as weight, so that leaves keep theirs; alpha a little
+/// raised, so that leaves far away do not vanish.
+WoodsPicture half_of(const WoodsPicture& picture) {
+  WoodsPicture half{std::max(1, picture.width_px / 2), std::max(1, picture.height_px / 2), {}};
+  half.rgba.resize(static_cast<std::size_t>(4 * half.width_px * half.height_px));
+  const int step_x = picture.width_px / half.width_px, step_y = picture.height_px / half.height_px;
+  for (int y = 0; y < half.height_px; ++y)
+    for (int x = 0; x < half.width_px; ++x) {
+      int sum[3] = {0, 0, 0}, alpha = 0, plain[3] = {0, 0, 0};
+      for (int v = 0; v < step_y; ++v)
+        for (int u = 0; u < step_x; ++u) {
+          const std::uint8_t* from =
+              picture.rgba.data() + 4 * ((y * step_y + v) * picture.width_px + x * step_x + u);
+          for (int i = 0; i < 3; ++i) sum[i] += from[i] * from[3], plain[i] += from[i];
+          alpha += from[3];
+        }
+      const int count = step_x * step_y;
+      std::uint8_t* to = half.rgba.data() + 4 * (y * half.width_px + x);
+      for (int i = 0; i < 3; ++i)
+        to[i] = static_cast<std::uint8_t>(alpha > 0 ? sum[i] / alpha : plain[i] / count);
+      to[3] = static_cast<std::uint8_t>(std::min(255, alpha * 21 / (20 * count)));
+    }
+  return half;
+}
+
+}  // namespace
+
+struct WoodsPass::Implementation {
+  Gl gl;
+  std::vector<WoodsPart> parts;
+  Eigen::Vector3f to_sun;
+  float haze_m;
+  std::array<unsigned, 2> programs{};                        ///< by WoodsDrawing
+  std::array<unsigned, 2> buffers{};                         ///< vertices, indices
+  std::array<unsigned, woods_texture_count + 1> textures{};  ///< the last: the dapple
+
+  Implementation(const WoodsMesh& mesh, const OffscreenContext& context)
+      : gl(context),
+        parts(mesh.parts),
+        to_sun(mesh.to_sun_world.cast<float>()),
+        haze_m(static_cast<float>(mesh.haze_m)) {
+    programs = {program_of(shaded_source), program_of(numbers_source)};
+    gl.GenBuffers(2, buffers.data());
+    gl.BindBuffer(gl_array_buffer, buffers[0]);
+    gl.BufferData(gl_array_buffer, static_cast<std::ptrdiff_t>(mesh.vertices.size() * sizeof(WoodsVertex)),
+                  mesh.vertices.data(), gl_static_draw);
+    gl.BindBuffer(gl_element_array_buffer, buffers[1]);
+    gl.BufferData(gl_element_array_buffer,
+                  static_cast<std::ptrdiff_t>(mesh.indices.size() * sizeof(std::uint32_t)),
+                  mesh.indices.data(), gl_static_draw);
+    gl.BindBuffer(gl_array_buffer, 0);
+    gl.BindBuffer(gl_element_array_buffer, 0);
+    gl.GenTextures(static_cast<int>(textures.size()), textures.data());
+    for (std::size_t i = 0; i < woods_texture_count; ++i) upload(textures[i], mesh.textures[i]);
+    upload(textures.back(), mesh.dapple);
+    gl.BindTexture(gl_texture_2d, 0);
+  }
+
+  unsigned program_of(const char* fragment_source) const {
+    const unsigned program = gl.CreateProgram();
+    for (const auto& [kind, source] :
+         {std::pair(gl_vertex_shader, vertex_source), std::pair(gl_fragment_shader, fragment_source)}) {
+      const unsigned shader = gl.CreateShader(kind);
+      gl.ShaderSource(shader, 1, &source, nullptr);
+      gl.CompileShader(shader);
+      int compiled = 0;
+      gl.GetShaderiv(shader, gl_compile_status, &compiled);
+      if (compiled == 0) throw std::runtime_error("this OpenGL cannot compile the woods' shaders");
+      gl.AttachShader(program, shader);
+      gl.DeleteShader(shader);
+    }
+    const std::array<const char*, 4> attributes{"position", "texture", "tint", "object"};
+    for (unsigned i = 0; i < attributes.size(); ++i) gl.BindAttribLocation(program, i, attributes[i]);
+    gl.LinkProgram(program);
+    int linked = 0;
+    gl.GetProgramiv(program, gl_link_status, &linked);
+    if (linked == 0) throw std::runtime_error("this OpenGL cannot link the woods' shaders");
+    return program;
+  }
+
+  void upload(unsigned texture, WoodsPicture picture) const {
+    if (picture.rgba.empty()) return;
+    gl.BindTexture(gl_texture_2d, texture);
+    gl.PixelStorei(gl_unpack, 1);
+    gl.TexParameteri(gl_texture_2d, gl_min_filter, gl_nearest_mipmap);
+    gl.TexParameteri(gl_texture_2d, gl_mag_filter, gl_linear);
+    for (int level = 0;; ++level) {
+      gl.TexImage2D(gl_texture_2d, level, gl_rgba_format, picture.width_px, picture.height_px, 0,
+                    gl_rgba_format, gl_unsigned_byte_type, picture.rgba.data());
+      if (picture.width_px == 1 && picture.height_px == 1) return;
+      picture = half_of(picture);
+    }
+  }
+
+  /// Ranges to draw with one texture.
+  struct Batch {
+    std::vector<int> counts;
+    std::vector<const void*> offsets;
+    void add(const WoodsRange& range) {
+      if (range.count == 0) return;
+      counts.push_back(static_cast<int>(range.count));
+      offsets.push_back(reinterpret_cast<const void*>(sizeof(std::uint32_t) * range.first));
+    }
+  };
+
+  std::array<Batch, woods_texture_count> batches_for(const std::array<Eye, 2>& eyes,
+                                                     const WoodsDetail& detail) const {
+    std::vector<std::pair<double, const WoodsPart*>> seen;
+    for (const WoodsPart& part : parts) {
+      const Eigen::Vector3d eye = eyes[0].T_world_camera.translation();
+      const double range_m = part.box_world.exteriorDistance(eye);
+      GeomBox box;
+      box.T_world_box.translation() = part.box_world.center();
+      box.half_size = 0.5 * part.box_world.sizes();
+      if (range_m < detail.reach_m && (may_see(eyes[0], box) || may_see(eyes[1], box)))
+        seen.emplace_back(range_m, &part);
+    }
+    std::ranges::stable_sort(seen, {}, [](const auto& one) { return one.first; });
+    std::array<Batch, woods_texture_count> batches;
+    for (const auto& [range_m, part] : seen) {
+      const std::size_t far = range_m > detail.near_m;
+      batches[static_cast<std::size_t>(part->texture)].add(part->solid[far]);
+      batches[static_cast<std::size_t>(WoodsTexture::leaves)].add(part->leaves[far]);
+    }
+    return batches;
+  }
+
+  void set_state(const Eye& eye, int left_px, WoodsDrawing drawing) const {
+    gl.Viewport(left_px, 0, eye.width_px, eye.height_px);
+    for (const unsigned off : {gl_cull_face, gl_blend, gl_scissor_test}) gl.Disable(off);
+    gl.Enable(gl_depth_test);
+    gl.DepthFunc(gl_lequal);
+    gl.DepthMask(1);
+    gl.DepthRange(0, 1);
+    gl.ColorMask(1, 1, 1, 1);
+    const unsigned program = programs[static_cast<std::size_t>(drawing)];
+    gl.UseProgram(program);
+    const Eigen::Matrix4f clip = clip_from_world(eye);
+    gl.UniformMatrix4fv(gl.GetUniformLocation(program, "clip_from_world"), 1, 0, clip.data());
+    const Eigen::Vector3f place = eye.T_world_camera.translation().cast<float>();
+    gl.Uniform3f(gl.GetUniformLocation(program, "eye"), place.x(), place.y(), place.z());
+    gl.Uniform3f(gl.GetUniformLocation(program, "to_sun"), to_sun.x(), to_sun.y(), to_sun.z());
+    gl.Uniform3f(gl.GetUniformLocation(program, "haze"), 0.74f, 0.78f, 0.74f);
+    gl.Uniform1f(gl.GetUniformLocation(program, "haze_m"), haze_m);
+    gl.Uniform1i(gl.GetUniformLocation(program, "picture"), 0);
+    gl.Uniform1i(gl.GetUniformLocation(program, "dapple"), 1);
+    gl.ActiveTexture(gl_texture0 + 1);
+    gl.BindTexture(gl_texture_2d, textures.back());
+    gl.ActiveTexture(gl_texture0);
+    gl.BindBuffer(gl_array_buffer, buffers[0]);
+    gl.BindBuffer(gl_element_array_buffer, buffers[1]);
+    const auto attribute = [&](unsigned index, int size, unsigned type, bool scaled, std::size_t offset) {
+      gl.EnableVertexAttribArray(index);
+      gl.VertexAttribPointer(index, size, type, scaled, sizeof(WoodsVertex),
+                             reinterpret_cast<const void*>(offset));
+    };
+    attribute(0, 3, gl_float, false, offsetof(WoodsVertex, position_world));
+    attribute(1, 2, gl_float, false, offsetof(WoodsVertex, texture));
+    attribute(2, 4, gl_unsigned_byte_type, true, offsetof(WoodsVertex, tint));
+    attribute(3, 4, gl_unsigned_byte_type, true, offsetof(WoodsVertex, object));
+  }
+};
+
+WoodsPass::WoodsPass(const WoodsMesh& mesh, const OffscreenContext& context)
+    : implementation_(std::make_unique<Implementation>(mesh, context)) {}
+
+WoodsPass::~WoodsPass() {
+  const Implementation& my = *implementation_;
+  for (const unsigned program : my.programs) my.gl.DeleteProgram(program);
+  my.gl.DeleteBuffers(2, my.buffers.data());
+  my.gl.DeleteTextures(static_cast<int>(my.textures.size()), my.textures.data());
+}
+
+void WoodsPass::draw(const std::array<Eye, 2>& eyes, std::size_t which, int left_px, WoodsDrawing drawing,
+                     const WoodsDetail& detail, bool clears) {
+  const Implementation& my = *implementation_;
+  my.gl.PushAttrib(gl_all_attrib_bits);
+  my.gl.PushClientAttrib(gl_client_all);
+  my.set_state(eyes[which], left_px, drawing);
+  if (clears) {
+    my.gl.ClearColor(0, 0, 0, 0);
+    my.gl.Clear(gl_color_bit | gl_depth_bit);
+  }
+  const auto batches = my.batches_for(eyes, detail);
+  for (std::size_t i = 0; i < batches.size(); ++i) {
+    if (batches[i].counts.empty()) continue;
+    my.gl.BindTexture(gl_texture_2d, my.textures[i]);
+    my.gl.MultiDrawElements(gl_triangles, batches[i].counts.data(), gl_unsigned_int,
+                            batches[i].offsets.data(), static_cast<int>(batches[i].counts.size()));
+  }
+  for (unsigned index = 0; index < 4; ++index) my.gl.DisableVertexAttribArray(index);
+  my.gl.BindBuffer(gl_array_buffer, 0);
+  my.gl.BindBuffer(gl_element_array_buffer, 0);
+  my.gl.UseProgram(0);
+  my.gl.PopClientAttrib();
+  my.gl.PopAttrib();
+}
+
+}  // namespace understory

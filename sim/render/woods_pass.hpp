@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+
+#include "sim/render/eye.hpp"
+#include "sim/scene/woods_mesh.hpp"
+
+namespace understory {
+
+class OffscreenContext;
+
+/// What is drawn of a wood: images shade it, numbers give each pixel the number of its object.
+enum class WoodsDrawing { shaded, numbers };
+/// How far detail is drawn: cameras draw the cheaper design beyond `near_m`.
+struct WoodsDetail {
+  double near_m = 22;
+  double reach_m = 110;  ///< nothing is drawn beyond
+};
+
+/// Draws a wood with OpenGL in the context that is current, beside what MuJoCo draws. Keeps the mesh in the
+/// context's memory. Needs OpenGL 2.0; restores the state that MuJoCo relies on.
+class WoodsPass {
+ public:
+  /// Throws std::runtime_error in one line where the context cannot compile the shaders.
+  WoodsPass(const WoodsMesh& mesh, const OffscreenContext& context);
+  ~WoodsPass();
+  WoodsPass(const WoodsPass&) = delete;
+  WoodsPass& operator=(const WoodsPass&) = delete;
+
+  /// Into the current picture at column `left_px`. What both eyes see is chosen by both, so that leaves far
+  /// away are the same for both. `clears` empties the picture first.
+  void draw(const std::array<Eye, 2>& eyes, std::size_t which, int left_px, WoodsDrawing drawing,
+            const WoodsDetail& detail, bool clears);
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace understory
