@@ -63,6 +63,9 @@ Scenario scenario_of_run(const fs::path& run) {
   if (!fs::exists(run / "scenario.yaml", ignored))
     throw ScenarioError(
         fmt::format("{}: neither the folder of a run (with scenario.yaml) nor of a campaign", run.string()));
+  if (fs::exists(run / "mav0", ignored) && !fs::exists(run / "result.json", ignored))
+    throw ScenarioError(
+        fmt::format("{}: recorded along a path: nothing flew, so there is no report", run.string()));
   return load_scenario(run / "scenario.yaml");
 }
 
