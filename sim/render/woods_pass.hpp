@@ -15,8 +15,8 @@ class OffscreenContext;
 enum class WoodsDrawing { shaded, numbers };
 /// How far detail is drawn: cameras draw the cheaper design beyond `near_m`.
 struct WoodsDetail {
-  double near_m = 22;
-  double reach_m = 110;  ///< nothing is drawn beyond
+  double near_m = 14;
+  double reach_m = 80;  ///< nothing is drawn beyond
 };
 
 /// Draws a wood with OpenGL in the context that is current, beside what MuJoCo draws. Keeps the mesh in the

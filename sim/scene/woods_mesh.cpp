@@ -246,7 +246,7 @@ class Builder {
                       leaves(110, 1.1);
                       add_leaves_of_branches(number);
                     }),
-                    range_of([&] { leaves(36, 2.0); })};
+                    range_of([&] { leaves(18, 2.4); })};
     mesh_.parts.push_back(part_);
   }
 
@@ -273,7 +273,7 @@ class Builder {
     const Eigen::AlignedBox2d reach(stand_.min() - Vector2d::Constant(far_reach_m),
                                     stand_.max() + Vector2d::Constant(far_reach_m));
     const double density = std::max(0.01, static_cast<double>(models.size()) / stand_.volume());
-    const int count = static_cast<int>(0.8 * density * reach.volume());
+    const int count = static_cast<int>(0.5 * density * reach.volume());
     for (int i = 0; i < count; ++i) {
       const Vector2d place(uniform(reach.min().x(), reach.max().x()),
                            uniform(reach.min().y(), reach.max().y()));
@@ -293,7 +293,7 @@ class Builder {
         add_tube({foot, top}, {1.1 * radius_m, 0.02}, 5, colours[static_cast<std::size_t>(tree.kind)].bark,
                  turn, numbers_.far_wood());
       });
-      const WoodsRange crown = range_of([&] { add_crown(tree, foot, top, 26, 2.4, numbers_.far_wood()); });
+      const WoodsRange crown = range_of([&] { add_crown(tree, foot, top, 10, 3.2, numbers_.far_wood()); });
       part_.solid = {stem, stem};
       part_.leaves = {crown, crown};
       mesh_.parts.push_back(part_);

@@ -146,7 +146,7 @@ TEST(Woods, DrawnTrunksLieWhereTheirCapsulesAre) {
         const Vector3d place =
             T_world_camera * (depth_m * Vector3d((column - rig.center_left_x_px) / rig.focal_px,
                                                  (row - rig.center_y_px) / rig.focal_px, 1));
-        if (depth_m > 20 || place.z() < 1 || place.z() > 6) continue;  // far away with fewer sides; the band
+        if (depth_m > 13 || place.z() < 1 || place.z() > 6) continue;  // far away with fewer sides; the band
         const Tree& tree = wood.trees[static_cast<std::size_t>(number) / 3];
         double nearest_m = 1e9;
         for (std::size_t i = tree.first; i < tree.first + tree.trunk_pieces; ++i) {
