@@ -211,8 +211,7 @@ const std::uint8_t* SceneRenderer::render(const std::array<Eye, 2>& eyes, WoodsD
   // Another renderer may have drawn since.
   gl_.make_current(2 * eyes[0].width_px, eyes[0].height_px);
   if (woods_ != nullptr) {
-    for (const std::size_t eye : {0, 1})
-      woods_->draw(eyes, eye, eye == 0 ? 0 : eyes[0].width_px, drawing, {}, eye == 0);
+    woods_->draw(eyes, 2, drawing, {}, true);
     return gl_.finished_pixels();
   }
   fill_scene(eyes);
@@ -259,7 +258,7 @@ cv::Mat SceneRenderer::colour_with_aircraft(const mjData& data, const Eye& eye) 
   scene_->shown.stereo = mjSTEREO_NONE;
   gl_.make_current(eye.width_px, eye.height_px);
   mjr_render({0, 0, eye.width_px, eye.height_px}, &scene_->shown, &scene_->context);
-  if (woods_ != nullptr) woods_->draw({eye, eye}, 0, 0, WoodsDrawing::shaded, {.near_m = 60}, false);
+  if (woods_ != nullptr) woods_->draw({eye, eye}, 1, WoodsDrawing::shaded, {.near_m = 60}, false);
   return colour_with_sky(gl_.finished_pixels(), eye);
 }
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "sim/render/offscreen_context.hpp"
-#include "sim/scene/textures.hpp"
 
 namespace understory {
 namespace {
@@ -362,22 +361,24 @@ WoodsPass::~WoodsPass() {
   my.gl.DeleteTextures(static_cast<int>(my.textures.size()), my.textures.data());
 }
 
-void WoodsPass::draw(const std::array<Eye, 2>& eyes, std::size_t which, int left_px, WoodsDrawing drawing,
+void WoodsPass::draw(const std::array<Eye, 2>& eyes, std::size_t count, WoodsDrawing drawing,
                      const WoodsDetail& detail, bool clears) {
   const Implementation& my = *implementation_;
   my.gl.PushAttrib(gl_all_attrib_bits);
   my.gl.PushClientAttrib(gl_client_all);
-  my.set_state(eyes[which], left_px, drawing);
-  if (clears) {
-    my.gl.ClearColor(0, 0, 0, 0);
-    my.gl.Clear(gl_color_bit | gl_depth_bit);
-  }
   const auto batches = my.batches_for(eyes, detail);
-  for (std::size_t i = 0; i < batches.size(); ++i) {
-    if (batches[i].counts.empty()) continue;
-    my.gl.BindTexture(gl_texture_2d, my.textures[i]);
-    my.gl.MultiDrawElements(gl_triangles, batches[i].counts.data(), gl_unsigned_int,
-                            batches[i].offsets.data(), static_cast<int>(batches[i].counts.size()));
+  for (std::size_t eye = 0; eye < count; ++eye) {
+    my.set_state(eyes[eye], static_cast<int>(eye) * eyes[0].width_px, drawing);
+    if (clears && eye == 0) {
+      my.gl.ClearColor(0, 0, 0, 0);
+      my.gl.Clear(gl_color_bit | gl_depth_bit);
+    }
+    for (std::size_t i = 0; i < batches.size(); ++i) {
+      if (batches[i].counts.empty()) continue;
+      my.gl.BindTexture(gl_texture_2d, my.textures[i]);
+      my.gl.MultiDrawElements(gl_triangles, batches[i].counts.data(), gl_unsigned_int,
+                              batches[i].offsets.data(), static_cast<int>(batches[i].counts.size()));
+    }
   }
   for (unsigned index = 0; index < 4; ++index) my.gl.DisableVertexAttribArray(index);
   my.gl.BindBuffer(gl_array_buffer, 0);

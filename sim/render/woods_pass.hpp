@@ -29,9 +29,9 @@ class WoodsPass {
   WoodsPass(const WoodsPass&) = delete;
   WoodsPass& operator=(const WoodsPass&) = delete;
 
-  /// Into the current picture at column `left_px`. What both eyes see is chosen by both, so that leaves far
-  /// away are the same for both. `clears` empties the picture first.
-  void draw(const std::array<Eye, 2>& eyes, std::size_t which, int left_px, WoodsDrawing drawing,
+  /// The first `count` eyes side by side into the current picture. What is drawn is chosen once for both, so
+  /// that leaves far away are the same for both. `clears` empties the picture first.
+  void draw(const std::array<Eye, 2>& eyes, std::size_t count, WoodsDrawing drawing,
             const WoodsDetail& detail, bool clears);
 
  private:
