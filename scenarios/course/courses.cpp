@@ -9,10 +9,11 @@
 #include <string>
 
 #include "scenarios/config/named_seed.hpp"
+#include "scenarios/course/inventory.hpp"
 
 namespace understory {
 
-std::vector<Obstacle> poisson_forest(const ForestConfig& config, std::uint64_t seed) {
+std::vector<Obstacle> random_forest(const ForestConfig& config, std::uint64_t seed) {
   std::mt19937_64 generator(seed_for(seed, "forest"));
   const double area_m2 = config.length_m * 2 * config.half_width_m;
   std::poisson_distribution<int> count(area_m2 / config.square_metres_per_tree);
@@ -27,10 +28,43 @@ std::vector<Obstacle> poisson_forest(const ForestConfig& config, std::uint64_t s
     tree.texture_turn_rad = 2 * std::numbers::pi * unit(generator);
     tree.texture_shift = unit(generator);
   }
+  if (config.stems == StemModel::inventory) draw_inventory_stems(config, seed, trees);
   std::sort(trees.begin(), trees.end(),
             [](const Obstacle& a, const Obstacle& b) { return a.from_world.x() < b.from_world.x(); });
   for (std::size_t i = 0; i < trees.size(); ++i) trees[i].name = fmt::format("tree_{:04}", i);
   return trees;
+}
+
+Obstacle placed(const ListedObstacle& listed) {
+  Obstacle obstacle;
+  obstacle.name = listed.name;
+  obstacle.texture = listed.texture;
+  const Eigen::Vector3d& turn = listed.rotation_rad;
+  obstacle.turn_world = Eigen::AngleAxisd(turn.z(), Eigen::Vector3d::UnitZ()) *
+                        Eigen::AngleAxisd(turn.y(), Eigen::Vector3d::UnitY()) *
+                        Eigen::AngleAxisd(turn.x(), Eigen::Vector3d::UnitX());
+  const Eigen::Vector3d half = 0.5 * listed.size_m, up = obstacle.turn_world * Eigen::Vector3d::UnitZ();
+  double half_axis_m = half.z();
+  switch (listed.shape) {
+    case ListedShape::box:
+      obstacle.kind = ObstacleKind::box;
+      obstacle.half_size_m = half;
+      obstacle.radius_m = std::max(half.x(), half.y());
+      break;
+    case ListedShape::capsule:
+      obstacle.kind = ObstacleKind::capsule;
+      obstacle.radius_m = half.x();
+      half_axis_m = std::max(0.0, half.z() - half.x());
+      break;
+    case ListedShape::sphere:
+      obstacle.kind = ObstacleKind::sphere;
+      obstacle.radius_m = half.x();
+      half_axis_m = 0;
+      break;
+  }
+  obstacle.from_world = listed.position_m - half_axis_m * up;
+  obstacle.to_world = listed.position_m + half_axis_m * up;
+  return obstacle;
 }
 
 std::vector<Obstacle> goalposts(const GoalpostsConfig& config, std::uint64_t seed) {

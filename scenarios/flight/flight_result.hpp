@@ -62,6 +62,8 @@ struct FlightMeasures {
   /// Smallest true distance between aircraft and obstacles. Without obstacles it is infinite: empty in CSV,
   /// null in JSON.
   double minimum_clearance_m = std::numeric_limits<double>::infinity();
+  double leaves_s = 0;  ///< time in which the wing overlapped leaves of the woods
+  double leaves_m = 0;  ///< length of the path on which the wing overlapped leaves of the woods
   double position_error_mean_m = 0;    ///< mean distance between estimated and true position since release
   double position_error_max_m = 0;     ///< largest distance between estimated and true position since release
   std::int64_t detections = 0;         ///< number of detections in all frames
@@ -81,6 +83,8 @@ void visit_fields(Visitor& visit, Measures& measures) {
   visit("progress_m", measures.progress_m);
   visit("mean_speed_mps", measures.mean_speed_mps);
   visit("minimum_clearance_m", measures.minimum_clearance_m);
+  visit("leaves_s", measures.leaves_s);
+  visit("leaves_m", measures.leaves_m);
   visit("position_error_mean_m", measures.position_error_mean_m);
   visit("position_error_max_m", measures.position_error_max_m);
   visit("detections", measures.detections);

@@ -221,6 +221,7 @@ struct Scenario {
   GoalpostsConfig goalposts;
   WindowsConfig windows;
   FenceConfig fence;
+  std::vector<ListedObstacle> obstacles;
   LaunchConfig launch;
   Airframe airframe;        ///< as the stack believes
   MismatchConfig mismatch;  ///< of the aircraft that flies
@@ -338,6 +339,7 @@ void visit_fields(Visitor& visit, Scenario& scenario) {
   visit("goalposts", scenario.goalposts);
   visit("windows", scenario.windows);
   visit("fence", scenario.fence);
+  visit("obstacles", scenario.obstacles);
   visit("launch", scenario.launch);
   visit("airframe", scenario.airframe);
   visit("mismatch", scenario.mismatch);

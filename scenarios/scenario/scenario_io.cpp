@@ -12,6 +12,7 @@
 #include "scenarios/config/config_writer.hpp"
 #include "scenarios/config/keys.hpp"
 #include "scenarios/config/named_seed.hpp"
+#include "scenarios/course/inventory.hpp"
 #include "scenarios/scenario/filter_for_sensors.hpp"
 #include "sim/aircraft/aerodynamics.hpp"
 #include "sim/scene/world_config.hpp"
@@ -70,6 +71,21 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
   expect(scenario.world.world.scenery == Scenery::plain || scenario.course == Course::forest ||
              scenario.course == Course::clear,
          "world.scenery: woods requires the course forest or clear");
+  for (std::size_t i = 0; i < scenario.obstacles.size(); ++i) {
+    const ListedObstacle& listed = scenario.obstacles[i];
+    const Eigen::Vector3d& size = listed.size_m;
+    const std::string key = fmt::format("obstacles[{}].", i);
+    expect(is_plain_word(listed.name),
+           key + "name: must be letters, digits, '-', '_' and '.', at most 100, no '.' first");
+    expect(std::ranges::none_of(scenario.obstacles.begin(), scenario.obstacles.begin() + i,
+                                [&](const ListedObstacle& other) { return other.name == listed.name; }),
+           key + "name: must differ from the names of the other obstacles");
+    expect(listed.shape != ListedShape::sphere || (size.x() == size.y() && size.y() == size.z()),
+           key + "size_m: a sphere requires three equal numbers");
+    expect(listed.shape != ListedShape::capsule || (size.x() == size.y() && size.z() >= size.x()),
+           key + "size_m: a capsule requires x and y to be equal and z to be at least as large");
+  }
+  expect(scenario.obstacles.size() <= 1000, "obstacles: must have at most 1000 entries");
   expect(scenario.fence.opening_m < 2 * scenario.fence.reach_m,
          "fence.opening_m: must be less than twice fence.reach_m");
   expect(scenario.actuators.pitch_speed_mps == 0 ||
@@ -168,6 +184,11 @@ Scenario compose(const Sources& sources, const std::string& name) {
     scenario.estimation.filter =
         filter_for_sensors(scenario.estimation.filter, sensors_of_grade(first.sensors.grade));
   scenario.autopilot = planning_of(first.autopilot.preset);
+  // Woods are seen through a lens: without one their edges are sharper than a camera's can be.
+  if (first.world.world.scenery == Scenery::woods) {
+    scenario.cameras.cameras.psf_px = 0.6;
+    scenario.cameras.cameras.vignetting_power = 4;
+  }
   scenario.estimation.filter.distrust.imu_gap_s = 1.5 / first.sensors.sensors.imu_rate_hz;
   scenario.estimation.filter.start.position_world_m = rail_start_world(first.launch);
   scenario.estimation.filter.start.pitch_rad =
@@ -175,20 +196,33 @@ Scenario compose(const Sources& sources, const std::string& name) {
   take_airframe(first.airframe, scenario);
   read_all(sources, scenario);
   scenario.rig = rig_file(scenario.rig, origin_of(sources, "rig"));
+  const std::string giver = origin_of(sources, "forest.trees_file");
+  scenario.forest.trees_file = found_trees_file(
+      scenario.forest.trees_file, giver.starts_with("--") ? "" : giver.substr(0, giver.rfind(':')));
   check(scenario, sources, name);
   return scenario;
 }
 
-std::vector<Obstacle> obstacles_as_planted(const Scenario& scenario) {
+/// Trunks of a wood as they are planted, with what is known of them.
+struct Planted {
+  std::vector<Obstacle> obstacles;
+  std::vector<KnownTree> known = {};
+};
+
+Planted planted(const Scenario& scenario) {
   switch (scenario.course) {
     case Course::forest:
-      return poisson_forest(scenario.forest, scenario.seed);
+      if (!scenario.forest.trees_file.empty()) {
+        PlacedStems placed = place_stems(stems_of(scenario.forest), scenario.forest, scenario.seed);
+        return {std::move(placed.trunks), std::move(placed.known)};
+      }
+      return {random_forest(scenario.forest, scenario.seed)};
     case Course::goalposts:
-      return goalposts(scenario.goalposts, scenario.seed);
+      return {goalposts(scenario.goalposts, scenario.seed)};
     case Course::windows:
-      return windows(scenario.windows, scenario.goal_x_m());
+      return {windows(scenario.windows, scenario.goal_x_m())};
     case Course::fence:
-      return fence(scenario.fence, scenario.goal_x_m());
+      return {fence(scenario.fence, scenario.goal_x_m())};
     case Course::clear:
       break;
   }
@@ -242,9 +276,14 @@ std::vector<Key> keys_of(Scenario scenario) {
 std::string scenario_to_text(const Scenario& scenario) { return write_config(scenario); }
 
 Wood course_wood(const Scenario& scenario) {
-  std::vector<Obstacle> obstacles = obstacles_as_planted(scenario);
-  if (scenario.world.world.scenery == Scenery::plain) return {std::move(obstacles), {}};
-  return grow(obstacles, woods_of(scenario), seed_for(scenario.seed, "trees"));
+  Planted trunks = planted(scenario);
+  Wood wood;
+  if (scenario.world.world.scenery == Scenery::woods)
+    wood = grow(trunks.obstacles, woods_of(scenario), seed_for(scenario.seed, "trees"), trunks.known);
+  else
+    wood.obstacles = std::move(trunks.obstacles);
+  for (const ListedObstacle& listed : scenario.obstacles) wood.obstacles.push_back(placed(listed));
+  return wood;
 }
 
 WoodsConfig woods_of(const Scenario& scenario) {

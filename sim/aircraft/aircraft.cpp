@@ -98,7 +98,8 @@ void Aircraft::read_outline() {
           Eigen::Quaterniond(turn[0], turn[1], turn[2], turn[3]) * Eigen::Vector3d::UnitZ();
       const mjtNum* size = model_.geom_size + 3 * geom;  // radius, half length
       obstacles_.push_back({centre, axis, size[1], size[0]});
-    } else if (model_.geom_type[geom] == mjGEOM_BOX && model_.geom_conaffinity[geom] != 0) {
+    } else if ((model_.geom_type[geom] == mjGEOM_BOX || model_.geom_type[geom] == mjGEOM_SPHERE) &&
+               model_.geom_conaffinity[geom] != 0) {
       obstacles_.push_back(
           {centre, Eigen::Vector3d::UnitZ(), 0, model_.geom_rbound[geom]});  // a wall: its sphere
     }
@@ -141,6 +142,7 @@ void Aircraft::read_pool(const std::vector<Obstacle>& pooled) {
   if (first_pooled_ < 0) return;
   std::vector<NearObstacle> pieces;
   for (const Obstacle& obstacle : pooled) {
+    if (obstacle.tree < 0) continue;
     const Eigen::Vector3d half = 0.5 * (obstacle.to_world - obstacle.from_world);
     pieces.push_back({obstacle.from_world + half, half.normalized(), half.norm(), obstacle.radius_m});
     cell_m_ = std::max(cell_m_, reach_m_ + half.norm() + obstacle.radius_m);
@@ -151,8 +153,8 @@ void Aircraft::read_pool(const std::vector<Obstacle>& pooled) {
 bool Aircraft::anything_near() {
   const Eigen::Map<const Eigen::Vector3d> centre(data_->qpos);
   const auto is_near = [&](const NearObstacle& obstacle) { return obstacle.is_near(centre, reach_m_); };
-  if (first_pooled_ < 0)
-    return centre.z() < reach_m_ || std::any_of(obstacles_.begin(), obstacles_.end(), is_near);
+  const bool fixed_near = centre.z() < reach_m_ || std::any_of(obstacles_.begin(), obstacles_.end(), is_near);
+  if (first_pooled_ < 0) return fixed_near;
   std::vector<const NearObstacle*> near;
   const auto [column, row] = cell_of(centre, cell_m_);
   for (int x = column - 1; x <= column + 1; ++x)
@@ -161,7 +163,7 @@ bool Aircraft::anything_near() {
         for (const NearObstacle& obstacle : cell->second)
           if (is_near(obstacle)) near.push_back(&obstacle);
   place_pool(near);
-  return centre.z() < reach_m_ || !near.empty();
+  return fixed_near || !near.empty();
 }
 
 /// MuJoCo's geoms of the pool take place and size of these obstacles; the others go below the ground.

@@ -51,7 +51,8 @@ class Aircraft {
   /// Keeps a reference to the model. The launch rail points along world x; the release point is the world's
   /// (0, 0). Throws std::runtime_error where the rail would begin underground. The time step is the model's
   /// (1/1200 s from build_world; tests of convergence set others, whole numbers of hertz). `pooled` are the
-  /// obstacles of a model with pooled geoms (build_world), none else; such a model serves one aircraft.
+  /// obstacles of a model with pooled geoms (build_world), none else: the pieces of its trees take turns in
+  /// the pool. Such a model serves one aircraft.
   Aircraft(mjModel_& model, const Airframe& airframe, const LaunchConfig& launch, Wind wind,
            const ActuatorsConfig& actuators = {}, const std::vector<Obstacle>& pooled = {});
   /// In a steady wind.

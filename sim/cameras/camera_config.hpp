@@ -28,6 +28,9 @@ struct CameraConfig {
   /// Exponent n of the vignetting, a falloff with cos^n of the angle to the optical axis: 4 for a plain lens
   /// (the cosine-fourth law), 0 for none.
   double vignetting_power = 0;
+  /// Standard deviation of the lens's point spread function, a Gaussian, in pixels of the camera's image; 0
+  /// for none. The default with world.scenery woods is 0.6, and 4 for vignetting_power.
+  double psf_px = 0;
 
   /// Distance by which the right image lies lower than the stack assumes, in pixels of the camera's image.
   double vertical_misalignment_px = 0;
@@ -56,6 +59,7 @@ void visit_fields(Visitor& visit, CameraConfig& config) {
   visit("gain", config.gain, 0.1, 64.0);
   visit("full_well_e", config.full_well_e, 0.0, 1e6);
   visit("vignetting_power", config.vignetting_power, 0.0, 16.0);
+  visit("psf_px", config.psf_px, 0.0, 5.0);
   visit("vertical_misalignment_px", config.vertical_misalignment_px, -20.0, 20.0);
   visit("flex_position_m", config.flex_position_m, -0.1, 0.1);
   visit("flex_rotation_rad", config.flex_rotation_rad, -0.1, 0.1);

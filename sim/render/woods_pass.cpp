@@ -44,6 +44,8 @@ enum : unsigned {
   gl_unpack = 0x0CF5
 };
 
+// Light and haze are worked out at the corners: a fragment costs one texel. What is solid has a program without
+// `discard`, so that hidden fragments are thrown away before they are shaded.
 constexpr const char* vertex_source = R"(#version 110
 attribute vec3 position;
 attribute vec2 texture;
@@ -51,35 +53,36 @@ attribute vec4 tint;
 attribute vec4 object;
 uniform mat4 clip_from_world;
 uniform vec3 eye;
-uniform vec3 to_sun;
 uniform float haze_m;
 varying vec2 at;
 varying vec3 colour;
-varying vec3 dappled;
-varying float clear;
+varying float haziness;
 varying vec4 number;
 void main() {
   gl_Position = clip_from_world * vec4(position, 1.0);
   at = texture;
-  colour = tint.rgb * 2.0;
-  vec2 shadow = position.xy - to_sun.xy * (position.z / max(to_sun.z, 0.2));
-  dappled = vec3(shadow / 16.0, tint.a);
-  clear = exp(-distance(position, eye) / haze_m);
+  float clear = exp(-distance(position, eye) / haze_m);
+  colour = tint.rgb * (2.0 * clear);
+  haziness = 1.0 - clear;
   number = object;
 })";
-constexpr const char* shaded_source = R"(#version 110
+constexpr const char* solid_source = R"(#version 110
 uniform sampler2D picture;
-uniform sampler2D dapple;
 uniform vec3 haze;
 varying vec2 at;
 varying vec3 colour;
-varying vec3 dappled;
-varying float clear;
+varying float haziness;
+void main() { gl_FragColor = vec4(texture2D(picture, at).rgb * colour + haze * haziness, 1.0); })";
+constexpr const char* leaves_source = R"(#version 110
+uniform sampler2D picture;
+uniform vec3 haze;
+varying vec2 at;
+varying vec3 colour;
+varying float haziness;
 void main() {
   vec4 texel = texture2D(picture, at);
   if (texel.a < 0.4) discard;
-  float light = mix(1.0, texture2D(dapple, dappled.xy).r * 2.0, dappled.z);
-  gl_FragColor = vec4(mix(haze, texel.rgb * colour * light, clear), 1.0);
+  gl_FragColor = vec4(texel.rgb * colour + haze * haziness, 1.0);
 })";
 constexpr const char* numbers_source = R"(#version 110
 uniform sampler2D picture;
@@ -218,18 +221,16 @@ WoodsPicture half_of(const WoodsPicture& picture) {
 struct WoodsPass::Implementation {
   Gl gl;
   std::vector<WoodsPart> parts;
-  Eigen::Vector3f to_sun;
   float haze_m;
-  std::array<unsigned, 2> programs{};                        ///< by WoodsDrawing
+  std::array<unsigned, 3> programs{};                    ///< solid, leaves, numbers
   std::array<unsigned, 2> buffers{};                         ///< vertices, indices
-  std::array<unsigned, woods_texture_count + 1> textures{};  ///< the last: the dapple
+  std::array<unsigned, woods_texture_count> textures{};
 
   Implementation(const WoodsMesh& mesh, const OffscreenContext& context)
       : gl(context),
         parts(mesh.parts),
-        to_sun(mesh.to_sun_world.cast<float>()),
         haze_m(static_cast<float>(mesh.haze_m)) {
-    programs = {program_of(shaded_source), program_of(numbers_source)};
+    programs = {program_of(solid_source), program_of(leaves_source), program_of(numbers_source)};
     gl.GenBuffers(2, buffers.data());
     gl.BindBuffer(gl_array_buffer, buffers[0]);
     gl.BufferData(gl_array_buffer, static_cast<std::ptrdiff_t>(mesh.vertices.size() * sizeof(WoodsVertex)),
@@ -242,7 +243,6 @@ struct WoodsPass::Implementation {
     gl.BindBuffer(gl_element_array_buffer, 0);
     gl.GenTextures(static_cast<int>(textures.size()), textures.data());
     for (std::size_t i = 0; i < woods_texture_count; ++i) upload(textures[i], mesh.textures[i]);
-    upload(textures.back(), mesh.dapple);
     gl.BindTexture(gl_texture_2d, 0);
   }
 
@@ -315,7 +315,7 @@ struct WoodsPass::Implementation {
     return batches;
   }
 
-  void set_state(const Eye& eye, int left_px, WoodsDrawing drawing) const {
+  void set_state(const Eye& eye, int left_px) const {
     gl.Viewport(left_px, 0, eye.width_px, eye.height_px);
     for (const unsigned off : {gl_cull_face, gl_blend, gl_scissor_test}) gl.Disable(off);
     gl.Enable(gl_depth_test);
@@ -323,19 +323,6 @@ struct WoodsPass::Implementation {
     gl.DepthMask(1);
     gl.DepthRange(0, 1);
     gl.ColorMask(1, 1, 1, 1);
-    const unsigned program = programs[static_cast<std::size_t>(drawing)];
-    gl.UseProgram(program);
-    const Eigen::Matrix4f clip = clip_from_world(eye);
-    gl.UniformMatrix4fv(gl.GetUniformLocation(program, "clip_from_world"), 1, 0, clip.data());
-    const Eigen::Vector3f place = eye.T_world_camera.translation().cast<float>();
-    gl.Uniform3f(gl.GetUniformLocation(program, "eye"), place.x(), place.y(), place.z());
-    gl.Uniform3f(gl.GetUniformLocation(program, "to_sun"), to_sun.x(), to_sun.y(), to_sun.z());
-    gl.Uniform3f(gl.GetUniformLocation(program, "haze"), 0.74f, 0.78f, 0.74f);
-    gl.Uniform1f(gl.GetUniformLocation(program, "haze_m"), haze_m);
-    gl.Uniform1i(gl.GetUniformLocation(program, "picture"), 0);
-    gl.Uniform1i(gl.GetUniformLocation(program, "dapple"), 1);
-    gl.ActiveTexture(gl_texture0 + 1);
-    gl.BindTexture(gl_texture_2d, textures.back());
     gl.ActiveTexture(gl_texture0);
     gl.BindBuffer(gl_array_buffer, buffers[0]);
     gl.BindBuffer(gl_element_array_buffer, buffers[1]);
@@ -348,6 +335,17 @@ struct WoodsPass::Implementation {
     attribute(1, 2, gl_float, false, offsetof(WoodsVertex, texture));
     attribute(2, 4, gl_unsigned_byte_type, true, offsetof(WoodsVertex, tint));
     attribute(3, 4, gl_unsigned_byte_type, true, offsetof(WoodsVertex, object));
+  }
+
+  void use(unsigned program, const Eye& eye) const {
+    gl.UseProgram(program);
+    const Eigen::Matrix4f clip = clip_from_world(eye);
+    gl.UniformMatrix4fv(gl.GetUniformLocation(program, "clip_from_world"), 1, 0, clip.data());
+    const Eigen::Vector3f place = eye.T_world_camera.translation().cast<float>();
+    gl.Uniform3f(gl.GetUniformLocation(program, "eye"), place.x(), place.y(), place.z());
+    gl.Uniform3f(gl.GetUniformLocation(program, "haze"), 0.78f, 0.83f, 0.86f);
+    gl.Uniform1f(gl.GetUniformLocation(program, "haze_m"), haze_m);
+    gl.Uniform1i(gl.GetUniformLocation(program, "picture"), 0);
   }
 };
 
@@ -368,13 +366,17 @@ void WoodsPass::draw(const std::array<Eye, 2>& eyes, std::size_t count, WoodsDra
   my.gl.PushClientAttrib(gl_client_all);
   const auto batches = my.batches_for(eyes, detail);
   for (std::size_t eye = 0; eye < count; ++eye) {
-    my.set_state(eyes[eye], static_cast<int>(eye) * eyes[0].width_px, drawing);
+    my.set_state(eyes[eye], static_cast<int>(eye) * eyes[0].width_px);
     if (clears && eye == 0) {
       my.gl.ClearColor(0, 0, 0, 0);
       my.gl.Clear(gl_color_bit | gl_depth_bit);
     }
-    for (std::size_t i = 0; i < batches.size(); ++i) {
+    const auto& [solid, leaves, numbers] = my.programs;
+    my.use(drawing == WoodsDrawing::numbers ? numbers : solid, eyes[eye]);
+    for (std::size_t i = 0; i < batches.size(); ++i) {  // the leaves come last
       if (batches[i].counts.empty()) continue;
+      if (i == static_cast<std::size_t>(WoodsTexture::leaves) && drawing == WoodsDrawing::shaded)
+        my.use(leaves, eyes[eye]);
       my.gl.BindTexture(gl_texture_2d, my.textures[i]);
       my.gl.MultiDrawElements(gl_triangles, batches[i].counts.data(), gl_unsigned_int,
                               batches[i].offsets.data(), static_cast<int>(batches[i].counts.size()));

@@ -62,6 +62,72 @@ TrunkMesh trunk_mesh(const Obstacle& obstacle, double tile_width_m, double tile_
   add_cap(mesh, sides, radius, length, 1);
   return mesh;
 }
+
+namespace {
+
+/// Six faces; every face's picture stands upright where the face does.
+TrunkMesh box_mesh(const Eigen::Vector3d& half_m, double tile_width_m, double tile_height_m) {
+  TrunkMesh mesh;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      const int first = static_cast<int>(mesh.vertices.size());
+      const int up = axis == 2 ? 1 : 2, across = 3 - axis - up;
+      for (const auto& [u, v] : {std::pair(-1, -1), std::pair(1, -1), std::pair(1, 1), std::pair(-1, 1)}) {
+        Eigen::Vector3d corner;
+        corner[axis] = side * half_m[axis];
+        corner[across] = u * half_m[across];
+        corner[up] = v * half_m[up];
+        mesh.vertices.push_back(corner);
+        mesh.normals.push_back(side * Eigen::Vector3d::Unit(axis));
+        mesh.texture.emplace_back(corner[across] / tile_width_m, (corner[up] + half_m[up]) / tile_height_m);
+      }
+      const Eigen::Vector3d turn = (mesh.vertices[static_cast<std::size_t>(first) + 1] - mesh.vertices[static_cast<std::size_t>(first)])
+                                       .cross(mesh.vertices[static_cast<std::size_t>(first) + 2] - mesh.vertices[static_cast<std::size_t>(first)]);
+      const bool outward = side * turn[axis] > 0;
+      mesh.faces.emplace_back(first, first + (outward ? 1 : 2), first + (outward ? 2 : 1));
+      mesh.faces.emplace_back(first, first + (outward ? 2 : 3), first + (outward ? 3 : 2));
+    }
+  return mesh;
+}
+
+/// Rings about the z axis, half spheres at both ends of a straight piece.
+TrunkMesh capsule_mesh(double radius_m, double half_axis_m, double tile_width_m, double tile_height_m) {
+  constexpr int rings_per_end = 6;
+  const int sides = std::max(sides_of(radius_m), 12);
+  const double girth_m = 2 * std::numbers::pi * radius_m, turns = std::max(1.0, std::round(girth_m / tile_width_m));
+  TrunkMesh mesh;
+  for (int ring = 0; ring < 2 * (rings_per_end + 1); ++ring) {
+    const bool upper = ring > rings_per_end;
+    const int step = upper ? ring - rings_per_end - 1 : ring - rings_per_end;
+    const double angle = 0.5 * std::numbers::pi * step / rings_per_end;
+    const double z = (upper ? half_axis_m : -half_axis_m) + radius_m * std::sin(angle);
+    const double along_m = z + half_axis_m + radius_m;
+    for (int i = 0; i <= sides; ++i) {
+      const double share = static_cast<double>(i) / sides, turn = 2 * std::numbers::pi * share;
+      const Eigen::Vector3d normal(std::cos(angle) * std::cos(turn), std::cos(angle) * std::sin(turn), std::sin(angle));
+      const double around_m = corner_radius_m(radius_m, sides) * std::cos(angle);
+      mesh.vertices.emplace_back(around_m * std::cos(turn), around_m * std::sin(turn), z);
+      mesh.normals.push_back(normal);
+      mesh.texture.emplace_back(turns * share, along_m / tile_height_m);
+    }
+    if (ring == 0) continue;
+    const int high = ring * (sides + 1), low = high - sides - 1;
+    for (int i = 0; i < sides; ++i) {
+      if (ring > 1) mesh.faces.emplace_back(low + i, low + i + 1, high + i);
+      if (ring < 2 * rings_per_end + 1) mesh.faces.emplace_back(low + i + 1, high + i + 1, high + i);
+    }
+  }
+  return mesh;
+}
+
+}  // namespace
+
+TrunkMesh listed_mesh(const Obstacle& obstacle, double tile_width_m, double tile_height_m) {
+  if (obstacle.kind == ObstacleKind::box) return box_mesh(obstacle.half_size_m, tile_width_m, tile_height_m);
+  return capsule_mesh(obstacle.radius_m, 0.5 * (obstacle.to_world - obstacle.from_world).norm(), tile_width_m,
+                      tile_height_m);
+}
+
 namespace {
 
 /// A filled rectangle of the tile, in metres from its middle and from its foot.

@@ -150,6 +150,18 @@ SceneryXml scenery_xml(const std::vector<Obstacle>& obstacles, const WorldConfig
       xml.bodies += geom_xml(name, "facade", obstacle.from_world, Eigen::Quaterniond::Identity());
       continue;
     }
+    if (obstacle.kind >= ObstacleKind::capsule) {  // of the scenario's own list
+      const bool windowed = obstacle.texture == ObstacleTexture::windows;
+      if (windowed && !has_facade) xml.assets += texture_xml("facade", facade_width_px, facade_height_px);
+      has_facade = has_facade || windowed;
+      const bool barked = obstacle.texture == ObstacleTexture::bark;
+      const double tile_m = windowed ? window_period_m : barked ? bark_width_m : ground_tile_m;
+      const double height_m = windowed ? storey_m : barked ? bark_height_m : ground_tile_m;
+      xml.assets += mesh_xml(name, listed_mesh(obstacle, tile_m, height_m));
+      xml.bodies += geom_xml(name, windowed ? "facade" : barked ? "bark" : "litter",
+                             obstacle.T_world_box().translation(), obstacle.turn_world);
+      continue;
+    }
     const Eigen::Quaterniond turn = turn_from_z((obstacle.to_world - obstacle.from_world).normalized()) *
                                     Eigen::AngleAxisd(obstacle.texture_turn_rad, Eigen::Vector3d::UnitZ());
     xml.assets += mesh_xml(name, trunk_mesh(obstacle, bark_width_m, bark_height_m));

@@ -1,6 +1,7 @@
 #include "sim/scene/trees.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -9,7 +10,8 @@ namespace understory {
 namespace {
 
 constexpr double breast_height_m = 1.3;
-constexpr double piece_m = 1.25;
+constexpr double longest_piece_m = 1.25;
+constexpr double within_m = 0.006;  ///< of the taper
 constexpr double thinnest_m = 0.01;  ///< radius of a branch's tip
 
 /// Habit of a kind, as field guides draw it for trees in a closed stand; numbers are our choice.
@@ -32,8 +34,9 @@ constexpr std::array<Habit, 5> habits{{{0.035, 0.12, 3, 0.7, 1.05, 0.0, 0.22},  
 /// Draws in a fixed order: a change to one tree changes no other.
 class Grower {
  public:
-  Grower(const Obstacle& trunk, const WoodsConfig& config, int number, std::uint64_t seed, Wood& wood)
-      : trunk_(trunk), config_(config), number_(number), generator_(seed), wood_(wood) {
+  Grower(const Obstacle& trunk, const KnownTree& known, const WoodsConfig& config, int number,
+         std::uint64_t seed, Wood& wood)
+      : trunk_(trunk), known_(known), config_(config), number_(number), generator_(seed), wood_(wood) {
     tree_.seed = seed;
     tree_.first = wood.obstacles.size();
   }
@@ -44,9 +47,11 @@ class Grower {
         config_.kinds == WoodsKinds::mixed
             ? static_cast<TreeKind>(any_kind)
             : static_cast<TreeKind>(static_cast<int>(config_.kinds) - static_cast<int>(WoodsKinds::oak));
+    tree_.kind = known_.kind.value_or(tree_.kind);
     habit_ = habits[static_cast<std::size_t>(tree_.kind)];
     const double diameter_cm = 200 * trunk_.radius_m;
     tree_.height_m = std::max(2.0 * std::pow(diameter_cm, 0.68) * std::exp(normal(0.24)), 4.0);
+    if (known_.height_m > 0) tree_.height_m = std::max(known_.height_m, 2.0);
     tree_.crown_radius_m = habit_.crown_share * tree_.height_m;
     tree_.crown_base_m = std::max(config_.lowest_branch_m, 0.4 * tree_.height_m * uniform(0.8, 1.2));
     grow_trunk();
@@ -87,9 +92,13 @@ class Grower {
 
   void grow_trunk() {
     lean_ = {normal(habit_.lean_rad), normal(habit_.lean_rad)};
+    lean_ = known_.lean.value_or(lean_);
     bend_m_ = {normal(habit_.bend_m), normal(habit_.bend_m)};
     const double top_m = std::min(trunk_.to_world.z(), 0.9 * tree_.height_m);
-    const int pieces = std::max(1, static_cast<int>(std::ceil(top_m / piece_m)));
+    // The capsule differs from the taper by half a piece's taper at its ends.
+    const double taper = trunk_.radius_m / (tree_.height_m - breast_height_m);
+    const int pieces = std::max(
+        1, static_cast<int>(std::ceil(top_m / std::min(longest_piece_m, 2 * within_m / taper))));
     for (int i = 0; i < pieces; ++i) {
       const double low = i * top_m / pieces, high = (i + 1) * top_m / pieces;
       add("", ObstacleKind::trunk, axis_world(low), axis_world(high), radius_m(0.5 * (low + high)));
@@ -138,6 +147,7 @@ class Grower {
   }
 
   const Obstacle& trunk_;
+  const KnownTree& known_;
   const WoodsConfig& config_;
   int number_;
   std::mt19937_64 generator_;
@@ -158,23 +168,31 @@ WoodsConfig drawn(WoodsConfig config, std::uint64_t seed) {
   // Each is drawn whether it is needed or not, so that a key that is said changes no other.
   const int kinds = std::min(static_cast<int>(uniform(0, 7)), 6);  // mixed twice as often as each kind
   const double lowest_branch_m = uniform(6, 8), undergrowth = uniform(0.2, 1), haze_m = uniform(60, 250);
-  const double sun_elevation_rad = uniform(0.5, 1.2);
+  const double sun_elevation_rad = uniform(0.15, 1.2), winter = uniform(0, 1), fallen_logs = uniform(0, 80);
+  const double litter = uniform(0, 1), leaf_tone = uniform(0, 1), overcast = uniform(0, 1);
   if (config.kinds == WoodsKinds::any)
     config.kinds = static_cast<WoodsKinds>(std::max(static_cast<int>(WoodsKinds::mixed), kinds));
   if (config.lowest_branch_m == 0) config.lowest_branch_m = lowest_branch_m;
   if (config.undergrowth < 0) config.undergrowth = undergrowth;
+  if (config.season == Season::any) config.season = winter < 0.25 ? Season::winter : Season::summer;
+  if (config.fallen_logs < 0) config.fallen_logs = fallen_logs;
+  if (config.litter < 0) config.litter = litter;
+  if (config.leaf_tone < 0) config.leaf_tone = leaf_tone;
+  if (config.overcast < 0) config.overcast = overcast;
   if (config.haze_m == 0) config.haze_m = haze_m;
   if (config.sun_elevation_rad == 0) config.sun_elevation_rad = sun_elevation_rad;
   return config;
 }
 
-Wood grow(const std::vector<Obstacle>& trunks, const WoodsConfig& config, std::uint64_t seed) {
+Wood grow(const std::vector<Obstacle>& trunks, const WoodsConfig& config, std::uint64_t seed,
+          const std::vector<KnownTree>& known) {
   Wood wood;
+  const KnownTree unknown;
   for (std::size_t i = 0; i < trunks.size(); ++i) {
     std::seed_seq mixed{seed, seed >> 32, std::uint64_t{i}};
     std::array<std::uint32_t, 2> words{};
     mixed.generate(words.begin(), words.end());
-    Grower(trunks[i], config, static_cast<int>(i), std::uint64_t{words[1]} << 32 | words[0], wood).grow();
+    Grower(trunks[i], known.empty() ? unknown : known[i], config, static_cast<int>(i), std::uint64_t{words[1]} << 32 | words[0], wood).grow();
   }
   return wood;
 }

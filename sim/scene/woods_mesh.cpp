@@ -3,380 +3,300 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
 
-#include "sim/scene/woods_textures.hpp"
+#include "sim/scene/mesh_builder.hpp"
+#include "sim/scene/meshes.hpp"
 
 namespace understory {
 namespace {
 
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double bark_width_m = 0.7, bark_height_m = 1.4;  ///< of one tile
-constexpr double ground_tile_m = 4, cell_m = 2;
-constexpr int cells_per_patch = 5;
-constexpr double far_reach_m = 45;  ///< how far the wood goes on beyond the stand
-constexpr double relief_m = 0.12;
-
-/// Colours of a kind: bark over its gray texture, leaves. Tints are over 128.
+/// Colours of a kind: bark over its gray texture, fresh and dark leaves. Tints are over 128.
 struct Colours {
-  Vector3d bark, leaves;
+  Vector3d bark, fresh, dark;
 };
-const std::array<Colours, 5> colours{{{{118, 108, 96}, {98, 128, 56}},
-                                      {{140, 138, 130}, {110, 140, 62}},
-                                      {{190, 188, 180}, {126, 150, 70}},
-                                      {{138, 104, 78}, {84, 112, 66}},
-                                      {{106, 94, 84}, {62, 92, 56}}}};
+const std::array<Colours, 5> colours{
+    {{{118, 108, 96}, {112, 146, 58}, {74, 96, 46}},      // oak
+     {{140, 138, 130}, {124, 160, 66}, {82, 110, 50}},    // beech
+     {{190, 188, 180}, {136, 164, 76}, {108, 122, 58}},   // birch
+     {{138, 104, 78}, {92, 124, 70}, {60, 84, 54}},       // pine
+     {{106, 94, 84}, {70, 104, 60}, {46, 70, 46}}}};      // spruce
 
-/// Smooth noise of place, -1 .. 1, the same for the same place and seed.
-double noise_at(const Vector2d& place, std::uint32_t seed) {
-  const auto node = [&](std::int64_t x, std::int64_t y) {
-    std::uint64_t h = static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15u ^
-                      static_cast<std::uint64_t>(y) * 0xc2b2ae3d27d4eb4fu ^ seed;
-    h = (h ^ (h >> 31)) * 0xbf58476d1ce4e5b9u;
-    return static_cast<double>((h ^ (h >> 29)) & 0xffff) / 32767.5 - 1;
-  };
-  const auto x = static_cast<std::int64_t>(std::floor(place.x())),
-             y = static_cast<std::int64_t>(std::floor(place.y()));
-  const double u = place.x() - std::floor(place.x()), v = place.y() - std::floor(place.y());
-  const double s = u * u * (3 - 2 * u), t = v * v * (3 - 2 * v);
-  const double low = node(x, y) + s * (node(x + 1, y) - node(x, y));
-  const double high = node(x, y + 1) + s * (node(x + 1, y + 1) - node(x, y + 1));
-  return low + t * (high - low);
+bool is_conifer(TreeKind kind) { return kind == TreeKind::pine || kind == TreeKind::spruce; }
+
+/// As many sides as keep a tube's outline within 3 mm of the circle.
+int sides_of(double radius_m) {
+  const int sides = static_cast<int>(std::ceil(std::numbers::pi * std::sqrt(radius_m / 0.012)));
+  return std::clamp(sides, 6, 28);
 }
 
-class Builder {
+/// Draws one tree, near and far.
+class TreePainter {
  public:
-  Builder(const std::vector<Obstacle>& obstacles, const std::vector<Tree>& trees,
-          const Eigen::AlignedBox2d& stand, const WoodsConfig& config, std::uint64_t seed)
-      : obstacles_(obstacles),
-        trees_(trees),
-        stand_(stand),
-        config_(config),
-        generator_(seed),
-        seed_(static_cast<std::uint32_t>(seed)) {
-    numbers_.trees = trees.size();
-    const double azimuth = uniform(0, 2 * std::numbers::pi), up = config.sun_elevation_rad;
-    mesh_.to_sun_world = {std::cos(up) * std::cos(azimuth), std::cos(up) * std::sin(azimuth), std::sin(up)};
-    mesh_.haze_m = config.haze_m;
+  TreePainter(MeshBuilder& builder, const std::vector<Obstacle>& obstacles, const Tree& tree,
+              const WoodsConfig& config, const WoodsNumbers& numbers, std::size_t number)
+      : builder_(builder),
+        obstacles_(obstacles),
+        tree_(tree),
+        trunk_(static_cast<std::uint16_t>(numbers.trunk(number))),
+        branch_(static_cast<std::uint16_t>(numbers.branch(number))),
+        leaves_(static_cast<std::uint16_t>(numbers.leaves(number))),
+        bare_(config.season == Season::winter && !is_conifer(tree.kind)) {
+    const Colours& own = colours[static_cast<std::size_t>(tree.kind)];
+    const double tone = std::clamp(config.leaf_tone + uniform(-0.15, 0.15), 0.0, 1.0);
+    bark_ = own.bark * uniform(0.85, 1.15);
+    green_ = bare_ ? Vector3d(0.9 * bark_) : Vector3d(own.fresh + tone * (own.dark - own.fresh));
   }
 
-  WoodsMesh build() {
-    for (std::size_t i = 0; i < trees_.size(); ++i) add_tree(i);
-    add_far_wood();
-    add_ground();
-    for (std::size_t i = 0; i < woods_texture_count; ++i) {
-      const auto uses = [&](const WoodsPart& part) { return part.texture == static_cast<WoodsTexture>(i); };
-      if (static_cast<WoodsTexture>(i) == WoodsTexture::leaves || std::ranges::any_of(mesh_.parts, uses))
-        mesh_.textures[i] = woods_picture(static_cast<WoodsTexture>(i), seed_);
-    }
-    mesh_.dapple = dapple_picture(seed_);
-    return std::move(mesh_);
+  void paint() {
+    builder_.begin_part(static_cast<WoodsTexture>(tree_.kind));
+    read_stem();
+    const auto solid = [&](bool near) {
+      const double radius_m = obstacles_[tree_.first].radius_m;
+      builder_.add_tube(axis_, radii_m_, near ? sides_of(radius_m) : (radius_m < 0.06 ? 3 : 5), bark_,
+                        obstacles_[tree_.first].texture_turn_rad, trunk_);
+      for (std::size_t i = first_branch(); near && i < first_branch() + tree_.branches; ++i)
+        builder_.add_tube({obstacles_[i].from_world, obstacles_[i].to_world},
+                          {obstacles_[i].radius_m, obstacles_[i].radius_m}, 6, 0.85 * bark_, 0, branch_);
+    };
+    WoodsPart& part = builder_.part();
+    part.solid[0] = builder_.range_of([&] { solid(true); });
+    part.solid[1] = builder_.range_of([&] { solid(false); });
+    place_clumps();
+    part.leaves[0] = builder_.range_of([&] {
+      for (const Clump& clump : clumps_) add_clump(clump);
+      add_leaves_of_branches();
+    });
+    part.leaves[1] = builder_.range_of([&] {
+      for (const Clump& clump : clumps_) add_far_clump(clump);
+    });
+    builder_.end_part();
   }
 
  private:
-  double uniform(double low, double high) {
-    return low + (high - low) * std::uniform_real_distribution<double>(0, 1)(generator_);
-  }
+  /// Leaves that hang together: what one large branch of the crown carries.
+  struct Clump {
+    Vector3d middle, outward;
+    double radius_m;
+    double light;  ///< share of the light that reaches it
+  };
 
-  double ground_z(const Vector2d& place) const {
-    // Flat under the launch and no higher than the plane that MuJoCo collides with.
-    return relief_m * (noise_at(place / 7, seed_) + 0.5 * noise_at(place / 3, seed_ + 1) - 1.5);
-  }
-
-  /// Sun and sky on a surface with this normal, over the tint.
-  Vector3d lit(const Vector3d& tint, const Vector3d& normal) const {
-    const double sun = std::max(0.0, normal.dot(mesh_.to_sun_world)), sky = 0.5 + 0.5 * normal.z();
-    return tint * (0.45 + 0.25 * sky + 0.45 * sun);
-  }
-
-  std::uint32_t add_vertex(const Vector3d& place, double u, double v, const Vector3d& tint, double dapple,
-                           std::uint16_t object) {
-    WoodsVertex vertex{};
-    for (int i = 0; i < 3; ++i) {
-      vertex.position_world[i] = static_cast<float>(place[i]);
-      vertex.tint[i] = static_cast<std::uint8_t>(std::clamp(tint[i], 0.0, 255.0));
-    }
-    vertex.tint[3] = static_cast<std::uint8_t>(255 * dapple);
-    vertex.texture = {static_cast<float>(u), static_cast<float>(v)};
-    vertex.object = {static_cast<std::uint8_t>(object & 255), static_cast<std::uint8_t>(object >> 8), 0, 255};
-    mesh_.vertices.push_back(vertex);
-    part_.box_world.extend(place);
-    return static_cast<std::uint32_t>(mesh_.vertices.size() - 1);
-  }
-  void add_quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-    for (const std::uint32_t index : {a, b, c, a, c, d}) mesh_.indices.push_back(index);
-  }
-
-  /// Adds what `add` adds, as a range.
-  template <typename Add>
-  WoodsRange range_of(Add&& add) {
-    WoodsRange range{static_cast<std::uint32_t>(mesh_.indices.size())};
-    add();
-    range.count = static_cast<std::uint32_t>(mesh_.indices.size()) - range.first;
-    return range;
-  }
-
-  /// A tube along points with radii. Corners lie as far outside the circle as edges lie inside.
-  void add_tube(const std::vector<Vector3d>& axis, const std::vector<double>& radii_m, int sides,
-                const Vector3d& tint, double turn_rad, std::uint16_t object) {
-    const double outside = 2 / (1 + std::cos(std::numbers::pi / sides));
-    const double around = std::max(1.0, std::round(2 * std::numbers::pi * radii_m.front() / bark_width_m));
-    double along_m = 0;
-    std::uint32_t before = 0;
-    for (std::size_t i = 0; i < axis.size(); ++i) {
-      if (i > 0) along_m += (axis[i] - axis[i - 1]).norm();
-      const Vector3d direction =
-          (axis[std::min(i + 1, axis.size() - 1)] - axis[i > 0 ? i - 1 : 0]).normalized();
-      // The same direction for every ring, or the bark would twist where the axis bends.
-      const Vector3d reference = std::abs(direction.z()) > 0.7 ? Vector3d::UnitX() : Vector3d::UnitZ();
-      const Vector3d side = (reference - reference.dot(direction) * direction).normalized();
-      const Vector3d other = direction.cross(side);
-      const auto ring = static_cast<std::uint32_t>(mesh_.vertices.size());
-      for (int corner = 0; corner <= sides; ++corner) {
-        const double angle = turn_rad + 2 * std::numbers::pi * corner / sides;
-        const Vector3d out = std::cos(angle) * side + std::sin(angle) * other;
-        add_vertex(axis[i] + outside * radii_m[i] * out, around * corner / sides, along_m / bark_height_m,
-                   lit(tint, out), 1, object);
-      }
-      for (int corner = 0; i > 0 && corner < sides; ++corner) {
-        const auto low = before + static_cast<std::uint32_t>(corner),
-                   high = ring + static_cast<std::uint32_t>(corner);
-        add_quad(low, low + 1, high + 1, high);
-      }
-      before = ring;
-    }
-  }
-
-  /// A square of leaves about a place, facing `normal`: one of the four pictures of the leaves' texture.
-  void add_leaves(const Vector3d& place, const Vector3d& normal, double size_m, const Vector3d& tint,
-                  int picture, double dapple, std::uint16_t object) {
-    const Vector3d side = normal.unitOrthogonal(), up = normal.cross(side);
-    const double turn = uniform(0, 2 * std::numbers::pi);
-    const Vector3d x = 0.5 * size_m * (std::cos(turn) * side + std::sin(turn) * up),
-                   y = 0.5 * size_m * (std::cos(turn) * up - std::sin(turn) * side);
-    add_card(place, x, y, tint, tint, picture, dapple, object);
-  }
-  void add_card(const Vector3d& place, const Vector3d& x, const Vector3d& y, const Vector3d& low_tint,
-                const Vector3d& high_tint, int picture, double dapple, std::uint16_t object) {
-    const double u = 0.5 * (picture & 1), v = 0.5 * (picture >> 1);
-    constexpr double inset = 0.004;
-    add_quad(add_vertex(place - x - y, u + inset, v + inset, low_tint, dapple, object),
-             add_vertex(place + x - y, u + 0.5 - inset, v + inset, low_tint, dapple, object),
-             add_vertex(place + x + y, u + 0.5 - inset, v + 0.5 - inset, high_tint, dapple, object),
-             add_vertex(place - x + y, u + inset, v + 0.5 - inset, high_tint, dapple, object));
-  }
-
-  /// The crown's leaves: squares spread through its hull, brighter above and towards the sun.
-  void add_crown(const Tree& tree, const Vector3d& foot, const Vector3d& top, int squares, double size_m,
-                 std::uint16_t object) {
-    const bool conifer = tree.kind == TreeKind::pine || tree.kind == TreeKind::spruce;
-    const Vector3d& tint = colours[static_cast<std::size_t>(tree.kind)].leaves;
-    const double base_m =
-        tree.kind == TreeKind::pine ? std::max(tree.crown_base_m, 0.6 * tree.height_m) : tree.crown_base_m;
-    const double depth_m = std::max(tree.height_m - base_m, 1.0);
-    for (int i = 0; i < squares; ++i) {
-      const double share = tree.kind == TreeKind::spruce ? 1 - std::sqrt(uniform(0, 1)) : uniform(0, 1);
-      // The hull's radius over its height: a cone, or an egg that is widest below its middle.
-      const double hull = tree.kind == TreeKind::spruce
-                              ? 1 - share
-                              : std::sqrt(std::max(0.0, 1 - std::pow(1.7 * share - 0.7, 2)));
-      const double out = std::sqrt(uniform(conifer ? 0.05 : 0.25, 1.0)) * hull * tree.crown_radius_m;
-      const double turn = uniform(0, 2 * std::numbers::pi);
-      const Vector3d outward(std::cos(turn), std::sin(turn), 0);
-      const Vector3d stem = foot + (base_m + share * depth_m) / tree.height_m * (top - foot);
-      const Vector3d normal = (outward * uniform(0.2, 1) + Vector3d(uniform(-0.4, 0.4), uniform(-0.4, 0.4),
-                                                                    conifer ? 1.2 : uniform(-0.2, 1.0)))
-                                  .normalized();
-      const double shade =
-          0.55 + 0.45 * share + 0.12 * uniform(-1, 1) + 0.15 * outward.dot(mesh_.to_sun_world) * hull;
-      add_leaves(stem + out * outward, normal, size_m * uniform(0.7, 1.3), shade * tint, conifer ? 2 : i & 1,
-                 0.3, object);
-    }
-  }
-
-  std::vector<Vector3d> points_of(std::size_t first, std::size_t pieces) const {
-    std::vector<Vector3d> points{obstacles_[first].from_world};
-    for (std::size_t i = 0; i < pieces; ++i) points.push_back(obstacles_[first + i].to_world);
-    return points;
-  }
+  double uniform(double low, double high) { return builder_.uniform(low, high); }
+  std::size_t first_branch() const { return tree_.first + tree_.trunk_pieces; }
 
   /// The drawn stem: the obstacles' axis with the radius between theirs, root flare, and on to the tree's
-  /// top.
-  void stem_of(const Tree& tree, std::vector<Vector3d>& axis, std::vector<double>& radii_m) const {
-    axis = points_of(tree.first, tree.trunk_pieces);
+  /// top. Long pieces get a ring between their ends, for the patches of sun.
+  void read_stem() {
     const auto radius_of = [&](std::size_t i) {
-      return obstacles_[tree.first + std::min(i, tree.trunk_pieces - 1)].radius_m;
+      return obstacles_[tree_.first + std::min(i, tree_.trunk_pieces - 1)].radius_m;
     };
-    for (std::size_t i = 0; i < axis.size(); ++i)
-      radii_m.push_back(i == 0 ? radius_of(0) : 0.5 * (radius_of(i - 1) + radius_of(i)));
-    const Vector3d direction = (axis.back() - axis[axis.size() - 2]).normalized();
-    const Vector3d top = axis.back() + direction * std::max(0.5, tree.height_m - axis.back().z());
-    axis.push_back(top);
-    radii_m.push_back(0.02);
-    axis.insert(axis.begin() + 1, axis[0] + 0.35 * (axis[1] - axis[0]).normalized());
-    radii_m.insert(radii_m.begin() + 1, 1.06 * radii_m[0]);
-    radii_m[0] *= 1.35;
-    axis[0].z() -= 2 * relief_m;
-  }
-
-  void add_tree(std::size_t number) {
-    const Tree& tree = trees_[number];
-    part_ = {};
-    part_.texture = static_cast<WoodsTexture>(tree.kind);
-    const Vector3d tint = colours[static_cast<std::size_t>(tree.kind)].bark * uniform(0.85, 1.15);
-    const Obstacle& foot = obstacles_[tree.first];
-    std::vector<Vector3d> axis;
-    std::vector<double> radii_m;
-    stem_of(tree, axis, radii_m);
-    const auto solid = [&](int sides, bool with_branches) {
-      add_tube(axis, radii_m, sides, tint, foot.texture_turn_rad, numbers_.trunk(number));
-      for (std::size_t i = tree.first + tree.trunk_pieces;
-           with_branches && i < tree.first + tree.trunk_pieces + tree.branches; ++i)
-        add_tube({obstacles_[i].from_world, obstacles_[i].to_world},
-                 {obstacles_[i].radius_m, 0.8 * obstacles_[i].radius_m}, 4, 0.85 * tint, 0,
-                 numbers_.branch(number));
-    };
-    part_.solid = {range_of([&] { solid(8, true); }), range_of([&] { solid(5, false); })};
-    const auto leaves = [&](int squares, double size_m) {
-      add_crown(tree, axis.front(), axis.back(), squares, size_m, numbers_.leaves(number));
-    };
-    part_.leaves = {range_of([&] {
-                      leaves(110, 1.1);
-                      add_leaves_of_branches(number);
-                    }),
-                    range_of([&] { leaves(18, 2.4); })};
-    mesh_.parts.push_back(part_);
-  }
-
-  void add_leaves_of_branches(std::size_t number) {
-    const Tree& tree = trees_[number];
-    const bool conifer = tree.kind == TreeKind::pine || tree.kind == TreeKind::spruce;
-    const Vector3d tint = 0.75 * colours[static_cast<std::size_t>(tree.kind)].leaves;
-    for (std::size_t i = tree.first + tree.trunk_pieces; i < tree.first + tree.trunk_pieces + tree.branches;
-         ++i) {
-      if (obstacles_[i].from_world.z() < tree.crown_base_m - 0.01) continue;  // a dead stub
-      for (int square = 0; square < 4; ++square) {
-        const Vector3d place = obstacles_[i].from_world +
-                               uniform(0.3, 1.05) * (obstacles_[i].to_world - obstacles_[i].from_world);
-        add_leaves(place, Vector3d(uniform(-0.6, 0.6), uniform(-0.6, 0.6), 1).normalized(), uniform(0.5, 0.9),
-                   tint, conifer ? 2 : square & 1, 0.6, numbers_.leaves(number));
-      }
+    const Obstacle& lowest = obstacles_[tree_.first];
+    const Vector3d up = (lowest.to_world - lowest.from_world).normalized();
+    axis_ = {lowest.from_world - 0.3 * up, lowest.from_world + 0.35 * up};
+    radii_m_ = {1.35 * lowest.radius_m, 1.06 * lowest.radius_m};
+    for (std::size_t i = 0; i < tree_.trunk_pieces; ++i) {
+      const Obstacle& piece = obstacles_[tree_.first + i];
+      if (i > 0) add_ring(0.5 * (piece.from_world + piece.to_world), piece.radius_m);
+      const bool last = i + 1 == tree_.trunk_pieces;
+      add_ring(piece.to_world, last ? piece.radius_m : 0.5 * (piece.radius_m + radius_of(i + 1)));
     }
+    const Vector3d direction = (axis_.back() - axis_[axis_.size() - 2]).normalized();
+    const double left_m = tree_.height_m - axis_.back().z();
+    add_ring(axis_.back() + direction * std::max(0.2, left_m), 0.02);
+  }
+  void add_ring(const Vector3d& middle, double radius_m) {
+    axis_.push_back(middle);
+    radii_m_.push_back(radius_m);
   }
 
-  /// Trees beyond the course that nobody can reach: a stem of few sides and large squares of leaves.
-  void add_far_wood() {
-    const std::vector<Tree>& models = trees_;
-    if (models.empty()) return;
-    const Eigen::AlignedBox2d reach(stand_.min() - Vector2d::Constant(far_reach_m),
-                                    stand_.max() + Vector2d::Constant(far_reach_m));
-    const double density = std::max(0.01, static_cast<double>(models.size()) / stand_.volume());
-    const int count = static_cast<int>(0.5 * density * reach.volume());
+  Vector3d stem_at(double height_m) const {
+    for (std::size_t i = 1; i < axis_.size(); ++i)
+      if (axis_[i].z() >= height_m || i + 1 == axis_.size()) {
+        const double share = (height_m - axis_[i - 1].z()) / (axis_[i].z() - axis_[i - 1].z());
+        return axis_[i - 1] + share * (axis_[i] - axis_[i - 1]);
+      }
+    return axis_.back();
+  }
+
+  /// The crown's clumps: a cone's or an egg's, most of them outside, brighter above and towards the sun.
+  void place_clumps() {
+    const bool spruce = tree_.kind == TreeKind::spruce;
+    const double base_m = tree_.kind == TreeKind::pine
+                              ? std::max(tree_.crown_base_m, 0.6 * tree_.height_m)
+                              : tree_.crown_base_m;
+    const double depth_m = std::max(tree_.height_m - base_m, 1.0);
+    const int count = spruce ? 26 : 14;
     for (int i = 0; i < count; ++i) {
-      const Vector2d place(uniform(reach.min().x(), reach.max().x()),
-                           uniform(reach.min().y(), reach.max().y()));
-      const auto pick = static_cast<std::size_t>(uniform(0, 1) * 0.999 * static_cast<double>(models.size()));
-      const double lean = uniform(-0.6, 0.6), turn = uniform(0, 6);
-      // Not where the aircraft flies, and not in the clearing of the launch.
-      const Eigen::AlignedBox2d course(Vector2d(stand_.min() - Vector2d(18, 1)),
-                                       Vector2d(stand_.max() + Vector2d(4, 1)));
-      if (course.contains(place) || (place.x() < stand_.min().x() && std::abs(place.y()) < 8)) continue;
-      Tree tree = models[pick];
-      part_ = {};
-      part_.texture = static_cast<WoodsTexture>(tree.kind);
-      const Vector3d foot(place.x(), place.y(), -2 * relief_m),
-          top = foot + Vector3d(lean, -lean, tree.height_m);
-      const double radius_m = obstacles_[tree.first].radius_m;
-      const WoodsRange stem = range_of([&] {
-        add_tube({foot, top}, {1.1 * radius_m, 0.02}, 5, colours[static_cast<std::size_t>(tree.kind)].bark,
-                 turn, numbers_.far_wood());
-      });
-      const WoodsRange crown = range_of([&] { add_crown(tree, foot, top, 10, 3.2, numbers_.far_wood()); });
-      part_.solid = {stem, stem};
-      part_.leaves = {crown, crown};
-      mesh_.parts.push_back(part_);
+      // Evenly over the height and round the stem by the golden angle, so that no side is bare.
+      const double share = (i + uniform(0, 1)) / count;
+      const double turn = 2.39996 * i + uniform(-0.4, 0.4);
+      const double hull = spruce ? 1 - 0.95 * share
+                                 : std::sqrt(std::max(0.08, 1 - std::pow(1.6 * share - 0.6, 2)));
+      const double out_m = (spruce ? 0.5 : uniform(0.35, 0.85)) * hull * tree_.crown_radius_m;
+      const Vector3d outward(std::cos(turn), std::sin(turn), 0);
+      const double sunny = 0.12 * outward.dot(builder_.mesh.to_sun_world) * hull;
+      clumps_.push_back({stem_at(base_m + share * depth_m) + out_m * outward, outward,
+                         spruce ? hull * tree_.crown_radius_m : 0.45 * tree_.crown_radius_m,
+                         0.62 + 0.35 * share + sunny + uniform(-0.07, 0.07)});
     }
   }
 
-  /// Patches of ground with their plants, out to where haze and trees hide the rim.
-  void add_ground() {
-    const double patch_m = cells_per_patch * cell_m;
-    const Vector2d low = (stand_.min() - Vector2d::Constant(far_reach_m + 25)) / patch_m,
-                   high = (stand_.max() + Vector2d::Constant(far_reach_m + 25)) / patch_m;
-    for (int row = static_cast<int>(std::floor(low.y())); row < high.y(); ++row)
-      for (int column = static_cast<int>(std::floor(low.x())); column < high.x(); ++column)
-        add_patch(Vector2d(column, row) * patch_m);
+  LeafPicture picture_of(int number) const {
+    if (bare_) return LeafPicture::twigs;
+    if (is_conifer(tree_.kind)) return LeafPicture::needles;
+    return number % 2 == 0 ? LeafPicture::leaves : LeafPicture::more_leaves;
   }
 
-  void add_patch(const Vector2d& corner) {
-    part_ = {};
-    const Vector3d soil(104, 96, 74);
-    const WoodsRange ground = range_of([&] {
-      std::array<std::array<std::uint32_t, cells_per_patch + 1>, cells_per_patch + 1> at{};
-      for (int row = 0; row <= cells_per_patch; ++row)
-        for (int column = 0; column <= cells_per_patch; ++column) {
-          const Vector2d place = corner + cell_m * Vector2d(column, row);
-          const Vector3d normal =
-              Vector3d(ground_z(place - Vector2d(0.5, 0)) - ground_z(place + Vector2d(0.5, 0)),
-                       ground_z(place - Vector2d(0, 0.5)) - ground_z(place + Vector2d(0, 0.5)), 1)
-                  .normalized();
-          const double moss = 0.5 + 0.5 * noise_at(place / 5, seed_ + 7);
-          at[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] = add_vertex(
-              {place.x(), place.y(), ground_z(place)}, place.x() / ground_tile_m, place.y() / ground_tile_m,
-              lit(soil + moss * Vector3d(-14, 18, -12), normal), 1, object_ground);
-        }
-      for (std::size_t row = 0; row < cells_per_patch; ++row)
-        for (std::size_t column = 0; column < cells_per_patch; ++column)
-          add_quad(at[row][column], at[row][column + 1], at[row + 1][column + 1], at[row + 1][column]);
-    });
-    const double patch_m = cells_per_patch * cell_m;
-    const WoodsRange plants = range_of([&] {
-      const int count = static_cast<int>(config_.undergrowth * patch_m * patch_m * 0.35);
-      for (int i = 0; i < count; ++i) {
-        const Vector2d place = corner + patch_m * Vector2d(uniform(0, 1), uniform(0, 1));
-        const double grows = 0.5 + 0.5 * noise_at(place / 4, seed_ + 3),
-                     size_m = uniform(0.25, 0.45) + 0.5 * grows * uniform(0, 1);
-        const Vector3d tint = (0.6 + 0.4 * grows) * Vector3d(96, 124, 58) * uniform(0.8, 1.1);
-        if (grows < uniform(0.1, 0.6)) continue;
-        add_plant({place.x(), place.y(), ground_z(place)}, size_m, tint);
+  /// A square that faces `normal`, turned at random about it.
+  Card leaves_at(const Vector3d& place, const Vector3d& normal, double size_m, int number) {
+    const Vector3d side = normal.unitOrthogonal(), up = normal.cross(side);
+    const double turn = uniform(0, 2 * std::numbers::pi);
+    return {place, 0.5 * size_m * (std::cos(turn) * side + std::sin(turn) * up),
+            0.5 * size_m * (std::cos(turn) * up - std::sin(turn) * side), picture_of(number)};
+  }
+  /// A branch's spray: from the stem outwards and down.
+  Card spray_of(const Clump& clump, double width_m, double height_m) const {
+    const Vector3d along = (clump.outward - Vector3d(0, 0, 0.35)).normalized();
+    const Vector3d across = Vector3d::UnitZ().cross(clump.outward);
+    return {clump.middle + Vector3d(0, 0, height_m), 0.5 * clump.radius_m * along, 0.5 * width_m * across,
+            LeafPicture::needles};
+  }
+
+  void add_leaf_card(const Card& card, const Vector3d& low_tint, const Vector3d& high_tint) {
+    builder_.add_card(card, low_tint, high_tint, leaves_);
+    if (!bare_) builder_.mesh.leaf_cards.push_back({card.middle, card.x, card.y});
+  }
+
+  void add_clump(const Clump& clump) {
+    if (tree_.kind == TreeKind::spruce) {
+      for (const double side : {-0.5, 0.0, 0.5}) {
+        Clump turned = clump;
+        turned.outward = Eigen::AngleAxisd(side, Vector3d::UnitZ()) * clump.outward;
+        turned.middle += 0.5 * clump.radius_m * (turned.outward - clump.outward);
+        const Vector3d tint = clump.light * (1 - 0.2 * std::abs(side)) * green_;
+        add_leaf_card(spray_of(turned, 0.6 * clump.radius_m + 0.3, 0.2 * side), 0.8 * tint, tint);
       }
-    });
-    part_.solid = {ground, ground};
-    part_.leaves = {plants, {}};
-    mesh_.parts.push_back(part_);
-  }
-
-  /// Two crossing squares, darker at the foot.
-  void add_plant(const Vector3d& foot, double size_m, const Vector3d& tint) {
-    const double turn = uniform(0, std::numbers::pi);
-    for (const double angle : {turn, turn + 0.5 * std::numbers::pi}) {
-      const Vector3d x = 0.6 * size_m * Vector3d(std::cos(angle), std::sin(angle), 0), y(0, 0, 0.5 * size_m);
-      add_card(foot + y, x, y, 0.6 * tint, tint, 3, 1, numbers_.undergrowth());
+      return;
+    }
+    for (int i = 0; i < 8; ++i) {
+      Vector3d away(uniform(-1, 1), uniform(-1, 1), uniform(-0.8, 0.9));
+      const Vector3d place = clump.middle + 0.8 * clump.radius_m * away;
+      away.z() += is_conifer(tree_.kind) ? 1.2 : 0.5;
+      const double light = clump.light + 0.14 * away.z();
+      add_leaf_card(leaves_at(place, away.normalized(), clump.radius_m * uniform(0.8, 1.2) + 0.3, i),
+                    0.9 * light * green_, light * green_);
     }
   }
 
+  /// The same clump from far away: one or two large cards where the small ones are.
+  void add_far_clump(const Clump& clump) {
+    const Vector3d tint = (clump.light + 0.05) * green_;
+    if (tree_.kind == TreeKind::spruce) {
+      builder_.add_card(spray_of(clump, 1.4 * clump.radius_m, 0), 0.8 * tint, tint, leaves_);
+      return;
+    }
+    const Vector3d normal = (clump.outward + Vector3d(uniform(-0.3, 0.3), uniform(-0.3, 0.3), 0.4)).normalized();
+    builder_.add_card(leaves_at(clump.middle, normal, 2.2 * clump.radius_m, 0), 0.9 * tint, tint, leaves_);
+  }
+
+  void add_leaves_of_branches() {
+    for (std::size_t i = first_branch(); i < first_branch() + tree_.branches; ++i) {
+      const Obstacle& branch = obstacles_[i];
+      if (branch.from_world.z() < tree_.crown_base_m - 0.01) continue;  // a dead stub
+      for (int card = 0; card < 3; ++card) {
+        const Vector3d place = branch.from_world + uniform(0.3, 1.05) * (branch.to_world - branch.from_world);
+        const Vector3d normal = Vector3d(uniform(-0.6, 0.6), uniform(-0.6, 0.6), 1).normalized();
+        add_leaf_card(leaves_at(place, normal, uniform(0.5, 0.9), card), 0.7 * green_, 0.75 * green_);
+      }
+    }
+  }
+
+  MeshBuilder& builder_;
   const std::vector<Obstacle>& obstacles_;
-  const std::vector<Tree>& trees_;
-  Eigen::AlignedBox2d stand_;
-  const WoodsConfig& config_;
-  std::mt19937_64 generator_;
-  std::uint32_t seed_;
-  WoodsNumbers numbers_;
-  WoodsMesh mesh_;
-  WoodsPart part_;
+  const Tree& tree_;
+  std::uint16_t trunk_, branch_, leaves_;
+  bool bare_;
+  Vector3d bark_, green_;
+  std::vector<Vector3d> axis_;
+  std::vector<double> radii_m_;
+  std::vector<Clump> clumps_;
 };
+
+/// An obstacle of the scenario's own list, drawn as in plain scenery.
+void add_listed(MeshBuilder& builder, const Obstacle& obstacle, std::size_t number) {
+  const TrunkMesh mesh = listed_mesh(obstacle);
+  builder.begin_part(obstacle.texture == ObstacleTexture::bark      ? WoodsTexture::oak
+                     : obstacle.texture == ObstacleTexture::windows ? WoodsTexture::windows
+                                                                    : WoodsTexture::ground);
+  const Eigen::Isometry3d T_world_mesh = obstacle.T_world_box();
+  const WoodsRange range = builder.range_of([&] {
+    const auto first = static_cast<std::uint32_t>(builder.mesh.vertices.size());
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+      builder.add_vertex(T_world_mesh * mesh.vertices[i], mesh.texture[i].x(), mesh.texture[i].y(),
+                         builder.lit(Vector3d::Constant(128), T_world_mesh.linear() * mesh.normals[i]),
+                         static_cast<std::uint16_t>(number));
+    for (const Eigen::Vector3i& face : mesh.faces)
+      for (const int corner : face) builder.mesh.indices.push_back(first + static_cast<std::uint32_t>(corner));
+  });
+  builder.part().solid = {range, range};
+  builder.end_part();
+}
 
 }  // namespace
 
-std::uint16_t WoodsNumbers::trunk(std::size_t tree) const {
-  return static_cast<std::uint16_t>(object_first_obstacle + 3 * tree);
+void add_far_tree(MeshBuilder& builder, const Tree& tree, double radius_m, const Eigen::Vector2d& place,
+                  const WoodsConfig& config, std::uint16_t number) {
+  const double lean = builder.uniform(-0.6, 0.6), turn = builder.uniform(0, 6);
+  const Vector3d foot(place.x(), place.y(), builder.ground_z(place) - 0.1),
+      top = foot + Vector3d(lean, -lean, tree.height_m);
+  const Colours& own = colours[static_cast<std::size_t>(tree.kind)];
+  const bool bare = config.season == Season::winter && !is_conifer(tree.kind);
+  const Vector3d green = bare ? Vector3d(0.9 * own.bark) : Vector3d(own.fresh + config.leaf_tone * (own.dark - own.fresh));
+  const LeafPicture picture = bare                    ? LeafPicture::twigs
+                              : is_conifer(tree.kind) ? LeafPicture::needles
+                                                      : LeafPicture::leaves;
+  builder.begin_part(static_cast<WoodsTexture>(tree.kind));
+  const WoodsRange stem = builder.range_of(
+      [&] { builder.add_tube({foot, top}, {1.1 * radius_m, 0.02}, 4, own.bark, turn, number); });
+  const WoodsRange crown = builder.range_of([&] {
+    const double base = std::max(0.35, tree.crown_base_m / tree.height_m);
+    for (int i = 0; i < 7; ++i) {
+      const double share = (i + builder.uniform(0, 1)) / 7, angle = 2.4 * i + turn;
+      const Vector3d outward(std::cos(angle), std::sin(angle), 0);
+      const double hull = tree.kind == TreeKind::spruce ? 1 - 0.9 * share : 1 - 0.5 * share;
+      const Vector3d middle = foot + (base + share * (1 - base)) * (top - foot) +
+                              0.5 * hull * tree.crown_radius_m * outward;
+      const double half_m = 0.8 * hull * tree.crown_radius_m + 0.4;
+      const Vector3d across(-outward.y(), outward.x(), 0);
+      const Vector3d tint = (0.6 + 0.4 * share) * green;
+      builder.add_card({middle, half_m * across, half_m * (Vector3d(0, 0, 0.9) - 0.4 * outward), picture},
+                       0.85 * tint, tint, number);
+    }
+  });
+  builder.part().solid = {stem, stem};
+  builder.part().leaves = {crown, crown};
+  builder.end_part();
 }
 
 WoodsMesh woods_mesh(const std::vector<Obstacle>& obstacles, const std::vector<Tree>& trees,
                      const Eigen::AlignedBox2d& stand, const WoodsConfig& config, std::uint64_t seed) {
-  return Builder(obstacles, trees, stand, config, seed).build();
+  MeshBuilder builder(config, seed);
+  const WoodsNumbers numbers{trees.size()};
+  for (std::size_t i = 0; i < trees.size(); ++i)
+    TreePainter(builder, obstacles, trees[i], config, numbers, i).paint();
+  std::size_t alone = 0;
+  for (const Obstacle& obstacle : obstacles)
+    if (obstacle.tree < 0) add_listed(builder, obstacle, numbers.alone(alone++));
+  add_forest_floor(builder, obstacles, trees, stand, config);
+  WoodsMesh& mesh = builder.mesh;
+  for (std::size_t i = 0; i < woods_texture_count; ++i) {
+    const auto which = static_cast<WoodsTexture>(i);
+    const auto uses = [&](const WoodsPart& part) { return part.texture == which; };
+    if (which == WoodsTexture::leaves || std::ranges::any_of(mesh.parts, uses))
+      mesh.textures[i] = woods_picture(which, builder.noise_seed, config.overcast);
+  }
+  return std::move(mesh);
 }
 
 }  // namespace understory

@@ -15,7 +15,7 @@ namespace understory {
 struct WoodsVertex {
   std::array<float, 3> position_world;
   std::array<float, 2> texture;
-  std::array<std::uint8_t, 4> tint;    ///< red, green, blue; the fourth is how much of the dapple falls on it
+  std::array<std::uint8_t, 4> tint;    ///< red, green, blue; the fourth is unused
   std::array<std::uint8_t, 4> object;  ///< its number in images of objects, low byte first; two unused
 };
 
@@ -33,26 +33,20 @@ struct WoodsPart {
   WoodsTexture texture = WoodsTexture::ground;  ///< of the solid pieces
 };
 
+/// A drawn square of a tree's leaves: its middle, and from there half of its width and of its height.
+struct LeafCard {
+  Eigen::Vector3d middle_world, x_m, y_m;
+};
+
 /// Everything that is drawn of a wood, ready for the GPU's memory.
 struct WoodsMesh {
   std::vector<WoodsVertex> vertices;
   std::vector<std::uint32_t> indices;
   std::vector<WoodsPart> parts;
   std::array<WoodsPicture, woods_texture_count> textures;  ///< empty where no part uses it
-  WoodsPicture dapple;                                     ///< light through the crowns, on the ground
+  std::vector<LeafCard> leaf_cards;                        ///< of the trees that can be reached
   Eigen::Vector3d to_sun_world = Eigen::Vector3d::UnitZ();
   double haze_m = 100;
-};
-
-/// Numbers in images of objects: each tree has one for its trunk, its branches and its leaves, the plants of
-/// the ground have one in all, and what stands beyond the course has one.
-struct WoodsNumbers {
-  std::uint16_t trunk(std::size_t tree) const;
-  std::uint16_t branch(std::size_t tree) const { return static_cast<std::uint16_t>(trunk(tree) + 1); }
-  std::uint16_t leaves(std::size_t tree) const { return static_cast<std::uint16_t>(trunk(tree) + 2); }
-  std::size_t trees = 0;
-  std::uint16_t undergrowth() const { return trunk(trees); }
-  std::uint16_t far_wood() const { return static_cast<std::uint16_t>(trunk(trees) + 1); }
 };
 
 /// Draws a wood that stands in a rectangle of the ground (corners in world axes, m) with a far wood around

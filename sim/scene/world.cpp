@@ -63,6 +63,16 @@ void write_wall(std::ostream& xml, std::size_t number, const Obstacle& wall) {
 void write_collisions(std::ostream& xml, const std::vector<Obstacle>& obstacles) {
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const Obstacle& obstacle = obstacles[i];
+    if (obstacle.kind == ObstacleKind::box || obstacle.kind == ObstacleKind::sphere) {
+      const Eigen::Quaterniond& turn = obstacle.turn_world;
+      const bool box = obstacle.kind == ObstacleKind::box;
+      const Eigen::Vector3d size = box ? obstacle.half_size_m : Eigen::Vector3d(obstacle.radius_m, 0, 0);
+      xml << "<geom name='obstacle_" << i << "' type='" << word_for(obstacle.kind)
+          << "' group='3' contype='0' conaffinity='1' condim='1' size='" << size.transpose() << "' pos='"
+          << obstacle.T_world_box().translation().transpose() << "' quat='" << turn.w() << ' '
+          << turn.vec().transpose() << "'/>\n";
+      continue;
+    }
     if (obstacle.kind == ObstacleKind::wall) {
       write_wall(xml, i, obstacle);
       continue;
@@ -102,10 +112,12 @@ std::string scene_xml(const Airframe& airframe, const std::vector<Obstacle>& obs
       << "<global offwidth='1' offheight='1'/></visual>\n"
       << "<asset>" << scenery.assets << "</asset>\n<worldbody>\n"
       << "<geom name='ground' type='plane' size='0 0 1' group='3' contype='0' conaffinity='1' condim='1'/>\n";
-  if (woods)
-    write_pool(xml);
-  else if (config.obstacles_tangible)
-    write_collisions(xml, obstacles);
+  if (woods) write_pool(xml);
+  if (config.obstacles_tangible) {
+    std::vector<Obstacle> fixed = obstacles;
+    if (woods) std::erase_if(fixed, [](const Obstacle& obstacle) { return obstacle.tree >= 0; });
+    write_collisions(xml, fixed);
+  }
   xml << scenery.bodies << "\n</worldbody>\n</mujoco>\n";
   return xml.str();
 }

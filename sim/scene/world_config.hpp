@@ -13,6 +13,7 @@ constexpr std::int64_t time_of_step_ns(std::int64_t step) { return step * 1'000'
 
 enum class Scenery { plain, woods };
 enum class WoodsKinds { any, mixed, oak, beech, birch, pine, spruce };
+enum class Season { any, summer, winter };
 
 inline constexpr std::array<std::pair<std::string_view, Scenery>, 2> scenery_names{
     {{"plain", Scenery::plain}, {"woods", Scenery::woods}}};
@@ -24,23 +25,39 @@ inline constexpr std::array<std::pair<std::string_view, WoodsKinds>, 7> woods_ki
      {"birch", WoodsKinds::birch},
      {"pine", WoodsKinds::pine},
      {"spruce", WoodsKinds::spruce}}};
+inline constexpr std::array<std::pair<std::string_view, Season>, 3> season_names{
+    {{"any", Season::any}, {"summer", Season::summer}, {"winter", Season::winter}}};
 
 /// The look of the woods. A key that keeps its default is drawn from the scenario's seed.
 struct WoodsConfig {
   WoodsKinds kinds = WoodsKinds::any;  ///< kind of all trees; mixed: all five; any: drawn from the seed
-  double lowest_branch_m = 0;    ///< m: height below which no living branch begins; 0: drawn from 6 to 8
-  double undergrowth = -1;       ///< density of ferns and shrubs, 0 to 1; negative: drawn from 0.2 to 1
-  double haze_m = 0;             ///< distance at which haze hides two thirds; 0: drawn from 60 to 250
-  double sun_elevation_rad = 0;  ///< height of the sun over the horizon; 0: drawn from 0.5 to 1.2
+  /// winter: oaks, beeches and birches have no leaves; any: drawn from the seed, winter once in four
+  Season season = Season::any;
+  double lowest_branch_m = 0;  ///< height below which no living branch begins; 0: drawn from 6 to 8
+  double undergrowth = -1;     ///< density of ferns and shrubs, 0 to 1; negative: drawn from 0.2 to 1
+  double fallen_logs = -1;     ///< number of fallen logs per hectare; negative: drawn from 0 to 80
+  double litter = -1;          ///< share of the ground under dead leaves instead of moss; negative: drawn
+  double leaf_tone = -1;       ///< colour of the leaves from fresh (0) to dark (1); negative: drawn
+  double overcast = -1;  ///< share of the sun that clouds take, 1: no patches of sun; negative: drawn
+  double haze_m = 0;     ///< distance at which haze hides two thirds; 0: drawn from 60 to 250
+  double sun_elevation_rad = 0;  ///< height of the sun over the horizon; 0: drawn from 0.15 to 1.2
+  /// ends a flight when the wing touches a leaf; otherwise leaves do not stop the aircraft
+  bool leaves_end_flight = false;
 };
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, WoodsConfig& config) {
   visit("kinds", config.kinds, woods_kinds_names);
+  visit("season", config.season, season_names);
   visit("lowest_branch_m", config.lowest_branch_m, 0.0, 40.0);
   visit("undergrowth", config.undergrowth, -1.0, 1.0);
+  visit("fallen_logs", config.fallen_logs, -1.0, 1000.0);
+  visit("litter", config.litter, -1.0, 1.0);
+  visit("leaf_tone", config.leaf_tone, -1.0, 1.0);
+  visit("overcast", config.overcast, -1.0, 1.0);
   visit("haze_m", config.haze_m, 0.0, 10000.0);
   visit("sun_elevation_rad", config.sun_elevation_rad, 0.0, 1.5);
+  visit("leaves_end_flight", config.leaves_end_flight);
 }
 
 /// Contents and appearance of a scene.

@@ -12,7 +12,7 @@ namespace {
 
 TEST(Forest, TreesStandWithinBounds) {
   const ForestConfig config;
-  for (const Obstacle& tree : poisson_forest(config, 1000)) {
+  for (const Obstacle& tree : random_forest(config, 1000)) {
     EXPECT_GE(tree.from_world.x(), 15);
     EXPECT_LE(tree.from_world.x(), 75);
     EXPECT_LE(std::abs(tree.from_world.y()), 25);
@@ -32,7 +32,7 @@ TEST(Forest, CountsArePoisson) {
   double sum = 0;
   double sum_squared = 0;
   for (int seed = 0; seed < forests; ++seed) {
-    const double count = static_cast<double>(poisson_forest(config, static_cast<std::uint64_t>(seed)).size());
+    const double count = static_cast<double>(random_forest(config, static_cast<std::uint64_t>(seed)).size());
     sum += count;
     sum_squared += count * count;
   }
@@ -50,7 +50,7 @@ TEST(Forest, TreesAreUniform) {
   double front = 0;
   double all = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    for (const Obstacle& tree : poisson_forest(config, seed)) {
+    for (const Obstacle& tree : random_forest(config, seed)) {
       all += 1;
       left += tree.from_world.y() > 0;
       front += tree.from_world.x() < 45;
@@ -62,9 +62,9 @@ TEST(Forest, TreesAreUniform) {
 
 TEST(Forest, SeedsDecide) {
   const ForestConfig config;
-  const auto first = poisson_forest(config, 7);
-  const auto again = poisson_forest(config, 7);
-  const auto other = poisson_forest(config, 8);
+  const auto first = random_forest(config, 7);
+  const auto again = random_forest(config, 7);
+  const auto other = random_forest(config, 8);
   ASSERT_EQ(first.size(), again.size());
   ASSERT_FALSE(first.empty());
   for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].from_world, again[i].from_world);
