@@ -48,21 +48,24 @@ PixelResponse::PixelResponse(const CameraConfig& config, std::array<cv::Mat, 2> 
 void PixelResponse::apply(int eye, cv::Mat& gray) {
   if (neutral_) return;
   const cv::Mat& falloff = falloff_[static_cast<std::size_t>(eye)];
+  // Local copies: bytes could alias a member, and the loops would not become SIMD.
   const int columns = gray.cols;
+  const float light = light_, gain = gain_, variance_per_gray = variance_per_gray_;
   std::vector<float> seen(static_cast<std::size_t>(columns));
+  const std::vector<float> no_lens(falloff.empty() ? static_cast<std::size_t>(columns) : 0, 1.0f);
   for (int row = 0; row < gray.rows; ++row) {
     std::uint8_t* pixel = gray.ptr<std::uint8_t>(row);
-    const float* lens = falloff.empty() ? nullptr : falloff.ptr<float>(row);
+    const float* lens = falloff.empty() ? no_lens.data() : falloff.ptr<float>(row);
+    float* value = seen.data();
     for (int i = 0; i < columns; ++i)
-      seen[static_cast<std::size_t>(i)] =
-          std::min(light_ * (lens != nullptr ? lens[i] : 1.0f) * static_cast<float>(pixel[i]), 255.0f);
+      value[i] = std::min(light * lens[i] * static_cast<float>(pixel[i]), 255.0f);
     if (!normal_.empty()) {
       const float* draw = normal_.data() + generator_() % (table_size - static_cast<std::size_t>(columns));
-      for (float& value : seen) value += std::sqrt(variance_per_gray_ * value) * *draw++;
+      for (int i = 0; i < columns; ++i) value[i] += std::sqrt(variance_per_gray * value[i]) * draw[i];
     }
     for (int i = 0; i < columns; ++i) {
-      const float read = gain_ * seen[static_cast<std::size_t>(i)] + 0.5f;
-      pixel[i] = static_cast<std::uint8_t>(std::min(std::max(read, 0.0f), 255.0f));
+      const float read = gain * value[i] + 0.5f;
+      pixel[i] = static_cast<std::uint8_t>(static_cast<int>(std::min(std::max(read, 0.0f), 255.0f)));
     }
   }
 }

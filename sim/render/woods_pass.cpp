@@ -29,7 +29,8 @@ enum : unsigned {
   gl_texture0 = 0x84C0,
   gl_rgba_format = 0x1908,
   gl_linear = 0x2601,
-  gl_nearest_mipmap = 0x2701,
+  gl_nearest_mipmap = 0x2700,
+  gl_linear_mipmap = 0x2701,
   gl_min_filter = 0x2801,
   gl_mag_filter = 0x2800,
   gl_all_attrib_bits = 0xFFFFF,
@@ -51,17 +52,24 @@ attribute vec3 position;
 attribute vec2 texture;
 attribute vec4 tint;
 attribute vec4 object;
+attribute vec3 ribbon;
 uniform mat4 clip_from_world;
 uniform vec3 eye;
+uniform vec3 turned_to;
 uniform float haze_m;
 varying vec2 at;
 varying vec3 colour;
 varying float haziness;
 varying vec4 number;
 void main() {
-  gl_Position = clip_from_world * vec4(position, 1.0);
+  // A ribbon's corner lies beside its axis, as far as the ribbon is long, and as far before it.
+  vec3 sight = normalize(turned_to - position);
+  vec3 aside = cross(ribbon, sight);
+  float radius = length(ribbon);
+  vec3 place = position + aside * (radius / max(length(aside), 0.000001)) + sight * radius;
+  gl_Position = clip_from_world * vec4(place, 1.0);
   at = texture;
-  float clear = exp(-distance(position, eye) / haze_m);
+  float clear = exp(-distance(place, eye) / haze_m);
   colour = tint.rgb * (2.0 * clear);
   haziness = 1.0 - clear;
   number = object;
@@ -242,7 +250,10 @@ struct WoodsPass::Implementation {
     gl.BindBuffer(gl_array_buffer, 0);
     gl.BindBuffer(gl_element_array_buffer, 0);
     gl.GenTextures(static_cast<int>(textures.size()), textures.data());
-    for (std::size_t i = 0; i < woods_texture_count; ++i) upload(textures[i], mesh.textures[i]);
+    // A tenth of a pair's cost: ground and leaves, which fill most of it, take the nearest texel.
+    for (std::size_t i = 0; i < woods_texture_count; ++i)
+      upload(textures[i], mesh.textures[i],
+             static_cast<WoodsTexture>(i) >= WoodsTexture::ground ? gl_nearest_mipmap : gl_linear_mipmap);
     gl.BindTexture(gl_texture_2d, 0);
   }
 
@@ -259,7 +270,7 @@ struct WoodsPass::Implementation {
       gl.AttachShader(program, shader);
       gl.DeleteShader(shader);
     }
-    const std::array<const char*, 4> attributes{"position", "texture", "tint", "object"};
+    const std::array<const char*, 5> attributes{"position", "texture", "tint", "object", "ribbon"};
     for (unsigned i = 0; i < attributes.size(); ++i) gl.BindAttribLocation(program, i, attributes[i]);
     gl.LinkProgram(program);
     int linked = 0;
@@ -268,11 +279,11 @@ struct WoodsPass::Implementation {
     return program;
   }
 
-  void upload(unsigned texture, WoodsPicture picture) const {
+  void upload(unsigned texture, WoodsPicture picture, int filter) const {
     if (picture.rgba.empty()) return;
     gl.BindTexture(gl_texture_2d, texture);
     gl.PixelStorei(gl_unpack, 1);
-    gl.TexParameteri(gl_texture_2d, gl_min_filter, gl_nearest_mipmap);
+    gl.TexParameteri(gl_texture_2d, gl_min_filter, filter);
     gl.TexParameteri(gl_texture_2d, gl_mag_filter, gl_linear);
     for (int level = 0;; ++level) {
       gl.TexImage2D(gl_texture_2d, level, gl_rgba_format, picture.width_px, picture.height_px, 0,
@@ -335,14 +346,18 @@ struct WoodsPass::Implementation {
     attribute(1, 2, gl_float, false, offsetof(WoodsVertex, texture));
     attribute(2, 4, gl_unsigned_byte_type, true, offsetof(WoodsVertex, tint));
     attribute(3, 4, gl_unsigned_byte_type, true, offsetof(WoodsVertex, object));
+    attribute(4, 3, gl_float, false, offsetof(WoodsVertex, ribbon));
   }
 
-  void use(unsigned program, const Eye& eye) const {
+  /// Ribbons turn to one eye, for both alike.
+  void use(unsigned program, const Eye& eye, const Eigen::Vector3d& turned_to) const {
+    const Eigen::Vector3f turn = turned_to.cast<float>();
     gl.UseProgram(program);
     const Eigen::Matrix4f clip = clip_from_world(eye);
     gl.UniformMatrix4fv(gl.GetUniformLocation(program, "clip_from_world"), 1, 0, clip.data());
     const Eigen::Vector3f place = eye.T_world_camera.translation().cast<float>();
     gl.Uniform3f(gl.GetUniformLocation(program, "eye"), place.x(), place.y(), place.z());
+    gl.Uniform3f(gl.GetUniformLocation(program, "turned_to"), turn.x(), turn.y(), turn.z());
     gl.Uniform3f(gl.GetUniformLocation(program, "haze"), 0.78f, 0.83f, 0.86f);
     gl.Uniform1f(gl.GetUniformLocation(program, "haze_m"), haze_m);
     gl.Uniform1i(gl.GetUniformLocation(program, "picture"), 0);
@@ -372,17 +387,18 @@ void WoodsPass::draw(const std::array<Eye, 2>& eyes, std::size_t count, WoodsDra
       my.gl.Clear(gl_color_bit | gl_depth_bit);
     }
     const auto& [solid, leaves, numbers] = my.programs;
-    my.use(drawing == WoodsDrawing::numbers ? numbers : solid, eyes[eye]);
+    const Eigen::Vector3d turned_to = eyes[0].T_world_camera.translation();
+    my.use(drawing == WoodsDrawing::numbers ? numbers : solid, eyes[eye], turned_to);
     for (std::size_t i = 0; i < batches.size(); ++i) {  // the leaves come last
       if (batches[i].counts.empty()) continue;
       if (i == static_cast<std::size_t>(WoodsTexture::leaves) && drawing == WoodsDrawing::shaded)
-        my.use(leaves, eyes[eye]);
+        my.use(leaves, eyes[eye], turned_to);
       my.gl.BindTexture(gl_texture_2d, my.textures[i]);
       my.gl.MultiDrawElements(gl_triangles, batches[i].counts.data(), gl_unsigned_int,
                               batches[i].offsets.data(), static_cast<int>(batches[i].counts.size()));
     }
   }
-  for (unsigned index = 0; index < 4; ++index) my.gl.DisableVertexAttribArray(index);
+  for (unsigned index = 0; index < 5; ++index) my.gl.DisableVertexAttribArray(index);
   my.gl.BindBuffer(gl_array_buffer, 0);
   my.gl.BindBuffer(gl_element_array_buffer, 0);
   my.gl.UseProgram(0);

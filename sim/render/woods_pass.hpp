@@ -15,7 +15,7 @@ class OffscreenContext;
 enum class WoodsDrawing { shaded, numbers };
 /// How far detail is drawn: cameras draw the cheaper design beyond `near_m`.
 struct WoodsDetail {
-  double near_m = 14;
+  double near_m = 11;
   double reach_m = 80;  ///< nothing is drawn beyond
 };
 

@@ -10,8 +10,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double cell_m = 2;
-constexpr int cells_per_patch = 5;
+constexpr double cell_m = 2.5;
+constexpr int cells_per_patch = 4;
 constexpr double patch_m = cells_per_patch * cell_m;
 constexpr double far_reach_m = 45;  ///< how far the wood goes on beyond the stand
 const Vector3d green(98, 126, 58);
@@ -28,8 +28,7 @@ class FloorPainter {
   void paint(const Vector2d& corner) {
     builder_.begin_part(WoodsTexture::ground);
     WoodsPart& part = builder_.part();
-    const WoodsRange ground = builder_.range_of([&] { add_ground(corner); });
-    part.solid = {ground, ground};
+    add_ground(corner, part);
     std::vector<Plant> plants;
     const int count = static_cast<int>(config_.undergrowth * patch_m * patch_m * 0.9);
     for (int i = 0; i < count; ++i) plant_one(corner, plants);
@@ -58,7 +57,9 @@ class FloorPainter {
     return {x, builder_.uniform(0, 1)};
   }
 
-  void add_ground(const Vector2d& corner) {
+  /// Far away every second row and column is enough. On a patch's rim the corners between lie on the straight
+  /// line, so that no gap opens beside a patch that is drawn the other way.
+  void add_ground(const Vector2d& corner, WoodsPart& part) {
     const Vector3d leaves_on_soil(124, 100, 72), moss(92, 108, 66);
     std::array<std::array<std::uint32_t, cells_per_patch + 1>, cells_per_patch + 1> at{};
     for (std::size_t row = 0; row <= cells_per_patch; ++row)
@@ -71,13 +72,27 @@ class FloorPainter {
         const double brown = std::clamp(
             config_.litter + 0.35 * noise_at(place / 5, builder_.noise_seed + 7), 0.0, 1.0);
         at[row][column] = builder_.add_vertex(
-            {place.x(), place.y(), builder_.ground_z(place)}, place.x() / dapple_tile_m,
+            {place.x(), place.y(), height(corner, row, column)}, place.x() / dapple_tile_m,
             place.y() / dapple_tile_m, builder_.lit(moss + brown * (leaves_on_soil - moss), normal),
             object_ground);
       }
-    for (std::size_t row = 0; row < cells_per_patch; ++row)
-      for (std::size_t column = 0; column < cells_per_patch; ++column)
-        builder_.add_quad(at[row][column], at[row][column + 1], at[row + 1][column + 1], at[row + 1][column]);
+    for (const std::size_t step : {1, 2})
+      part.solid[step - 1] = builder_.range_of([&] {
+        for (std::size_t row = 0; row < cells_per_patch; row += step)
+          for (std::size_t column = 0; column < cells_per_patch; column += step)
+            builder_.add_quad(at[row][column], at[row][column + step], at[row + step][column + step],
+                              at[row + step][column]);
+      });
+  }
+
+  double height(const Vector2d& corner, std::size_t row, std::size_t column) const {
+    const auto z = [&](std::size_t r, std::size_t c) {
+      return builder_.ground_z(corner + cell_m * Vector2d(static_cast<double>(c), static_cast<double>(r)));
+    };
+    const bool first_or_last_row = row % cells_per_patch == 0, first_or_last_column = column % cells_per_patch == 0;
+    if (first_or_last_row && column % 2 == 1) return 0.5 * (z(row, column - 1) + z(row, column + 1));
+    if (first_or_last_column && row % 2 == 1) return 0.5 * (z(row - 1, column) + z(row + 1, column));
+    return z(row, column);
   }
 
   void plant_one(const Vector2d& corner, std::vector<Plant>& plants) {

@@ -42,7 +42,7 @@ MeshBuilder::MeshBuilder(const WoodsConfig& config, std::uint64_t seed)
 }
 
 double MeshBuilder::ground_z(const Vector2d& place) const {
-  return relief_m * (noise_at(place / 7, noise_seed) + 0.5 * noise_at(place / 3, noise_seed + 1) - 1.5);
+  return relief_m * (noise_at(place / 9, noise_seed) + 0.5 * noise_at(place / 5, noise_seed + 1) - 1.5);
 }
 
 Vector3d MeshBuilder::lit(const Vector3d& tint, const Vector3d& normal) const {
@@ -113,6 +113,28 @@ void MeshBuilder::add_tube(const std::vector<Vector3d>& axis, const std::vector<
       add_quad(low, low + 1, high + 1, high);
     }
     before = ring;
+  }
+}
+
+void MeshBuilder::add_ribbon(const std::vector<Vector3d>& axis, const std::vector<double>& radii_m,
+                             const Vector3d& tint, std::uint16_t object) {
+  const double half_round = std::max(0.5, std::round(std::numbers::pi * radii_m.front() / bark_width_m));
+  double along_m = 0;
+  std::uint32_t before = 0;
+  for (std::size_t i = 0; i < axis.size(); ++i) {
+    if (i > 0) along_m += (axis[i] - axis[i - 1]).norm();
+    const Vector3d direction =
+        (axis[std::min(i + 1, axis.size() - 1)] - axis[i > 0 ? i - 1 : 0]).normalized();
+    const auto pair = static_cast<std::uint32_t>(mesh.vertices.size());
+    const Vector3d shaded = lit(sun_at(axis[i]) * tint, mesh.to_sun_world.cross(direction).unitOrthogonal());
+    for (const double side : {-1.0, 1.0}) {
+      add_vertex(axis[i], half_round * (0.5 + 0.5 * side), along_m / bark_height_m, shaded, object);
+      const Vector3d beside = side * radii_m[i] * direction;
+      for (int axis_of = 0; axis_of < 3; ++axis_of)
+        mesh.vertices.back().ribbon[axis_of] = static_cast<float>(beside[axis_of]);
+    }
+    if (i > 0) add_quad(before, before + 1, pair + 1, pair);
+    before = pair;
   }
 }
 

@@ -52,6 +52,9 @@ class MeshBuilder {
   /// A tube along points with radii. Corners lie as far outside the circle as edges lie inside.
   void add_tube(const std::vector<Eigen::Vector3d>& axis, const std::vector<double>& radii_m, int sides,
                 const Eigen::Vector3d& tint, double turn_rad, std::uint16_t object);
+  /// The same tube from far away: a strip that the drawing turns to the eye.
+  void add_ribbon(const std::vector<Eigen::Vector3d>& axis, const std::vector<double>& radii_m,
+                  const Eigen::Vector3d& tint, std::uint16_t object);
   /// The tints are of its lower and its upper edge.
   void add_card(const Card& card, const Eigen::Vector3d& low_tint, const Eigen::Vector3d& high_tint,
                 std::uint16_t object);

@@ -52,17 +52,17 @@ class TreePainter {
   void paint() {
     builder_.begin_part(static_cast<WoodsTexture>(tree_.kind));
     read_stem();
-    const auto solid = [&](bool near) {
-      const double radius_m = obstacles_[tree_.first].radius_m;
-      builder_.add_tube(axis_, radii_m_, near ? sides_of(radius_m) : (radius_m < 0.06 ? 3 : 5), bark_,
+    WoodsPart& part = builder_.part();
+    part.solid[0] = builder_.range_of([&] {
+      builder_.add_tube(axis_, radii_m_, sides_of(radii_m_[1]), bark_,
                         obstacles_[tree_.first].texture_turn_rad, trunk_);
-      for (std::size_t i = first_branch(); near && i < first_branch() + tree_.branches; ++i)
+      for (std::size_t i = first_branch(); i < first_branch() + tree_.branches; ++i)
         builder_.add_tube({obstacles_[i].from_world, obstacles_[i].to_world},
                           {obstacles_[i].radius_m, obstacles_[i].radius_m}, 6, 0.85 * bark_, 0, branch_);
-    };
-    WoodsPart& part = builder_.part();
-    part.solid[0] = builder_.range_of([&] { solid(true); });
-    part.solid[1] = builder_.range_of([&] { solid(false); });
+    });
+    part.solid[1] = builder_.range_of([&] {
+      builder_.add_ribbon(every_fourth(axis_), every_fourth(radii_m_), bark_, trunk_);
+    });
     place_clumps();
     part.leaves[0] = builder_.range_of([&] {
       for (const Clump& clump : clumps_) add_clump(clump);
@@ -108,6 +108,15 @@ class TreePainter {
   void add_ring(const Vector3d& middle, double radius_m) {
     axis_.push_back(middle);
     radii_m_.push_back(radius_m);
+  }
+
+  /// Of the rings, the ends too: what is enough from far away.
+  template <typename Value>
+  static std::vector<Value> every_fourth(const std::vector<Value>& values) {
+    std::vector<Value> few;
+    for (std::size_t i = 0; i < values.size(); i += 4) few.push_back(values[i]);
+    if (values.size() % 4 != 1) few.push_back(values.back());
+    return few;
   }
 
   Vector3d stem_at(double height_m) const {
@@ -179,7 +188,7 @@ class TreePainter {
       }
       return;
     }
-    for (int i = 0; i < 8; ++i) {
+    for (int i = 0; i < 6; ++i) {
       Vector3d away(uniform(-1, 1), uniform(-1, 1), uniform(-0.8, 0.9));
       const Vector3d place = clump.middle + 0.8 * clump.radius_m * away;
       away.z() += is_conifer(tree_.kind) ? 1.2 : 0.5;
@@ -258,7 +267,7 @@ void add_far_tree(MeshBuilder& builder, const Tree& tree, double radius_m, const
                                                       : LeafPicture::leaves;
   builder.begin_part(static_cast<WoodsTexture>(tree.kind));
   const WoodsRange stem = builder.range_of(
-      [&] { builder.add_tube({foot, top}, {1.1 * radius_m, 0.02}, 4, own.bark, turn, number); });
+      [&] { builder.add_ribbon({foot, top}, {1.1 * radius_m, 0.02}, own.bark, number); });
   const WoodsRange crown = builder.range_of([&] {
     const double base = std::max(0.35, tree.crown_base_m / tree.height_m);
     for (int i = 0; i < 7; ++i) {

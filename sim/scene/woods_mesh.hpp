@@ -17,6 +17,9 @@ struct WoodsVertex {
   std::array<float, 2> texture;
   std::array<std::uint8_t, 4> tint;    ///< red, green, blue; the fourth is unused
   std::array<std::uint8_t, 4> object;  ///< its number in images of objects, low byte first; two unused
+  /// Of a ribbon's corner, which is drawn beside the place: the ribbon's direction, as long as half of its
+  /// width, with the other sign on the other side. Zero for all other corners.
+  std::array<float, 3> ribbon;
 };
 
 /// Indices of a part's triangles.
