@@ -49,7 +49,7 @@ Obstacle placed(const ListedObstacle& listed) {
     case ListedShape::box:
       obstacle.kind = ObstacleKind::box;
       obstacle.half_size_m = half;
-      obstacle.radius_m = std::max(half.x(), half.y());
+      obstacle.radius_m = half.head<2>().norm();
       break;
     case ListedShape::capsule:
       obstacle.kind = ObstacleKind::capsule;

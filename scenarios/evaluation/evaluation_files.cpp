@@ -56,6 +56,7 @@ Json algorithm_json(const EvaluationSum& sum, std::size_t index) {
     json["precision"][tolerance_names[i]] = to_json(tally.rates[i].precision);
     json["recall"][tolerance_names[i]] = to_json(tally.rates[i].recall);
   }
+  json["trunk_precision"] = to_json(tally.at_one_pixel().trunk_precision);
   json["f_score"] = tally.at_one_pixel().f_score();
   json["false_per_second"] = tally.false_per_second();
   json["false_on"] = tally.false_on;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <opencv2/core.hpp>
 #include <stdexcept>
 
@@ -59,6 +60,7 @@ auto bad_input_where_refused(Read&& read) {
 std::vector<RecordedObject> parse_recorded_objects(const std::string& text, const std::string& name) {
   constexpr const char* expected = "expected 'number,name,kind,from_x,from_y,from_z,to_x,to_y,to_z,radius'";
   std::vector<RecordedObject> objects;
+  std::map<int, std::pair<std::string, std::string>> names;
   for (const TableLine& line : table_lines(text, CellsParted::by_commas, name)) {
     if (line.cells.size() != 10) fail_at_line(name, line.number, expected);
     const auto number = [&](std::size_t cell) {
@@ -70,10 +72,12 @@ std::vector<RecordedObject> parse_recorded_objects(const std::string& text, cons
     const auto given = nanoseconds_in(line.cells[0]);  // a whole number from 0
     if (!given || *given < 1 || *given > 65535) fail_at_line(name, line.number, expected);
     object.number = static_cast<int>(*given);
-    if (std::ranges::find(objects, object.number, &RecordedObject::number) != objects.end())
-      fail_at_line(name, line.number, "this number is there twice");
     object.name = line.cells[1];
     object.kind = line.cells[2];
+    // An object of several pieces has a line for each.
+    const auto [before, added] = names.try_emplace(object.number, object.name, object.kind);
+    if (!added && before->second != std::pair(object.name, object.kind))
+      fail_at_line(name, line.number, "this number belongs to another object above");
     object.from_world = {number(3), number(4), number(5)};
     object.to_world = {number(6), number(7), number(8)};
     object.radius_m = number(9);
@@ -94,6 +98,10 @@ EvaluationRecording::EvaluationRecording(const fs::path& folder, const Calibrati
     const fs::path objects = folder_ / "objects0/objects.csv";
     if (fs::exists(objects))
       objects_ = parse_recorded_objects(read_file(objects, maximum_table_bytes), objects.string());
+    for (const RecordedObject& object : objects_) {
+      soft_.resize(std::max(soft_.size(), static_cast<std::size_t>(object.number) + 1));
+      soft_[static_cast<std::size_t>(object.number)] = !object.is_obstacle();
+    }
     return 0;
   });
   if (camera_.calibration) rectifier_.emplace(*camera_.calibration, Interpolation::nearest);
@@ -119,6 +127,7 @@ EvaluationFrame EvaluationRecording::frame(std::size_t index) {
       frame.truth.depth_mm = read_16_bit_image(folder_ / "depth0/data" / name, rig());
       frame.truth.shared_depth_mm = shared_depth(frame.truth.depth_mm, rig());
     }
+    frame.truth.soft = soft_;
     if (has_objects()) frame.truth.objects = read_16_bit_image(folder_ / "objects0/data" / name, rig());
     return 0;
   });

@@ -38,6 +38,7 @@ class EvaluationRecording {
   std::optional<Rectifier> rectifier_;
   std::vector<TimedPose> true_poses_, estimates_;
   std::vector<RecordedObject> objects_;
+  std::vector<bool> soft_;  ///< by number
   bool has_depth_ = false;
 };
 

@@ -102,13 +102,14 @@ EvaluationTable published_table(const Evaluation& evaluation) {
 
 EvaluationTable algorithms_table(const Evaluation& evaluation) {
   Table table{{"algorithm", "detections/frame", "precision 0.25 m", "0.50 m", "1.00 m", "one pixel",
-               "recall 0.25 m", "0.50 m", "1.00 m", "one pixel", "F", "false/s", "found 1 m", "found 3 m",
-               "ms/frame"}};
+               "trunk precision", "recall 0.25 m", "0.50 m", "1.00 m", "one pixel", "F", "false/s",
+               "found 1 m", "found 3 m", "ms/frame"}};
   const EvaluationSum& all = evaluation.all;
   for (std::size_t i = 0; i < algorithm_count; ++i) {
     const VisionTally& tally = all.tallies[i];
     std::vector<std::string> row{algorithm_names[i], per_frame(all.hits[i], all, 1)};
     for (const Rates& rates : tally.rates) row.push_back(share_text(rates.precision));
+    row.push_back(share_text(tally.at_one_pixel().trunk_precision));
     for (const Rates& rates : tally.rates) row.push_back(share_text(rates.recall));
     row.push_back(number_text(tally.at_one_pixel().f_score(), 3));
     row.push_back(number_text(tally.false_per_second(), 0));

@@ -67,7 +67,7 @@ BlockContent content_between(const TrueImages& truth, int column_px, int row_px,
     const auto* object = truth.objects.empty() ? nullptr : truth.objects.ptr<std::uint16_t>(v);
     for (int u = column_px; u < column_px + truth_block_px; ++u) {
       if (depth_mm[u] < near_mm || depth_mm[u] > far_mm) continue;
-      if (surfaces != Surfaces::any && object != nullptr && object[u] < first_obstacle) continue;
+      if (surfaces != Surfaces::any && object != nullptr && !truth.is_obstacle(object[u])) continue;
       objects[static_cast<std::size_t>(content.pixels++)] = object != nullptr ? object[u] : 0;
       sum_mm += depth_mm[u];
     }

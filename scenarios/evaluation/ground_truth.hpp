@@ -24,17 +24,25 @@ struct TrueImages {
   /// depth_mm where the right eye sees the same place, 0 where something nearer covers it there: no pair of
   /// eyes can match what one of them does not see.
   cv::Mat shared_depth_mm;
+  std::vector<bool> soft;  ///< by number: whether an object is none of those that stop the aircraft
+  bool is_obstacle(std::uint16_t number) const {
+    return number >= first_obstacle && (number >= soft.size() || !soft[number]);
+  }
 };
 
-/// A thing of objects.csv: an obstacle between two points (world frame, m); the ground has no geometry.
+/// A thing of objects.csv: an obstacle between two points (world frame, m), or a piece of one, where several
+/// lines have one number; what is soft has no geometry.
 struct RecordedObject {
   int number = 0;  ///< its pixels' value
   std::string name;
-  std::string kind;  ///< ground, trunk, post, crossbar, rail, wall
+  std::string kind;  ///< ground, trunk, branch, foliage, undergrowth, log, far_wood, post, crossbar, ...
   Eigen::Vector3d from_world = Eigen::Vector3d::Zero();
   Eigen::Vector3d to_world = Eigen::Vector3d::Zero();
   double radius_m = 0;
-  bool is_obstacle() const { return number >= first_obstacle; }
+  bool is_obstacle() const {
+    return number >= first_obstacle && kind != "foliage" && kind != "undergrowth" && kind != "log" &&
+           kind != "far_wood";
+  }
 };
 
 /// A recorded moment and all that is known of it.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "scenarios/flight/clearance.hpp"
@@ -58,22 +59,30 @@ bool ObstacleSightings::would_touch(const RecordedObject& object, std::size_t at
   const Eigen::Vector3d step = path_world_[to] - path_world_[from];
   if (step.norm() < 1e-9) return false;
   const Segment ahead{path_world_[at], path_world_[at] + straight_on_m * step.normalized()};
-  return segment_distance_m(ahead, {object.from_world, object.to_world}) - object.radius_m <= half_span_m;
+  return std::ranges::any_of(objects_, [&](const RecordedObject& piece) {
+    return piece.number == object.number &&
+           segment_distance_m(ahead, {piece.from_world, piece.to_world}) - piece.radius_m <= half_span_m;
+  });
 }
 
 std::vector<ObstacleSighting> ObstacleSightings::passed() const {
   std::vector<ObstacleSighting> sightings;
   if (path_world_.size() < 2) return sightings;
+  std::set<int> done;
   for (const RecordedObject& object : objects_) {
-    if (!object.is_obstacle()) continue;
-    const Segment obstacle{object.from_world, object.to_world};
+    if (!object.is_obstacle() || object.kind == "branch" || !done.insert(object.number).second) continue;
     double minimum_m = std::numeric_limits<double>::infinity();
     std::size_t nearest = 0;
-    for (std::size_t i = 0; i + 1 < path_world_.size(); ++i) {
-      const double distance_m = segment_distance_m({path_world_[i], path_world_[i + 1]}, obstacle);
-      if (distance_m >= minimum_m) continue;
-      minimum_m = distance_m;
-      nearest = i;
+    for (const RecordedObject& piece : objects_) {
+      if (piece.number != object.number) continue;
+      for (std::size_t i = 0; i + 1 < path_world_.size(); ++i) {
+        const double distance_m =
+            segment_distance_m({path_world_[i], path_world_[i + 1]}, {piece.from_world, piece.to_world}) -
+            piece.radius_m;
+        if (distance_m >= minimum_m) continue;
+        minimum_m = distance_m;
+        nearest = i;
+      }
     }
     if ((path_world_.back() - path_world_[nearest]).norm() < passed_by_m) continue;
     const auto found = gathered_.find(object.number);
@@ -83,7 +92,7 @@ std::vector<ObstacleSighting> ObstacleSightings::passed() const {
       sighting.on_the_path = would_touch(object, found->second.seen_at);
     }
     sighting.object = object.number;
-    sighting.miss_m = minimum_m - object.radius_m;
+    sighting.miss_m = minimum_m;
     sightings.push_back(sighting);
   }
   return sightings;

@@ -40,7 +40,8 @@ class ObstacleSightings {
   /// One frame: its expected blocks at one pixel and the hits. Frames without a pose are passed over.
   void add(const EvaluationFrame& frame, const DetectionGrid& grid,
            const std::vector<ExpectedBlock>& expected, const std::vector<StereoHit>& hits);
-  /// Those that were passed: the path comes nearest to them before its end. In the objects' order.
+  /// Those that were passed: the path comes nearest to them before its end. In the objects' order. Branches
+  /// are left out: who flies round a tree's trunk needs them seldom.
   std::vector<ObstacleSighting> passed() const;
 
  private:

@@ -26,18 +26,18 @@ bool in_view(const StereoRig& rig, const Eigen::Vector3d& point_camera) {
   return u >= 0 && u <= rig.width_px - 1 && v >= 0 && v <= rig.height_px - 1;
 }
 
-/// StereoBM's points between two depths; `on_obstacles`: those of pixels that the truth, where it is known,
-/// gives to an obstacle.
+/// StereoBM's points between two depths; `truth`: only those of pixels that it, where it is known, gives to
+/// an obstacle.
 std::vector<Eigen::Vector3d> points_between(const StereoRig& rig, const cv::Mat& depth_m, double minimum_m,
-                                            double maximum_m, const cv::Mat* on_obstacles = nullptr) {
+                                            double maximum_m, const TrueImages* truth = nullptr) {
   std::vector<Eigen::Vector3d> points;
   for (int v = 0; v < depth_m.rows; ++v) {
     const auto* row = depth_m.ptr<float>(v);
     const auto* object =
-        on_obstacles != nullptr && !on_obstacles->empty() ? on_obstacles->ptr<std::uint16_t>(v) : nullptr;
+        truth != nullptr && !truth->objects.empty() ? truth->objects.ptr<std::uint16_t>(v) : nullptr;
     for (int u = 0; u < depth_m.cols; ++u) {
       if (row[u] <= 0 || row[u] < minimum_m || row[u] > maximum_m) continue;
-      if (object != nullptr && object[u] < first_obstacle) continue;
+      if (object != nullptr && !truth->is_obstacle(object[u])) continue;
       points.push_back(point_at(rig, u, v, row[u]));
     }
   }
@@ -140,7 +140,7 @@ void PublishedEvaluations::compare(const EvaluationFrame& frame, const std::vect
        nearest_distances_m(remembered_in_view, points_between(rig_, depth_m, minimum_range_m, everything_m)))
     scores_.false_positives.add(or_far(distance_m));
   for (const double distance_m :
-       nearest_distances_m(points_between(rig_, depth_m, 0, near_m, &frame.truth.objects), remembered))
+       nearest_distances_m(points_between(rig_, depth_m, 0, near_m, &frame.truth), remembered))
     scores_.false_negatives.add(or_far(distance_m));
 }
 

@@ -53,6 +53,13 @@ struct FrameTally {
             &to.parts["speed"][bin_name(frame.speed_mps, speeds_mps, "m/s")],
             &to.parts["bank"][bin_name(frame.bank_rad * 180 / std::numbers::pi, banks_deg, "deg")]};
   }
+  /// What a hit's block shows, at the depth that the hit claims where that is true.
+  std::string kind_at(const StereoHit& hit, bool is_true) const {
+    const BlockContent content =
+        content_between(frame.truth, hit.column_px, hit.row_px,
+                        is_true ? grid.depths[grid.depth_of(hit)].one_pixel : any_depth, Surfaces::any);
+    return content.holds() ? kind_in(kinds, content.object) : "sky";
+  }
   std::string lateral_name(int block, double depth_m) const {
     static const std::vector<double> edges_m{1, 2, 3, 4};
     const double column_px = (block % grid.columns + 0.5) * truth_block_px - 0.5;
@@ -62,7 +69,9 @@ struct FrameTally {
   void add_hits(const std::vector<StereoHit>& hits, const std::array<Rates*, 3>& parts) {
     for (const StereoHit& hit : hits) {
       const auto is_true = true_within(hit, frame.truth, grid);
-      for (std::size_t i = 0; i < tolerance_count; ++i) to.rates[i].precision.count(is_true[i]);
+      for (std::size_t i = 0; i < tolerances_m.size(); ++i) to.rates[i].precision.count(is_true[i]);
+      count_precision(hit, is_true[one_pixel], frame.truth, grid, to.rates[one_pixel]);
+      to.parts["kind"][kind_at(hit, is_true[one_pixel])].precision.count(is_true[one_pixel]);
       for (Rates* part : parts) part->precision.count(is_true[one_pixel]);
       const int block = grid.block_of(hit);
       if (block >= 0) {
@@ -132,13 +141,23 @@ std::array<bool, tolerance_count> true_within(const StereoHit& hit, const TrueIm
   return is_true;
 }
 
+void count_precision(const StereoHit& hit, bool is_true, const TrueImages& truth, const DetectionGrid& grid,
+                     Rates& rates) {
+  rates.precision.count(is_true);
+  const DepthInterval depths = grid.depths[grid.depth_of(hit)].one_pixel;
+  const bool on_obstacle =
+      is_true && content_between(truth, hit.column_px, hit.row_px, depths, Surfaces::obstacles).holds();
+  if (on_obstacle || !is_true) rates.trunk_precision.count(is_true);
+}
+
 void count_one_pixel(const TrueImages& truth, const DetectionGrid& grid,
                      const std::vector<ExpectedBlock>& expected, const std::vector<StereoHit>& hits,
                      Rates& rates) {
-  for (const StereoHit& hit : hits)
-    rates.precision.count(content_between(truth, hit.column_px, hit.row_px,
-                                          grid.depths[grid.depth_of(hit)].one_pixel, Surfaces::any)
-                              .holds());
+  for (const StereoHit& hit : hits) {
+    const DepthInterval depths = grid.depths[grid.depth_of(hit)].one_pixel;
+    count_precision(hit, content_between(truth, hit.column_px, hit.row_px, depths, Surfaces::any).holds(),
+                    truth, grid, rates);
+  }
   const std::vector<bool> hit_at = grid.places_hit(hits);
   for (const ExpectedBlock& block : expected)
     rates.recall.count(hit_at[grid.place(block.depth, block.block)]);

@@ -11,13 +11,16 @@
 
 namespace understory {
 
-/// A detector's precision (hits that are true) and recall (expected blocks that were hit).
+/// A detector's precision (hits that are true) and recall (expected blocks that were hit). In woods many true
+/// hits lie on leaves and on the ground, which flatters the precision: trunk precision leaves those out and
+/// counts true hits on obstacles over them and all false ones.
 struct Rates {
-  Share precision, recall;
+  Share precision, recall, trunk_precision = {};
 
   void add(const Rates& other) {
     precision.add(other.precision);
     recall.add(other.recall);
+    trunk_precision.add(other.trunk_precision);
   }
   double f_score() const;  ///< harmonic mean of both
 };
@@ -39,6 +42,10 @@ std::array<bool, tolerance_count> true_within(const StereoHit& hit, const TrueIm
 /// What a false hit lies on: "sky", "ground", "trunk, nearer", "edge of trunk" (its block holds an obstacle
 /// and something at least a metre farther). `kinds`: by object number; "surface" where nobody says.
 std::string lies_on(const StereoHit& hit, const TrueImages& truth, const std::map<int, std::string>& kinds);
+
+/// Counts a hit that is true or not at one pixel in both precisions.
+void count_precision(const StereoHit& hit, bool is_true, const TrueImages& truth, const DetectionGrid& grid,
+                     Rates& rates);
 
 /// Adds one frame's hits to the rates at one pixel. `expected`: expected_blocks of the frame.
 void count_one_pixel(const TrueImages& truth, const DetectionGrid& grid,

@@ -53,9 +53,65 @@ double rectangle_distance_m(const Segment& segment, const Segment& diagonal) {
   return minimum;
 }
 
+/// How the aircraft counts, in the world.
+std::array<Segment, 2> parts_of(const Eigen::Isometry3d& T_world_body, const Airframe& airframe) {
+  const double tail_x = airframe.elevon_hinge_x_m - airframe.elevon_chord_m;
+  const double nose_x = tail_x + 2 * airframe.chord_m;
+  const double tip_y = airframe.span_m / 2;
+  return {
+      Segment{T_world_body * Eigen::Vector3d(airframe.winglet_x_m, tip_y, 0),
+              T_world_body * Eigen::Vector3d(airframe.winglet_x_m, -tip_y, 0)},
+      Segment{T_world_body * Eigen::Vector3d(nose_x, 0, 0), T_world_body * Eigen::Vector3d(tail_x, 0, 0)}};
+}
+
+Eigen::AlignedBox3d box_around(const std::array<Segment, 2>& parts) {
+  Eigen::AlignedBox3d around;
+  for (const Segment& part : parts) around.extend(part.from).extend(part.to);
+  return around;
+}
+
+constexpr double rounding_m = 1e-9;
+
+/// Lowers `minimum` to the distance from any of the obstacles. The distance of bounding boxes excludes most
+/// obstacles of a forest.
+void lower(double& minimum, const std::array<Segment, 2>& parts, const Eigen::AlignedBox3d& around,
+           const std::vector<Obstacle>& obstacles) {
+  for (const Obstacle& obstacle : obstacles) {
+    Eigen::AlignedBox3d box(obstacle.from_world.cwiseMin(obstacle.to_world),
+                            obstacle.from_world.cwiseMax(obstacle.to_world));
+    const double matters_m = minimum + obstacle.radius_m + rounding_m;
+    if (matters_m < 0 || around.squaredExteriorDistance(box) > matters_m * matters_m) continue;
+    for (const Segment& part : parts) minimum = std::min(minimum, obstacle_distance_m(part, obstacle));
+  }
+}
+
 }  // namespace
 
+/// The distance from a box is convex along a straight line: golden section finds its least.
+double box_distance_m(const Segment& segment, const Eigen::Vector3d& half_size_m) {
+  const auto at = [&](double share) {
+    const Eigen::Vector3d point = segment.from + share * (segment.to - segment.from);
+    return (point.cwiseAbs() - half_size_m).cwiseMax(0).norm();
+  };
+  constexpr double golden = 0.6180339887498949;
+  double low = 0, high = 1, one = 1 - golden, other = golden, at_one = at(one), at_other = at(other);
+  for (int i = 0; i < 60; ++i) {
+    if (at_one <= at_other) {
+      high = other, other = one, at_other = at_one;
+      one = high - golden * (high - low), at_one = at(one);
+    } else {
+      low = one, one = other, at_one = at_other;
+      other = low + golden * (high - low), at_other = at(other);
+    }
+  }
+  return std::min({at(0), at(1), at_one, at_other});
+}
+
 double obstacle_distance_m(const Segment& segment, const Obstacle& obstacle) {
+  if (obstacle.kind == ObstacleKind::box) {
+    const Eigen::Isometry3d T_box_world = obstacle.T_world_box().inverse();
+    return box_distance_m({T_box_world * segment.from, T_box_world * segment.to}, obstacle.half_size_m);
+  }
   const Segment extent{obstacle.from_world, obstacle.to_world};
   return (obstacle.kind == ObstacleKind::wall ? rectangle_distance_m(segment, extent)
                                               : segment_distance_m(segment, extent)) -
@@ -76,26 +132,36 @@ Eigen::Vector3d nearest_place(const Eigen::Vector3d& point_world, const Obstacle
 
 double clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airframe,
                    const std::vector<Obstacle>& obstacles) {
-  const double tail_x = airframe.elevon_hinge_x_m - airframe.elevon_chord_m;
-  const double nose_x = tail_x + 2 * airframe.chord_m;
-  const double tip_y = airframe.span_m / 2;
-  const std::array<Segment, 2> parts{
-      Segment{T_world_body * Eigen::Vector3d(airframe.winglet_x_m, tip_y, 0),
-              T_world_body * Eigen::Vector3d(airframe.winglet_x_m, -tip_y, 0)},
-      Segment{T_world_body * Eigen::Vector3d(nose_x, 0, 0), T_world_body * Eigen::Vector3d(tail_x, 0, 0)}};
-  Eigen::AlignedBox3d around;
-  for (const Segment& part : parts) around.extend(part.from).extend(part.to);
-  constexpr double rounding_m = 1e-9;
+  const std::array<Segment, 2> parts = parts_of(T_world_body, airframe);
   double minimum = std::numeric_limits<double>::infinity();
-  for (const Obstacle& obstacle : obstacles) {
-    // The distance of bounding boxes excludes most obstacles of a forest.
-    Eigen::AlignedBox3d box(obstacle.from_world.cwiseMin(obstacle.to_world),
-                            obstacle.from_world.cwiseMax(obstacle.to_world));
-    const double matters_m = minimum + obstacle.radius_m + rounding_m;
-    if (matters_m < 0 || around.squaredExteriorDistance(box) > matters_m * matters_m) continue;
-    for (const Segment& part : parts) {
-      minimum = std::min(minimum, obstacle_distance_m(part, obstacle));
-    }
+  lower(minimum, parts, box_around(parts), obstacles);
+  return minimum;
+}
+
+ClearanceField::ClearanceField(std::vector<Obstacle> obstacles) {
+  constexpr std::size_t together = 16;
+  int tree = -1;
+  for (Obstacle& obstacle : obstacles) {
+    const bool new_group =
+        groups_.empty() || obstacle.tree != tree || (tree < 0 && groups_.back().obstacles.size() >= together);
+    if (new_group) groups_.emplace_back();
+    tree = obstacle.tree;
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(obstacle.radius_m);
+    const Eigen::Vector3d low = obstacle.from_world.cwiseMin(obstacle.to_world),
+                          high = obstacle.from_world.cwiseMax(obstacle.to_world);
+    groups_.back().box_world.extend(low - reach).extend(high + reach);
+    groups_.back().obstacles.push_back(std::move(obstacle));
+  }
+}
+
+double ClearanceField::clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airframe) const {
+  const std::array<Segment, 2> parts = parts_of(T_world_body, airframe);
+  const Eigen::AlignedBox3d around = box_around(parts);
+  double minimum = std::numeric_limits<double>::infinity();
+  for (const Group& group : groups_) {
+    const double matters_m = std::max(0.0, minimum) + rounding_m;
+    if (around.squaredExteriorDistance(group.box_world) > matters_m * matters_m) continue;
+    lower(minimum, parts, around, group.obstacles);
   }
   return minimum;
 }

@@ -19,6 +19,9 @@ struct Segment {
 /// Minimum distance between two segments, m (Ericson, Real-Time Collision Detection 2005, section 5.1.9).
 double segment_distance_m(const Segment& a, const Segment& b);
 
+/// Minimum distance between a segment and a box about the origin, m; 0 where the segment enters it.
+double box_distance_m(const Segment& segment, const Eigen::Vector3d& half_size_m);
+
 /// Minimum distance between a segment and an obstacle's surface, m; not positive where they touch.
 double obstacle_distance_m(const Segment& segment, const Obstacle& obstacle);
 
@@ -33,6 +36,21 @@ Eigen::Vector3d nearest_place(const Eigen::Vector3d& point_world, const Obstacle
 /// as one from nose to tail (the root chord of a delta is about twice the mean chord).
 double clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airframe,
                    const std::vector<Obstacle>& obstacles);
+
+/// The same from obstacles that stand: those far away are passed over by the trees, or dozens, that they
+/// belong to.
+class ClearanceField {
+ public:
+  explicit ClearanceField(std::vector<Obstacle> obstacles);
+  double clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airframe) const;
+
+ private:
+  struct Group {
+    Eigen::AlignedBox3d box_world;  ///< of the obstacles with their surfaces
+    std::vector<Obstacle> obstacles;
+  };
+  std::vector<Group> groups_;
+};
 
 /// A detected or remembered point this near to an obstacle's surface stands for it, m: what stereo at 10 m
 /// and the estimate's drift leave open.

@@ -38,7 +38,23 @@ Flight::Flight(const Scenario& scenario, const FlightMachine& machine, std::vect
       autopilot_(autopilot_config_of(scenario, rig_.rig), scenario.airframe, rig_.rig, scenario.mission(),
                  *detector_, *state_source_, seed_for(scenario.seed, "planner")),
       referee_(scenario),
-      clock_(scenario) {}
+      clock_(scenario) {
+  if (!world_.woods) return;
+  double reach_m = 0;
+  parts_ = aircraft_.shape().parts;
+  for (const AircraftPart& part : parts_)
+    reach_m = std::max(reach_m, (part.centre_body.cwiseAbs() + part.half_size_m).norm());
+  leaves_.emplace(world_.woods->leaf_cards, reach_m);
+}
+
+bool Flight::in_leaves() const {
+  if (!leaves_) return false;
+  const Eigen::Isometry3d& T_world_body = truth().T_world_body;
+  std::vector<WingBox> boxes;
+  for (const AircraftPart& part : parts_)
+    boxes.push_back({T_world_body * Eigen::Translation3d(part.centre_body), part.half_size_m});
+  return leaves_->touches(T_world_body.translation(), boxes);
+}
 
 void Flight::step() {
   if (outcome_) return;
@@ -48,7 +64,9 @@ void Flight::step() {
   while (std::optional<StereoFrame> frame = computer_.next_frame(clock_.t_ns())) process(std::move(*frame));
   act();
   tell(&FlightObserver::on_step);
-  outcome_ = referee_.outcome_at(truth(), aircraft_.contact(), launched());
+  const bool stopped_by_leaves = scenario_.world.world.woods.leaves_end_flight && in_leaves();
+  outcome_ =
+      referee_.outcome_at(truth(), stopped_by_leaves ? Contact::obstacle : aircraft_.contact(), launched());
   if (outcome_)
     tell(&FlightObserver::on_end);
   else

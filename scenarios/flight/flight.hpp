@@ -20,6 +20,7 @@
 #include "sim/aircraft/aircraft.hpp"
 #include "sim/cameras/stereo_cameras.hpp"
 #include "sim/render/renderer_kind.hpp"
+#include "sim/scene/leaf_contact.hpp"
 #include "sim/scene/world.hpp"
 
 namespace understory {
@@ -77,6 +78,7 @@ class Flight {
 
   const Truth& truth() const { return aircraft_.truth(); }
   Touch touch() const { return aircraft_.touch(); }  ///< what the aircraft touches at truth()
+  bool in_leaves() const;                            ///< whether the wing overlaps drawn leaves at truth()
   AircraftShape aircraft_shape() const { return aircraft_.shape(); }
   /// The newest truth not later than t_ns, for 0.6 s back.
   const Truth& truth_at(std::int64_t t_ns) const { return history_.at(t_ns); }
@@ -116,6 +118,8 @@ class Flight {
   CalibratedRig rig_;
   World world_;
   Aircraft aircraft_;
+  std::optional<LeafContact> leaves_;  ///< of woods
+  std::vector<AircraftPart> parts_;
   std::unique_ptr<StereoCameras> cameras_;
   OnboardSensors sensors_;
   FrameDrops drops_;

@@ -130,6 +130,12 @@ void visit_numbers(Visitor& visit, Obstacle& obstacle) {
   visit_vector(visit, obstacle.from_world, metre);
   visit_vector(visit, obstacle.to_world, metre);
   visit(obstacle.radius_m, metre);
+  for (double& part : obstacle.turn_world.coeffs()) visit(part, turn);
+  visit_vector(visit, obstacle.half_size_m, metre);
+  std::int64_t tree = obstacle.tree;
+  visit(tree, whole);
+  if constexpr (Visitor::reads)
+    obstacle.tree = static_cast<int>(std::clamp<std::int64_t>(tree, -1, 1'000'000));
   auto kind = static_cast<std::int64_t>(obstacle.kind);
   visit(kind, whole);
   if constexpr (Visitor::reads)

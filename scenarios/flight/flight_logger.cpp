@@ -17,7 +17,7 @@ std::span<const std::byte> bytes_of(const cv::Mat& image) {
   return std::as_bytes(std::span(image.data, image.total() * image.elemSize()));
 }
 
-LogMoment moment_of(const Flight& flight) {
+LogMoment moment_of(const Flight& flight, const ClearanceField& clearance) {
   const Truth& truth = flight.truth();
   const State& state = flight.state();
   LogMoment moment;
@@ -28,7 +28,7 @@ LogMoment moment_of(const Flight& flight) {
   moment.left_elevon_rad = truth.left_elevon_rad;
   moment.right_elevon_rad = truth.right_elevon_rad;
   moment.thrust_n = truth.thrust_n;
-  moment.clearance_m = clearance_m(truth.T_world_body, flight.scenario().airframe, flight.obstacles());
+  moment.clearance_m = clearance.clearance_m(truth.T_world_body, flight.scenario().airframe);
   moment.T_odometry_body = state.T_world_body;
   moment.estimated_velocity_mps = state.T_world_body.linear() * state.velocity_body_mps;
   moment.estimated_rate_body_radps = state.angular_rate_body_radps;
@@ -55,6 +55,7 @@ void FlightLogger::begin(const Flight& flight) {
   log_.scenario = flight.scenario();
   log_.rig = flight.rig();
   log_.obstacles = flight.obstacles();
+  clearance_.emplace(flight.obstacles());
   log_.aircraft = flight.aircraft_shape();
 }
 
@@ -116,14 +117,19 @@ void FlightLogger::on_step(const Flight& flight) {
 void FlightLogger::add_path(const Flight& flight) {
   FlightResult& result = log_.result;
   const Eigen::Vector3d& position_world = flight.truth().T_world_body.translation();
-  if (log_.launch_ns) result.distance_m += (position_world - last_position_world_).norm();
+  const double flown_m = log_.launch_ns ? (position_world - last_position_world_).norm() : 0;
+  result.distance_m += flown_m;
+  if (flight.in_leaves()) {
+    result.leaves_s += 1.0 / physics_rate_hz;
+    result.leaves_m += flown_m;
+  }
   if (!log_.launch_ns) log_.launch_ns = flight.clock().t_ns();
   last_position_world_ = position_world;
   result.progress_m = std::max(result.progress_m, position_world.x());
 }
 
 void FlightLogger::add_moment(const Flight& flight) {
-  const LogMoment& moment = log_.moments.emplace_back(moment_of(flight));
+  const LogMoment& moment = log_.moments.emplace_back(moment_of(flight, *clearance_));
   digest_.add(moment.T_odometry_body);
   digest_.add(moment.controls.left_elevon_rad);
   digest_.add(moment.controls.right_elevon_rad);
@@ -146,7 +152,8 @@ void FlightLogger::score(const LogMoment& moment) {
 }
 
 void FlightLogger::on_end(const Flight& flight) {
-  if (log_.moments.back().t_ns < flight.clock().t_ns()) log_.moments.push_back(moment_of(flight));
+  if (log_.moments.back().t_ns < flight.clock().t_ns())
+    log_.moments.push_back(moment_of(flight, *clearance_));
   log_.touch = flight.touch();
   const Scenario& scenario = log_.scenario;
   FlightResult& result = log_.result;
@@ -167,7 +174,7 @@ void FlightLogger::on_end(const Flight& flight) {
   result.minimum_clearance_m = std::min(result.minimum_clearance_m, end.clearance_m);
   if (result.outcome == Outcome::collision)
     if (const auto touched = nearest_obstacle(end.T_world_body, scenario.airframe, log_.obstacles))
-      result.touched = log_.obstacles[*touched].name;
+      result.touched = flight.touch().with == Contact::obstacle ? log_.obstacles[*touched].name : "leaves";
   count_points_on_obstacles();
   result.planner = flight.planner_counts();
   if (flight.cameras() != nullptr) result.renderer = flight.cameras()->renderer();

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
+#include "scenarios/flight/clearance.hpp"
 #include "scenarios/flight/flight.hpp"
 #include "scenarios/flight/flight_log.hpp"
 
@@ -27,6 +29,7 @@ class FlightLogger : public FlightObserver {
   void count_points_on_obstacles();
 
   FlightLog log_;
+  std::optional<ClearanceField> clearance_;
   RunDigest digest_;
   std::vector<std::size_t> remembered_;  ///< of log_.points: what the map holds, in its order
   std::int64_t plan_t_ns_ = -1;

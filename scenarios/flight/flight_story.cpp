@@ -340,14 +340,6 @@ ImageWindow window_of(const StereoRig& rig, const Eigen::Isometry3d& T_camera_wo
           std::min(rig.height_px - 1, within(seen.max().y(), rig.height_px))};
 }
 
-double reach_of_ray(const Eigen::Vector3d& eye_world, const Eigen::Vector3d& ray_world,
-                    const Obstacle& obstacle) {
-  return obstacle.kind == ObstacleKind::wall
-             ? ray_meets_wall(eye_world, ray_world, obstacle)
-             : ray_meets_round_obstacle(eye_world, ray_world, obstacle.from_world, obstacle.to_world,
-                                        obstacle.radius_m);
-}
-
 }  // namespace
 
 int pixels_in_view(const FlightLog& log, const Eigen::Isometry3d& T_world_body, std::size_t obstacle,
@@ -364,10 +356,10 @@ int pixels_in_view(const FlightLog& log, const Eigen::Isometry3d& T_world_body, 
       const Eigen::Vector3d ray_world =
           T_world_camera.linear() * Eigen::Vector3d((column - rig.center_left_x_px) / rig.focal_px,
                                                     (row - rig.center_y_px) / rig.focal_px, 1);
-      const double reach = reach_of_ray(eye_world, ray_world, target);
+      const double reach = ray_meets(eye_world, ray_world, target);
       if (!std::isfinite(reach)) continue;
       const bool is_hidden = std::ranges::any_of(log.obstacles, [&](const Obstacle& other) {
-        return &other != &target && reach_of_ray(eye_world, ray_world, other) < reach;
+        return &other != &target && ray_meets(eye_world, ray_world, other) < reach;
       });
       if (!is_hidden && ++pixels >= enough) return pixels;
     }

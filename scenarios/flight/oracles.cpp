@@ -13,12 +13,45 @@ constexpr int block_px = 5;
 constexpr int last_row_of_240 = 205;  // about where the original detector ends (docs/sources.md [2])
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A round obstacle in the left camera's frame.
-struct SeenObstacle {
-  Eigen::Vector3d from = Eigen::Vector3d::Zero();
-  Eigen::Vector3d to = Eigen::Vector3d::Zero();
-  double radius_m = 0;
-};
+/// From the outside of a box about the origin.
+double ray_meets_box(const Eigen::Vector3d& from, const Eigen::Vector3d& direction,
+                     const Eigen::Vector3d& half_m) {
+  double enters = 0, leaves = infinity;  // the three pairs of faces, one after the other
+  for (int axis = 0; axis < 3; ++axis) {
+    if (direction[axis] == 0 && std::abs(from[axis]) > half_m[axis]) return infinity;
+    if (direction[axis] == 0) continue;
+    const double reach = half_m[axis] / std::abs(direction[axis]), middle = -from[axis] / direction[axis];
+    enters = std::max(enters, middle - reach);
+    leaves = std::min(leaves, middle + reach);
+  }
+  return enters > 0 && enters < leaves ? enters : infinity;
+}
+
+double ray_meets_sphere(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                        const Eigen::Vector3d& centre, double radius_m) {
+  const Eigen::Vector3d offset = origin - centre;
+  const double a = direction.squaredNorm(), b = offset.dot(direction);
+  const double c = offset.squaredNorm() - radius_m * radius_m, discriminant = b * b - a * c;
+  if (c < 0 || discriminant < 0) return infinity;
+  const double multiple = (-b - std::sqrt(discriminant)) / a;
+  return multiple > 0 ? multiple : infinity;
+}
+
+/// Pixels between which a ball in the camera's frame can be seen along one axis, a little wide; all where the
+/// camera may be inside or beside it.
+void extend_by_ball(double across_m, double depth_m, double radius_m, double focal_px, double centre_px,
+                    double& low_px, double& high_px) {
+  const double range_m = std::hypot(across_m, depth_m);
+  const double direction = std::atan2(across_m, depth_m),
+               half = range_m > radius_m ? std::asin(radius_m / range_m) : 4;
+  constexpr double quarter_turn = 1.55;
+  const auto pixel = [&](double angle) {
+    if (angle <= -quarter_turn) return -infinity;
+    return angle >= quarter_turn ? infinity : centre_px + focal_px * std::tan(angle);
+  };
+  low_px = std::min(low_px, pixel(direction - half) - 1);
+  high_px = std::max(high_px, pixel(direction + half) + 1);
+}
 
 }  // namespace
 
@@ -86,17 +119,26 @@ double ray_meets_wall(const Eigen::Vector3d& origin_world, const Eigen::Vector3d
   R_wall_world.row(2) = Eigen::Vector3d::UnitZ();
   R_wall_world.row(1) = R_wall_world.row(2).cross(R_wall_world.row(0));
   const Eigen::Vector3d half(0.5 * extent.head<2>().norm(), wall.radius_m, 0.5 * std::abs(extent.z()));
-  const Eigen::Vector3d from = R_wall_world * (origin_world - 0.5 * (wall.from_world + wall.to_world));
-  const Eigen::Vector3d direction = R_wall_world * direction_world;
-  double enters = 0, leaves = infinity;  // the three pairs of faces, one after the other
-  for (int axis = 0; axis < 3; ++axis) {
-    if (direction[axis] == 0 && std::abs(from[axis]) > half[axis]) return infinity;
-    if (direction[axis] == 0) continue;
-    const double reach = half[axis] / std::abs(direction[axis]), middle = -from[axis] / direction[axis];
-    enters = std::max(enters, middle - reach);
-    leaves = std::min(leaves, middle + reach);
+  return ray_meets_box(R_wall_world * (origin_world - 0.5 * (wall.from_world + wall.to_world)),
+                       R_wall_world * direction_world, half);
+}
+
+double ray_meets(const Eigen::Vector3d& origin_world, const Eigen::Vector3d& direction_world,
+                 const Obstacle& obstacle) {
+  if (obstacle.kind == ObstacleKind::wall) return ray_meets_wall(origin_world, direction_world, obstacle);
+  if (obstacle.kind == ObstacleKind::box) {
+    const Eigen::Isometry3d T_box_world = obstacle.T_world_box().inverse();
+    return ray_meets_box(T_box_world * origin_world, T_box_world.linear() * direction_world,
+                         obstacle.half_size_m);
   }
-  return enters > 0 && enters < leaves ? enters : infinity;
+  const Eigen::Vector3d &from = obstacle.from_world, &to = obstacle.to_world;
+  double multiple = infinity;
+  if (from != to)
+    multiple = ray_meets_round_obstacle(origin_world, direction_world, from, to, obstacle.radius_m);
+  if (!obstacle.has_round_ends()) return multiple;
+  for (const Eigen::Vector3d& end : {from, to})
+    multiple = std::min(multiple, ray_meets_sphere(origin_world, direction_world, end, obstacle.radius_m));
+  return multiple;
 }
 
 TrueDepth::TrueDepth(const StereoRig& rig, std::vector<Obstacle> obstacles, const TruthHistory& history)
@@ -105,49 +147,72 @@ TrueDepth::TrueDepth(const StereoRig& rig, std::vector<Obstacle> obstacles, cons
 }
 
 const std::vector<StereoHit>& TrueDepth::detect(const StereoFrame& frame) {
-  const Eigen::Isometry3d T_camera_world =
-      (history_.at(frame.t_ns).T_world_body * rig_.T_body_camera).inverse();
+  const Eigen::Isometry3d T_world_camera = history_.at(frame.t_ns).T_world_body * rig_.T_body_camera;
+  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
   const double corner_x =
       std::max(rig_.center_left_x_px, rig_.width_px - rig_.center_left_x_px) / rig_.focal_px;
   const double corner_y = std::max(rig_.center_y_px, rig_.height_px - rig_.center_y_px) / rig_.focal_px;
   const double reach_m = interval_.far_m * std::sqrt(1 + corner_x * corner_x + corner_y * corner_y);
-  const Eigen::Isometry3d T_world_camera = T_camera_world.inverse();
-  std::vector<SeenObstacle> round_obstacles;
-  std::vector<Obstacle> walls;
+  const int last_row_px = std::min(rig_.scaled_row_px(last_row_of_240), rig_.height_px - block_px);
+  const int rows = last_row_px < 0 ? 0 : last_row_px / block_px + 1, columns = rig_.width_px / block_px;
+  depths_m_.assign(static_cast<std::size_t>(rows * columns), infinity);
   for (const Obstacle& obstacle : obstacles_) {
-    if (obstacle.kind == ObstacleKind::wall) {
-      walls.push_back(obstacle);
+    Obstacle seen = obstacle;  // in the camera's frame
+    seen.from_world = T_camera_world * obstacle.from_world;
+    seen.to_world = T_camera_world * obstacle.to_world;
+    seen.turn_world = T_camera_world.linear() * obstacle.turn_world;
+    const bool flat = obstacle.kind == ObstacleKind::wall;  // upright in the world alone
+    const Eigen::Vector3d along = seen.to_world - seen.from_world;
+    const double length2 = std::max(along.squaredNorm(), 1e-12);
+    const double nearest = std::clamp(-seen.from_world.dot(along) / length2, 0.0, 1.0);
+    const bool is_ahead = std::max(seen.from_world.z(), seen.to_world.z()) + obstacle.radius_m > 0;
+    if (!flat && (!is_ahead || (seen.from_world + nearest * along).norm() >= reach_m + obstacle.radius_m))
       continue;
+    // Only blocks that can show it are asked.
+    double left_px = infinity, right_px = -infinity, top_px = infinity, bottom_px = -infinity;
+    for (const Eigen::Vector3d& end : {seen.from_world, seen.to_world}) {
+      extend_by_ball(end.x(), end.z(), seen.radius_m, rig_.focal_px, rig_.center_left_x_px, left_px,
+                     right_px);
+      extend_by_ball(end.y(), end.z(), seen.radius_m, rig_.focal_px, rig_.center_y_px, top_px, bottom_px);
     }
-    const SeenObstacle seen{T_camera_world * obstacle.from_world, T_camera_world * obstacle.to_world,
-                            obstacle.radius_m};
-    const Eigen::Vector3d along = seen.to - seen.from;
-    const double nearest = std::clamp(-seen.from.dot(along) / along.squaredNorm(), 0.0, 1.0);
-    const bool is_ahead = std::max(seen.from.z(), seen.to.z()) + obstacle.radius_m > 0;
-    if (is_ahead && (seen.from + nearest * along).norm() < reach_m + obstacle.radius_m)
-      round_obstacles.push_back(seen);
+    // Between an end before the camera and one behind it lies every direction on one side.
+    const bool everywhere = flat || std::min(seen.from_world.z(), seen.to_world.z()) <= 0;
+    const auto first = [&](double px, int count) {
+      return everywhere ? 0 : static_cast<int>(std::clamp(px / block_px - 1, 0.0, 1.0 * count));
+    };
+    const auto last = [&](double px, int count) {
+      return everywhere ? count : static_cast<int>(std::clamp(px / block_px + 1, 0.0, 1.0 * count));
+    };
+    for (int row = first(top_px, rows); row < last(bottom_px, rows); ++row)
+      for (int column = first(left_px, columns); column < last(right_px, columns); ++column) {
+        const Eigen::Vector3d ray = ray_of(row, column);
+        double& depth_m = depths_m_[static_cast<std::size_t>(row * columns + column)];
+        // The ray's z is 1, so multiples of it are depths.
+        depth_m = std::min(depth_m, flat ? ray_meets_wall(T_world_camera.translation(),
+                                                          T_world_camera.linear() * ray, obstacle)
+                                         : ray_meets(Eigen::Vector3d::Zero(), ray, seen));
+      }
   }
   hits_.clear();
-  if (round_obstacles.empty() && walls.empty()) return hits_;
-  const int last_row_px = rig_.scaled_row_px(last_row_of_240);
-  for (int row = 0; row <= last_row_px && row + block_px <= rig_.height_px; row += block_px) {
-    for (int column = 0; column + block_px <= rig_.width_px; column += block_px) {
-      const Eigen::Vector3d ray((column + 2 - rig_.center_left_x_px) / rig_.focal_px,
-                                (row + 2 - rig_.center_y_px) / rig_.focal_px, 1);
-      double depth_m = infinity;  // the ray's z is 1, so multiples of it are depths
-      for (const SeenObstacle& obstacle : round_obstacles) {
-        depth_m = std::min(depth_m, ray_meets_round_obstacle(Eigen::Vector3d::Zero(), ray, obstacle.from,
-                                                             obstacle.to, obstacle.radius_m));
-      }
-      for (const Obstacle& wall : walls) {
-        depth_m = std::min(depth_m,
-                           ray_meets_wall(T_world_camera.translation(), T_world_camera.linear() * ray, wall));
-      }
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      const double depth_m = depths_m_[static_cast<std::size_t>(row * columns + column)];
       if (depth_m < interval_.near_m || depth_m > interval_.far_m || depth_m == infinity) continue;
-      hits_.push_back({depth_m * ray, column, row, rig_.disparity_px(depth_m), 0.0, 0.0, {}});
+      hits_.push_back({depth_m * ray_of(row, column),
+                       column * block_px,
+                       row * block_px,
+                       rig_.disparity_px(depth_m),
+                       0.0,
+                       0.0,
+                       {}});
     }
-  }
   return hits_;
+}
+
+/// Through the middle of a block, camera frame.
+Eigen::Vector3d TrueDepth::ray_of(int row, int column) const {
+  return {(column * block_px + 2 - rig_.center_left_x_px) / rig_.focal_px,
+          (row * block_px + 2 - rig_.center_y_px) / rig_.focal_px, 1};
 }
 
 }  // namespace understory

@@ -56,9 +56,9 @@ class NoDetector : public ObstacleDetector {
 };
 
 /// Perfect detection at the pushbroom's depth: a hit for every 5x5 block of the left image (rows 0..205, as
-/// the original detector) whose centre ray first meets an obstacle or wall within one pixel of disparity of
-/// the detection depth. The depth is analytic (ray against round obstacle or box); images are not used. Hits
-/// carry the true point.
+/// the original detector) whose centre ray first meets an obstacle within one pixel of disparity of
+/// the detection depth. The depth is analytic (ray against the obstacle's shape); images are not used, and
+/// leaves, which do not stop the aircraft, are not seen. Hits carry the true point.
 class TrueDepth : public ObstacleDetector {
  public:
   /// Keeps a reference to the history, which must cover the time of every frame.
@@ -69,12 +69,19 @@ class TrueDepth : public ObstacleDetector {
   DepthInterval interval() const { return interval_; }
 
  private:
+  Eigen::Vector3d ray_of(int row, int column) const;
+
   StereoRig rig_;
   std::vector<Obstacle> obstacles_;
   const TruthHistory& history_;
   DepthInterval interval_;
+  std::vector<double> depths_m_;  ///< of the nearest obstacle, by block
   std::vector<StereoHit> hits_;
 };
+
+/// Where a ray first meets an obstacle of any shape, as for round obstacles below.
+double ray_meets(const Eigen::Vector3d& origin_world, const Eigen::Vector3d& direction_world,
+                 const Obstacle& obstacle);
 
 /// Where a ray first meets a wall, world frame, as for round obstacles below.
 double ray_meets_wall(const Eigen::Vector3d& origin_world, const Eigen::Vector3d& direction_world,

@@ -61,10 +61,13 @@ EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario,
     : folder_(folder / "mav0"),
       rig_(rig.rig),
       truth_every_steps_(physics_rate_hz / scenario.sensors.sensors.imu_rate_hz) {
-  // Their images number trees, objects.csv would number pieces.
-  if (scenario.world.world.scenery == Scenery::woods)
-    throw ScenarioError(scenario.name + ": world.scenery: woods cannot be recorded yet, only flown");
-  const std::vector<Obstacle> obstacles = course_obstacles(scenario);
+  const Wood wood = course_wood(scenario);
+  const std::size_t last_number = wood.scenery == Scenery::plain
+                                      ? object_first_obstacle + wood.obstacles.size()
+                                      : WoodsNumbers{wood.trees.size()}.alone(scenario.obstacles.size());
+  if (last_number > 65'534)
+    throw ScenarioError(
+        fmt::format("{}: more obstacles than images of objects can number (65534)", scenario.name));
   require_free_space(folder_, expected_bytes(scenario, rig.rig, expected_s));
   for (const char* sensor :
        {"cam0/data", "cam1/data", "depth0/data", "objects0/data", "imu0", "state_groundtruth_estimate0"})
@@ -82,7 +85,7 @@ EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario,
   write_whole_file(folder_ / "cam1/sensor.yaml", camera_sensor_text(cameras[1], rig_, camera_hz));
   write_whole_file(folder_ / "depth0/sensor.yaml", depth_sensor_text(rig_, camera_hz));
   write_whole_file(folder_ / "objects0/sensor.yaml", objects_sensor_text(rig_, camera_hz));
-  write_whole_file(folder_ / "objects0/objects.csv", objects_text(obstacles));
+  write_whole_file(folder_ / "objects0/objects.csv", objects_text(wood));
   write_whole_file(folder_ / "imu0/sensor.yaml",
                    imu_sensor_text(config, scenario.sensors.sensors.imu_rate_hz));
   write_whole_file(folder_ / "state_groundtruth_estimate0/sensor.yaml",

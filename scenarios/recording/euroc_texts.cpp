@@ -122,7 +122,7 @@ std::string imu_line(const ImuSample& sample) {
          vector_text(sample.specific_force_body_mps2, 9) + "\n";
 }
 
-std::string objects_text(const std::vector<Obstacle>& obstacles) {
+std::string objects_text(const Wood& wood) {
   std::string text = objects_header;
   const auto add = [&](std::size_t number, std::string_view name, std::string_view kind,
                        const Obstacle& obstacle, double radius_m) {
@@ -130,9 +130,23 @@ std::string objects_text(const std::vector<Obstacle>& obstacles) {
                         vector_text(obstacle.to_world, 6), radius_m);
   };
   add(object_ground, "ground", "ground", Obstacle{}, 0);
-  for (std::size_t i = 0; i < obstacles.size(); ++i)
-    add(object_first_obstacle + i, obstacles[i].name, word_for(obstacles[i].kind), obstacles[i],
-        obstacles[i].radius_m);
+  const WoodsNumbers numbers{wood.trees.size()};
+  std::size_t alone = 0;
+  for (const Obstacle& obstacle : wood.obstacles) {
+    const auto tree = static_cast<std::size_t>(obstacle.tree);
+    const bool branch = obstacle.kind == ObstacleKind::branch;
+    const std::size_t number = obstacle.tree >= 0 ? (branch ? numbers.branch(tree) : numbers.trunk(tree))
+                               : wood.scenery == Scenery::plain ? object_first_obstacle + alone++
+                                                                : numbers.alone(alone++);
+    const std::string name = branch ? fmt::format("tree_{:04}_branches", tree) : obstacle.name;
+    add(number, name, word_for(obstacle.kind), obstacle, obstacle.radius_m);
+  }
+  if (wood.scenery == Scenery::plain) return text;
+  for (std::size_t i = 0; i < wood.trees.size(); ++i)
+    add(numbers.leaves(i), fmt::format("tree_{:04}_leaves", i), "foliage", Obstacle{}, 0);
+  add(numbers.undergrowth(), "undergrowth", "undergrowth", Obstacle{}, 0);
+  add(numbers.log(), "logs", "log", Obstacle{}, 0);
+  add(numbers.far_wood(), "far_wood", "far_wood", Obstacle{}, 0);
   return text;
 }
 

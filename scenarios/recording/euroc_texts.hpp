@@ -8,7 +8,7 @@
 
 #include "estimation/samples.hpp"
 #include "perception/io/calibration_file.hpp"
-#include "sim/scene/obstacle.hpp"
+#include "sim/scene/trees.hpp"
 #include "sim/sensors/sensors.hpp"
 
 namespace understory {
@@ -58,7 +58,9 @@ inline constexpr const char* objects_header =
 std::string imu_line(const ImuSample& sample);
 
 /// objects0/objects.csv: what the numbers in the images of objects stand for, the ground first. World frame.
-std::string objects_text(const std::vector<Obstacle>& obstacles);
+/// A tree's trunk is one object and its branches another, with a line for each piece; its leaves, the plants,
+/// the logs and the far wood (kinds foliage, undergrowth, log, far_wood) have no geometry.
+std::string objects_text(const Wood& wood);
 
 /// A line of a state's data.csv; t_ns is simulated time.
 struct RecordedState {

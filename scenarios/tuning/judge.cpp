@@ -125,12 +125,13 @@ class VisionJudge : public Judge {
     const double precision = share(1), recall = share(3), both = precision + recall;
     const double f_score = both > 0 ? 2 * precision * recall / both : 0;
     const double hits_per_frame = sum[0] > 0 ? sum[2] / sum[0] : 0;
-    return {precision, recall, f_score, share(5), share(7), hits_per_frame};
+    return {precision, recall, f_score, share(5), share(7), hits_per_frame, share(9)};
   }
 
  private:
   /// Frames; then, of how many it holds and of how many: hits that are true, expected blocks that were hit,
-  /// obstacles within 1 m and 3 m of the path that were found.
+  /// obstacles within 1 m and 3 m of the path that were found; of hits on obstacles and false ones those that
+  /// are true.
   Counts count(const HeldRecording& recording, const PushbroomConfig& rule) const {
     PushbroomStereo detector(rig_, rule);
     const DetectionGrid grid(rig_, stated_depths_m(rule, rig_), rule.last_row_px);
@@ -148,8 +149,8 @@ class VisionJudge : public Judge {
     }
     const std::vector<ObstacleSighting> passed = sightings.passed();
     Counts counts{static_cast<double>(recording.frames.size())};
-    for (const Share& share :
-         {rates.precision, rates.recall, found_within(passed, 1), found_within(passed, 3)})
+    for (const Share& share : {rates.precision, rates.recall, found_within(passed, 1),
+                               found_within(passed, 3), rates.trunk_precision})
       counts.insert(counts.end(), {static_cast<double>(share.with), static_cast<double>(share.of)});
     return counts;
   }
@@ -169,8 +170,8 @@ std::unique_ptr<Judge> flight_judge(FlightJudgeConfig config) {
   return std::make_unique<FlightJudge>(std::move(config));
 }
 
-const std::vector<std::string> vision_figure_names{"precision", "recall",    "f_score",
-                                                   "trunks_1m", "trunks_3m", "hits_per_frame"};
+const std::vector<std::string> vision_figure_names{
+    "precision", "recall", "f_score", "trunks_1m", "trunks_3m", "hits_per_frame", "trunk_precision"};
 
 bool matters_on_recordings(std::string_view key) {
   return key.starts_with("perception.pushbroom.") || key.starts_with("perception.depths_m[");

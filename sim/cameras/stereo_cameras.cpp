@@ -105,16 +105,6 @@ Eye chase_eye(const Eigen::Isometry3d& T_world_body, int width_px, int height_px
   return eye;
 }
 
-/// The wood of a world, within the rectangle that its trees fill.
-WoodsMesh woods_mesh(const World& world) {
-  Eigen::AlignedBox2d stand;
-  for (const Tree& tree : world.trees)
-    stand.extend(Eigen::Vector2d(world.obstacles[tree.first].from_world.head<2>()));
-  if (stand.isEmpty()) stand = Eigen::AlignedBox2d(Eigen::Vector2d(0, -25), Eigen::Vector2d(60, 25));
-  const std::uint64_t seed = world.trees.empty() ? 1 : world.trees.front().seed;
-  return woods_mesh(world.obstacles, world.trees, stand, world.config.woods, seed);
-}
-
 struct StereoCameras::Implementation {
   const mjModel& model;
   StereoRig rig;
@@ -171,10 +161,9 @@ StereoCameras::StereoCameras(const World& world, const StereoRig& rig, const Cam
                              CameraSeeds seeds, const std::optional<StereoCalibration>& raw,
                              RendererKind renderer) {
   paint_textures(*world.model, world.config);
-  std::optional<WoodsMesh> woods;
-  if (world.config.scenery == Scenery::woods) woods = woods_mesh(world);
-  implementation_ = std::make_unique<Implementation>(*world.model, rig, config, seeds, raw, renderer,
-                                                     woods ? &*woods : nullptr);
+  if (world.woods) paint(*world.woods);
+  implementation_ =
+      std::make_unique<Implementation>(*world.model, rig, config, seeds, raw, renderer, world.woods.get());
 }
 
 StereoCameras::~StereoCameras() = default;

@@ -39,6 +39,8 @@ MeshBuilder::MeshBuilder(const WoodsConfig& config, std::uint64_t seed)
   const double azimuth = uniform(0, 2 * std::numbers::pi), up = config.sun_elevation_rad;
   mesh.to_sun_world = {std::cos(up) * std::cos(azimuth), std::cos(up) * std::sin(azimuth), std::sin(up)};
   mesh.haze_m = config.haze_m;
+  mesh.overcast = config.overcast;
+  mesh.seed = noise_seed;
 }
 
 double MeshBuilder::ground_z(const Vector2d& place) const {

@@ -27,8 +27,8 @@ inline constexpr std::uint16_t object_first_obstacle = 2;
 enum class ObstacleTexture { bark, windows, litter };
 
 /// A round obstacle between two points (trunk, goal post, crossbar, capsule; a sphere where both are one), a
-/// wall, which is an upright rectangle with its diagonal between the points, twice the radius thick, or a box.
-/// World frame, m.
+/// wall, which is an upright rectangle with its diagonal between the points, twice the radius thick, or a
+/// box. World frame, m.
 struct Obstacle {
   std::string name;
   Eigen::Vector3d from_world = Eigen::Vector3d::Zero();  ///< for a trunk: its foot
@@ -39,7 +39,7 @@ struct Obstacle {
   ObstacleKind kind = ObstacleKind::trunk;
   int tree = -1;  ///< number of the tree that it is a piece of; -1: it stands alone
   ObstacleTexture texture = ObstacleTexture::bark;
-  /// Of a box, which lies between the points along its own z axis; its radius is half of its longer side.
+  /// Of a box, which lies between the points along its own z axis; its radius reaches to its edges.
   Eigen::Quaterniond turn_world = Eigen::Quaterniond::Identity();
   Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double breast_height_m = 1.3;
 constexpr double longest_piece_m = 1.25;
-constexpr double within_m = 0.006;  ///< of the taper
+constexpr double within_m = 0.006;   ///< of the taper
 constexpr double thinnest_m = 0.01;  ///< radius of a branch's tip
 
 /// Habit of a kind, as field guides draw it for trees in a closed stand; numbers are our choice.
@@ -97,8 +97,8 @@ class Grower {
     const double top_m = std::min(trunk_.to_world.z(), 0.9 * tree_.height_m);
     // The capsule differs from the taper by half a piece's taper at its ends.
     const double taper = trunk_.radius_m / (tree_.height_m - breast_height_m);
-    const int pieces = std::max(
-        1, static_cast<int>(std::ceil(top_m / std::min(longest_piece_m, 2 * within_m / taper))));
+    const int pieces =
+        std::max(1, static_cast<int>(std::ceil(top_m / std::min(longest_piece_m, 2 * within_m / taper))));
     for (int i = 0; i < pieces; ++i) {
       const double low = i * top_m / pieces, high = (i + 1) * top_m / pieces;
       add("", ObstacleKind::trunk, axis_world(low), axis_world(high), radius_m(0.5 * (low + high)));
@@ -187,12 +187,15 @@ WoodsConfig drawn(WoodsConfig config, std::uint64_t seed) {
 Wood grow(const std::vector<Obstacle>& trunks, const WoodsConfig& config, std::uint64_t seed,
           const std::vector<KnownTree>& known) {
   Wood wood;
+  wood.scenery = Scenery::woods;
   const KnownTree unknown;
   for (std::size_t i = 0; i < trunks.size(); ++i) {
     std::seed_seq mixed{seed, seed >> 32, std::uint64_t{i}};
     std::array<std::uint32_t, 2> words{};
     mixed.generate(words.begin(), words.end());
-    Grower(trunks[i], known.empty() ? unknown : known[i], config, static_cast<int>(i), std::uint64_t{words[1]} << 32 | words[0], wood).grow();
+    Grower(trunks[i], known.empty() ? unknown : known[i], config, static_cast<int>(i),
+           std::uint64_t{words[1]} << 32 | words[0], wood)
+        .grow();
   }
   return wood;
 }

@@ -33,10 +33,11 @@ struct Tree {
   std::uint64_t seed = 0;     ///< its own, for what has no obstacle: leaves, tint
 };
 
-/// A wood: obstacles in the order of the trees, and the trees.
+/// What stands on a course: obstacles in the order of the trees, and the trees; then those that stand alone.
 struct Wood {
   std::vector<Obstacle> obstacles;
   std::vector<Tree> trees;
+  Scenery scenery = Scenery::plain;  ///< woods: images number objects as WoodsNumbers says
 };
 
 /// Numbers in images of objects of a wood. Each tree has one for its trunk, its branches and its leaves; the
@@ -57,10 +58,11 @@ struct WoodsNumbers {
 /// The look, with what its keys leave open drawn from the seed: nothing is left open afterwards.
 WoodsConfig drawn(WoodsConfig config, std::uint64_t seed);
 
-/// Grows a tree where each trunk stands (`config` from drawn(); `known` is empty or as long as `trunks`): a chain of capsules that leans,
-/// bends and tapers, and branches as shorter chains. A trunk's radius is that at breast height, 1.3 m. The
-/// pieces of a trunk are so short that a capsule's radius differs from the tapered one by less than 1 cm.
-/// Branches are at least 1 cm thick. Each piece is an Obstacle that names its tree.
+/// Grows a tree where each trunk stands (`config` from drawn(); `known` is empty or as long as `trunks`): a
+/// chain of capsules that leans, bends and tapers, and branches as shorter chains. A trunk's radius is that
+/// at breast height, 1.3 m. The pieces of a trunk are so short that a capsule's radius differs from the
+/// tapered one by less than 1 cm. Branches are at least 1 cm thick. Each piece is an Obstacle that names its
+/// tree.
 ///
 /// The height follows h = 2.0 d^0.68 (h in m, d in cm), fitted to 725 trees of the SCBI plot (Bourg et al.
 /// 2013, Ecology 94, 2111), with 0.24 of standard deviation of log h.

@@ -16,12 +16,11 @@ using Eigen::Vector3d;
 struct Colours {
   Vector3d bark, fresh, dark;
 };
-const std::array<Colours, 5> colours{
-    {{{118, 108, 96}, {112, 146, 58}, {74, 96, 46}},      // oak
-     {{140, 138, 130}, {124, 160, 66}, {82, 110, 50}},    // beech
-     {{190, 188, 180}, {136, 164, 76}, {108, 122, 58}},   // birch
-     {{138, 104, 78}, {92, 124, 70}, {60, 84, 54}},       // pine
-     {{106, 94, 84}, {70, 104, 60}, {46, 70, 46}}}};      // spruce
+const std::array<Colours, 5> colours{{{{118, 108, 96}, {112, 146, 58}, {74, 96, 46}},     // oak
+                                      {{140, 138, 130}, {124, 160, 66}, {82, 110, 50}},   // beech
+                                      {{190, 188, 180}, {136, 164, 76}, {108, 122, 58}},  // birch
+                                      {{138, 104, 78}, {92, 124, 70}, {60, 84, 54}},      // pine
+                                      {{106, 94, 84}, {70, 104, 60}, {46, 70, 46}}}};     // spruce
 
 bool is_conifer(TreeKind kind) { return kind == TreeKind::pine || kind == TreeKind::spruce; }
 
@@ -60,9 +59,8 @@ class TreePainter {
         builder_.add_tube({obstacles_[i].from_world, obstacles_[i].to_world},
                           {obstacles_[i].radius_m, obstacles_[i].radius_m}, 6, 0.85 * bark_, 0, branch_);
     });
-    part.solid[1] = builder_.range_of([&] {
-      builder_.add_ribbon(every_fourth(axis_), every_fourth(radii_m_), bark_, trunk_);
-    });
+    part.solid[1] = builder_.range_of(
+        [&] { builder_.add_ribbon(every_fourth(axis_), every_fourth(radii_m_), bark_, trunk_); });
     place_clumps();
     part.leaves[0] = builder_.range_of([&] {
       for (const Clump& clump : clumps_) add_clump(clump);
@@ -131,17 +129,16 @@ class TreePainter {
   /// The crown's clumps: a cone's or an egg's, most of them outside, brighter above and towards the sun.
   void place_clumps() {
     const bool spruce = tree_.kind == TreeKind::spruce;
-    const double base_m = tree_.kind == TreeKind::pine
-                              ? std::max(tree_.crown_base_m, 0.6 * tree_.height_m)
-                              : tree_.crown_base_m;
+    const double base_m = tree_.kind == TreeKind::pine ? std::max(tree_.crown_base_m, 0.6 * tree_.height_m)
+                                                       : tree_.crown_base_m;
     const double depth_m = std::max(tree_.height_m - base_m, 1.0);
     const int count = spruce ? 26 : 14;
     for (int i = 0; i < count; ++i) {
       // Evenly over the height and round the stem by the golden angle, so that no side is bare.
       const double share = (i + uniform(0, 1)) / count;
       const double turn = 2.39996 * i + uniform(-0.4, 0.4);
-      const double hull = spruce ? 1 - 0.95 * share
-                                 : std::sqrt(std::max(0.08, 1 - std::pow(1.6 * share - 0.6, 2)));
+      const double hull =
+          spruce ? 1 - 0.95 * share : std::sqrt(std::max(0.08, 1 - std::pow(1.6 * share - 0.6, 2)));
       const double out_m = (spruce ? 0.5 : uniform(0.35, 0.85)) * hull * tree_.crown_radius_m;
       const Vector3d outward(std::cos(turn), std::sin(turn), 0);
       const double sunny = 0.12 * outward.dot(builder_.mesh.to_sun_world) * hull;
@@ -205,7 +202,8 @@ class TreePainter {
       builder_.add_card(spray_of(clump, 1.4 * clump.radius_m, 0), 0.8 * tint, tint, leaves_);
       return;
     }
-    const Vector3d normal = (clump.outward + Vector3d(uniform(-0.3, 0.3), uniform(-0.3, 0.3), 0.4)).normalized();
+    const Vector3d normal =
+        (clump.outward + Vector3d(uniform(-0.3, 0.3), uniform(-0.3, 0.3), 0.4)).normalized();
     builder_.add_card(leaves_at(clump.middle, normal, 2.2 * clump.radius_m, 0), 0.9 * tint, tint, leaves_);
   }
 
@@ -246,7 +244,8 @@ void add_listed(MeshBuilder& builder, const Obstacle& obstacle, std::size_t numb
                          builder.lit(Vector3d::Constant(128), T_world_mesh.linear() * mesh.normals[i]),
                          static_cast<std::uint16_t>(number));
     for (const Eigen::Vector3i& face : mesh.faces)
-      for (const int corner : face) builder.mesh.indices.push_back(first + static_cast<std::uint32_t>(corner));
+      for (const int corner : face)
+        builder.mesh.indices.push_back(first + static_cast<std::uint32_t>(corner));
   });
   builder.part().solid = {range, range};
   builder.end_part();
@@ -261,21 +260,23 @@ void add_far_tree(MeshBuilder& builder, const Tree& tree, double radius_m, const
       top = foot + Vector3d(lean, -lean, tree.height_m);
   const Colours& own = colours[static_cast<std::size_t>(tree.kind)];
   const bool bare = config.season == Season::winter && !is_conifer(tree.kind);
-  const Vector3d green = bare ? Vector3d(0.9 * own.bark) : Vector3d(own.fresh + config.leaf_tone * (own.dark - own.fresh));
+  const Vector3d green =
+      bare ? Vector3d(0.9 * own.bark) : Vector3d(own.fresh + config.leaf_tone * (own.dark - own.fresh));
   const LeafPicture picture = bare                    ? LeafPicture::twigs
                               : is_conifer(tree.kind) ? LeafPicture::needles
                                                       : LeafPicture::leaves;
   builder.begin_part(static_cast<WoodsTexture>(tree.kind));
-  const WoodsRange stem = builder.range_of(
-      [&] { builder.add_ribbon({foot, top}, {1.1 * radius_m, 0.02}, own.bark, number); });
+  const WoodsRange stem = builder.range_of([&] {
+    builder.add_ribbon({foot, top}, {1.1 * radius_m, 0.02}, own.bark, number);
+  });
   const WoodsRange crown = builder.range_of([&] {
     const double base = std::max(0.35, tree.crown_base_m / tree.height_m);
     for (int i = 0; i < 7; ++i) {
       const double share = (i + builder.uniform(0, 1)) / 7, angle = 2.4 * i + turn;
       const Vector3d outward(std::cos(angle), std::sin(angle), 0);
       const double hull = tree.kind == TreeKind::spruce ? 1 - 0.9 * share : 1 - 0.5 * share;
-      const Vector3d middle = foot + (base + share * (1 - base)) * (top - foot) +
-                              0.5 * hull * tree.crown_radius_m * outward;
+      const Vector3d middle =
+          foot + (base + share * (1 - base)) * (top - foot) + 0.5 * hull * tree.crown_radius_m * outward;
       const double half_m = 0.8 * hull * tree.crown_radius_m + 0.4;
       const Vector3d across(-outward.y(), outward.x(), 0);
       const Vector3d tint = (0.6 + 0.4 * share) * green;
@@ -298,14 +299,17 @@ WoodsMesh woods_mesh(const std::vector<Obstacle>& obstacles, const std::vector<T
   for (const Obstacle& obstacle : obstacles)
     if (obstacle.tree < 0) add_listed(builder, obstacle, numbers.alone(alone++));
   add_forest_floor(builder, obstacles, trees, stand, config);
-  WoodsMesh& mesh = builder.mesh;
+  return std::move(builder.mesh);
+}
+
+void paint(WoodsMesh& mesh) {
   for (std::size_t i = 0; i < woods_texture_count; ++i) {
     const auto which = static_cast<WoodsTexture>(i);
     const auto uses = [&](const WoodsPart& part) { return part.texture == which; };
-    if (which == WoodsTexture::leaves || std::ranges::any_of(mesh.parts, uses))
-      mesh.textures[i] = woods_picture(which, builder.noise_seed, config.overcast);
+    const bool used = which == WoodsTexture::leaves || std::ranges::any_of(mesh.parts, uses);
+    if (used && mesh.textures[i].rgba.empty())
+      mesh.textures[i] = woods_picture(which, mesh.seed, mesh.overcast);
   }
-  return std::move(mesh);
 }
 
 }  // namespace understory

@@ -46,14 +46,19 @@ struct WoodsMesh {
   std::vector<WoodsVertex> vertices;
   std::vector<std::uint32_t> indices;
   std::vector<WoodsPart> parts;
-  std::array<WoodsPicture, woods_texture_count> textures;  ///< empty where no part uses it
+  std::array<WoodsPicture, woods_texture_count> textures;  ///< empty until painted, and where no part uses it
   std::vector<LeafCard> leaf_cards;                        ///< of the trees that can be reached
   Eigen::Vector3d to_sun_world = Eigen::Vector3d::UnitZ();
   double haze_m = 100;
+  double overcast = 0;
+  std::uint32_t seed = 0;  ///< of the textures
 };
 
+/// Paints the textures, which only images need.
+void paint(WoodsMesh& mesh);
+
 /// Draws a wood that stands in a rectangle of the ground (corners in world axes, m) with a far wood around
-/// it. The same arguments give the same bytes.
+/// it, without textures. The same arguments give the same bytes.
 WoodsMesh woods_mesh(const std::vector<Obstacle>& obstacles, const std::vector<Tree>& trees,
                      const Eigen::AlignedBox2d& stand, const WoodsConfig& config, std::uint64_t seed);
 

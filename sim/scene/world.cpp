@@ -134,6 +134,18 @@ void set_inertia(mjModel& model, const Airframe& airframe) {
   model.stat = pinned;
 }
 
+/// The wood fills the rectangle that its trees stand in.
+std::shared_ptr<WoodsMesh> mesh_of(const std::vector<Obstacle>& obstacles, const std::vector<Tree>& trees,
+                                   const WorldConfig& config) {
+  if (config.scenery == Scenery::plain) return nullptr;
+  Eigen::AlignedBox2d stand;
+  for (const Tree& tree : trees) stand.extend(Eigen::Vector2d(obstacles[tree.first].from_world.head<2>()));
+  if (trees.empty()) stand = Eigen::AlignedBox2d(Eigen::Vector2d(0, -25), Eigen::Vector2d(60, 25));
+  stand.extend(stand.max() + Eigen::Vector2d(1, 1));
+  const std::uint64_t seed = trees.empty() ? 1 : trees.front().seed;
+  return std::make_shared<WoodsMesh>(woods_mesh(obstacles, trees, stand, config.woods, seed));
+}
+
 }  // namespace
 
 void DeleteModel::operator()(mjModel_* model) const { mj_deleteModel(model); }
@@ -161,7 +173,7 @@ World build_world(const fs::path& models_folder, const Airframe& airframe,
   set_inertia(*model, airframe);
   model->vis.quality.shadowsize = 0;  // unused by the cameras, and expensive
   model->vis.quality.offsamples = 0;
-  return {std::move(model), obstacles, config, trees};
+  return {std::move(model), obstacles, config, mesh_of(obstacles, trees, config)};
 }
 
 }  // namespace understory

@@ -8,6 +8,7 @@
 
 #include "planning/airframe.hpp"
 #include "sim/scene/trees.hpp"
+#include "sim/scene/woods_mesh.hpp"
 #include "sim/scene/world_config.hpp"
 
 struct mjModel_;  // MuJoCo's, opaque to whoever does not include it
@@ -40,7 +41,7 @@ struct World {
   ModelPointer model;
   std::vector<Obstacle> obstacles;
   WorldConfig config = {};
-  std::vector<Tree> trees = {};  ///< of woods: what to draw beside the obstacles
+  std::shared_ptr<WoodsMesh> woods = nullptr;  ///< what is drawn of woods; the cameras paint its textures
 };
 
 /// Capsules of a world of woods that collide at a time: those nearest to the aircraft, which moves them

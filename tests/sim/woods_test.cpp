@@ -145,7 +145,7 @@ TEST(Woods, DrawnTrunksLieWhereTheirCapsulesAre) {
         const Vector3d place =
             T_world_camera * (depth_m * Vector3d((column - rig.center_left_x_px) / rig.focal_px,
                                                  (row - rig.center_y_px) / rig.focal_px, 1));
-        if (depth_m > 13 || place.z() < 1 || place.z() > 6) continue;  // far away with fewer sides; the band
+        if (depth_m > 11 || place.z() < 1 || place.z() > 6) continue;  // far away with fewer sides; the band
         const Tree& tree = wood.trees[static_cast<std::size_t>(number) / 3];
         double nearest_m = 1e9;
         for (std::size_t i = tree.first; i < tree.first + tree.trunk_pieces; ++i) {
@@ -156,7 +156,7 @@ TEST(Woods, DrawnTrunksLieWhereTheirCapsulesAre) {
           nearest_m = std::min(nearest_m,
                                std::abs((place - piece.from_world - share * along).norm() - piece.radius_m));
         }
-        ASSERT_LT(nearest_m, 0.02) << "tree " << number / 3 << " at " << place.transpose();
+        ASSERT_LT(nearest_m, 0.01) << "tree " << number / 3 << " at " << place.transpose();
         ++checked;
       }
   }
