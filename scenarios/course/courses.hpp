@@ -38,14 +38,14 @@ struct ForestConfig {
   /// CSV file of measured stems that stand instead of random ones (docs/woods.md describes it). A relative
   /// path is looked for beside the scenario file, then in the folder that the environment variable
   /// UNDERSTORY_DATA names. Empty: random trees
-  std::string trees_file;
+  std::string trees_file = {};
   double thinnest_stem_m = 0.10;  ///< diameter below which a stem of forest.trees_file is left out
   /// x coordinate of the launch in forest.trees_file; empty: drawn from the seed so that the course lies
   /// among the stems
-  std::optional<double> file_x_m;
-  std::optional<double> file_y_m;  ///< y coordinate of the launch in forest.trees_file; empty: drawn
+  std::optional<double> file_x_m = {};
+  std::optional<double> file_y_m = {};  ///< y coordinate of the launch in forest.trees_file; empty: drawn
   /// direction of the flight in forest.trees_file, counter-clockwise from its x axis; empty: drawn
-  std::optional<double> file_heading_rad;
+  std::optional<double> file_heading_rad = {};
   bool invisible = false;  ///< hides the obstacles of any course from the cameras; they still collide
   /// lets the aircraft pass through the obstacles of any course; they are still drawn
   bool intangible = false;

@@ -24,7 +24,7 @@ struct TrueImages {
   /// depth_mm where the right eye sees the same place, 0 where something nearer covers it there: no pair of
   /// eyes can match what one of them does not see.
   cv::Mat shared_depth_mm;
-  std::vector<bool> soft;  ///< by number: whether an object is none of those that stop the aircraft
+  std::vector<bool> soft = {};  ///< by number: whether an object is none of those that stop the aircraft
   bool is_obstacle(std::uint16_t number) const {
     return number >= first_obstacle && (number >= soft.size() || !soft[number]);
   }

@@ -64,17 +64,18 @@ class FloorPainter {
     std::array<std::array<std::uint32_t, cells_per_patch + 1>, cells_per_patch + 1> at{};
     for (std::size_t row = 0; row <= cells_per_patch; ++row)
       for (std::size_t column = 0; column <= cells_per_patch; ++column) {
-        const Vector2d place = corner + cell_m * Vector2d(static_cast<double>(column), static_cast<double>(row));
+        const Vector2d place =
+            corner + cell_m * Vector2d(static_cast<double>(column), static_cast<double>(row));
         const auto slope = [&](const Vector2d& step) {
           return builder_.ground_z(place - step) - builder_.ground_z(place + step);
         };
         const Vector3d normal = Vector3d(slope({0.5, 0}), slope({0, 0.5}), 1).normalized();
-        const double brown = std::clamp(
-            config_.litter + 0.35 * noise_at(place / 5, builder_.noise_seed + 7), 0.0, 1.0);
-        at[row][column] = builder_.add_vertex(
-            {place.x(), place.y(), height(corner, row, column)}, place.x() / dapple_tile_m,
-            place.y() / dapple_tile_m, builder_.lit(moss + brown * (leaves_on_soil - moss), normal),
-            object_ground);
+        const double brown =
+            std::clamp(config_.litter + 0.35 * noise_at(place / 5, builder_.noise_seed + 7), 0.0, 1.0);
+        at[row][column] =
+            builder_.add_vertex({place.x(), place.y(), height(corner, row, column)},
+                                place.x() / dapple_tile_m, place.y() / dapple_tile_m,
+                                builder_.lit(moss + brown * (leaves_on_soil - moss), normal), object_ground);
       }
     for (const std::size_t step : {1, 2})
       part.solid[step - 1] = builder_.range_of([&] {
@@ -89,7 +90,8 @@ class FloorPainter {
     const auto z = [&](std::size_t r, std::size_t c) {
       return builder_.ground_z(corner + cell_m * Vector2d(static_cast<double>(c), static_cast<double>(r)));
     };
-    const bool first_or_last_row = row % cells_per_patch == 0, first_or_last_column = column % cells_per_patch == 0;
+    const bool first_or_last_row = row % cells_per_patch == 0,
+               first_or_last_column = column % cells_per_patch == 0;
     if (first_or_last_row && column % 2 == 1) return 0.5 * (z(row, column - 1) + z(row, column + 1));
     if (first_or_last_column && row % 2 == 1) return 0.5 * (z(row - 1, column) + z(row + 1, column));
     return z(row, column);
@@ -99,9 +101,13 @@ class FloorPainter {
     const Vector2d place = corner + patch_m * random_place();
     const double wet = 0.5 + 0.5 * noise_at(place / 6, builder_.noise_seed + 3),
                  open = 0.5 + 0.5 * noise_at(place / 9, builder_.noise_seed + 4);
-    const double chance = builder_.uniform(0, 1), size = builder_.uniform(0, 1), turn = builder_.uniform(0, 3);
+    const double chance = builder_.uniform(0, 1), size = builder_.uniform(0, 1),
+                 turn = builder_.uniform(0, 3);
     const double bright = builder_.uniform(0.75, 1.1);
-    Plant plant{PlantKind::grass, {place.x(), place.y(), builder_.ground_z(place)}, 0.25 + 0.25 * size, turn,
+    Plant plant{PlantKind::grass,
+                {place.x(), place.y(), builder_.ground_z(place)},
+                0.25 + 0.25 * size,
+                turn,
                 bright * green};
     if (chance < 0.75 * wet * wet) {
       plant.kind = PlantKind::fern;
@@ -158,8 +164,8 @@ class FloorPainter {
     };
     const auto kind = static_cast<WoodsTexture>(static_cast<int>(builder_.uniform(0, 4.999)));
     if (config_.kinds != WoodsKinds::mixed)
-      builder_.begin_part(static_cast<WoodsTexture>(static_cast<int>(config_.kinds) -
-                                                    static_cast<int>(WoodsKinds::oak)));
+      builder_.begin_part(
+          static_cast<WoodsTexture>(static_cast<int>(config_.kinds) - static_cast<int>(WoodsKinds::oak)));
     else
       builder_.begin_part(kind);
     const WoodsRange log = builder_.range_of([&] {

@@ -81,8 +81,10 @@ TrunkMesh box_mesh(const Eigen::Vector3d& half_m, double tile_width_m, double ti
         mesh.normals.push_back(side * Eigen::Vector3d::Unit(axis));
         mesh.texture.emplace_back(corner[across] / tile_width_m, (corner[up] + half_m[up]) / tile_height_m);
       }
-      const Eigen::Vector3d turn = (mesh.vertices[static_cast<std::size_t>(first) + 1] - mesh.vertices[static_cast<std::size_t>(first)])
-                                       .cross(mesh.vertices[static_cast<std::size_t>(first) + 2] - mesh.vertices[static_cast<std::size_t>(first)]);
+      const Eigen::Vector3d turn = (mesh.vertices[static_cast<std::size_t>(first) + 1] -
+                                    mesh.vertices[static_cast<std::size_t>(first)])
+                                       .cross(mesh.vertices[static_cast<std::size_t>(first) + 2] -
+                                              mesh.vertices[static_cast<std::size_t>(first)]);
       const bool outward = side * turn[axis] > 0;
       mesh.faces.emplace_back(first, first + (outward ? 1 : 2), first + (outward ? 2 : 1));
       mesh.faces.emplace_back(first, first + (outward ? 2 : 3), first + (outward ? 3 : 2));
@@ -92,9 +94,11 @@ TrunkMesh box_mesh(const Eigen::Vector3d& half_m, double tile_width_m, double ti
 
 /// Rings about the z axis, half spheres at both ends of a straight piece.
 TrunkMesh capsule_mesh(double radius_m, double half_axis_m, double tile_width_m, double tile_height_m) {
-  constexpr int rings_per_end = 6;
-  const int sides = std::max(sides_of(radius_m), 12);
-  const double girth_m = 2 * std::numbers::pi * radius_m, turns = std::max(1.0, std::round(girth_m / tile_width_m));
+  // Finer than trunks: within 1 mm of the round surface.
+  const int sides = std::max(12, static_cast<int>(std::ceil(std::numbers::pi * std::sqrt(radius_m / 0.004))));
+  const int rings_per_end = sides / 2;
+  const double girth_m = 2 * std::numbers::pi * radius_m,
+               turns = std::max(1.0, std::round(girth_m / tile_width_m));
   TrunkMesh mesh;
   for (int ring = 0; ring < 2 * (rings_per_end + 1); ++ring) {
     const bool upper = ring > rings_per_end;
@@ -104,7 +108,8 @@ TrunkMesh capsule_mesh(double radius_m, double half_axis_m, double tile_width_m,
     const double along_m = z + half_axis_m + radius_m;
     for (int i = 0; i <= sides; ++i) {
       const double share = static_cast<double>(i) / sides, turn = 2 * std::numbers::pi * share;
-      const Eigen::Vector3d normal(std::cos(angle) * std::cos(turn), std::cos(angle) * std::sin(turn), std::sin(angle));
+      const Eigen::Vector3d normal(std::cos(angle) * std::cos(turn), std::cos(angle) * std::sin(turn),
+                                   std::sin(angle));
       const double around_m = corner_radius_m(radius_m, sides) * std::cos(angle);
       mesh.vertices.emplace_back(around_m * std::cos(turn), around_m * std::sin(turn), z);
       mesh.normals.push_back(normal);

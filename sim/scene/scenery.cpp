@@ -158,7 +158,10 @@ SceneryXml scenery_xml(const std::vector<Obstacle>& obstacles, const WorldConfig
       const double tile_m = windowed ? window_period_m : barked ? bark_width_m : ground_tile_m;
       const double height_m = windowed ? storey_m : barked ? bark_height_m : ground_tile_m;
       xml.assets += mesh_xml(name, listed_mesh(obstacle, tile_m, height_m));
-      xml.bodies += geom_xml(name, windowed ? "facade" : barked ? "bark" : "litter",
+      xml.bodies += geom_xml(name,
+                             windowed ? "facade"
+                             : barked ? "bark"
+                                      : "litter",
                              obstacle.T_world_box().translation(), obstacle.turn_world);
       continue;
     }

@@ -24,9 +24,9 @@ const std::array<Colours, 5> colours{{{{118, 108, 96}, {112, 146, 58}, {74, 96, 
 
 bool is_conifer(TreeKind kind) { return kind == TreeKind::pine || kind == TreeKind::spruce; }
 
-/// As many sides as keep a tube's outline within 3 mm of the circle.
+/// As many sides as keep a tube's surface within 1.5 mm of the round one.
 int sides_of(double radius_m) {
-  const int sides = static_cast<int>(std::ceil(std::numbers::pi * std::sqrt(radius_m / 0.012)));
+  const int sides = static_cast<int>(std::ceil(std::numbers::pi * std::sqrt(radius_m / 0.006)));
   return std::clamp(sides, 6, 28);
 }
 
@@ -83,21 +83,23 @@ class TreePainter {
   double uniform(double low, double high) { return builder_.uniform(low, high); }
   std::size_t first_branch() const { return tree_.first + tree_.trunk_pieces; }
 
-  /// The drawn stem: the obstacles' axis with the radius between theirs, root flare, and on to the tree's
-  /// top. Long pieces get a ring between their ends, for the patches of sun.
+  /// The drawn stem: every piece as thick as its obstacle from end to end, root flare, and on to the tree's
+  /// top.
   void read_stem() {
-    const auto radius_of = [&](std::size_t i) {
-      return obstacles_[tree_.first + std::min(i, tree_.trunk_pieces - 1)].radius_m;
-    };
     const Obstacle& lowest = obstacles_[tree_.first];
     const Vector3d up = (lowest.to_world - lowest.from_world).normalized();
-    axis_ = {lowest.from_world - 0.3 * up, lowest.from_world + 0.35 * up};
-    radii_m_ = {1.35 * lowest.radius_m, 1.06 * lowest.radius_m};
+    add_ring(lowest.from_world - 0.3 * up, 1.35 * lowest.radius_m);
+    add_ring(lowest.from_world + 0.35 * up, lowest.radius_m);
     for (std::size_t i = 0; i < tree_.trunk_pieces; ++i) {
       const Obstacle& piece = obstacles_[tree_.first + i];
-      if (i > 0) add_ring(0.5 * (piece.from_world + piece.to_world), piece.radius_m);
-      const bool last = i + 1 == tree_.trunk_pieces;
-      add_ring(piece.to_world, last ? piece.radius_m : 0.5 * (piece.radius_m + radius_of(i + 1)));
+      if (i > 0) {  // where the thicker piece's round end meets this one
+        const double before_m = obstacles_[tree_.first + i - 1].radius_m;
+        const double beyond_m =
+            std::sqrt(std::max(0.0, before_m * before_m - piece.radius_m * piece.radius_m));
+        add_ring(piece.from_world + beyond_m * (piece.to_world - piece.from_world).normalized(),
+                 piece.radius_m);
+      }
+      add_ring(piece.to_world, piece.radius_m);
     }
     const Vector3d direction = (axis_.back() - axis_[axis_.size() - 2]).normalized();
     const double left_m = tree_.height_m - axis_.back().z();

@@ -112,7 +112,8 @@ class LeafPainter {
     paint({foot + 0.5 * length_px * along, turn, 0.5 * length_px, 0.02, 90});
     for (int i = 1; i <= leaflets; ++i) {
       const double share = static_cast<double>(i) / leaflets;
-      const double half_px = 0.5 * length_px * 0.42 * std::sin(std::numbers::pi * std::pow(1 - share, 0.7)) + 2;
+      const double half_px =
+          0.5 * length_px * 0.42 * std::sin(std::numbers::pi * std::pow(1 - share, 0.7)) + 2;
       for (const double side : {-1.0, 1.0})
         paint({foot + share * 0.96 * length_px * along + side * 0.85 * half_px * aside, turn - side * 1.1,
                half_px, 0.22, uniform(85, 180)});
@@ -126,8 +127,8 @@ class LeafPainter {
     for (int blade = 0; blade < 46; ++blade) {
       const double lean = uniform(-0.55, 0.55), length_px = uniform(50, 118) * std::cos(lean);
       const Vector2d foot(64 + uniform(-26, 26), 0);
-      paint({foot + 0.5 * length_px * Vector2d(std::sin(lean), std::cos(lean)),
-             0.5 * std::numbers::pi - lean, 0.5 * length_px, 0.035, uniform(80, 180)});
+      paint({foot + 0.5 * length_px * Vector2d(std::sin(lean), std::cos(lean)), 0.5 * std::numbers::pi - lean,
+             0.5 * length_px, 0.035, uniform(80, 180)});
     }
   }
   /// Leaves, dense below and ragged above.
@@ -141,7 +142,8 @@ class LeafPainter {
   }
 
   std::mt19937_64 generator_;
-  WoodsPicture picture_{4 * cell_px, 2 * cell_px, std::vector<std::uint8_t>(std::size_t{32} * cell_px * cell_px)};
+  WoodsPicture picture_{4 * cell_px, 2 * cell_px,
+                        std::vector<std::uint8_t>(std::size_t{32} * cell_px * cell_px)};
   int left_ = 0, low_ = 0;
 };
 
@@ -161,7 +163,8 @@ WoodsPicture ground_picture(std::uint32_t seed, double overcast) {
     for (int x = 0; x < size_px; ++x) {
       const double u = static_cast<double>(x % scale) / scale, v = static_cast<double>(y % scale) / scale;
       const double low = (1 - u) * sun_at(x / scale, y / scale) + u * sun_at(x / scale + 1, y / scale),
-                   high = (1 - u) * sun_at(x / scale, y / scale + 1) + u * sun_at(x / scale + 1, y / scale + 1);
+                   high =
+                       (1 - u) * sun_at(x / scale, y / scale + 1) + u * sun_at(x / scale + 1, y / scale + 1);
       const double level =
           litter.gray[static_cast<std::size_t>((y % 512) * 512 + x % 512)] * ((1 - v) * low + v * high) / 128;
       std::uint8_t* rgba = ground.rgba.data() + std::size_t{4} * (y * size_px + x);
