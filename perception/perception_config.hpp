@@ -79,11 +79,16 @@ PushbroomConfig robust_pushbroom();
 /// Rigs that nobody has tuned for get robust_pushbroom().
 PushbroomConfig tuned_pushbroom(std::string_view rig);
 
-enum class PushbroomPreset { robust, tuned, original };  ///< which numbers a pushbroom detector starts from
+/// The tuned rule with the numbers found on recordings of woods, seen through a lens (docs/woods.md).
+PushbroomConfig woods_pushbroom(std::string_view rig);
 
-inline constexpr std::array<std::pair<std::string_view, PushbroomPreset>, 3> pushbroom_preset_names{
+/// which numbers a pushbroom detector starts from
+enum class PushbroomPreset { robust, tuned, woods, original };
+
+inline constexpr std::array<std::pair<std::string_view, PushbroomPreset>, 4> pushbroom_preset_names{
     {{"robust", PushbroomPreset::robust},
      {"tuned", PushbroomPreset::tuned},
+     {"woods", PushbroomPreset::woods},
      {"original", PushbroomPreset::original}}};
 
 /// The numbers that a preset stands for with a rig of this name.
@@ -93,6 +98,8 @@ inline PushbroomConfig pushbroom_of(PushbroomPreset preset, std::string_view rig
       return tuned_pushbroom(rig);
     case PushbroomPreset::robust:
       return robust_pushbroom();
+    case PushbroomPreset::woods:
+      return woods_pushbroom(rig);
     case PushbroomPreset::original:
       break;
   }

@@ -147,6 +147,19 @@ PushbroomConfig tuned_pushbroom(std::string_view rig) {
   return config;
 }
 
+PushbroomConfig woods_pushbroom(std::string_view rig) {
+  PushbroomConfig config = tuned_pushbroom(rig);
+  if (rig == "long" || rig == "paper") {
+    config.minimum_edge_sum = 110;
+    config.score_limit = 0.2;
+    config.uniqueness_ratio = 1.6;
+    config.uniqueness_minimum_depth_m = 2.29342;
+    config.isolation_minimum_points = 8;
+    config.isolation_radius_m = 1.35376;
+  }
+  return config;
+}
+
 PushbroomStereo::PushbroomStereo(const StereoRig& rig, const PushbroomConfig& config)
     : rig_(rig),
       config_(config),

@@ -73,8 +73,7 @@ constexpr Chapter chapters[]{
      "The altitudes within which a flight must stay. A flight over the trees or along the ground would prove "
      "nothing."},
     {"forest.", "Course: forest",
-     "A Poisson forest of upright trunks, placed at random from the seed. Its length also sets the goal "
-     "plane "
+     "A forest: trunks placed at random from the seed, or measured ones. Its length also sets the goal plane "
      "of the other courses. x points ahead from the launch, y to the left."},
     {"goalposts.", "Course: goalposts",
      "The field goal of Barry & Tedrake 2015, which is passed beside an upright."},
@@ -82,6 +81,8 @@ constexpr Chapter chapters[]{
      "A facade of equal windows behind the goal: repeated texture for `evaluate`."},
     {"fence.", "Course: fence",
      "Fences of equal palings along and across the course: repeated shapes for `evaluate`."},
+    {"obstacles[", "Obstacles of the scenario's own",
+     "A list of boxes, capsules and spheres that stand on any course beside what the course has."},
     {"launch.", "Launch", "The catapult: the aircraft rests on its rail, is accelerated, and is released."},
     {"airframe.", "Airframe",
      "The delta wing's identified flat-plate model. The simulator, the planner and the filter use it. Axes: "
@@ -93,6 +94,9 @@ constexpr Chapter chapters[]{
      "Lags and limits of servos, motor and propeller. The identified model has none, so each is off by "
      "default."},
     {"world.", "World", "The appearance of the scene."},
+    {"world.woods.", "World: woods",
+     "The appearance of woods (docs/woods.md). A key that keeps its default is drawn from the scenario's "
+     "seed."},
     {"cameras.", "Cameras", "What the stereo cameras do to the images (docs/cameras.md)."},
     {"sensors.", "Sensors",
      "Errors and rates of the other sensors (docs/sensors.md). A grade sets them together. The standard "

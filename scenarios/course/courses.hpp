@@ -87,7 +87,7 @@ inline constexpr std::array<std::pair<std::string_view, ObstacleTexture>, 3> obs
 /// An obstacle of a scenario's own list. It stands on any course beside what the course has.
 struct ListedObstacle {
   std::string name = "obstacle";  ///< name in results, unique in the list
-  ListedShape shape = ListedShape::box;
+  ListedShape shape = ListedShape::box;  ///< shape of the obstacle
   Eigen::Vector3d position_m{20, 0, 4};  ///< middle of the obstacle: x ahead, y to the left, z up
   /// roll, pitch and yaw of the obstacle's axes, turned in that order about the world's axes
   Eigen::Vector3d rotation_rad = Eigen::Vector3d::Zero();

@@ -127,10 +127,12 @@ std::string found_trees_file(const std::string& trees_file, const std::filesyste
 std::vector<Stem> stems_of(const ForestConfig& config) {
   std::error_code ignored;
   if (!std::filesystem::exists(config.trees_file, ignored))
-    throw ScenarioError(fmt::format("{}: not found beside the scenario, nor in the folder that the environment "
-                                    "variable UNDERSTORY_DATA names (docs/woods.md says where to get it)",
-                                    config.trees_file));
-  std::vector<Stem> stems = stems_in_text(read_file(config.trees_file, largest_file_bytes), config.trees_file);
+    throw ScenarioError(
+        fmt::format("{}: not found beside the scenario, nor in the folder that the environment "
+                    "variable UNDERSTORY_DATA names (docs/woods.md says where to get it)",
+                    config.trees_file));
+  std::vector<Stem> stems =
+      stems_in_text(read_file(config.trees_file, largest_file_bytes), config.trees_file);
   std::erase_if(stems, [&](const Stem& stem) { return stem.diameter_m < config.thinnest_stem_m; });
   if (stems.empty())
     throw ScenarioError(fmt::format("{}: forest.thinnest_stem_m: the file has no stem of {} m or more",
@@ -162,10 +164,10 @@ PlacedStems place_stems(const std::vector<Stem>& stems, const ForestConfig& conf
     found = all_given || fits();
   }
   if (!found)
-    throw ScenarioError(fmt::format("{}: the course ({} m by {} m, forest.length_m and half_width_m) does not "
-                                    "fit between the stems, which cover {:.0f} m by {:.0f} m",
-                                    config.trees_file, config.length_m, 2 * config.half_width_m,
-                                    plot.sizes().x(), plot.sizes().y()));
+    throw ScenarioError(fmt::format(
+        "{}: the course ({} m by {} m, forest.length_m and half_width_m) does not "
+        "fit between the stems, which cover {:.0f} m by {:.0f} m",
+        config.trees_file, config.length_m, 2 * config.half_width_m, plot.sizes().x(), plot.sizes().y()));
   const auto back = turned(-placed.heading_rad);
   std::vector<std::pair<Vector2d, const Stem*>> standing;
   for (const Stem& stem : stems) {
@@ -199,9 +201,10 @@ void draw_inventory_stems(const ForestConfig& config, std::uint64_t seed, std::v
   constexpr double from_m = 0.03, thin_share = 0.721, thin_mean_m = 0.0592, thick_shape = 1.938,
                    thick_scale_m = 0.409;
   constexpr double thin_below_m = 0.10;
-  // Ripley's K of the stems from 3 to 10 cm: an excess of 240 m^2 that saturates beyond 14 m, and one of
-  // 5.9 m^2 within half a metre, as where an eighth of the stems has a twin.
-  constexpr double area_per_cluster_m2 = 240, cluster_sigma_m = 7, twin_share = 0.111, twin_sigma_m = 0.2;
+  // Ripley's K of the stems from 3 to 10 cm: an excess that saturates beyond 14 m (for all stems that of 80
+  // m^2 fits windows of a flight), and one of 5.9 m^2 within half a metre, as where an eighth of the stems
+  // has a twin.
+  constexpr double area_per_cluster_m2 = 80, cluster_sigma_m = 7, twin_share = 0.10, twin_sigma_m = 0.2;
   std::mt19937_64 generator(seed_for(seed, "inventory_stems"));
   std::uniform_real_distribution<double> unit(0, 1);
   std::normal_distribution<double> normal;

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 
 #include "scenarios/flight/clearance.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 namespace {
@@ -210,6 +213,43 @@ void add_plans(const FlightLog& log, const Detail& detail, PageArrays& arrays, J
   arrays.add("plan_clearance", 1, clearance);
 }
 
+/// Of a wall or a box; nothing for what is round. The first two corners differ along its first axis.
+std::optional<std::array<Eigen::Vector3d, 8>> corners_of(const Obstacle& obstacle) {
+  Eigen::Isometry3d T_world_box = obstacle.T_world_box();
+  Eigen::Vector3d half_m = obstacle.half_size_m;
+  if (obstacle.kind == ObstacleKind::wall) {
+    const Eigen::Vector3d extent = obstacle.to_world - obstacle.from_world;
+    T_world_box.linear() =
+        Eigen::AngleAxisd(std::atan2(extent.y(), extent.x()), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    half_m = {0.5 * extent.head<2>().norm(), obstacle.radius_m, 0.5 * std::abs(extent.z())};
+  } else if (obstacle.kind != ObstacleKind::box) {
+    return std::nullopt;
+  }
+  std::array<Eigen::Vector3d, 8> corners;
+  for (int i = 0; i < 8; ++i)  // along the first axis, then up, then across
+    corners[static_cast<std::size_t>(i)] =
+        T_world_box * half_m.cwiseProduct(Eigen::Vector3d(i & 1 ? 1 : -1, i & 4 ? 1 : -1, i & 2 ? 1 : -1));
+  return corners;
+}
+
+/// From the lowest branch to the top of each tree of woods, with the crown's radius; nothing where a measured
+/// forest's file is no longer there.
+std::vector<float> crowns_of(const Scenario& scenario) {
+  std::vector<float> crowns;
+  if (scenario.world.world.scenery == Scenery::plain) return crowns;
+  try {
+    const Wood wood = course_wood(scenario);
+    for (const Tree& tree : wood.trees) {
+      const Obstacle& foot = wood.obstacles[tree.first];
+      append(crowns, foot.from_world + Eigen::Vector3d(0, 0, tree.crown_base_m));
+      append(crowns, foot.from_world + Eigen::Vector3d(0, 0, tree.height_m));
+      crowns.push_back(static_cast<float>(tree.crown_radius_m));
+    }
+  } catch (const InputError&) {
+  }
+  return crowns;
+}
+
 void add_obstacles(const FlightLog& log, const FlightStory& story, const Detail& detail, PageArrays& arrays,
                    Json& facts, Json& decimation) {
   const std::vector<Obstacle>& obstacles = log.obstacles;
@@ -222,21 +262,32 @@ void add_obstacles(const FlightLog& log, const FlightStory& story, const Detail&
     decimation.push_back(
         fmt::format("obstacles: the {} nearest to the end, of {}", shown.size(), obstacles.size()));
   }
-  std::vector<float> values;
+  std::vector<float> values, corners;
   std::vector<std::uint8_t> kinds;
+  std::vector<std::uint32_t> boxes;
   facts["touched"] = Json();
   for (const std::size_t i : shown) {
     if (story.touched && i == story.touched->obstacle) {
       facts["touched"] = kinds.size();
       facts["touched_name"] = obstacles[i].name;
     }
-    append(values, obstacles[i].from_world);
-    append(values, obstacles[i].to_world);
+    if (const auto box = corners_of(obstacles[i])) {
+      boxes.push_back(static_cast<std::uint32_t>(kinds.size()));
+      for (const Eigen::Vector3d& corner : *box) append(corners, corner);
+    }
+    // A page draws round obstacles as cylinders: a sphere as one that is nearly as high as wide.
+    const bool ball = obstacles[i].kind == ObstacleKind::sphere;
+    const Eigen::Vector3d half(0, 0, ball ? 0.8 * obstacles[i].radius_m : 0);
+    append(values, obstacles[i].from_world - half);
+    append(values, obstacles[i].to_world + half);
     values.push_back(static_cast<float>(obstacles[i].radius_m));
     kinds.push_back(static_cast<std::uint8_t>(obstacles[i].kind));
   }
   arrays.add("obstacles", 7, values);
   arrays.add("obstacle_kinds", 1, kinds);
+  arrays.add("box_corners", 24, corners);
+  arrays.add("box_numbers", 1, boxes);
+  arrays.add("crowns", 7, crowns_of(log.scenario));
   facts["obstacle_kinds"] = obstacle_kind_names;
 }
 

@@ -92,6 +92,39 @@ void add_wall_points(const Obstacle& wall, double step_m, std::vector<Eigen::Vec
     }
 }
 
+/// A grid on each of the six faces.
+void add_box_points(const Obstacle& box, double step_m, std::vector<Eigen::Vector3d>& points) {
+  const Eigen::Isometry3d T_world_box = box.T_world_box();
+  const Eigen::Vector3d& half = box.half_size_m;
+  const double apart_m = std::max(step_m, std::sqrt(half.maxCoeff() * half.sum() / 2000));
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const int columns = std::max(1, static_cast<int>(std::ceil(2 * half[u] / apart_m))),
+              rows = std::max(1, static_cast<int>(std::ceil(2 * half[v] / apart_m)));
+    for (const double side : {-1.0, 1.0})
+      for (int column = 0; column <= columns; ++column)
+        for (int row = 0; row <= rows; ++row) {
+          Eigen::Vector3d point;
+          point[axis] = side * half[axis];
+          point[u] = (2.0 * column / columns - 1) * half[u];
+          point[v] = (2.0 * row / rows - 1) * half[v];
+          points.push_back(T_world_box * point);
+        }
+  }
+}
+
+/// Evenly by the golden angle.
+void add_ball_points(const Obstacle& ball, double step_m, std::vector<Eigen::Vector3d>& points) {
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+  const int count =
+      std::clamp(static_cast<int>(4 * std::numbers::pi * std::pow(ball.radius_m / step_m, 2)), 20, 5000);
+  for (int i = 0; i < count; ++i) {
+    const double z = 1 - 2 * (i + 0.5) / count, out = std::sqrt(1 - z * z);
+    points.push_back(ball.from_world + ball.radius_m * Eigen::Vector3d(out * std::cos(golden * i),
+                                                                       out * std::sin(golden * i), z));
+  }
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector3d> surface_points(const std::vector<Obstacle>& obstacles) {
@@ -100,6 +133,14 @@ std::vector<Eigen::Vector3d> surface_points(const std::vector<Obstacle>& obstacl
   for (const Obstacle& obstacle : obstacles) {
     if (obstacle.kind == ObstacleKind::wall) {
       add_wall_points(obstacle, step_m, points);
+      continue;
+    }
+    if (obstacle.kind == ObstacleKind::box) {
+      add_box_points(obstacle, step_m, points);
+      continue;
+    }
+    if (obstacle.kind == ObstacleKind::sphere) {
+      add_ball_points(obstacle, step_m, points);
       continue;
     }
     const Eigen::Vector3d along = obstacle.to_world - obstacle.from_world;

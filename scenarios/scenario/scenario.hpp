@@ -153,7 +153,8 @@ struct PerceptionSection {
   /// at images.
   DetectorKind detector = DetectorKind::pushbroom;
   /// Parameter set for perception.pushbroom and perception.depths_m; keys given there win. tuned: numbers and
-  /// depths tuned for the rig; robust: before tuning; original: the original aircraft's.
+  /// depths tuned for the rig; woods: tuned in woods; robust: before tuning; original: the original
+  /// aircraft's.
   PushbroomPreset preset = PushbroomPreset::tuned;
   PushbroomConfig pushbroom = tuned_pushbroom("long");
   StereoBmConfig stereo_bm;

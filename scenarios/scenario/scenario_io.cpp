@@ -40,6 +40,26 @@ double palings_of(const FenceConfig& fence, double goal_x_m) {
   return (across_m + std::max(0.0, goal_x_m - fence.first_across_m)) / fence.spacing_m;
 }
 
+/// Conditions on a scenario's own list of obstacles.
+template <typename Expect>
+void check_obstacles(const std::vector<ListedObstacle>& obstacles, Expect&& expect) {
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    const ListedObstacle& listed = obstacles[i];
+    const Eigen::Vector3d& size = listed.size_m;
+    const std::string key = fmt::format("obstacles[{}].", i);
+    expect(is_plain_word(listed.name),
+           key + "name: must be letters, digits, '-', '_' and '.', at most 100, no '.' first");
+    expect(std::ranges::none_of(obstacles.begin(), obstacles.begin() + i,
+                                [&](const ListedObstacle& other) { return other.name == listed.name; }),
+           key + "name: must differ from the names of the other obstacles");
+    expect(listed.shape != ListedShape::sphere || (size.x() == size.y() && size.y() == size.z()),
+           key + "size_m: a sphere requires three equal numbers");
+    expect(listed.shape != ListedShape::capsule || (size.x() == size.y() && size.z() >= size.x()),
+           key + "size_m: a capsule requires x and y to be equal and z to be at least as large");
+  }
+  expect(obstacles.size() <= 1000, "obstacles: must have at most 1000 entries");
+}
+
 /// Conditions between several keys.
 void check(const Scenario& scenario, const Sources& sources, const std::string& name) {
   const auto expect = [&](bool holds, const std::string& what) {
@@ -71,21 +91,7 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
   expect(scenario.world.world.scenery == Scenery::plain || scenario.course == Course::forest ||
              scenario.course == Course::clear,
          "world.scenery: woods requires the course forest or clear");
-  for (std::size_t i = 0; i < scenario.obstacles.size(); ++i) {
-    const ListedObstacle& listed = scenario.obstacles[i];
-    const Eigen::Vector3d& size = listed.size_m;
-    const std::string key = fmt::format("obstacles[{}].", i);
-    expect(is_plain_word(listed.name),
-           key + "name: must be letters, digits, '-', '_' and '.', at most 100, no '.' first");
-    expect(std::ranges::none_of(scenario.obstacles.begin(), scenario.obstacles.begin() + i,
-                                [&](const ListedObstacle& other) { return other.name == listed.name; }),
-           key + "name: must differ from the names of the other obstacles");
-    expect(listed.shape != ListedShape::sphere || (size.x() == size.y() && size.y() == size.z()),
-           key + "size_m: a sphere requires three equal numbers");
-    expect(listed.shape != ListedShape::capsule || (size.x() == size.y() && size.z() >= size.x()),
-           key + "size_m: a capsule requires x and y to be equal and z to be at least as large");
-  }
-  expect(scenario.obstacles.size() <= 1000, "obstacles: must have at most 1000 entries");
+  check_obstacles(scenario.obstacles, expect);
   expect(scenario.fence.opening_m < 2 * scenario.fence.reach_m,
          "fence.opening_m: must be less than twice fence.reach_m");
   expect(scenario.actuators.pitch_speed_mps == 0 ||

@@ -155,7 +155,7 @@ TEST(Cli, WrongArgumentsAreBadInput) {
   expect_refusal("soar", "soar: unknown command");
   expect_refusal("flly clear", "did you mean fly?");
 #ifdef UNDERSTORY_HAS_SIM
-  expect_refusal("fly forst", "windy (did you mean forest?)");
+  expect_refusal("fly forst", "woods_low (did you mean forest?)");
 #endif
   expect_refusal("rig long --dept 3", "rig --dept: unknown option (did you mean --depth?)");
   expect_refusal("rig long --dept=3", "did you mean --depth?");
@@ -218,7 +218,7 @@ TEST(Cli, APictureThatCannotBeWrittenIsBadInput) {
 TEST(Cli, BadScenariosAreNamedByFileLineAndKey) {
   const Folder folder;
   expect_refusal("fly", "scenario");
-  expect_refusal("fly nowhere", "clear, dense, fence, forest, goalposts, horizon, paper");
+  expect_refusal("fly nowhere", "clear, dense, fence, forest, goalposts, horizon, inventory");
   expect_refusal("fly " + folder.file("a.yaml", "name: a\nforest:\n  lenght_m: 3\n"),
                  "a.yaml:3: forest.lenght_m");
   expect_refusal("fly " + folder.file("b.yaml", "name: [\n"), "b.yaml:");

@@ -122,7 +122,8 @@ TEST(TuneCommand, OverRecordingsItsFiguresAreThoseOfTheirEvaluation) {
   EXPECT_EQ(figures, (Figures{rates.precision.value(), rates.recall.value(), rates.f_score(),
                               found_within(sum.sightings[our_rule], 1).value(),
                               found_within(sum.sightings[our_rule], 3).value(),
-                              static_cast<double>(sum.hits[our_rule]) / static_cast<double>(sum.frames)}));
+                              static_cast<double>(sum.hits[our_rule]) / static_cast<double>(sum.frames),
+                              rates.trunk_precision.value()}));
   Scenario blind = scenario;
   blind.perception.pushbroom.depths_m = {0.2};
   EXPECT_FALSE(judge->measure("blind", blind).refused.empty());

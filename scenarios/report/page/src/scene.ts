@@ -86,6 +86,7 @@ export class Replay {
     this.add_trunks();
     this.add_plans_and_points();
     this.add_flight();
+    this.add_crowns();
     this.eye = eye_of(this.orbit, this.pose, 0, facts.camera);
     attach_hands(canvas, this.orbit, () => this.eye, () => {
       if (this.orbit.view === "follow") this.set_view("orbit");
@@ -150,33 +151,44 @@ export class Replay {
     }
   }
 
-  private add_trunks(): void {
-    const obstacles = floats_of(this.arrays, "obstacles");
-    const kinds = array_of(this.arrays, "obstacle_kinds");
-    const wall = this.facts.obstacle_kinds?.indexOf("wall") ?? -1;
-    const numbers = Array.from({ length: obstacles.length / 7 }, (_, i) => i);
-    const round = numbers.filter((i) => kinds[i] !== wall);
-    const count = round.length;
+  /// Cylinders between two points; `numbers` are theirs in the array of obstacles, from, to and radius each.
+  private add_round(values: Float32Array, numbers: number[], program: Program): Mesh | undefined {
+    const count = numbers.length;
     const [from, to] = [new Float32Array(count * 3), new Float32Array(count * 3)];
     const [radius_m, touched] = [new Float32Array(count), new Float32Array(count)];
-    round.forEach((number, i) => {
-      from.set(obstacles.subarray(number * 7, number * 7 + 3), i * 3);
-      to.set(obstacles.subarray(number * 7 + 3, number * 7 + 6), i * 3);
-      radius_m[i] = obstacles[number * 7 + 6];
+    numbers.forEach((number, i) => {
+      from.set(values.subarray(number * 7, number * 7 + 3), i * 3);
+      to.set(values.subarray(number * 7 + 3, number * 7 + 6), i * 3);
+      radius_m[i] = values[number * 7 + 6];
       touched[i] = this.facts.touched === number ? 1 : 0;
     });
     const sides = Math.min(Math.max(Math.floor((trunk_triangles / Math.max(count, 1) + 2) / 3), 3), 16);
-    this.parts.trunks = this.add({
+    return this.add({
       ...shapes.unit_trunk(sides),
       from: { size: 3, data: from, instanced: 1 },
       to: { size: 3, data: to, instanced: 1 },
       radius_m: { data: radius_m, instanced: 1 },
       touched: { data: touched, instanced: 1 },
-    }, this.program(shaders.trunk, {}, "trunk"));
-    const add_walls = (is_touched: boolean, color: string) =>
-      this.add(shapes.wall_boxes(obstacles, numbers.filter((i) => kinds[i] === wall && (this.facts.touched === i) === is_touched)), this.program(shaders.surface, { shading: { value: 1 } }, color));
-    this.parts.walls = add_walls(false, "trunk");
-    this.parts.touched_wall = add_walls(true, "alert");
+    }, program);
+  }
+
+  private add_trunks(): void {
+    const obstacles = floats_of(this.arrays, "obstacles");
+    const box_numbers = Array.from(array_of(this.arrays, "box_numbers"));
+    const round = Array.from({ length: obstacles.length / 7 }, (_, i) => i).filter((i) => !box_numbers.includes(i));
+    this.parts.trunks = this.add_round(obstacles, round, this.program(shaders.trunk, {}, "trunk"));
+    const corners = floats_of(this.arrays, "box_corners");
+    const add_boxes = (is_touched: boolean, color: string) =>
+      this.add(shapes.boxes(corners, [...box_numbers.keys()].filter((i) => (this.facts.touched === box_numbers[i]) === is_touched)), this.program(shaders.surface, { shading: { value: 1 } }, color));
+    this.parts.walls = add_boxes(false, "trunk");
+    this.parts.touched_wall = add_boxes(true, "alert");
+  }
+
+  /// After all else: one sees through them.
+  private add_crowns(): void {
+    const crowns = floats_of(this.arrays, "crowns");
+    const program = this.program(shaders.trunk, { opacity: { value: 0.25 } }, "crown", { transparent: true, depthWrite: false });
+    this.parts.crowns = this.add_round(crowns, Array.from({ length: crowns.length / 7 }, (_, i) => i), program);
   }
 
   /// Segments of the plans lie one after the other, so that a plan is a range of them.

@@ -40,21 +40,13 @@ export function thick_lines(points: ArrayLike<number>, pairs: ArrayLike<number>,
   };
 }
 
-/// Walls as boxes: upright rectangles, given by a diagonal, as thick as twice their radius. `walls` holds from, to and
-/// radius of each obstacle; `chosen` the numbers of those that are wanted.
-export function wall_boxes(walls: ArrayLike<number>, chosen: number[]): Attributes {
+/// Boxes, given by the eight corners of each; `chosen` the numbers of those that are wanted.
+export function boxes(corners: Float32Array, chosen: number[]): Attributes {
   const position = new Float32Array(chosen.length * 24);
   const index = new Uint32Array(chosen.length * 36);
   const faces = [0, 1, 3, 0, 3, 2, 4, 7, 5, 4, 6, 7, 0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3];
   chosen.forEach((number, box) => {
-    const [x0, y0, z0, x1, y1, z1, radius_m] = Array.from({ length: 7 }, (_, i) => walls[number * 7 + i]);
-    const length_m = Math.hypot(x1 - x0, y1 - y0) || 1;
-    const thick = [(-(y1 - y0) / length_m) * radius_m, ((x1 - x0) / length_m) * radius_m];
-    for (let corner = 0; corner < 8; ++corner) {
-      const side = corner < 4 ? -1 : 1;
-      const [x, y] = corner & 1 ? [x1, y1] : [x0, y0];
-      position.set([x + side * thick[0], y + side * thick[1], corner & 2 ? z1 : z0], box * 24 + corner * 3);
-    }
+    position.set(corners.subarray(number * 24, number * 24 + 24), box * 24);
     faces.forEach((vertex, i) => (index[box * 36 + i] = box * 8 + vertex));
   });
   return { position: { size: 3, data: position }, index: { data: index } };
