@@ -88,6 +88,8 @@ TEST(Scenario, TwoOfTheLibraryDifferOnlyInWhatTheirCommentsSay) {
       {"inventory", "forest.trees_file", "measured forest"},
       {"inventory_5cm", "forest.trees_file", "measured forest"},
       {"inventory_5cm", "forest.thinnest_stem_m", "at least 5 cm"},
+      {"inventory_5cm", "perception.", "thin stems give few detections"},
+      {"inventory_3cm", "perception.", "thin stems give few detections"},
       {"inventory_3cm", "forest.trees_file", "measured forest"},
       {"inventory_3cm", "forest.thinnest_stem_m", "at least 3 cm"},
       {"windy", "wind_world_mps", "3 m/s across the flight"},
