@@ -74,7 +74,6 @@ in float depth_m;
 in float alert;
 uniform vec3 alert_color;
 uniform float see_through_m;
-uniform float opacity;
 void main() {
   // What stands between the eye and the aircraft is drawn like a screen door.
   if (depth_m < see_through_m && mod(floor(gl_FragCoord.x) + floor(gl_FragCoord.y), 2.0) < 1.0) discard;
