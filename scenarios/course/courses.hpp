@@ -71,9 +71,9 @@ void visit_fields(Visitor& visit, ForestConfig& config) {
 }
 
 /// A random forest. With stems `uniform` a Poisson forest: the number of trees is Poisson with mean area /
-/// square_metres_per_tree, each tree uniform over the forest's rectangle, independent of the others; trunks may therefore overlap, as in the
-/// theory of flight through Poisson forests (Karaman & Frazzoli 2012). Sorted by x. The generator is the
-/// forest's own, from `seed`.
+/// square_metres_per_tree, each tree uniform over the forest's rectangle, independent of the others; trunks
+/// may therefore overlap, as in the theory of flight through Poisson forests (Karaman & Frazzoli 2012).
+/// Sorted by x. The generator is the forest's own, from `seed`.
 std::vector<Obstacle> random_forest(const ForestConfig& config, std::uint64_t seed);
 
 enum class ListedShape { box, capsule, sphere };
@@ -86,7 +86,7 @@ inline constexpr std::array<std::pair<std::string_view, ObstacleTexture>, 3> obs
 
 /// An obstacle of a scenario's own list. It stands on any course beside what the course has.
 struct ListedObstacle {
-  std::string name = "obstacle";  ///< name in results, unique in the list
+  std::string name = "obstacle";         ///< name in results, unique in the list
   ListedShape shape = ListedShape::box;  ///< shape of the obstacle
   Eigen::Vector3d position_m{20, 0, 4};  ///< middle of the obstacle: x ahead, y to the left, z up
   /// roll, pitch and yaw of the obstacle's axes, turned in that order about the world's axes

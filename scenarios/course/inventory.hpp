@@ -20,23 +20,23 @@ struct Stem {
 
 /// Stems of a CSV table. Its first line names the columns: x_m, y_m and diameter_m are needed; height_m,
 /// lean_rad with lean_toward_rad (the direction of the top, counter-clockwise from x), and kind (oak, beech,
-/// birch, pine, spruce) are taken where they stand, a cell may be empty; other columns are passed over. Throws
-/// InputError "name:line: ..." at the first cell that is none of that.
+/// birch, pine, spruce) are taken where they stand, a cell may be empty; other columns are passed over.
+/// Throws InputError "name:line: ..." at the first cell that is none of that.
 std::vector<Stem> stems_in_text(std::string_view text, const std::string& name);
 
 /// The stems of `config.trees_file` that are at least config.thinnest_stem_m thick. Throws ScenarioError in
 /// one line where the file cannot be found or read.
 std::vector<Stem> stems_of(const ForestConfig& config);
 
-/// The file that `trees_file` names: beside the file `giver`, from the working directory, or in the folder that
-/// UNDERSTORY_DATA names; the name as it is where none is there.
+/// The file that `trees_file` names: beside the file `giver`, from the working directory, or in the folder
+/// that UNDERSTORY_DATA names; the name as it is where none is there.
 std::string found_trees_file(const std::string& trees_file, const std::filesystem::path& giver);
 
 /// The stems that stand on the course, in the launch frame: upright where the file knows no lean.
 struct PlacedStems {
-  std::vector<Obstacle> trunks;     ///< as high as config.trunk_height_m, ordered by x
-  std::vector<KnownTree> known;     ///< of each trunk, leans in the launch frame
-  Eigen::Vector2d launch_m{0, 0};   ///< in the file's coordinates
+  std::vector<Obstacle> trunks;    ///< as high as config.trunk_height_m, ordered by x
+  std::vector<KnownTree> known;    ///< of each trunk, leans in the launch frame
+  Eigen::Vector2d launch_m{0, 0};  ///< in the file's coordinates
   double heading_rad = 0;
 };
 

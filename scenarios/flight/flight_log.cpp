@@ -39,7 +39,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view magic = "understory flight log\n";
-constexpr int format = 1;
+constexpr int format = 2;
 constexpr std::size_t maximum_bytes = std::size_t{1} << 30;  // unpacked
 
 // Steps to which numbers are rounded.

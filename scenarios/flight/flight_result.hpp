@@ -62,11 +62,11 @@ struct FlightMeasures {
   /// Smallest true distance between aircraft and obstacles. Without obstacles it is infinite: empty in CSV,
   /// null in JSON.
   double minimum_clearance_m = std::numeric_limits<double>::infinity();
-  double leaves_s = 0;  ///< time in which the wing overlapped leaves of the woods
-  double leaves_m = 0;  ///< length of the path on which the wing overlapped leaves of the woods
-  double position_error_mean_m = 0;    ///< mean distance between estimated and true position since release
-  double position_error_max_m = 0;     ///< largest distance between estimated and true position since release
-  std::int64_t detections = 0;         ///< number of detections in all frames
+  double leaves_s = 0;               ///< time in which the wing overlapped leaves of the woods
+  double leaves_m = 0;               ///< length of the path on which the wing overlapped leaves of the woods
+  double position_error_mean_m = 0;  ///< mean distance between estimated and true position since release
+  double position_error_max_m = 0;   ///< largest distance between estimated and true position since release
+  std::int64_t detections = 0;       ///< number of detections in all frames
   std::int64_t remembered_points = 0;  ///< number of points added to the map during the flight
   /// Number of points added to the map within 0.5 m of the obstacle that has the fewest. Empty in CSV and
   /// null in JSON on a course with no obstacle or more than eight.

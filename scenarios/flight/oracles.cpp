@@ -53,6 +53,25 @@ void extend_by_ball(double across_m, double depth_m, double radius_m, double foc
   high_px = std::max(high_px, pixel(direction + half) + 1);
 }
 
+/// Rows and columns of blocks.
+struct Blocks {
+  int first_row, end_row, first_column, end_column;
+};
+
+/// `seen` in the camera's frame. All blocks where it reaches behind the camera: between an end before it and
+/// one behind it lies every direction on one side.
+Blocks blocks_that_may_show(const Obstacle& seen, const StereoRig& rig, int rows, int columns) {
+  if (std::min(seen.from_world.z(), seen.to_world.z()) <= 0) return {0, rows, 0, columns};
+  double left_px = infinity, right_px = -infinity, top_px = infinity, bottom_px = -infinity;
+  for (const Eigen::Vector3d& end : {seen.from_world, seen.to_world}) {
+    extend_by_ball(end.x(), end.z(), seen.radius_m, rig.focal_px, rig.center_left_x_px, left_px, right_px);
+    extend_by_ball(end.y(), end.z(), seen.radius_m, rig.focal_px, rig.center_y_px, top_px, bottom_px);
+  }
+  const auto block = [](double at, int count) { return static_cast<int>(std::clamp(at, 0.0, 1.0 * count)); };
+  return {block(top_px / block_px - 1, rows), block(bottom_px / block_px + 1, rows),
+          block(left_px / block_px - 1, columns), block(right_px / block_px + 1, columns)};
+}
+
 }  // namespace
 
 void TruthHistory::observe(const Truth& truth) {
@@ -168,23 +187,10 @@ const std::vector<StereoHit>& TrueDepth::detect(const StereoFrame& frame) {
     const bool is_ahead = std::max(seen.from_world.z(), seen.to_world.z()) + obstacle.radius_m > 0;
     if (!flat && (!is_ahead || (seen.from_world + nearest * along).norm() >= reach_m + obstacle.radius_m))
       continue;
-    // Only blocks that can show it are asked.
-    double left_px = infinity, right_px = -infinity, top_px = infinity, bottom_px = -infinity;
-    for (const Eigen::Vector3d& end : {seen.from_world, seen.to_world}) {
-      extend_by_ball(end.x(), end.z(), seen.radius_m, rig_.focal_px, rig_.center_left_x_px, left_px,
-                     right_px);
-      extend_by_ball(end.y(), end.z(), seen.radius_m, rig_.focal_px, rig_.center_y_px, top_px, bottom_px);
-    }
-    // Between an end before the camera and one behind it lies every direction on one side.
-    const bool everywhere = flat || std::min(seen.from_world.z(), seen.to_world.z()) <= 0;
-    const auto first = [&](double px, int count) {
-      return everywhere ? 0 : static_cast<int>(std::clamp(px / block_px - 1, 0.0, 1.0 * count));
-    };
-    const auto last = [&](double px, int count) {
-      return everywhere ? count : static_cast<int>(std::clamp(px / block_px + 1, 0.0, 1.0 * count));
-    };
-    for (int row = first(top_px, rows); row < last(bottom_px, rows); ++row)
-      for (int column = first(left_px, columns); column < last(right_px, columns); ++column) {
+    const Blocks blocks =
+        flat ? Blocks{0, rows, 0, columns} : blocks_that_may_show(seen, rig_, rows, columns);
+    for (int row = blocks.first_row; row < blocks.end_row; ++row)
+      for (int column = blocks.first_column; column < blocks.end_column; ++column) {
         const Eigen::Vector3d ray = ray_of(row, column);
         double& depth_m = depths_m_[static_cast<std::size_t>(row * columns + column)];
         // The ray's z is 1, so multiples of it are depths.

@@ -45,8 +45,8 @@ enum : unsigned {
   gl_unpack = 0x0CF5
 };
 
-// Light and haze are worked out at the corners: a fragment costs one texel. What is solid has a program without
-// `discard`, so that hidden fragments are thrown away before they are shaded.
+// Light and haze are worked out at the corners: a fragment costs one texel. What is solid has a program
+// without `discard`, so that hidden fragments are thrown away before they are shaded.
 constexpr const char* vertex_source = R"(#version 110
 attribute vec3 position;
 attribute vec2 texture;
@@ -230,14 +230,12 @@ struct WoodsPass::Implementation {
   Gl gl;
   std::vector<WoodsPart> parts;
   float haze_m;
-  std::array<unsigned, 3> programs{};                    ///< solid, leaves, numbers
-  std::array<unsigned, 2> buffers{};                         ///< vertices, indices
+  std::array<unsigned, 3> programs{};  ///< solid, leaves, numbers
+  std::array<unsigned, 2> buffers{};   ///< vertices, indices
   std::array<unsigned, woods_texture_count> textures{};
 
   Implementation(const WoodsMesh& mesh, const OffscreenContext& context)
-      : gl(context),
-        parts(mesh.parts),
-        haze_m(static_cast<float>(mesh.haze_m)) {
+      : gl(context), parts(mesh.parts), haze_m(static_cast<float>(mesh.haze_m)) {
     programs = {program_of(solid_source), program_of(leaves_source), program_of(numbers_source)};
     gl.GenBuffers(2, buffers.data());
     gl.BindBuffer(gl_array_buffer, buffers[0]);

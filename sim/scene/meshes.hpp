@@ -8,8 +8,8 @@
 
 namespace understory {
 
-/// Triangles of an obstacle in its own frame (of a trunk: axis along z from 0 to its length), outward normals,
-/// one texture coordinate per vertex.
+/// Triangles of an obstacle in its own frame (of a trunk: axis along z from 0 to its length), outward
+/// normals, one texture coordinate per vertex.
 struct TrunkMesh {
   std::vector<Eigen::Vector3d> vertices;  ///< m
   std::vector<Eigen::Vector3d> normals;
@@ -35,8 +35,8 @@ inline constexpr int facade_height_px = 512;
 /// 0.75 x 1.7 m, one pane 0.375 m from the next. The plaster has almost no texture.
 GrayTexture facade_texture(std::uint64_t seed);
 
-/// A box, capsule or sphere of a scenario's own list, in the frame of Obstacle::T_world_box(). Its picture is as
-/// large as on a tile of `tile_width_m` x `tile_height_m`.
+/// A box, capsule or sphere of a scenario's own list, in the frame of Obstacle::T_world_box(). Its picture is
+/// as large as on a tile of `tile_width_m` x `tile_height_m`.
 TrunkMesh listed_mesh(const Obstacle& obstacle, double tile_width_m = 0.8, double tile_height_m = 1.6);
 
 /// A wall's box, in world axes with its foot at its from_world. Tiles begin at its middle and at its foot.

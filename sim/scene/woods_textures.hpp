@@ -19,11 +19,12 @@ struct WoodsPicture {
   std::vector<std::uint8_t> rgba;
 };
 
-/// Bark of a kind, a wall's windows, litter with patches of sun, or leaves. The same arguments give the same picture.
+/// Bark of a kind, a wall's windows, litter with patches of sun, or leaves. The same arguments give the same
+/// picture.
 WoodsPicture woods_picture(WoodsTexture which, std::uint32_t seed, double overcast);
 
-/// Patches of sun between shade; 128 leaves a colour as it is. `overcast` 1: none. One tile is a square of the
-/// ground, and so is one tile of litter.
+/// Patches of sun between shade; 128 leaves a colour as it is. `overcast` 1: none. One tile is a square of
+/// the ground, and so is one tile of litter.
 WoodsPicture dapple_picture(std::uint32_t seed, double overcast);
 inline constexpr double dapple_tile_m = 16;
 

@@ -33,13 +33,13 @@ struct WoodsConfig {
   WoodsKinds kinds = WoodsKinds::any;  ///< kind of all trees; mixed: all five; any: drawn from the seed
   /// winter: oaks, beeches and birches have no leaves; any: drawn from the seed, winter once in four
   Season season = Season::any;
-  double lowest_branch_m = 0;  ///< height below which no living branch begins; 0: drawn from 6 to 8
-  double undergrowth = -1;     ///< density of ferns and shrubs, 0 to 1; negative: drawn from 0.2 to 1
-  double fallen_logs = -1;     ///< number of fallen logs per hectare; negative: drawn from 0 to 80
-  double litter = -1;          ///< share of the ground under dead leaves instead of moss; negative: drawn
-  double leaf_tone = -1;       ///< colour of the leaves from fresh (0) to dark (1); negative: drawn
-  double overcast = -1;  ///< share of the sun that clouds take, 1: no patches of sun; negative: drawn
-  double haze_m = 0;     ///< distance at which haze hides two thirds; 0: drawn from 60 to 250
+  double lowest_branch_m = 0;    ///< height below which no living branch begins; 0: drawn from 6 to 8
+  double undergrowth = -1;       ///< density of ferns and shrubs, 0 to 1; negative: drawn from 0.2 to 1
+  double fallen_logs = -1;       ///< number of fallen logs per hectare; negative: drawn from 0 to 80
+  double litter = -1;            ///< share of the ground under dead leaves instead of moss; negative: drawn
+  double leaf_tone = -1;         ///< colour of the leaves from fresh (0) to dark (1); negative: drawn
+  double overcast = -1;          ///< share of the sun that clouds take, 1: no patches of sun; negative: drawn
+  double haze_m = 0;             ///< distance at which haze hides two thirds; 0: drawn from 60 to 250
   double sun_elevation_rad = 0;  ///< height of the sun over the horizon; 0: drawn from 0.15 to 1.2
   /// ends a flight when the wing touches a leaf; otherwise leaves do not stop the aircraft
   bool leaves_end_flight = false;

@@ -154,8 +154,7 @@ export class Replay {
   /// Cylinders between two points; `numbers` are theirs in the array of obstacles, from, to and radius each.
   private add_round(values: Float32Array, numbers: number[], program: Program): Mesh | undefined {
     const count = numbers.length;
-    const [from, to] = [new Float32Array(count * 3), new Float32Array(count * 3)];
-    const [radius_m, touched] = [new Float32Array(count), new Float32Array(count)];
+    const [from, to, radius_m, touched] = [3, 3, 1, 1].map((size) => new Float32Array(count * size));
     numbers.forEach((number, i) => {
       from.set(values.subarray(number * 7, number * 7 + 3), i * 3);
       to.set(values.subarray(number * 7 + 3, number * 7 + 6), i * 3);
@@ -175,11 +174,10 @@ export class Replay {
   private add_trunks(): void {
     const obstacles = floats_of(this.arrays, "obstacles");
     const box_numbers = Array.from(array_of(this.arrays, "box_numbers"));
-    const round = Array.from({ length: obstacles.length / 7 }, (_, i) => i).filter((i) => !box_numbers.includes(i));
+    const round = [...Array(obstacles.length / 7).keys()].filter((i) => !box_numbers.includes(i));
     this.parts.trunks = this.add_round(obstacles, round, this.program(shaders.trunk, {}, "trunk"));
     const corners = floats_of(this.arrays, "box_corners");
-    const add_boxes = (is_touched: boolean, color: string) =>
-      this.add(shapes.boxes(corners, [...box_numbers.keys()].filter((i) => (this.facts.touched === box_numbers[i]) === is_touched)), this.program(shaders.surface, { shading: { value: 1 } }, color));
+    const add_boxes = (is_touched: boolean, color: string) => this.add(shapes.boxes(corners, [...box_numbers.keys()].filter((i) => (this.facts.touched === box_numbers[i]) === is_touched)), this.program(shaders.surface, { shading: { value: 1 } }, color));
     this.parts.walls = add_boxes(false, "trunk");
     this.parts.touched_wall = add_boxes(true, "alert");
   }
@@ -187,8 +185,8 @@ export class Replay {
   /// After all else: one sees through them.
   private add_crowns(): void {
     const crowns = floats_of(this.arrays, "crowns");
-    const program = this.program(shaders.trunk, { opacity: { value: 0.25 } }, "crown", { transparent: true, depthWrite: false });
-    this.parts.crowns = this.add_round(crowns, Array.from({ length: crowns.length / 7 }, (_, i) => i), program);
+    const green = this.program(shaders.trunk, { opacity: { value: 0.25 } }, "crown", { transparent: true, depthWrite: false });
+    this.parts.crowns = this.add_round(crowns, [...Array(crowns.length / 7).keys()], green);
   }
 
   /// Segments of the plans lie one after the other, so that a plan is a range of them.
