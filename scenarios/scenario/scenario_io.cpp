@@ -60,6 +60,21 @@ void check_obstacles(const std::vector<ListedObstacle>& obstacles, Expect&& expe
   expect(obstacles.size() <= 1000, "obstacles: must have at most 1000 entries");
 }
 
+/// A course may have so many obstacles.
+template <typename Expect>
+void check_counts(const Scenario& scenario, Expect&& expect) {
+  const double trees =
+      scenario.forest.length_m * 2 * scenario.forest.half_width_m / scenario.forest.square_metres_per_tree;
+  expect(scenario.course != Course::forest || trees <= maximum_obstacles,
+         fmt::format("forest.square_metres_per_tree: a forest may have at most {} trees, this one would have "
+                     "about {:.0f} (length_m, half_width_m)",
+                     maximum_obstacles, trees));
+  const double palings = palings_of(scenario.fence, scenario.goal_x_m());
+  expect(scenario.course != Course::fence || palings <= maximum_obstacles,
+         fmt::format("fence.spacing_m: a fence may have at most {} palings, this one would have about {:.0f}",
+                     maximum_obstacles, palings));
+}
+
 /// Conditions between several keys.
 void check(const Scenario& scenario, const Sources& sources, const std::string& name) {
   const auto expect = [&](bool holds, const std::string& what) {
@@ -76,16 +91,7 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
   expect(scenario.band.cruise_altitude_m > scenario.band.minimum_altitude_m &&
              scenario.band.cruise_altitude_m < scenario.band.maximum_altitude_m,
          "band.cruise_altitude_m: must be between band.minimum_altitude_m and band.maximum_altitude_m");
-  const double trees =
-      scenario.forest.length_m * 2 * scenario.forest.half_width_m / scenario.forest.square_metres_per_tree;
-  expect(scenario.course != Course::forest || trees <= maximum_obstacles,
-         fmt::format("forest.square_metres_per_tree: a forest may have at most {} trees, this one would have "
-                     "about {:.0f} (length_m, half_width_m)",
-                     maximum_obstacles, trees));
-  const double palings = palings_of(scenario.fence, scenario.goal_x_m());
-  expect(scenario.course != Course::fence || palings <= maximum_obstacles,
-         fmt::format("fence.spacing_m: a fence may have at most {} palings, this one would have about {:.0f}",
-                     maximum_obstacles, palings));
+  check_counts(scenario, expect);
   expect(scenario.goalposts.pass_minimum_m <= scenario.goalposts.pass_maximum_m,
          "goalposts.pass_minimum_m: must be at most goalposts.pass_maximum_m");
   expect(scenario.world.world.scenery == Scenery::plain || scenario.course == Course::forest ||
