@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <numbers>
 #include <random>
@@ -110,18 +110,6 @@ std::vector<Stem> stems_in_text(std::string_view text, const std::string& name) 
   }
   if (stems.empty()) fail_at_line(name, lines.front().number, "expected at least one stem below this line");
   return stems;
-}
-
-std::string found_trees_file(const std::string& trees_file, const std::filesystem::path& giver) {
-  const std::filesystem::path path(trees_file);
-  if (trees_file.empty() || path.is_absolute()) return trees_file;
-  const char* data = std::getenv("UNDERSTORY_DATA");
-  std::error_code ignored;
-  for (const std::filesystem::path& candidate :
-       {giver.parent_path() / path, path, data != nullptr ? data / path : std::filesystem::path()})
-    if (!candidate.empty() && std::filesystem::exists(candidate, ignored))
-      return std::filesystem::absolute(candidate).lexically_normal().string();
-  return trees_file;
 }
 
 std::vector<Stem> stems_of(const ForestConfig& config) {

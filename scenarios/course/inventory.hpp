@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenarios/course/courses.hpp"
@@ -27,10 +27,6 @@ std::vector<Stem> stems_in_text(std::string_view text, const std::string& name);
 /// The stems of `config.trees_file` that are at least config.thinnest_stem_m thick. Throws ScenarioError in
 /// one line where the file cannot be found or read.
 std::vector<Stem> stems_of(const ForestConfig& config);
-
-/// The file that `trees_file` names: beside the file `giver`, from the working directory, or in the folder
-/// that UNDERSTORY_DATA names; the name as it is where none is there.
-std::string found_trees_file(const std::string& trees_file, const std::filesystem::path& giver);
 
 /// The stems that stand on the course, in the launch frame: upright where the file knows no lean.
 struct PlacedStems {

@@ -40,21 +40,13 @@ Flight::Flight(const Scenario& scenario, const FlightMachine& machine, std::vect
       referee_(scenario),
       clock_(scenario) {
   if (!world_.woods) return;
-  double reach_m = 0;
-  parts_ = aircraft_.shape().parts;
-  for (const AircraftPart& part : parts_)
-    reach_m = std::max(reach_m, (part.centre_body.cwiseAbs() + part.half_size_m).norm());
-  leaves_.emplace(world_.woods->leaf_cards, reach_m);
+  std::vector<WingBox> boxes;
+  for (const AircraftPart& part : aircraft_.shape().parts)
+    boxes.push_back({Eigen::Isometry3d(Eigen::Translation3d(part.centre_body)), part.half_size_m});
+  leaves_.emplace(world_.woods->leaf_cards, std::move(boxes));
 }
 
-bool Flight::in_leaves() const {
-  if (!leaves_) return false;
-  const Eigen::Isometry3d& T_world_body = truth().T_world_body;
-  std::vector<WingBox> boxes;
-  for (const AircraftPart& part : parts_)
-    boxes.push_back({T_world_body * Eigen::Translation3d(part.centre_body), part.half_size_m});
-  return leaves_->touches(T_world_body.translation(), boxes);
-}
+bool Flight::in_leaves() const { return leaves_ && leaves_->touches(truth().T_world_body); }
 
 void Flight::step() {
   if (outcome_) return;

@@ -119,7 +119,6 @@ class Flight {
   World world_;
   Aircraft aircraft_;
   std::optional<LeafContact> leaves_;  ///< of woods
-  std::vector<AircraftPart> parts_;
   std::unique_ptr<StereoCameras> cameras_;
   OnboardSensors sensors_;
   FrameDrops drops_;

@@ -172,9 +172,11 @@ void FlightLogger::on_end(const Flight& flight) {
   }
   const LogMoment& end = log_.moments.back();
   result.minimum_clearance_m = std::min(result.minimum_clearance_m, end.clearance_m);
-  if (result.outcome == Outcome::collision)
+  if (result.outcome == Outcome::collision && log_.touch.with != Contact::obstacle)
+    result.touched = "leaves";
+  else if (result.outcome == Outcome::collision)
     if (const auto touched = nearest_obstacle(end.T_world_body, scenario.airframe, log_.obstacles))
-      result.touched = flight.touch().with == Contact::obstacle ? log_.obstacles[*touched].name : "leaves";
+      result.touched = log_.obstacles[*touched].name;
   count_points_on_obstacles();
   result.planner = flight.planner_counts();
   if (flight.cameras() != nullptr) result.renderer = flight.cameras()->renderer();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <utility>
 
@@ -151,17 +152,25 @@ void take_airframe(const Airframe& airframe, Scenario& scenario) {
   scenario.autopilot.autopilot.planner.field.half_span_m = 0.5 * airframe.span_m;
 }
 
-/// A plain word is a name in models/rigs. A path is looked for beside the file that gives it, then from the
-/// working directory; what is found is absolute, so that a run's scenario flies again from anywhere.
+/// Where a key's file is: beside the file that gives it, from the working directory, or in a further folder.
+/// What is found is absolute, so that a run's scenario flies again from anywhere; else the name as it is.
+std::string found_file(const std::string& name, const std::string& origin,
+                       const std::filesystem::path& further = {}) {
+  const std::filesystem::path path(name);
+  if (name.empty() || path.is_absolute()) return name;
+  const std::filesystem::path giver = origin.starts_with("--") ? "" : origin.substr(0, origin.rfind(':'));
+  std::error_code ignored;
+  for (const std::filesystem::path& candidate : {giver.parent_path() / path, path, further / path})
+    if (std::filesystem::exists(candidate, ignored))
+      return std::filesystem::absolute(candidate).lexically_normal().string();
+  return name;
+}
+
+/// A plain word is a name in models/rigs.
 std::string rig_file(const std::string& rig, const std::string& origin) {
   const std::filesystem::path path(rig);
   if (path.is_absolute() || !(path.has_extension() || path.has_parent_path())) return rig;
-  const std::filesystem::path giver = origin.starts_with("--") ? "" : origin.substr(0, origin.rfind(':'));
-  std::error_code ignored;
-  for (const std::filesystem::path& candidate : {giver.parent_path() / path, path})
-    if (std::filesystem::exists(candidate, ignored))
-      return std::filesystem::absolute(candidate).lexically_normal().string();
-  return rig;
+  return found_file(rig, origin);
 }
 
 /// The aircraft's place on the catapult. It is known before the flight, so the filter may start from it.
@@ -208,9 +217,8 @@ Scenario compose(const Sources& sources, const std::string& name) {
   take_airframe(first.airframe, scenario);
   read_all(sources, scenario);
   scenario.rig = rig_file(scenario.rig, origin_of(sources, "rig"));
-  const std::string giver = origin_of(sources, "forest.trees_file");
-  scenario.forest.trees_file = found_trees_file(
-      scenario.forest.trees_file, giver.starts_with("--") ? "" : giver.substr(0, giver.rfind(':')));
+  scenario.forest.trees_file =
+      found_trees_file(scenario.forest.trees_file, origin_of(sources, "forest.trees_file"));
   check(scenario, sources, name);
   return scenario;
 }
@@ -277,6 +285,11 @@ std::string where_given(const std::filesystem::path& file, const std::vector<std
                         std::string_view key, const std::vector<std::filesystem::path>& with) {
   const std::string origin = origin_of(sources_of(parse_config_file(file), settings, with), key);
   return origin.empty() ? file.string() : origin;
+}
+
+std::string found_trees_file(const std::string& trees_file, const std::string& origin) {
+  const char* data = std::getenv("UNDERSTORY_DATA");
+  return found_file(trees_file, origin, data != nullptr ? data : "");
 }
 
 std::vector<Key> keys_of(Scenario scenario) {

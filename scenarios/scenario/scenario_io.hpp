@@ -32,6 +32,11 @@ Scenario scenario_from_text(const std::string& text, const std::string& name,
 std::string where_given(const std::filesystem::path& file, const std::vector<std::string>& settings,
                         std::string_view key, const std::vector<std::filesystem::path>& with = {});
 
+/// The file that forest.trees_file names: beside the file that gives the key (`origin`: "file:line"; empty:
+/// nobody), from the working directory, or in the folder that UNDERSTORY_DATA names; the name as it is where
+/// none is there.
+std::string found_trees_file(const std::string& trees_file, const std::string& origin);
+
 /// Every key of a scenario with its value.
 std::vector<Key> keys_of(Scenario scenario);
 

@@ -32,11 +32,6 @@ Controls within_limits(const Controls& controls, const Airframe& airframe) {
 /// Where geoms of the pool wait (build_world).
 constexpr double pool_below_m = -500;
 
-std::pair<int, int> cell_of(const Eigen::Vector3d& place_world, double cell_m) {
-  return {static_cast<int>(std::floor(place_world.x() / cell_m)),
-          static_cast<int>(std::floor(place_world.y() / cell_m))};
-}
-
 }  // namespace
 
 Aircraft::Aircraft(mjModel& model, const Airframe& airframe, const LaunchConfig& launch, Wind wind,
@@ -135,19 +130,20 @@ bool Aircraft::NearObstacle::is_near(const Eigen::Vector3d& centre, double reach
   return (offset - along_m * axis_world).squaredNorm() < near_m * near_m;
 }
 
-/// Each obstacle into the cell of its centre. Cells are so wide that one within reach lies in the aircraft's
-/// cell or in one of the eight around it.
+/// Each obstacle into the cell of its centre.
 void Aircraft::read_pool(const std::vector<Obstacle>& pooled) {
   first_pooled_ = mj_name2id(&model_, mjOBJ_GEOM, "pool_0");
   if (first_pooled_ < 0) return;
   std::vector<NearObstacle> pieces;
+  double cell_m = 1;
   for (const Obstacle& obstacle : pooled) {
     if (obstacle.tree < 0) continue;
     const Eigen::Vector3d half = 0.5 * (obstacle.to_world - obstacle.from_world);
     pieces.push_back({obstacle.from_world + half, half.normalized(), half.norm(), obstacle.radius_m});
-    cell_m_ = std::max(cell_m_, reach_m_ + half.norm() + obstacle.radius_m);
+    cell_m = std::max(cell_m, reach_m_ + half.norm() + obstacle.radius_m);
   }
-  for (const NearObstacle& piece : pieces) cells_[cell_of(piece.centre_world, cell_m_)].push_back(piece);
+  pieces_ = GroundCells<NearObstacle>(cell_m);
+  for (const NearObstacle& piece : pieces) pieces_.add(piece.centre_world, piece);
 }
 
 bool Aircraft::anything_near() {
@@ -156,12 +152,10 @@ bool Aircraft::anything_near() {
   const bool fixed_near = centre.z() < reach_m_ || std::any_of(obstacles_.begin(), obstacles_.end(), is_near);
   if (first_pooled_ < 0) return fixed_near;
   std::vector<const NearObstacle*> near;
-  const auto [column, row] = cell_of(centre, cell_m_);
-  for (int x = column - 1; x <= column + 1; ++x)
-    for (int y = row - 1; y <= row + 1; ++y)
-      if (const auto cell = cells_.find({x, y}); cell != cells_.end())
-        for (const NearObstacle& obstacle : cell->second)
-          if (is_near(obstacle)) near.push_back(&obstacle);
+  pieces_.any_around(centre, [&](const NearObstacle& piece) {
+    if (is_near(piece)) near.push_back(&piece);
+    return false;
+  });
   place_pool(near);
   return fixed_near || !near.empty();
 }

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "planning/airframe.hpp"
@@ -12,6 +10,7 @@
 #include "sim/aircraft/aircraft_config.hpp"
 #include "sim/aircraft/truth.hpp"
 #include "sim/aircraft/wind.hpp"
+#include "sim/scene/ground_cells.hpp"
 #include "sim/scene/world.hpp"
 
 namespace understory {
@@ -121,9 +120,8 @@ class Aircraft {
   int ground_geom_ = 0;
   double reach_m_ = 0;  ///< from the centre of mass to the farthest corner of the collision boxes
   std::vector<NearObstacle> obstacles_;
-  /// Of a model with pooled geoms: obstacles by cells of the ground, and the pool's first geom.
-  std::map<std::pair<int, int>, std::vector<NearObstacle>> cells_;
-  double cell_m_ = 1;
+  /// Of a model with pooled geoms: the pieces of its trees, and the pool's first geom.
+  GroundCells<NearObstacle> pieces_;
   int pooled_ = 0;  ///< geoms of the pool that lie at an obstacle now
   int first_pooled_ = -1;
   Truth truth_;

@@ -1,26 +1,21 @@
 #include "sim/scene/leaf_contact.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <utility>
 
 namespace understory {
 namespace {
 
 double radius_m(const LeafCard& card) { return std::sqrt(card.x_m.squaredNorm() + card.y_m.squaredNorm()); }
 
-std::pair<int, int> cell_of(const Eigen::Vector3d& place_world, double cell_m) {
-  return {static_cast<int>(std::floor(place_world.x() / cell_m)),
-          static_cast<int>(std::floor(place_world.y() / cell_m))};
-}
-
 }  // namespace
 
 /// Two convex bodies are apart where a plane parallel to a face of one, or to an edge of each, parts them.
 bool overlaps(const WingBox& box, const LeafCard& card) {
-  const Eigen::Isometry3d T_box_world = box.T_world_box.inverse(Eigen::Isometry);
-  const Eigen::Vector3d middle = T_box_world * card.middle_world;
-  const Eigen::Vector3d x = T_box_world.linear() * card.x_m, y = T_box_world.linear() * card.y_m;
+  const Eigen::Isometry3d to_box = box.pose.inverse(Eigen::Isometry);
+  const Eigen::Vector3d middle = to_box * card.middle_world;
+  const Eigen::Vector3d x = to_box.linear() * card.x_m, y = to_box.linear() * card.y_m;
   const auto parts = [&](const Eigen::Vector3d& axis) {
     const double reach = axis.cwiseAbs().dot(box.half_size_m) + std::abs(axis.dot(x)) + std::abs(axis.dot(y));
     return std::abs(axis.dot(middle)) > reach + 1e-12;
@@ -33,24 +28,26 @@ bool overlaps(const WingBox& box, const LeafCard& card) {
   return true;
 }
 
-LeafContact::LeafContact(const std::vector<LeafCard>& cards, double reach_m) : cell_m_(1), reach_m_(reach_m) {
-  for (const LeafCard& card : cards) cell_m_ = std::max(cell_m_, reach_m + radius_m(card));
-  for (const LeafCard& card : cards) cells_[cell_of(card.middle_world, cell_m_)].push_back(card);
+LeafContact::LeafContact(const std::vector<LeafCard>& cards, std::vector<WingBox> boxes)
+    : boxes_(std::move(boxes)) {
+  for (const WingBox& box : boxes_)
+    reach_m_ = std::max(reach_m_, box.pose.translation().norm() + box.half_size_m.norm());
+  double cell_m = 1;
+  for (const LeafCard& card : cards) cell_m = std::max(cell_m, reach_m_ + radius_m(card));
+  cards_ = GroundCells<LeafCard>(cell_m);
+  for (const LeafCard& card : cards) cards_.add(card.middle_world, card);
 }
 
-bool LeafContact::touches(const Eigen::Vector3d& place_world, const std::vector<WingBox>& boxes) const {
-  const auto [column, row] = cell_of(place_world, cell_m_);
-  for (int x = column - 1; x <= column + 1; ++x)
-    for (int y = row - 1; y <= row + 1; ++y) {
-      const auto cell = cells_.find({x, y});
-      if (cell == cells_.end()) continue;
-      for (const LeafCard& card : cell->second) {
-        const double near_m = reach_m_ + radius_m(card);
-        if ((card.middle_world - place_world).squaredNorm() > near_m * near_m) continue;
-        if (std::ranges::any_of(boxes, [&](const WingBox& box) { return overlaps(box, card); })) return true;
-      }
-    }
-  return false;
+bool LeafContact::touches(const Eigen::Isometry3d& T_world_body) const {
+  const Eigen::Vector3d& place_world = T_world_body.translation();
+  const Eigen::Isometry3d T_body_world = T_world_body.inverse(Eigen::Isometry);
+  return cards_.any_around(place_world, [&](const LeafCard& card) {
+    const double near_m = reach_m_ + radius_m(card);
+    if ((card.middle_world - place_world).squaredNorm() > near_m * near_m) return false;
+    const LeafCard in_body{T_body_world * card.middle_world, T_body_world.linear() * card.x_m,
+                           T_body_world.linear() * card.y_m};
+    return std::ranges::any_of(boxes_, [&](const WingBox& box) { return overlaps(box, in_body); });
+  });
 }
 
 }  // namespace understory

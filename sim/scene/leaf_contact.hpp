@@ -1,33 +1,33 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <map>
-#include <utility>
 #include <vector>
 
+#include "sim/scene/ground_cells.hpp"
 #include "sim/scene/woods_mesh.hpp"
 
 namespace understory {
 
-/// A box that may touch leaves: its place in the world (at its middle) and half of its size.
+/// A box that may touch leaves: its place at its middle, and half of its size.
 struct WingBox {
-  Eigen::Isometry3d T_world_box = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< in the frame of what it is held against
   Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
 };
 
-/// Whether a box and a drawn square of leaves have a point in common.
+/// Whether a box and a drawn square of leaves have a point in common, both in one frame.
 bool overlaps(const WingBox& box, const LeafCard& card);
 
-/// The drawn leaves of a wood, ready to be asked at every physics step what touches them.
+/// The drawn leaves of a wood, ready to be asked at every physics step whether the wing touches them.
 class LeafContact {
  public:
-  /// `reach_m`: from the place that touches() is asked about to the farthest corner of any of its boxes.
-  LeafContact(const std::vector<LeafCard>& cards, double reach_m);
-  bool touches(const Eigen::Vector3d& place_world, const std::vector<WingBox>& boxes) const;
+  /// `boxes`: of the aircraft, in its body frame.
+  LeafContact(const std::vector<LeafCard>& cards, std::vector<WingBox> boxes);
+  bool touches(const Eigen::Isometry3d& T_world_body) const;
 
  private:
-  double cell_m_, reach_m_;
-  std::map<std::pair<int, int>, std::vector<LeafCard>> cells_;
+  std::vector<WingBox> boxes_;
+  double reach_m_ = 0;  ///< from the body's origin to the farthest corner of the boxes
+  GroundCells<LeafCard> cards_;
 };
 
 }  // namespace understory

@@ -13,6 +13,11 @@ using Eigen::Vector3d;
 constexpr double bark_width_m = 0.7, bark_height_m = 1.4;  ///< of one tile
 constexpr double relief_m = 0.12;
 
+/// Along the line of points, from the one before to the one after.
+Vector3d direction_at(const std::vector<Vector3d>& axis, std::size_t i) {
+  return (axis[std::min(i + 1, axis.size() - 1)] - axis[i > 0 ? i - 1 : 0]).normalized();
+}
+
 }  // namespace
 
 double noise_at(const Vector2d& place, std::uint32_t seed) {
@@ -95,8 +100,7 @@ void MeshBuilder::add_tube(const std::vector<Vector3d>& axis, const std::vector<
   std::uint32_t before = 0;
   for (std::size_t i = 0; i < axis.size(); ++i) {
     if (i > 0) along_m += (axis[i] - axis[i - 1]).norm();
-    const Vector3d direction =
-        (axis[std::min(i + 1, axis.size() - 1)] - axis[i > 0 ? i - 1 : 0]).normalized();
+    const Vector3d direction = direction_at(axis, i);
     // The same direction for every ring, or the bark would twist where the axis bends.
     const Vector3d reference = std::abs(direction.z()) > 0.7 ? Vector3d::UnitX() : Vector3d::UnitZ();
     const Vector3d side = (reference - reference.dot(direction) * direction).normalized();
@@ -125,8 +129,7 @@ void MeshBuilder::add_ribbon(const std::vector<Vector3d>& axis, const std::vecto
   std::uint32_t before = 0;
   for (std::size_t i = 0; i < axis.size(); ++i) {
     if (i > 0) along_m += (axis[i] - axis[i - 1]).norm();
-    const Vector3d direction =
-        (axis[std::min(i + 1, axis.size() - 1)] - axis[i > 0 ? i - 1 : 0]).normalized();
+    const Vector3d direction = direction_at(axis, i);
     const auto pair = static_cast<std::uint32_t>(mesh.vertices.size());
     const Vector3d shaded = lit(sun_at(axis[i]) * tint, mesh.to_sun_world.cross(direction).unitOrthogonal());
     for (const double side : {-1.0, 1.0}) {

@@ -141,7 +141,7 @@ std::shared_ptr<WoodsMesh> mesh_of(const std::vector<Obstacle>& obstacles, const
   Eigen::AlignedBox2d stand;
   for (const Tree& tree : trees) stand.extend(Eigen::Vector2d(obstacles[tree.first].from_world.head<2>()));
   if (trees.empty()) stand = Eigen::AlignedBox2d(Eigen::Vector2d(0, -25), Eigen::Vector2d(60, 25));
-  stand.extend(stand.max() + Eigen::Vector2d(1, 1));
+  stand.extend(stand.max() + Eigen::Vector2d(1, 1));  // one tree alone would fill no area
   const std::uint64_t seed = trees.empty() ? 1 : trees.front().seed;
   return std::make_shared<WoodsMesh>(woods_mesh(obstacles, trees, stand, config.woods, seed));
 }

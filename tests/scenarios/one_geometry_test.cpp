@@ -315,7 +315,7 @@ TEST(LeafContact, ABoxTouchesACardWhereAPointOfItIsInside) {
     for (int u = -40; u <= 40; ++u)
       for (int v = -40; v <= 40; ++v) {
         const Vector3d point =
-            box.T_world_box.inverse() * (card.middle_world + u / 40.0 * card.x_m + v / 40.0 * card.y_m);
+            box.pose.inverse() * (card.middle_world + u / 40.0 * card.x_m + v / 40.0 * card.y_m);
         const double outside_m = (point.cwiseAbs() - box.half_size_m).cwiseMax(0).norm();
         inside = inside || outside_m == 0;
         nearest_m = std::min(nearest_m, outside_m);
@@ -340,14 +340,14 @@ TEST(LeafContact, AsksEveryCardWithinReach) {
             {0.3 * unit(generator), 0.3, 0},
             {0, 0, 0.4}};
   const Vector3d half(0.1, 0.43, 0.02);
-  const LeafContact contact(cards, half.norm());
+  const LeafContact contact(cards, {{Eigen::Isometry3d::Identity(), half}});
   int touching = 0;
   for (int i = 0; i < 500; ++i) {
     Eigen::Isometry3d pose(Eigen::AngleAxisd(3 * unit(generator), Vector3d::UnitZ()));
     pose.translation() = 9 * Vector3d(unit(generator), unit(generator), 0.2 * unit(generator));
     const WingBox box{pose, half};
     const bool any = std::ranges::any_of(cards, [&](const LeafCard& card) { return overlaps(box, card); });
-    EXPECT_EQ(contact.touches(pose.translation(), {box}), any);
+    EXPECT_EQ(contact.touches(pose), any);
     touching += any;
   }
   EXPECT_GT(touching, 20);
