@@ -162,12 +162,10 @@ class FloorPainter {
     const auto on_ground = [&](const Vector2d& at) {
       return Vector3d(at.x(), at.y(), builder_.ground_z(at) + 0.5 * radius_m);
     };
-    const auto kind = static_cast<WoodsTexture>(static_cast<int>(builder_.uniform(0, 4.999)));
-    if (config_.kinds != WoodsKinds::mixed)
-      builder_.begin_part(
-          static_cast<WoodsTexture>(static_cast<int>(config_.kinds) - static_cast<int>(WoodsKinds::oak)));
-    else
-      builder_.begin_part(kind);
+    const int any = static_cast<int>(builder_.uniform(0, 4.999));  // drawn in any case
+    const bool mixed = config_.kinds == WoodsKinds::mixed;
+    builder_.begin_part(static_cast<WoodsTexture>(
+        mixed ? any : static_cast<int>(config_.kinds) - static_cast<int>(WoodsKinds::oak)));
     const WoodsRange log = builder_.range_of([&] {
       builder_.add_tube({on_ground(place), on_ground(0.5 * (place + end)), on_ground(end)},
                         {radius_m, 0.9 * radius_m, 0.7 * radius_m}, 8, Vector3d(96, 96, 78), turn, log_);

@@ -10,7 +10,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double bark_width_m = 0.7, bark_height_m = 1.4;  ///< of one tile
+constexpr double tile_width_m = 0.7, tile_height_m = 1.4;  ///< of bark
 constexpr double relief_m = 0.12;
 
 /// Along the line of points, from the one before to the one after.
@@ -95,7 +95,7 @@ void MeshBuilder::add_quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, st
 void MeshBuilder::add_tube(const std::vector<Vector3d>& axis, const std::vector<double>& radii_m, int sides,
                            const Vector3d& tint, double turn_rad, std::uint16_t object) {
   const double outside = 2 / (1 + std::cos(std::numbers::pi / sides));
-  const double around = std::max(1.0, std::round(2 * std::numbers::pi * radii_m.front() / bark_width_m));
+  const double around = std::max(1.0, std::round(2 * std::numbers::pi * radii_m.front() / tile_width_m));
   double along_m = 0;
   std::uint32_t before = 0;
   for (std::size_t i = 0; i < axis.size(); ++i) {
@@ -110,7 +110,7 @@ void MeshBuilder::add_tube(const std::vector<Vector3d>& axis, const std::vector<
     for (int corner = 0; corner <= sides; ++corner) {
       const double angle = turn_rad + 2 * std::numbers::pi * corner / sides;
       const Vector3d out = std::cos(angle) * side + std::sin(angle) * other;
-      add_vertex(axis[i] + outside * radii_m[i] * out, around * corner / sides, along_m / bark_height_m,
+      add_vertex(axis[i] + outside * radii_m[i] * out, around * corner / sides, along_m / tile_height_m,
                  lit(sun * tint, out), object);
     }
     for (int corner = 0; i > 0 && corner < sides; ++corner) {
@@ -124,7 +124,7 @@ void MeshBuilder::add_tube(const std::vector<Vector3d>& axis, const std::vector<
 
 void MeshBuilder::add_ribbon(const std::vector<Vector3d>& axis, const std::vector<double>& radii_m,
                              const Vector3d& tint, std::uint16_t object) {
-  const double half_round = std::max(0.5, std::round(std::numbers::pi * radii_m.front() / bark_width_m));
+  const double half_round = std::max(0.5, std::round(std::numbers::pi * radii_m.front() / tile_width_m));
   double along_m = 0;
   std::uint32_t before = 0;
   for (std::size_t i = 0; i < axis.size(); ++i) {
@@ -133,7 +133,7 @@ void MeshBuilder::add_ribbon(const std::vector<Vector3d>& axis, const std::vecto
     const auto pair = static_cast<std::uint32_t>(mesh.vertices.size());
     const Vector3d shaded = lit(sun_at(axis[i]) * tint, mesh.to_sun_world.cross(direction).unitOrthogonal());
     for (const double side : {-1.0, 1.0}) {
-      add_vertex(axis[i], half_round * (0.5 + 0.5 * side), along_m / bark_height_m, shaded, object);
+      add_vertex(axis[i], half_round * (0.5 + 0.5 * side), along_m / tile_height_m, shaded, object);
       const Vector3d beside = side * radii_m[i] * direction;
       for (int axis_of = 0; axis_of < 3; ++axis_of)
         mesh.vertices.back().ribbon[axis_of] = static_cast<float>(beside[axis_of]);

@@ -81,11 +81,7 @@ TrunkMesh box_mesh(const Eigen::Vector3d& half_m, double tile_width_m, double ti
         mesh.normals.push_back(side * Eigen::Vector3d::Unit(axis));
         mesh.texture.emplace_back(corner[across] / tile_width_m, (corner[up] + half_m[up]) / tile_height_m);
       }
-      const Eigen::Vector3d turn = (mesh.vertices[static_cast<std::size_t>(first) + 1] -
-                                    mesh.vertices[static_cast<std::size_t>(first)])
-                                       .cross(mesh.vertices[static_cast<std::size_t>(first) + 2] -
-                                              mesh.vertices[static_cast<std::size_t>(first)]);
-      const bool outward = side * turn[axis] > 0;
+      const bool outward = (axis == 1) != (side > 0);  // x, z and y are no right-handed axes
       mesh.faces.emplace_back(first, first + (outward ? 1 : 2), first + (outward ? 2 : 1));
       mesh.faces.emplace_back(first, first + (outward ? 2 : 3), first + (outward ? 3 : 2));
     }
@@ -127,10 +123,14 @@ TrunkMesh capsule_mesh(double radius_m, double half_axis_m, double tile_width_m,
 
 }  // namespace
 
-TrunkMesh listed_mesh(const Obstacle& obstacle, double tile_width_m, double tile_height_m) {
-  if (obstacle.kind == ObstacleKind::box) return box_mesh(obstacle.half_size_m, tile_width_m, tile_height_m);
-  return capsule_mesh(obstacle.radius_m, 0.5 * (obstacle.to_world - obstacle.from_world).norm(), tile_width_m,
-                      tile_height_m);
+TrunkMesh listed_mesh(const Obstacle& obstacle) {
+  const bool windowed = obstacle.texture == ObstacleTexture::windows,
+             barked = obstacle.texture == ObstacleTexture::bark;
+  const double width_m = windowed ? window_period_m : barked ? bark_width_m : ground_tile_m;
+  const double height_m = windowed ? storey_m : barked ? bark_height_m : ground_tile_m;
+  if (obstacle.kind == ObstacleKind::box) return box_mesh(obstacle.half_size_m, width_m, height_m);
+  const double half_axis_m = 0.5 * (obstacle.to_world - obstacle.from_world).norm();
+  return capsule_mesh(obstacle.radius_m, half_axis_m, width_m, height_m);
 }
 
 namespace {

@@ -35,9 +35,13 @@ inline constexpr int facade_height_px = 512;
 /// 0.75 x 1.7 m, one pane 0.375 m from the next. The plaster has almost no texture.
 GrayTexture facade_texture(std::uint64_t seed);
 
-/// A box, capsule or sphere of a scenario's own list, in the frame of Obstacle::T_world_box(). Its picture is
-/// as large as on a tile of `tile_width_m` x `tile_height_m`.
-TrunkMesh listed_mesh(const Obstacle& obstacle, double tile_width_m = 0.8, double tile_height_m = 1.6);
+// Tiles of the other pictures.
+inline constexpr double bark_width_m = 0.8, bark_height_m = 1.6;  ///< 3.1 mm a texel
+inline constexpr double ground_tile_m = 8.0;                      ///< 7.8 mm a texel
+
+/// A box, capsule or sphere of a scenario's own list, in the frame of Obstacle::T_world_box(), with the tiles
+/// of its picture.
+TrunkMesh listed_mesh(const Obstacle& obstacle);
 
 /// A wall's box, in world axes with its foot at its from_world. Tiles begin at its middle and at its foot.
 TrunkMesh facade_mesh(const Obstacle& wall);

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -14,10 +15,6 @@
 namespace understory {
 namespace {
 
-// Bark: a tile of 0.8 x 1.6 m, 3.1 mm a texel. Ground: 8 x 8 m, 7.8 mm a texel.
-constexpr double bark_width_m = 0.8;
-constexpr double bark_height_m = 1.6;
-constexpr double ground_tile_m = 8.0;
 constexpr double ground_reach_m = 400.0;  // beyond it the sky begins at the horizon
 
 // Gray levels in full light; with the sun of the cameras' scene trunks come out near 100 and the ground near
@@ -150,18 +147,13 @@ SceneryXml scenery_xml(const std::vector<Obstacle>& obstacles, const WorldConfig
       xml.bodies += geom_xml(name, "facade", obstacle.from_world, Eigen::Quaterniond::Identity());
       continue;
     }
-    if (obstacle.kind >= ObstacleKind::capsule) {  // of the scenario's own list
+    if (obstacle.kind >= ObstacleKind::capsule) {                  // of the scenario's own list
+      constexpr std::array materials{"bark", "facade", "litter"};  // by ObstacleTexture
       const bool windowed = obstacle.texture == ObstacleTexture::windows;
       if (windowed && !has_facade) xml.assets += texture_xml("facade", facade_width_px, facade_height_px);
       has_facade = has_facade || windowed;
-      const bool barked = obstacle.texture == ObstacleTexture::bark;
-      const double tile_m = windowed ? window_period_m : barked ? bark_width_m : ground_tile_m;
-      const double height_m = windowed ? storey_m : barked ? bark_height_m : ground_tile_m;
-      xml.assets += mesh_xml(name, listed_mesh(obstacle, tile_m, height_m));
-      xml.bodies += geom_xml(name,
-                             windowed ? "facade"
-                             : barked ? "bark"
-                                      : "litter",
+      xml.assets += mesh_xml(name, listed_mesh(obstacle));
+      xml.bodies += geom_xml(name, materials[static_cast<std::size_t>(obstacle.texture)],
                              obstacle.T_world_box().translation(), obstacle.turn_world);
       continue;
     }

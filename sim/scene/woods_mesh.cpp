@@ -24,6 +24,22 @@ const std::array<Colours, 5> colours{{{{118, 108, 96}, {112, 146, 58}, {74, 96, 
 
 bool is_conifer(TreeKind kind) { return kind == TreeKind::pine || kind == TreeKind::spruce; }
 
+bool is_bare(TreeKind kind, const WoodsConfig& config) {
+  return config.season == Season::winter && !is_conifer(kind);
+}
+
+/// Of leaves from fresh (0) to dark (1); of twigs where there are none.
+Vector3d crown_tint(TreeKind kind, bool bare, const Vector3d& bark, double tone) {
+  const Colours& own = colours[static_cast<std::size_t>(kind)];
+  return bare ? Vector3d(0.9 * bark) : Vector3d(own.fresh + tone * (own.dark - own.fresh));
+}
+
+LeafPicture crown_picture(TreeKind kind, bool bare, int number) {
+  if (bare) return LeafPicture::twigs;
+  if (is_conifer(kind)) return LeafPicture::needles;
+  return number % 2 == 0 ? LeafPicture::leaves : LeafPicture::more_leaves;
+}
+
 /// As many sides as keep a tube's surface within 1.5 mm of the round one.
 int sides_of(double radius_m) {
   const int sides = static_cast<int>(std::ceil(std::numbers::pi * std::sqrt(radius_m / 0.006)));
@@ -41,11 +57,10 @@ class TreePainter {
         trunk_(static_cast<std::uint16_t>(numbers.trunk(number))),
         branch_(static_cast<std::uint16_t>(numbers.branch(number))),
         leaves_(static_cast<std::uint16_t>(numbers.leaves(number))),
-        bare_(config.season == Season::winter && !is_conifer(tree.kind)) {
-    const Colours& own = colours[static_cast<std::size_t>(tree.kind)];
+        bare_(is_bare(tree.kind, config)) {
     const double tone = std::clamp(config.leaf_tone + uniform(-0.15, 0.15), 0.0, 1.0);
-    bark_ = own.bark * uniform(0.85, 1.15);
-    green_ = bare_ ? Vector3d(0.9 * bark_) : Vector3d(own.fresh + tone * (own.dark - own.fresh));
+    bark_ = colours[static_cast<std::size_t>(tree.kind)].bark * uniform(0.85, 1.15);
+    green_ = crown_tint(tree.kind, bare_, bark_, tone);
   }
 
   void paint() {
@@ -150,18 +165,13 @@ class TreePainter {
     }
   }
 
-  LeafPicture picture_of(int number) const {
-    if (bare_) return LeafPicture::twigs;
-    if (is_conifer(tree_.kind)) return LeafPicture::needles;
-    return number % 2 == 0 ? LeafPicture::leaves : LeafPicture::more_leaves;
-  }
-
   /// A square that faces `normal`, turned at random about it.
   Card leaves_at(const Vector3d& place, const Vector3d& normal, double size_m, int number) {
     const Vector3d side = normal.unitOrthogonal(), up = normal.cross(side);
     const double turn = uniform(0, 2 * std::numbers::pi);
     return {place, 0.5 * size_m * (std::cos(turn) * side + std::sin(turn) * up),
-            0.5 * size_m * (std::cos(turn) * up - std::sin(turn) * side), picture_of(number)};
+            0.5 * size_m * (std::cos(turn) * up - std::sin(turn) * side),
+            crown_picture(tree_.kind, bare_, number)};
   }
   /// A branch's spray: from the stem outwards and down.
   Card spray_of(const Clump& clump, double width_m, double height_m) const {
@@ -261,12 +271,9 @@ void add_far_tree(MeshBuilder& builder, const Tree& tree, double radius_m, const
   const Vector3d foot(place.x(), place.y(), builder.ground_z(place) - 0.1),
       top = foot + Vector3d(lean, -lean, tree.height_m);
   const Colours& own = colours[static_cast<std::size_t>(tree.kind)];
-  const bool bare = config.season == Season::winter && !is_conifer(tree.kind);
-  const Vector3d green =
-      bare ? Vector3d(0.9 * own.bark) : Vector3d(own.fresh + config.leaf_tone * (own.dark - own.fresh));
-  const LeafPicture picture = bare                    ? LeafPicture::twigs
-                              : is_conifer(tree.kind) ? LeafPicture::needles
-                                                      : LeafPicture::leaves;
+  const bool bare = is_bare(tree.kind, config);
+  const Vector3d green = crown_tint(tree.kind, bare, own.bark, config.leaf_tone);
+  const LeafPicture picture = crown_picture(tree.kind, bare, 0);
   builder.begin_part(static_cast<WoodsTexture>(tree.kind));
   const WoodsRange stem = builder.range_of([&] {
     builder.add_ribbon({foot, top}, {1.1 * radius_m, 0.02}, own.bark, number);
