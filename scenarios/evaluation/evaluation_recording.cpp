@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <opencv2/core.hpp>
+#include <set>
 #include <stdexcept>
 
 #include "perception/io/calibration_file.hpp"
@@ -61,6 +62,7 @@ std::vector<RecordedObject> parse_recorded_objects(const std::string& text, cons
   constexpr const char* expected = "expected 'number,name,kind,from_x,from_y,from_z,to_x,to_y,to_z,radius'";
   std::vector<RecordedObject> objects;
   std::map<int, std::pair<std::string, std::string>> names;
+  std::set<std::vector<std::string>> pieces;
   for (const TableLine& line : table_lines(text, CellsParted::by_commas, name)) {
     if (line.cells.size() != 10) fail_at_line(name, line.number, expected);
     const auto number = [&](std::size_t cell) {
@@ -74,7 +76,9 @@ std::vector<RecordedObject> parse_recorded_objects(const std::string& text, cons
     object.number = static_cast<int>(*given);
     object.name = line.cells[1];
     object.kind = line.cells[2];
-    // An object of several pieces has a line for each.
+    // An object of several pieces has a line for each, and no piece twice.
+    if (!pieces.emplace(line.cells.begin(), line.cells.end()).second)
+      fail_at_line(name, line.number, "this line stands above already");
     const auto [before, added] = names.try_emplace(object.number, object.name, object.kind);
     if (!added && before->second != std::pair(object.name, object.kind))
       fail_at_line(name, line.number, "this number belongs to another object above");

@@ -307,6 +307,7 @@ WoodsMesh woods_mesh(const std::vector<Obstacle>& obstacles, const std::vector<T
   std::size_t alone = 0;
   for (const Obstacle& obstacle : obstacles)
     if (obstacle.tree < 0) add_listed(builder, obstacle, numbers.alone(alone++));
+  builder.mesh.obstacle_parts = builder.mesh.parts.size();
   add_forest_floor(builder, obstacles, trees, stand, config);
   return std::move(builder.mesh);
 }

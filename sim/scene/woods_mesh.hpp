@@ -45,7 +45,8 @@ struct LeafCard {
 struct WoodsMesh {
   std::vector<WoodsVertex> vertices;
   std::vector<std::uint32_t> indices;
-  std::vector<WoodsPart> parts;
+  std::vector<WoodsPart> parts;    ///< obstacles first, then the floor and the far wood
+  std::size_t obstacle_parts = 0;  ///< number of parts that are obstacles
   std::array<WoodsPicture, woods_texture_count> textures;  ///< empty until painted, and where no part uses it
   std::vector<LeafCard> leaf_cards;                        ///< of the trees that can be reached
   Eigen::Vector3d to_sun_world = Eigen::Vector3d::UnitZ();

@@ -143,7 +143,11 @@ std::shared_ptr<WoodsMesh> mesh_of(const std::vector<Obstacle>& obstacles, const
   if (trees.empty()) stand = Eigen::AlignedBox2d(Eigen::Vector2d(0, -25), Eigen::Vector2d(60, 25));
   stand.extend(stand.max() + Eigen::Vector2d(1, 1));  // one tree alone would fill no area
   const std::uint64_t seed = trees.empty() ? 1 : trees.front().seed;
-  return std::make_shared<WoodsMesh>(woods_mesh(obstacles, trees, stand, config.woods, seed));
+  auto mesh = std::make_shared<WoodsMesh>(woods_mesh(obstacles, trees, stand, config.woods, seed));
+  const auto first = mesh->parts.begin();
+  if (!config.obstacles_visible)
+    mesh->parts.erase(first, first + static_cast<std::ptrdiff_t>(mesh->obstacle_parts));
+  return mesh;
 }
 
 }  // namespace

@@ -164,6 +164,24 @@ TEST(Woods, DrawnTrunksLieWhereTheirCapsulesAre) {
 }
 
 /// OpenGL's state is shared with MuJoCo: neither kind of scenery changes the other's pictures.
+TEST(Woods, InvisibleTreesAreInNoPictureAndTouchedAllTheSame) {
+  const Wood wood = wood_of(60);
+  WorldConfig config{.obstacles_visible = false, .scenery = Scenery::woods, .woods = drawn({}, 5)};
+  const World invisible = build_world(models, Airframe{}, wood.obstacles, config, wood.trees);
+  const World visible = world_of(wood, Scenery::woods);
+  const StereoCameras cameras(invisible, paper_rig(), exact_camera(), {});
+  const StereoCameras seeing(visible, paper_rig(), exact_camera(), {});
+  const cv::Mat seen = seeing.true_view(pose_at(2)).objects, unseen = cameras.true_view(pose_at(2)).objects;
+  const int last = object_first_obstacle + static_cast<int>(3 * wood.trees.size()) - 1;
+  const auto trees_in = [&](const cv::Mat& objects) {
+    return cv::countNonZero((objects >= object_first_obstacle) & (objects <= last));
+  };
+  EXPECT_GT(trees_in(seen), 1000);
+  EXPECT_EQ(trees_in(unseen), 0);
+  EXPECT_GT(cv::countNonZero(unseen > last), 1000) << "undergrowth, logs and the far wood are still there";
+  EXPECT_EQ(invisible.woods->leaf_cards.size(), visible.woods->leaf_cards.size());
+}
+
 TEST(Woods, PlainAndWoodsInOneProcessEqualEachAlone) {
   const Wood wood = wood_of(30);
   const World plain = world_of(wood, Scenery::plain), woods = world_of(wood, Scenery::woods);
