@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "estimation/filter_config.hpp"
@@ -28,13 +29,16 @@ class Filter : public StateSource {
  public:
   explicit Filter(const FilterConfig& config);
 
-  void on(const ImuSample& sample) override;
-  void on(const PitotSample& sample) override;
-  void on(const BarometerSample& sample) override;
-  void on(const MagnetometerSample& sample) override;
-  void on(const GpsSample& sample) override;
-  void on(const ResightingSample& sample) override;
-  void on(const ThrustSample& sample) override;
+  void on(const Sample& sample) override {
+    std::visit([this](const auto& one) { on(one); }, sample);
+  }
+  void on(const ImuSample& sample);
+  void on(const PitotSample& sample);
+  void on(const BarometerSample& sample);
+  void on(const MagnetometerSample& sample);
+  void on(const GpsSample& sample);
+  void on(const ResightingSample& sample);
+  void on(const ThrustSample& sample);
   const State& state() const override { return state_; }
   State state_at(std::int64_t t_ns) const override { return history_.at(t_ns); }
 

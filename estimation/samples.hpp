@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
+#include <variant>
 
 /// What the sensors deliver. Body frame: x forward, y left, z up. World: x east, y north, z up. Times are the
 /// moment of measurement. SI units.
@@ -55,5 +56,9 @@ struct ResightingSample {
   Eigen::Vector2d discrepancy_world_m = Eigen::Vector2d::Zero();  ///< second place less first
   Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Identity();    ///< of the errors of vision
 };
+
+/// Any of them.
+using Sample = std::variant<ImuSample, PitotSample, BarometerSample, MagnetometerSample, GpsSample,
+                            ResightingSample, ThrustSample>;
 
 }  // namespace understory

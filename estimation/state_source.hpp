@@ -7,18 +7,13 @@
 
 namespace understory {
 
-/// Tells the autopilot where the aircraft is: the filter, or an oracle in its place. Samples arrive in order
-/// of time.
+/// Tells the autopilot where the aircraft is. Samples arrive in the order in which the aircraft's computer
+/// gets them; a GPS fix or a resighting is older than the IMU sample before it.
 class StateSource {
  public:
   virtual ~StateSource() = default;
-  virtual void on(const ImuSample& sample) = 0;
-  virtual void on(const PitotSample& sample) = 0;
-  virtual void on(const BarometerSample& sample) = 0;
-  virtual void on(const MagnetometerSample& sample) = 0;
-  virtual void on(const GpsSample& sample) = 0;
-  virtual void on(const ResightingSample& sample) = 0;
-  virtual void on(const ThrustSample& sample) = 0;
+  /// Takes one sample; a source ignores the kinds that it has no use for (std::get_if).
+  virtual void on(const Sample& sample) = 0;
   /// Newest state (its t_ns is that of the newest IMU sample).
   virtual const State& state() const = 0;
   /// State at an earlier moment, interpolated from the recorded history (1 s is kept); the nearest end of

@@ -1,7 +1,8 @@
 #include "planning/autopilot.hpp"
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <variant>
 
 namespace understory {
 namespace {
@@ -11,22 +12,23 @@ constexpr double predict_step_s = 0.005;
 }  // namespace
 
 Autopilot::Autopilot(const AutopilotConfig& config, const Airframe& airframe, const StereoRig& rig,
-                     const Mission& mission, ObstacleDetector& detector, StateSource& state_source,
-                     std::uint64_t seed)
+                     ObstacleDetector& detector, StateSource& state_source, Planner& planner)
     : config_(config),
       rig_(rig),
       detector_(detector),
       state_source_(state_source),
       model_(airframe, config.flight_model),
-      planner_(config.planner, model_, mission, seed),
+      planner_(planner),
       map_(config.map),
       resightings_(config.resightings) {}
 
-void Autopilot::on(const ImuSample& sample) {
+void Autopilot::on(const Sample& sample) {
   state_source_.on(sample);
-  const bool strong = sample.specific_force_body_mps2.x() > config_.launch_acceleration_mps2;
+  const auto* imu = std::get_if<ImuSample>(&sample);
+  if (imu == nullptr) return;
+  const bool strong = imu->specific_force_body_mps2.x() > config_.launch_acceleration_mps2;
   strong_samples_ = strong ? strong_samples_ + 1 : 0;
-  if (launch_ns_ < 0 && strong_samples_ >= 2) launch_ns_ = sample.t_ns;
+  if (launch_ns_ < 0 && strong_samples_ >= 2) launch_ns_ = imu->t_ns;
 }
 
 bool Autopilot::in_flight(std::int64_t t_ns) const {
@@ -42,26 +44,17 @@ void Autopilot::on(const StereoFrame& frame) {
     state_source_.on(
         ResightingSample{again.t_ns, again.earlier_ns, again.discrepancy_world_m, again.covariance_m2});
   map_.insert(hits_, seen.T_world_body * rig_.T_body_camera, frame.t_ns, seen.distance_flown_m);
-  plan_outdated_ = plan_outdated_ || seen_near_the_plan(frame.t_ns);
+  plan_outdated_ = plan_outdated_ || concerns_the_plan(frame.t_ns);
   map_.forget_passed(state_source_.state().T_world_body, frame.t_ns);
 }
 
-// Whether the frame of `t_ns` added a point that is near enough to change the cost of the plan: the newest
-// one, in force or about to be.
-bool Autopilot::seen_near_the_plan(std::int64_t t_ns) const {
+// Whether the frame of `t_ns` added a point that may change the newest plan, in force or about to be.
+bool Autopilot::concerns_the_plan(std::int64_t t_ns) const {
   const Plan& plan = next_plan_due_ns_ >= 0 ? next_plan_ : plan_;
-  const ObstacleFieldConfig& field = config_.planner.field;
-  const double near_m = config_.planner.trajectory.comfortable_clearance_m + field.half_span_m +
-                        field.wing_radius_m + field.sigma_zero_m + 0.5 * field.cell_m;
-  const auto near_the_plan = [&](const ObstaclePoint& point) {
-    return std::ranges::any_of(plan.points, [&](const PlanPoint& planned) {
-      return (planned.position_world - point.position_world).head<2>().squaredNorm() <= near_m * near_m;
-    });
-  };
   const std::vector<ObstaclePoint>& points = map_.points();  // new ones come last
   for (auto point = points.rbegin(); point != points.rend(); ++point) {
     if (point->t_ns != t_ns || point->sightings != 1) break;
-    if (near_the_plan(*point)) return true;
+    if (planner_.concerns(*point, plan)) return true;
   }
   return false;
 }
@@ -88,7 +81,7 @@ void Autopilot::replan(std::int64_t t_ns) {
   start.position_world.z() -= ground_m;
   std::vector<ObstaclePoint> points = map_.trusted_points();
   for (ObstaclePoint& point : points) point.position_world.z() -= ground_m;
-  next_plan_ = planner_.plan(start, effective_ns, points, state.distance_flown_m, outdated);
+  next_plan_ = planner_.plan({start, effective_ns, std::move(points), state.distance_flown_m, outdated});
   next_plan_due_ns_ = t_ns + nanoseconds(config_.plan_latency_s);
 }
 

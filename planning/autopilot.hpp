@@ -11,24 +11,20 @@
 #include "perception/stereo_rig.hpp"
 #include "planning/airframe.hpp"
 #include "planning/autopilot_config.hpp"
-#include "planning/avoidance_planner.hpp"
 #include "planning/path_follower.hpp"
+#include "planning/planner.hpp"
 
 namespace understory {
 
 /// The flight stack composed: what would run on the aircraft. It knows the airframe, its rig and the mission.
-/// `detector` tells it what is around it, `state_source` where it is. Both must outlive it.
+/// `detector` tells it what is around it, `state_source` where it is, `planner` which way to go. All three
+/// must outlive it.
 class Autopilot {
  public:
   Autopilot(const AutopilotConfig& config, const Airframe& airframe, const StereoRig& rig,
-            const Mission& mission, ObstacleDetector& detector, StateSource& state_source,
-            std::uint64_t seed);
+            ObstacleDetector& detector, StateSource& state_source, Planner& planner);
 
-  void on(const ImuSample& sample);
-  void on(const PitotSample& sample) { state_source_.on(sample); }
-  void on(const BarometerSample& sample) { state_source_.on(sample); }
-  void on(const MagnetometerSample& sample) { state_source_.on(sample); }
-  void on(const GpsSample& sample) { state_source_.on(sample); }
+  void on(const Sample& sample);
   void on(const StereoFrame& frame);
   /// Plans for the moment at which the plan will take effect. Does nothing while a plan is being computed
   /// (plan_latency_s), so calling more often changes nothing. Does nothing either while the plan in force is
@@ -45,14 +41,14 @@ class Autopilot {
   const PlannerCounts& counts() const { return planner_.counts(); }
 
  private:
-  bool seen_near_the_plan(std::int64_t t_ns) const;
+  bool concerns_the_plan(std::int64_t t_ns) const;
 
   AutopilotConfig config_;
   StereoRig rig_;
   ObstacleDetector& detector_;
   StateSource& state_source_;
   FlightModel model_;
-  AvoidancePlanner planner_;
+  Planner& planner_;
   LocalMap map_;
   Resightings resightings_;
   std::vector<StereoHit> hits_;

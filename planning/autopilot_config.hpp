@@ -153,8 +153,8 @@ void visit_fields(Visitor& visit, TrajectoryConfig& config) {
   visit("maximum_climb_mps", config.maximum_climb_mps, 0.0, 6.0);
 }
 
-/// The tree of manoeuvres that OMPL grows (SST, Li, Littlefield & Bekris 2016, in the space of bank and climb
-/// commands over time).
+/// The tree of manoeuvres that OMPL grows with SST, RRT or EST in the space of bank and climb commands over
+/// time.
 struct ManoeuvreSearchConfig {
   /// number of tree extensions per search; a count instead of a time limit, so that runs are repeatable
   int iterations = 600;
@@ -211,7 +211,6 @@ void visit_fields(Visitor& visit, ManoeuvreImprovementConfig& config) {
 }
 
 struct PlannerConfig {
-  bool use_ompl = true;  ///< searches manoeuvres with OMPL; false: chooses among predefined manoeuvres
   /// When a new map point lies near it, the plan in force is kept without a search while its cost is at most
   /// this multiple of its original cost, plus 1.
   double kept_cost_ratio = 1.3;
@@ -229,7 +228,6 @@ struct PlannerConfig {
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, PlannerConfig& config) {
-  visit("use_ompl", config.use_ompl);
   visit("kept_cost_ratio", config.kept_cost_ratio, 1.0, 100.0);
   visit("change_cost_ratio", config.change_cost_ratio, 1.0, 100.0);
   visit("refresh_replans", config.refresh_replans, 1, 1000);
@@ -238,6 +236,18 @@ void visit_fields(Visitor& visit, PlannerConfig& config) {
   visit("trajectory", config.trajectory);
   visit("search", config.search);
   visit("improvement", config.improvement);
+}
+
+/// The planner `library` (Barry, Florence & Tedrake 2018 flew one): manoeuvres made before the flight.
+struct ManoeuvreLibraryConfig {
+  /// Clearance to obstacles and altitude limits at which a way is safe. Planner library flies straight on, or
+  /// keeps its manoeuvre, while that way is safe; else it takes the manoeuvre with the largest clearance.
+  double safe_clearance_m = 0.3;
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, ManoeuvreLibraryConfig& config) {
+  visit("safe_clearance_m", config.safe_clearance_m, 0.0, 3.0);
 }
 
 struct AutopilotConfig {

@@ -14,17 +14,16 @@ Rollout flown_through(const FlightTask& task, const FlightState& start, const Ma
 
 }  // namespace
 
-AvoidancePlanner::AvoidancePlanner(const PlannerConfig& config, const FlightModel& model,
-                                   const Mission& mission, std::uint64_t seed)
-    : config_(config),
-      model_(model),
-      mission_(mission),
-      seed_(seed),
-      primitives_(avoidance_primitives(config.search.maximum_bank_rad)) {}
+AvoidancePlanner::AvoidancePlanner(const PlannerContext& context, TreeMaker tree)
+    : config_(context.config),
+      model_(context.model),
+      mission_(context.mission),
+      seed_(context.seed),
+      tree_(tree),
+      primitives_(avoidance_primitives(config_.search.maximum_bank_rad)) {}
 
-Plan AvoidancePlanner::plan(const FlightState& start, std::int64_t t_ns,
-                            const std::vector<ObstaclePoint>& points, double distance_flown_m,
-                            bool outdated) {
+Plan AvoidancePlanner::plan(const PlanRequest& request) {
+  const auto& [start, t_ns, points, distance_flown_m, outdated] = request;
   ++counts_.replans;
   const double asked_m = maximum_clearance_m(
       config_.trajectory,
@@ -50,7 +49,7 @@ Plan AvoidancePlanner::plan(const FlightState& start, std::int64_t t_ns,
 
 Plan AvoidancePlanner::avoid(const FlightTask& task, const FlightState& start, std::int64_t t_ns,
                              bool outdated) {
-  const Manoeuvre left = remaining(t_ns);
+  const Manoeuvre left = rest_of(manoeuvre_, 1e-9 * static_cast<double>(t_ns - manoeuvre_t_ns_));
   const TrajectoryConfig& limits = config_.trajectory;
   Rollout kept = fly_out(task, start, left, limits.minimum_kept_clearance_m, true);
   const bool may_keep = kept.reached_horizon && manoeuvre_origin_ != PlanOrigin::fallback;
@@ -61,8 +60,7 @@ Plan AvoidancePlanner::avoid(const FlightTask& task, const FlightState& start, s
     ++replans_kept_;
     return keep(t_ns, left, std::move(kept));
   }
-  std::optional<Plan> searched;
-  if (config_.use_ompl) searched = search(task, start, t_ns, left, may_keep);
+  std::optional<Plan> searched = search(task, start, t_ns, left, may_keep);
   return searched ? std::move(*searched) : fall_back(task, start, t_ns);
 }
 
@@ -80,7 +78,8 @@ std::optional<Plan> AvoidancePlanner::search(const FlightTask& task, const Fligh
     return improve_manoeuvre(task, start, manoeuvre, minimum_clearance_m, config_.improvement, search_seed);
   };
   ++counts_.searches;
-  const std::optional<Manoeuvre> answer = search_manoeuvre(task, start, left, config_.search, search_seed);
+  const std::optional<Manoeuvre> answer =
+      search_manoeuvre(task, start, left, config_.search, search_seed, tree_);
   ImprovedManoeuvre found{{}, INFINITY}, kept{{}, INFINITY};
   if (answer) {
     ++counts_.found;
@@ -114,18 +113,6 @@ Plan AvoidancePlanner::fall_back(const FlightTask& task, const FlightState& star
   return adopt(t_ns, widest, PlanOrigin::fallback, flown_through(task, start, widest));
 }
 
-Manoeuvre AvoidancePlanner::remaining(std::int64_t t_ns) const {
-  double elapsed_s = 1e-9 * static_cast<double>(t_ns - manoeuvre_t_ns_);
-  Manoeuvre left;
-  for (ManoeuvrePart part : manoeuvre_) {
-    const double used_s = std::min(elapsed_s, part.duration_s);
-    elapsed_s -= used_s;
-    part.duration_s -= used_s;
-    if (part.duration_s > 1e-3) left.push_back(part);
-  }
-  return left;
-}
-
 Plan AvoidancePlanner::adopt(std::int64_t t_ns, const Manoeuvre& manoeuvre, PlanOrigin origin,
                              Rollout rollout) {
   if (origin != PlanOrigin::kept) {
@@ -138,18 +125,6 @@ Plan AvoidancePlanner::adopt(std::int64_t t_ns, const Manoeuvre& manoeuvre, Plan
   manoeuvre_t_ns_ = t_ns;
   const bool is_near = rollout.minimum_clearance_m < config_.trajectory.comfortable_clearance_m;
   return {t_ns, origin, std::move(rollout.points), is_near ? rollout.minimum_clearance_m : INFINITY};
-}
-
-std::vector<Manoeuvre> avoidance_primitives(double maximum_bank_rad) {
-  std::vector<Manoeuvre> primitives{{}};
-  for (const double share : {0.2, 0.4, 0.6, 0.8, 1.0})
-    for (const double side : {-1.0, 1.0})
-      for (const double first_s : {0.3, 0.6, 1.0}) {
-        const double bank = side * share * maximum_bank_rad;
-        primitives.push_back({{{bank, 0.5}, first_s}});
-        primitives.push_back({{{bank, 0.5}, first_s}, {{-bank, 0.5}, 0.7 * first_s}});
-      }
-  return primitives;
 }
 
 }  // namespace understory

@@ -6,31 +6,29 @@
 
 #include "planning/autopilot_config.hpp"
 #include "planning/manoeuvre.hpp"
+#include "planning/manoeuvre_search.hpp"
 #include "planning/obstacle_field.hpp"
-#include "planning/plan.hpp"
+#include "planning/planner.hpp"
 
 namespace understory {
 
 /// Receding-horizon avoidance. The first of these that is possible is flown: straight on where that is free;
-/// the plan in force while it is free and good; what OMPL finds; the primitive with the maximum clearance.
-class AvoidancePlanner {
+/// the plan in force while it is free and good; what the tree finds; the primitive with the maximum
+/// clearance.
+class AvoidancePlanner : public Planner {
  public:
-  AvoidancePlanner(const PlannerConfig& config, const FlightModel& model, const Mission& mission,
-                   std::uint64_t seed);
+  AvoidancePlanner(const PlannerContext& context, TreeMaker tree);
 
-  /// A plan from `start`, where the aircraft will be at `t_ns`, when the plan takes effect. `outdated`:
-  /// `points` differ from those of the plan in force. Where they do not and that plan is free, a new search
-  /// is made only when the refresh is due.
-  Plan plan(const FlightState& start, std::int64_t t_ns, const std::vector<ObstaclePoint>& points,
-            double distance_flown_m, bool outdated = true);
-
-  const PlannerCounts& counts() const { return counts_; }
+  /// Where the request is not outdated and the plan in force is free, a new search is made only when the
+  /// refresh is due.
+  Plan plan(const PlanRequest& request) override;
+  bool concerns(const ObstaclePoint& point, const Plan& plan) const override {
+    return is_near(point, plan, config_);
+  }
 
  private:
-  /// The rest of the manoeuvre in force at `t_ns`.
-  Manoeuvre remaining(std::int64_t t_ns) const;
   Plan keep(std::int64_t t_ns, const Manoeuvre& manoeuvre, Rollout rollout);
-  /// OMPL's answer; or `left`, where `may_keep` and OMPL's is not clearly cheaper; or nothing.
+  /// The tree's answer; or `left`, where `may_keep` and the answer is not clearly cheaper; or nothing.
   std::optional<Plan> search(const FlightTask& task, const FlightState& start, std::int64_t t_ns,
                              const Manoeuvre& left, bool may_keep);
   Plan fall_back(const FlightTask& task, const FlightState& start, std::int64_t t_ns);
@@ -43,8 +41,8 @@ class AvoidancePlanner {
   FlightModel model_;
   Mission mission_;
   std::uint64_t seed_;
+  TreeMaker tree_;
   std::vector<Manoeuvre> primitives_;
-  PlannerCounts counts_;
   Manoeuvre manoeuvre_;  ///< in force, counted from manoeuvre_t_ns_
   std::int64_t manoeuvre_t_ns_ = 0;
   PlanOrigin manoeuvre_origin_ = PlanOrigin::straight;
@@ -52,8 +50,5 @@ class AvoidancePlanner {
   int replans_kept_ = 0;
   std::int64_t searched_t_ns_ = 0;  ///< when it was last found, or found to be the best
 };
-
-/// The fallback's choices: level, turns of several banks to either side, held or reversed after a while.
-std::vector<Manoeuvre> avoidance_primitives(double maximum_bank_rad);
 
 }  // namespace understory

@@ -161,6 +161,38 @@ ImprovedManoeuvre improve_manoeuvre(const FlightTask& task, const FlightState& s
   return best;
 }
 
+Manoeuvre rest_of(const Manoeuvre& manoeuvre, double elapsed_s) {
+  Manoeuvre left;
+  for (ManoeuvrePart part : manoeuvre) {
+    const double used_s = std::min(elapsed_s, part.duration_s);
+    elapsed_s -= used_s;
+    part.duration_s -= used_s;
+    if (part.duration_s > 1e-3) left.push_back(part);
+  }
+  return left;
+}
+
+std::vector<Manoeuvre> avoidance_primitives(double maximum_bank_rad) {
+  std::vector<Manoeuvre> primitives{{}};
+  for (const double share : {0.2, 0.4, 0.6, 0.8, 1.0})
+    for (const double side : {-1.0, 1.0})
+      for (const double first_s : {0.3, 0.6, 1.0}) {
+        const double bank = side * share * maximum_bank_rad;
+        primitives.push_back({{{bank, 0.5}, first_s}});
+        primitives.push_back({{{bank, 0.5}, first_s}, {{-bank, 0.5}, 0.7 * first_s}});
+      }
+  return primitives;
+}
+
+bool is_near(const ObstaclePoint& point, const Plan& plan, const PlannerConfig& config) {
+  const ObstacleFieldConfig& field = config.field;
+  const double near_m = config.trajectory.comfortable_clearance_m + field.half_span_m + field.wing_radius_m +
+                        field.sigma_zero_m + 0.5 * field.cell_m;
+  return std::ranges::any_of(plan.points, [&](const PlanPoint& planned) {
+    return (planned.position_world - point.position_world).head<2>().squaredNorm() <= near_m * near_m;
+  });
+}
+
 std::size_t FlightPlaces::nearest(const FlightPlace& place) const {
   std::size_t best = 0;
   double minimum = std::sqrt(squared_distance(places_.front(), place)), enough = no_less_than(minimum);

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -75,12 +74,14 @@ ImprovedManoeuvre improve_manoeuvre(const FlightTask& task, const FlightState& s
                                     const Manoeuvre& manoeuvre, double minimum_clearance_m,
                                     const ManoeuvreImprovementConfig& config, std::uint64_t seed);
 
-/// The cheapest manoeuvre found whose rollout reaches the horizon without touching an obstacle, or nothing.
-/// Some commands are drawn near those of `hint`, the plan in force (may be empty). Repeats exactly for equal
-/// arguments, whatever was searched before: `seed` seeds every generator of the search.
-std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightState& start,
-                                          const Manoeuvre& hint, const ManoeuvreSearchConfig& config,
-                                          std::uint64_t seed);
+/// The part of the manoeuvre that is left after `elapsed_s`.
+Manoeuvre rest_of(const Manoeuvre& manoeuvre, double elapsed_s);
+
+/// Level, and turns of several banks to either side, held or reversed after a while.
+std::vector<Manoeuvre> avoidance_primitives(double maximum_bank_rad);
+
+/// Whether a point lies so near to the plan, over ground, that it changes the plan's cost.
+bool is_near(const ObstaclePoint& point, const Plan& plan, const PlannerConfig& config);
 
 /// Where a flight state lies in the search's space. Units are chosen so that one unit of each matters about
 /// equally over the horizon: 1 m, 0.3 rad of heading, 0.8 rad of bank.

@@ -1,19 +1,17 @@
+#include "planning/manoeuvre_search.hpp"
+
 #include <ompl/base/OptimizationObjective.h>
+#include <ompl/base/Planner.h>
 #include <ompl/base/goals/GoalRegion.h>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/control/SpaceInformation.h>
-#include <ompl/control/planners/sst/SST.h>
 #include <ompl/control/spaces/RealVectorControlSpace.h>
-#include <ompl/datastructures/NearestNeighbors.h>
 #include <ompl/util/Console.h>
-#include <ompl/util/Exception.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-
-#include "planning/manoeuvre.hpp"
 
 namespace understory {
 namespace {
@@ -40,7 +38,7 @@ class NodeState : public ob::State {
 const Node& node_of(const ob::State* state) { return static_cast<const NodeState*>(state)->node; }
 Node& node_of(ob::State* state) { return static_cast<NodeState*>(state)->node; }
 
-// Draws states for SST to grow towards: anywhere in the corridor ahead, in any attitude.
+// Draws states for a tree to grow towards: anywhere in the corridor ahead, in any attitude.
 class CorridorSampler : public ob::StateSampler {
  public:
   CorridorSampler(const ob::StateSpace* space, const FlightTask& task, const FlightState& start,
@@ -142,7 +140,8 @@ class AccumulatedCost : public ob::OptimizationObjective {
 };
 
 // The goal: states from which the course guidance alone reaches the horizon. It remembers the cheapest whole
-// flight (the commands so far and the course guidance to the horizon). SST itself accounts only for the tree.
+// flight (the commands so far and the course guidance to the horizon), and reports no state as reached:
+// OMPL's planners account only for the tree, and RRT and EST would end at their first answer.
 class FreeCourse : public ob::Goal {
  public:
   FreeCourse(const ob::SpaceInformationPtr& space, const FlightTask& task) : Goal(space), task_(task) {}
@@ -152,17 +151,16 @@ class FreeCourse : public ob::Goal {
     const double to_go_m = task_.config.horizon_m - progress_m(task_, node.flight.position_world);
     if (distance != nullptr) *distance = std::max(0.0, to_go_m);
     if (node.cost >= best_cost) return false;
-    // A flight that cannot become the cheapest is not flown to its end, as SST would discard it. The limit is
+    // A flight that cannot become the cheapest is not flown to its end. The limit is
     // slightly larger than what remains, so that rounding decides nothing.
     const double to_spend = (best_cost - node.cost) * (1 + 1e-9) + 1e-9;
     const Rollout rest =
         fly_out(task_, node.flight, {}, task_.config.minimum_clearance_m, false, true, to_spend);
-    if (!rest.reached_horizon) return false;
-    if (node.cost + rest.cost < best_cost) {
+    if (rest.reached_horizon && node.cost + rest.cost < best_cost) {
       best_cost = node.cost + rest.cost;
       best.assign(node.parts.begin(), node.parts.begin() + node.part_count);
     }
-    return true;
+    return false;
   }
 
   mutable double best_cost = std::numeric_limits<double>::infinity();
@@ -170,56 +168,6 @@ class FreeCourse : public ob::Goal {
 
  private:
   const FlightTask& task_;
-};
-
-// SST's motions by their places. OMPL's own structures call a function pointer for each distance.
-template <typename Motion>
-class NearestMotions : public ompl::NearestNeighbors<Motion> {
- public:
-  bool reportsSortedResults() const override { return true; }
-  void clear() override { motions_.clear(), places_.clear(); }
-  void add(const Motion& motion) override {
-    motions_.push_back(motion);
-    places_.add(place(motion));
-  }
-  bool remove(const Motion& motion) override {
-    const auto last = std::find(motions_.rbegin(), motions_.rend(), motion);
-    if (last == motions_.rend()) return false;
-    places_.remove(static_cast<std::size_t>(motions_.rend() - last - 1));
-    motions_.erase(std::next(last).base());
-    return true;
-  }
-  Motion nearest(const Motion& motion) const override {
-    if (motions_.empty()) throw ompl::Exception("no motions to be near to");
-    return motions_[places_.nearest(place(motion))];
-  }
-  void nearestK(const Motion& motion, std::size_t k, std::vector<Motion>& nearest) const override {
-    give(places_.nearest(place(motion), k), nearest);
-  }
-  void nearestR(const Motion& motion, double radius, std::vector<Motion>& nearest) const override {
-    give(places_.within(place(motion), radius), nearest);
-  }
-  std::size_t size() const override { return motions_.size(); }
-  void list(std::vector<Motion>& motions) const override { motions = motions_; }
-
- private:
-  static FlightPlace place(const Motion& motion) { return place_of(node_of(motion->state_).flight); }
-  void give(const std::vector<std::size_t>& numbers, std::vector<Motion>& motions) const {
-    motions.clear();
-    for (const std::size_t number : numbers) motions.push_back(motions_[number]);
-  }
-
-  std::vector<Motion> motions_;
-  FlightPlaces places_;
-};
-
-// SST with its own seed for each search. OMPL has one generator per process, with which a replan would depend
-// on every replan before it.
-class SeededSst : public oc::SST {
- public:
-  SeededSst(const oc::SpaceInformationPtr& space, std::uint32_t seed) : SST(space) {
-    rng_.setLocalSeed(seed);
-  }
 };
 
 void propagate(const FlightTask& task, const ManoeuvreSearchConfig& config, const Node& from,
@@ -242,9 +190,11 @@ void propagate(const FlightTask& task, const ManoeuvreSearchConfig& config, cons
 
 }  // namespace
 
+const FlightState& flight_of(const ob::State* state) { return node_of(state).flight; }
+
 std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightState& start,
                                           const Manoeuvre& hint, const ManoeuvreSearchConfig& config,
-                                          std::uint64_t seed) {
+                                          std::uint64_t seed, TreeMaker tree) {
   ompl::msg::noOutputHandler();
   const auto seed_of = [seed](std::uint32_t part) {  // OMPL's seeds are 32 bits wide and not zero
     return static_cast<std::uint32_t>((seed ^ (seed >> 32)) * 4 + part) | 1u << 31;
@@ -280,11 +230,8 @@ std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightSt
   problem->setGoal(goal);
   problem->setOptimizationObjective(std::make_shared<AccumulatedCost>(space));
 
-  const auto planner = std::make_shared<SeededSst>(space, seed_of(2));
+  const std::shared_ptr<ob::Planner> planner = tree(space, config, seed_of(2));
   planner->setProblemDefinition(problem);
-  planner->setSelectionRadius(config.selection_radius);
-  planner->setPruningRadius(config.pruning_radius);
-  planner->setNearestNeighbors<NearestMotions>();
   int asked = 0;
   planner->solve(ob::PlannerTerminationCondition([&] { return ++asked > config.iterations; }));
   if (std::isinf(goal->best_cost)) return std::nullopt;

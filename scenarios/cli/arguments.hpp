@@ -14,7 +14,7 @@ namespace understory {
 struct CalibrationOptions;
 struct VisionConfigSources;
 
-/// --set alone.
+/// --set, and --plugin.
 void add_settings_option(Command& command, std::vector<std::string>& settings);
 /// --with alone.
 void add_with_option(Command& command, std::vector<std::string>& with);

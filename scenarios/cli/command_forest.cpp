@@ -42,7 +42,7 @@ std::vector<Stand> stands_of(Scenario scenario, int count) {
   const bool measured = !scenario.forest.trees_file.empty();
   const std::vector<Stem> stems = measured ? stems_of(scenario.forest) : std::vector<Stem>{};
   for (int i = 0; i < count; ++i, ++scenario.seed)
-    stands.push_back(stand_of(measured ? place_stems(stems, scenario.forest, scenario.seed).trunks
+    stands.push_back(stand_of(measured ? place_stems(stems, scenario.forest, scenario.seed).obstacles
                                        : random_forest(scenario.forest, scenario.seed),
                               scenario.forest));
   return stands;
@@ -137,7 +137,7 @@ int run_forest(const ForestArguments& arguments) {
     throw ScenarioError(fmt::format("--out {}: the name must end in .svg", arguments.out));
   const fs::path file = scenario_file(arguments.scenario);
   const Scenario scenario = load_scenario(file, arguments.settings);
-  if (scenario.course != Course::forest)
+  if (scenario.course != "forest")
     throw ScenarioError(fmt::format("{}: course: must be forest, for this command",
                                     where_given(file, arguments.settings, "course")));
   require_separate({out}, {file});

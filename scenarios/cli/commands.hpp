@@ -29,6 +29,7 @@ void add_rig_command(CommandLine& line);
 void add_bench_command(CommandLine& line);
 void add_keys_command(CommandLine& line);
 void add_forest_command(CommandLine& line);
+void add_plugin_command(CommandLine& line);
 
 /// Prints what a campaign came to and leaves summary.md and campaign.svg in its folder, and with a name of a
 /// file there JUnit XML. Gives the exit status: 0 where every flight was flown, whatever its outcome; 1 where

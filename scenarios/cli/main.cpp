@@ -100,6 +100,7 @@ int run(int argc, char** argv) {
   add_bench_command(line);
   add_keys_command(line);
   add_forest_command(line);
+  add_plugin_command(line);
   add_hidden_commands(line);
   return line.run(argc, argv);
 }

@@ -13,6 +13,7 @@
 
 #include "perception/io/text_table.hpp"
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/config/field_visitor.hpp"
 
 namespace understory {
 
@@ -82,6 +83,15 @@ class ConfigReader {
       words.emplace_back(word);
     }
     refuse(*node, name, fmt::format("{}", fmt::join(words, " | ")), did_you_mean(node->text, words));
+  }
+
+  /// The value is one of `words`.
+  void operator()(std::string_view name, std::string& field, const std::vector<std::string>& words) {
+    const ConfigNode* node = take(name);
+    if (node == nullptr) return;
+    if (node->kind != ConfigNode::Kind::scalar || std::ranges::find(words, node->text) == words.end())
+      refuse(*node, name, fmt::format("{}", fmt::join(words, " | ")), did_you_mean(node->text, words));
+    field = node->text;
   }
 
   /// To be called after the last visit.

@@ -8,6 +8,9 @@
 #include <string_view>
 #include <type_traits>
 #include <utility>
+#include <vector>
+
+#include "scenarios/config/field_visitor.hpp"
 
 namespace understory {
 
@@ -51,6 +54,10 @@ class ConfigWriter {
     for (const auto& [word, value] : names) {
       if (field == value) line(name, word);
     }
+  }
+
+  void operator()(std::string_view name, std::string& field, const std::vector<std::string>&) {
+    line(name, field);
   }
 
   const std::string& text() const { return text_; }

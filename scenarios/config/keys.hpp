@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "scenarios/config/field_visitor.hpp"
+
 /// What a configuration's keys and a result's columns mean. The comment beside a struct's field says it,
 /// once; the build reads the comments (cmake/field_texts.awk), the visitors add names, values and ranges.
 namespace understory {
@@ -85,6 +87,12 @@ class KeyLister {
     }
     add(name, given, words);
   }
+
+  void operator()(std::string_view name, std::string& field, const std::vector<std::string>& words) {
+    add(name, field, fmt::format("{}", fmt::join(words, " | ")));
+  }
+  /// Says what the newest key means, where no comment of ours does.
+  void explain(std::string_view meaning) { keys_.back().meaning = meaning; }
 
   const std::vector<Key>& keys() const { return keys_; }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/scene/obstacle.hpp"
+#include "sim/scene/trees.hpp"
 
 namespace understory {
 
@@ -69,6 +70,12 @@ void visit_fields(Visitor& visit, ForestConfig& config) {
   visit("invisible", config.invisible);
   visit("intangible", config.intangible);
 }
+
+/// The obstacles of a course. Of a forest's trunks it may say what is known of each tree, in their order.
+struct Planted {
+  std::vector<Obstacle> obstacles;
+  std::vector<KnownTree> known = {};
+};
 
 /// A random forest. With stems `uniform` a Poisson forest: the number of trees is Poisson with mean area /
 /// square_metres_per_tree, each tree uniform over the forest's rectangle, independent of the others; trunks

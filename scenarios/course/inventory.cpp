@@ -167,7 +167,7 @@ PlacedStems place_stems(const std::vector<Stem>& stems, const ForestConfig& conf
   std::ranges::stable_sort(standing, {}, [](const auto& stem) { return stem.first.x(); });
   for (const auto& [place, stem] : standing) {
     Obstacle trunk;
-    trunk.name = fmt::format("tree_{:04}", placed.trunks.size());
+    trunk.name = fmt::format("tree_{:04}", placed.obstacles.size());
     KnownTree known = stem->known;
     if (known.lean) known.lean = back * *known.lean;
     const double top_m = config.trunk_height_m;
@@ -177,7 +177,7 @@ PlacedStems place_stems(const std::vector<Stem>& stems, const ForestConfig& conf
     trunk.radius_m = 0.5 * stem->diameter_m;
     trunk.texture_turn_rad = 2 * std::numbers::pi * unit(generator);
     trunk.texture_shift = unit(generator);
-    placed.trunks.push_back(trunk);
+    placed.obstacles.push_back(trunk);
     placed.known.push_back(known);
   }
   return placed;

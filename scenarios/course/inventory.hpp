@@ -28,10 +28,9 @@ std::vector<Stem> stems_in_text(std::string_view text, const std::string& name);
 /// one line where the file cannot be found or read.
 std::vector<Stem> stems_of(const ForestConfig& config);
 
-/// The stems that stand on the course, in the launch frame: upright where the file knows no lean.
-struct PlacedStems {
-  std::vector<Obstacle> trunks;    ///< as high as config.trunk_height_m, ordered by x
-  std::vector<KnownTree> known;    ///< of each trunk, leans in the launch frame
+/// The stems that stand on the course, in the launch frame: upright where the file knows no lean. Trunks are
+/// as high as config.trunk_height_m and ordered by x; leans are in the launch frame.
+struct PlacedStems : Planted {
   Eigen::Vector2d launch_m{0, 0};  ///< in the file's coordinates
   double heading_rad = 0;
 };

@@ -14,7 +14,7 @@ namespace {
 
 /// An image that nobody looks at is not rendered: rendering is most of a flight's cost.
 bool needs_images(const Scenario& scenario, const std::vector<FlightObserver*>& observers) {
-  return uses_images(scenario.perception.detector) ||
+  return scenario.perception.part().needs_images ||
          std::ranges::any_of(observers, [](const auto* observer) { return observer->needs_images(); });
 }
 
@@ -33,10 +33,11 @@ Flight::Flight(const Scenario& scenario, const FlightMachine& machine, std::vect
       sensors_(scenario),
       drops_(scenario.cameras.drop_probability, seed_for(scenario.sensor_seed(), "camera_drops")),
       computer_(nanoseconds(scenario.perception.cost_s())),
-      detector_(detector_of(scenario, rig_, world_.obstacles, history_)),
-      state_source_(state_source_of(scenario, history_)),
-      autopilot_(autopilot_config_of(scenario, rig_.rig), scenario.airframe, rig_.rig, scenario.mission(),
-                 *detector_, *state_source_, seed_for(scenario.seed, "planner")),
+      detector_(detector_of(scenario_, rig_, world_.obstacles, history_)),
+      state_source_(state_source_of(scenario_, rig_, world_.obstacles, history_)),
+      planner_(planner_of(scenario_)),
+      autopilot_(autopilot_config_of(scenario, rig_.rig), scenario.airframe, rig_.rig, *detector_,
+                 *state_source_, *planner_),
       referee_(scenario),
       clock_(scenario) {
   if (!world_.woods) return;

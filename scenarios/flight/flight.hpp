@@ -126,6 +126,7 @@ class Flight {
   TruthHistory history_;
   std::unique_ptr<ObstacleDetector> detector_;
   std::unique_ptr<StateSource> state_source_;
+  std::unique_ptr<Planner> planner_;
   Autopilot autopilot_;
   Referee referee_;
   FlightClock clock_;
@@ -147,14 +148,19 @@ std::unique_ptr<StereoCameras> cameras_of(const Scenario& scenario, const World&
 /// underground.
 Aircraft aircraft_of(const Scenario& scenario, const World& world);
 
-/// What turns pairs into hits. ScenarioError where the rig cannot look at the depths asked for. An oracle
-/// keeps a reference to the history.
+/// What turns pairs into hits. ScenarioError where the rig cannot look at the depths asked for. All arguments
+/// must outlive it.
 std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const CalibratedRig& rig,
                                               const std::vector<Obstacle>& obstacles,
                                               const TruthHistory& history);
 
-/// The autopilot's source of state. An oracle keeps a reference to the history.
-std::unique_ptr<StateSource> state_source_of(const Scenario& scenario, const TruthHistory& history);
+/// The autopilot's source of state. All arguments must outlive it.
+std::unique_ptr<StateSource> state_source_of(const Scenario& scenario, const CalibratedRig& rig,
+                                             const std::vector<Obstacle>& obstacles,
+                                             const TruthHistory& history);
+
+/// What decides the way.
+std::unique_ptr<Planner> planner_of(const Scenario& scenario);
 
 AutopilotConfig autopilot_config_of(const Scenario& scenario, const StereoRig& rig);
 

@@ -64,7 +64,7 @@ void FlightLogger::on_frame(const Flight& flight) {
   const auto hits = static_cast<std::int64_t>(flight.hits().size());
   digest_.add(static_cast<std::uint64_t>(frame.t_ns));
   // Images that are rendered for an observer alone must not change the digest.
-  const bool detected_in = uses_images(flight.scenario().perception.detector);
+  const bool detected_in = flight.scenario().perception.part().needs_images;
   digest_.add(detected_in ? bytes_of(frame.left) : std::span<const std::byte>());
   digest_.add(detected_in ? bytes_of(frame.right) : std::span<const std::byte>());
   digest_.add(static_cast<std::uint64_t>(hits));
@@ -160,8 +160,8 @@ void FlightLogger::on_end(const Flight& flight) {
   result.scenario = scenario.name;
   result.seed = scenario.seed;
   result.sensor_seed = scenario.sensor_seed();
-  result.detector = word_for(scenario.perception.detector);
-  result.state_source = word_for(scenario.estimation.source);
+  result.detector = scenario.perception.detector;
+  result.state_source = scenario.estimation.source;
   result.outcome = flight.outcome().value();
   result.simulated_s = flight.clock().t_s();
   const double flown_s = log_.launch_ns ? result.simulated_s - seconds(*log_.launch_ns) : 0;

@@ -28,19 +28,11 @@ constexpr std::size_t maximum_film_bytes = std::size_t{1} << 30;
 std::string words_of_detector(const FlightLog& log) {
   const PerceptionSection& perception = log.scenario.perception;
   const std::string& name = log.result.detector;
-  switch (perception.detector) {
-    case DetectorKind::pushbroom:
-      return fmt::format("{} at {:.1f} m", name, fmt::join(compared_depths_m(log), " and "));
-    case DetectorKind::stereo_bm:
-    case DetectorKind::stereo_sgbm:
-      return fmt::format("{} from {:.1f} to {:.1f} m", name, perception.full_stereo.minimum_depth_m,
-                         perception.full_stereo.maximum_depth_m);
-    case DetectorKind::true_depth:
-      return fmt::format("{} at {:.1f} m", name, log.rig.rig.detection_depth_m);
-    case DetectorKind::none:
-      break;
-  }
-  return name;
+  if (const std::vector<double> depths_m = compared_depths_m(log); !depths_m.empty())
+    return fmt::format("{} at {:.1f} m", name, fmt::join(depths_m, " and "));
+  if (!name.starts_with("stereo_")) return name;
+  return fmt::format("{} from {:.1f} to {:.1f} m", name, perception.full_stereo.minimum_depth_m,
+                     perception.full_stereo.maximum_depth_m);
 }
 
 Json camera_of(const FlightLog& log) {
@@ -150,7 +142,7 @@ Json facts_of(const FlightLog& log, const FlightStory& story) {
     const Eigen::Vector3d& place = log.touch.position_world;
     facts["impact"] = {{"position", {place.x(), place.y(), place.z()}}, {"part", log.touch.part}};
   }
-  facts["camera"] = uses_images(scenario.perception.detector) ? camera_of(log) : Json();
+  facts["camera"] = scenario.perception.part().needs_images ? camera_of(log) : Json();
   facts["events"] = Json::array();
   for (const FlightEvent& event : story.events)
     facts["events"].push_back({{"t_s", event.t_s}, {"kind", event.kind}, {"text", event.text}});

@@ -5,31 +5,15 @@
 #include <stdexcept>
 #include <utility>
 
-#include "estimation/filter.hpp"
-#include "perception/full_stereo/full_stereo.hpp"
 #include "perception/pushbroom/pushbroom_stereo.hpp"
-#include "perception/rectification/rectify.hpp"
-#include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/config_writer.hpp"
 #include "scenarios/config/named_seed.hpp"
-#include "scenarios/flight/oracles.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/parts/checked_parts.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
 
 namespace understory {
-namespace {
-
-template <typename MatcherConfig>
-std::unique_ptr<ObstacleDetector> full_stereo_of(const CalibratedRig& cameras, const MatcherConfig& matcher,
-                                                 const FullStereoCrop& crop) {
-  auto detector = std::make_unique<FullStereoDetector>(cameras.rig, matcher, crop);
-  if (!cameras.calibration) return detector;
-  return std::make_unique<RectifyingDetector>(*cameras.calibration, std::move(detector));
-}
-
-}  // namespace
-
 World world_of(const Scenario& scenario, const std::filesystem::path& models_folder) {
   const Wood wood = course_wood(scenario);
   try {
@@ -74,26 +58,27 @@ Aircraft aircraft_of(const Scenario& scenario, const World& world) {
 std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const CalibratedRig& rig,
                                               const std::vector<Obstacle>& obstacles,
                                               const TruthHistory& history) {
-  const PerceptionSection& perception = scenario.perception;
-  switch (perception.detector) {
-    case DetectorKind::pushbroom:
-      check_depths(perception.pushbroom, rig.rig, "perception.depths_m", "perception.pushbroom");
-      return std::make_unique<PushbroomStereo>(rig, perception.pushbroom);
-    case DetectorKind::stereo_bm:
-      return full_stereo_of(rig, perception.stereo_bm, perception.full_stereo);
-    case DetectorKind::stereo_sgbm:
-      return full_stereo_of(rig, perception.stereo_sgbm, perception.full_stereo);
-    case DetectorKind::true_depth:
-      return std::make_unique<TrueDepth>(rig.rig, obstacles, history);
-    case DetectorKind::none:
-      break;
-  }
-  return std::make_unique<NoDetector>();
+  const DetectorPart& part = scenario.perception.part();
+  return checked(part, {scenario, rig, obstacles, history, scenario.perception.plugged.find(part.name),
+                        seed_for(scenario.seed, "detector")});
 }
 
-std::unique_ptr<StateSource> state_source_of(const Scenario& scenario, const TruthHistory& history) {
-  if (scenario.estimation.source == StateKind::truth) return std::make_unique<TrueState>(history);
-  return std::make_unique<Filter>(scenario.estimation.filter);
+std::unique_ptr<StateSource> state_source_of(const Scenario& scenario, const CalibratedRig& rig,
+                                             const std::vector<Obstacle>& obstacles,
+                                             const TruthHistory& history) {
+  const StateSourcePart& part = *parts().state_sources.find(scenario.estimation.source);
+  return checked(part, {scenario, rig, obstacles, history, scenario.estimation.plugged.find(part.name),
+                        seed_for(scenario.seed, "state_source")});
+}
+
+std::unique_ptr<Planner> planner_of(const Scenario& scenario) {
+  const AutopilotSection& autopilot = scenario.autopilot;
+  const FlightModel model(scenario.airframe, autopilot.autopilot.flight_model);
+  const Mission mission = scenario.mission();
+  const PlannerPart& part = *parts().planners.find(autopilot.method);
+  const PlannerContext context{autopilot.autopilot.planner, model, mission,
+                               seed_for(scenario.seed, "planner")};
+  return checked(part, {context, scenario, autopilot.plugged.find(part.name)});
 }
 
 AutopilotConfig autopilot_config_of(const Scenario& scenario, const StereoRig& rig) {

@@ -367,9 +367,8 @@ int pixels_in_view(const FlightLog& log, const Eigen::Isometry3d& T_world_body, 
 }
 
 std::vector<double> compared_depths_m(const FlightLog& log) {
-  if (log.scenario.perception.detector != DetectorKind::pushbroom) return {};
-  const std::vector<double> depths_m = stated_depths_m(log.scenario.perception.pushbroom, log.rig.rig);
-  return depths_m.empty() ? std::vector{log.rig.rig.detection_depth_m} : depths_m;
+  const auto& depths_m = log.scenario.perception.part().depths_m;
+  return depths_m ? depths_m(log.scenario, log.rig.rig) : std::vector<double>{};
 }
 
 FlightStory story_of(const FlightLog& log) {

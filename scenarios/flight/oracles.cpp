@@ -97,8 +97,10 @@ State state_of(const Truth& truth) {
   return state;
 }
 
-void TrueState::on(const ImuSample& sample) {
-  State next = state_of(history_.at(sample.t_ns));
+void TrueState::on(const Sample& sample) {
+  const auto* imu = std::get_if<ImuSample>(&sample);
+  if (imu == nullptr) return;
+  State next = state_of(history_.at(imu->t_ns));
   const double elapsed_s = state_.t_ns == 0 ? 0 : static_cast<double>(next.t_ns - state_.t_ns) * 1e-9;
   next.distance_flown_m = state_.distance_flown_m + elapsed_s * next.velocity_body_mps.norm();
   state_ = next;

@@ -28,13 +28,7 @@ class TruthHistory {
 class TrueState : public StateSource {
  public:
   explicit TrueState(const TruthHistory& history) : history_(history) {}
-  void on(const ImuSample& sample) override;
-  void on(const PitotSample&) override {}
-  void on(const BarometerSample&) override {}
-  void on(const MagnetometerSample&) override {}
-  void on(const GpsSample&) override {}
-  void on(const ResightingSample&) override {}
-  void on(const ThrustSample&) override {}
+  void on(const Sample& sample) override;
   const State& state() const override { return state_; }
   State state_at(std::int64_t t_ns) const override;
 

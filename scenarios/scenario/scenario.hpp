@@ -9,12 +9,14 @@
 #include <utility>
 #include <vector>
 
+#include "estimation/dead_reckoning.hpp"
 #include "estimation/filter_config.hpp"
 #include "perception/perception_config.hpp"
 #include "planning/airframe.hpp"
 #include "planning/autopilot_config.hpp"
 #include "planning/plan.hpp"
 #include "scenarios/course/courses.hpp"
+#include "scenarios/parts/parts.hpp"
 #include "sim/aircraft/aircraft_config.hpp"
 #include "sim/cameras/camera_config.hpp"
 #include "sim/scene/world_config.hpp"
@@ -24,26 +26,9 @@
 /// named, bounded and explained in one place. The sections here add what belongs to the composition.
 namespace understory {
 
-enum class Course { forest, goalposts, clear, windows, fence };
-enum class DetectorKind { pushbroom, stereo_bm, stereo_sgbm, true_depth, none };
-enum class StateKind { filter, truth };
 enum class FilterPreset { tuned, original, windy };  ///< which numbers estimation.filter starts from
 enum class PlanningPreset { thorough, economical };  ///< how often, and with how much search, plans are made
 
-inline constexpr std::array<std::pair<std::string_view, Course>, 5> course_names{
-    {{"forest", Course::forest},
-     {"goalposts", Course::goalposts},
-     {"clear", Course::clear},
-     {"windows", Course::windows},
-     {"fence", Course::fence}}};
-inline constexpr std::array<std::pair<std::string_view, DetectorKind>, 5> detector_names{
-    {{"pushbroom", DetectorKind::pushbroom},
-     {"stereo_bm", DetectorKind::stereo_bm},
-     {"stereo_sgbm", DetectorKind::stereo_sgbm},
-     {"true_depth", DetectorKind::true_depth},
-     {"none", DetectorKind::none}}};
-inline constexpr std::array<std::pair<std::string_view, StateKind>, 2> state_names{
-    {{"filter", StateKind::filter}, {"truth", StateKind::truth}}};
 inline constexpr std::array<std::pair<std::string_view, FilterPreset>, 3> filter_preset_names{
     {{"tuned", FilterPreset::tuned}, {"original", FilterPreset::original}, {"windy", FilterPreset::windy}}};
 inline constexpr std::array<std::pair<std::string_view, PlanningPreset>, 2> planning_preset_names{
@@ -53,16 +38,6 @@ inline constexpr std::array<std::pair<std::string_view, SensorGrade>, 4> sensor_
      {"nominal", SensorGrade::nominal},
      {"consumer", SensorGrade::consumer},
      {"rough", SensorGrade::rough}}};
-
-/// The word a scenario uses for a value.
-inline std::string_view word_for(DetectorKind kind) {
-  return detector_names[static_cast<std::size_t>(kind)].first;
-}
-/// Whether a detector looks at images. Oracles and the blind aircraft do not.
-inline bool uses_images(DetectorKind kind) {
-  return kind != DetectorKind::true_depth && kind != DetectorKind::none;
-}
-inline std::string_view word_for(StateKind kind) { return state_names[static_cast<std::size_t>(kind)].first; }
 
 /// Forwards a visitor past names that another key of the scenario stands for.
 template <typename Visitor, std::size_t N>
@@ -151,7 +126,7 @@ void visit_fields(Visitor& visit, ComputeConfig& config) {
 struct PerceptionSection {
   /// Obstacle detector. true_depth gets exact depths from the simulator, none detects nothing; neither looks
   /// at images.
-  DetectorKind detector = DetectorKind::pushbroom;
+  std::string detector = "pushbroom";
   /// Parameter set for perception.pushbroom and perception.depths_m; keys given there win. tuned: numbers and
   /// depths tuned for the rig; woods: tuned in woods; robust: before tuning; original: the original
   /// aircraft's.
@@ -162,48 +137,59 @@ struct PerceptionSection {
   FullStereoCrop full_stereo;
   ComputeConfig compute;
 
-  /// What one pair costs the aircraft's computer, simulated seconds; 0 for what is not computed there.
+  PartConfigs plugged = parts().detectors.configs();  ///< keys of the detectors of plug-ins
+
+  const DetectorPart& part() const { return *parts().detectors.find(detector); }
+  /// What one pair costs the aircraft's computer, simulated seconds; 0 for a detector that is not computed
+  /// there.
   double cost_s() const {
-    if (!compute.enabled) return 0;
-    switch (detector) {
-      case DetectorKind::pushbroom:
-        return compute.factor * compute.pushbroom_s *
-               (1 + compute.more_depths *
-                        (static_cast<double>(std::max(
-                             {std::size_t{1}, pushbroom.depths_m.size(), pushbroom.disparities_px.size()})) -
-                         1));
-      case DetectorKind::stereo_bm:
-        return compute.factor * compute.stereo_bm_s;
-      case DetectorKind::stereo_sgbm:
-        return compute.factor * compute.stereo_sgbm_s;
-      case DetectorKind::true_depth:
-      case DetectorKind::none:
-        break;
-    }
-    return 0;
+    return compute.enabled && part().cost_s ? compute.factor * part().cost_s(*this) : 0;
   }
 };
 
 struct EstimationSection {
-  /// source of the aircraft's state for the flight stack: the estimator (filter) or the simulator's exact
-  /// state (truth)
-  StateKind source = StateKind::filter;
+  /// Source of the aircraft's state for the flight stack. filter: the estimator; dead_reckoning: pitot and
+  /// gyro alone; truth: the simulator's exact state.
+  std::string source = "filter";
   /// Preset values of estimation.filter; keys that the scenario gives in estimation.filter override them.
   /// tuned: the default; original: the original aircraft's filter; windy: estimates wind and gusts, too.
   FilterPreset preset = FilterPreset::tuned;
   FilterConfig filter;
+  DeadReckoningConfig dead_reckoning;
+  PartConfigs plugged = parts().state_sources.configs();  ///< keys of the state sources of plug-ins
 };
 
 struct AutopilotSection {
   /// Preset values of the planning keys; keys that the scenario gives in autopilot override them. economical:
   /// plans when a new obstacle comes near the plan, else seldom; thorough: plans continually.
   PlanningPreset preset = PlanningPreset::economical;
+  /// Planner. sst, rrt, est: OMPL grows a tree of manoeuvres with the method of this name; library: the best
+  /// of a list of manoeuvres; straight: straight on, through everything.
+  std::string method = "sst";
   int replan_rate_hz = 120;  ///< highest rate at which the autopilot starts plans; must divide 1200
   AutopilotConfig autopilot;
+  ManoeuvreLibraryConfig library;
+  PartConfigs plugged = parts().planners.configs();  ///< keys of the planners of plug-ins
 };
 
 /// The numbers that a preset stands for (docs/decisions/015, 024).
 AutopilotSection planning_of(PlanningPreset preset);
+
+/// A shared library with parts of one's own (docs/integrate.md).
+struct PluginConfig {
+  /// The shared library. A relative path is looked for beside the scenario file, then in the working
+  /// directory.
+  std::string file;
+  /// Hash of the file's contents. Empty: any. A run writes it, so that another build of the plug-in is not
+  /// mistaken for the one that flew.
+  std::string hash;
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, PluginConfig& plugin) {
+  visit("file", plugin.file);
+  visit("hash", plugin.hash);
+}
 
 struct Scenario {
   /// name of the run, whose folder is runs/NAME-SEED; letters, digits, '-', '_' and '.'
@@ -212,8 +198,9 @@ struct Scenario {
   std::uint64_t seed = 1000;
   /// stereo rig: a name in models/rigs, or the path of a rig file relative to the scenario file
   std::string rig = "long";
-  Course course = Course::forest;  ///< kind of course; the keys that begin with the same word describe it
-  double time_limit_s = 30;        ///< simulated time after which a flight ends
+  std::string course = "forest";  ///< kind of course; the keys that begin with the same word describe it
+  std::vector<PluginConfig> plugins;
+  double time_limit_s = 30;  ///< simulated time after which a flight ends
   /// velocity of the mean wind, in world axes, at wind.reference_height_m
   Eigen::Vector3d wind_world_mps = Eigen::Vector3d::Zero();
   WindConfig wind;
@@ -222,6 +209,7 @@ struct Scenario {
   GoalpostsConfig goalposts;
   WindowsConfig windows;
   FenceConfig fence;
+  PartConfigs plugged = parts().courses.configs();  ///< keys of the courses of plug-ins
   std::vector<ListedObstacle> obstacles;
   LaunchConfig launch;
   Airframe airframe;        ///< as the stack believes
@@ -248,7 +236,7 @@ struct Scenario {
   Airframe flown_airframe() const { return mismatched(airframe, mismatch); }
   /// Where the trees stand that wind.shelter_factor is about.
   ForestStand stand() const {
-    if (course != Course::forest) return {};
+    if (course != "forest") return {};
     return {forest.clear_m, goal_x_m(), forest.half_width_m, forest.trunk_height_m};
   }
   /// The scene's settings with the course's switches in them.
@@ -302,7 +290,7 @@ void visit_fields(Visitor& visit, SensorSection& section) {
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, PerceptionSection& section) {
-  visit("detector", section.detector, detector_names);
+  visit("detector", section.detector, parts().detectors.names());
   visit("preset", section.preset, pushbroom_preset_names);
   visit("depths_m", section.pushbroom.depths_m, 0.1, 1000.0);  // to look at; empty: the rig's own
   visit("pushbroom", section.pushbroom);
@@ -310,20 +298,26 @@ void visit_fields(Visitor& visit, PerceptionSection& section) {
   visit("stereo_sgbm", section.stereo_sgbm);
   visit("full_stereo", section.full_stereo);
   visit("compute", section.compute);
+  visit_parts(visit, section.plugged);
 }
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, EstimationSection& section) {
-  visit("source", section.source, state_names);
+  visit("source", section.source, parts().state_sources.names());
   visit("preset", section.preset, filter_preset_names);
   visit("filter", section.filter);
+  visit("dead_reckoning", section.dead_reckoning);
+  visit_parts(visit, section.plugged);
 }
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, AutopilotSection& section) {
   visit("preset", section.preset, planning_preset_names);
+  visit("method", section.method, parts().planners.names());
   visit("replan_rate_hz", section.replan_rate_hz, 1, 1200);
   visit_fields(visit, section.autopilot);
+  visit("library", section.library);
+  visit_parts(visit, section.plugged);
 }
 
 template <typename Visitor>
@@ -331,7 +325,8 @@ void visit_fields(Visitor& visit, Scenario& scenario) {
   visit("name", scenario.name);
   visit("seed", scenario.seed, std::uint64_t{0}, std::uint64_t{1} << 32);
   visit("rig", scenario.rig);
-  visit("course", scenario.course, course_names);
+  visit("course", scenario.course, parts().courses.names());
+  visit("plugins", scenario.plugins);
   visit("time_limit_s", scenario.time_limit_s, 0.1, 600.0);
   visit("wind_world_mps", scenario.wind_world_mps, -20.0, 20.0);
   visit("wind", scenario.wind);
@@ -340,6 +335,7 @@ void visit_fields(Visitor& visit, Scenario& scenario) {
   visit("goalposts", scenario.goalposts);
   visit("windows", scenario.windows);
   visit("fence", scenario.fence);
+  visit_parts(visit, scenario.plugged);
   visit("obstacles", scenario.obstacles);
   visit("launch", scenario.launch);
   visit("airframe", scenario.airframe);

@@ -13,7 +13,8 @@
 #include "scenarios/config/config_writer.hpp"
 #include "scenarios/config/keys.hpp"
 #include "scenarios/config/named_seed.hpp"
-#include "scenarios/course/inventory.hpp"
+#include "scenarios/parts/checked_parts.hpp"
+#include "scenarios/parts/plugin.hpp"
 #include "scenarios/scenario/filter_for_sensors.hpp"
 #include "sim/aircraft/aerodynamics.hpp"
 #include "sim/scene/world_config.hpp"
@@ -66,12 +67,12 @@ template <typename Expect>
 void check_counts(const Scenario& scenario, Expect&& expect) {
   const double trees =
       scenario.forest.length_m * 2 * scenario.forest.half_width_m / scenario.forest.square_metres_per_tree;
-  expect(scenario.course != Course::forest || trees <= maximum_obstacles,
+  expect(scenario.course != "forest" || trees <= maximum_obstacles,
          fmt::format("forest.square_metres_per_tree: a forest may have at most {} trees, this one would have "
                      "about {:.0f} (length_m, half_width_m)",
                      maximum_obstacles, trees));
   const double palings = palings_of(scenario.fence, scenario.goal_x_m());
-  expect(scenario.course != Course::fence || palings <= maximum_obstacles,
+  expect(scenario.course != "fence" || palings <= maximum_obstacles,
          fmt::format("fence.spacing_m: a fence may have at most {} palings, this one would have about {:.0f}",
                      maximum_obstacles, palings));
 }
@@ -95,8 +96,8 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
   check_counts(scenario, expect);
   expect(scenario.goalposts.pass_minimum_m <= scenario.goalposts.pass_maximum_m,
          "goalposts.pass_minimum_m: must be at most goalposts.pass_maximum_m");
-  expect(scenario.world.world.scenery == Scenery::plain || scenario.course == Course::forest ||
-             scenario.course == Course::clear,
+  expect(scenario.world.world.scenery == Scenery::plain || scenario.course == "forest" ||
+             scenario.course == "clear",
          "world.scenery: woods requires the course forest or clear");
   check_obstacles(scenario.obstacles, expect);
   expect(scenario.fence.opening_m < 2 * scenario.fence.reach_m,
@@ -191,8 +192,27 @@ void read_all(const Sources& sources, Scenario& scenario) {
   for (const ConfigNode& source : sources) read_config(source, scenario);
 }
 
+/// Loads the plug-ins that the sources name, whose parts and keys the sources may name, too, and those of
+/// --plugin. Gives all of them, with absolute paths and hashes.
+std::vector<PluginConfig> load_plugins(const Sources& sources) {
+  std::vector<PluginConfig> loaded;
+  const auto load = [&](const std::string& file, const std::string& origin) {
+    const Plugin& plugin = load_plugin(file, origin);
+    if (std::ranges::find(loaded, plugin.file, &PluginConfig::file) == loaded.end())
+      loaded.push_back({plugin.file, plugin.hash});
+  };
+  for (const ConfigNode& source : sources)
+    if (const ConfigNode* list = find_child(source, "plugins"))
+      for (const ConfigNode& entry : list->children)
+        if (const ConfigNode* file = find_child(entry, "file"))
+          load(found_file(file->text, file->origin), file->origin + ": plugins");
+  for (const std::string& file : given_plugins()) load(found_file(file, ""), "--plugin");
+  return loaded;
+}
+
 /// Twice: the first reading learns the presets and the launch, the second puts the written keys over them.
 Scenario compose(const Sources& sources, const std::string& name) {
+  const std::vector<PluginConfig> plugins = load_plugins(sources);
   Scenario first;
   read_all(sources, first);
   Scenario scenario;
@@ -216,37 +236,21 @@ Scenario compose(const Sources& sources, const std::string& name) {
       first.launch.climb_angle_rad + release_angle_of_attack_rad(first.airframe, first.launch.speed_mps);
   take_airframe(first.airframe, scenario);
   read_all(sources, scenario);
+  for (std::size_t i = 0; i < scenario.plugins.size(); ++i) {
+    const PluginConfig& asked = scenario.plugins[i];
+    const std::string key = fmt::format("plugins[{}].", i),
+                      file = found_file(asked.file, origin_of(sources, key + "file"));
+    const auto is = std::ranges::find(plugins, file, &PluginConfig::file);
+    if (is != plugins.end() && !asked.hash.empty() && asked.hash != is->hash)
+      throw ScenarioError(fmt::format("{}: {}hash: must be {}, the hash of {}, got {}",
+                                      origin_of(sources, key + "hash"), key, is->hash, file, asked.hash));
+  }
+  scenario.plugins = plugins;
   scenario.rig = rig_file(scenario.rig, origin_of(sources, "rig"));
   scenario.forest.trees_file =
       found_trees_file(scenario.forest.trees_file, origin_of(sources, "forest.trees_file"));
   check(scenario, sources, name);
   return scenario;
-}
-
-/// Trunks of a wood as they are planted, with what is known of them.
-struct Planted {
-  std::vector<Obstacle> obstacles;
-  std::vector<KnownTree> known = {};
-};
-
-Planted planted(const Scenario& scenario) {
-  switch (scenario.course) {
-    case Course::forest:
-      if (!scenario.forest.trees_file.empty()) {
-        PlacedStems placed = place_stems(stems_of(scenario.forest), scenario.forest, scenario.seed);
-        return {std::move(placed.trunks), std::move(placed.known)};
-      }
-      return {random_forest(scenario.forest, scenario.seed)};
-    case Course::goalposts:
-      return {goalposts(scenario.goalposts, scenario.seed)};
-    case Course::windows:
-      return {windows(scenario.windows, scenario.goal_x_m())};
-    case Course::fence:
-      return {fence(scenario.fence, scenario.goal_x_m())};
-    case Course::clear:
-      break;
-  }
-  return {};
 }
 
 }  // namespace
@@ -301,7 +305,8 @@ std::vector<Key> keys_of(Scenario scenario) {
 std::string scenario_to_text(const Scenario& scenario) { return write_config(scenario); }
 
 Wood course_wood(const Scenario& scenario) {
-  Planted trunks = planted(scenario);
+  const CoursePart& course = *parts().courses.find(scenario.course);
+  Planted trunks = checked(course, {scenario, scenario.plugged.find(course.name), scenario.seed});
   Wood wood;
   if (scenario.world.world.scenery == Scenery::woods)
     wood = grow(trunks.obstacles, woods_of(scenario), seed_for(scenario.seed, "trees"), trunks.known);

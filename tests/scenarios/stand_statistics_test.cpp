@@ -125,9 +125,9 @@ TEST(Inventory, CoursesKeepTheDistancesBetweenStems) {
   for (std::uint64_t seed = 1000; seed < 1020; ++seed) {
     const PlacedStems placed = place_stems(stems, config, seed);
     const double area = config.length_m * 2 * config.half_width_m;
-    EXPECT_NEAR(static_cast<double>(placed.trunks.size()), 0.1 * area, 5 * std::sqrt(0.1 * area));
+    EXPECT_NEAR(static_cast<double>(placed.obstacles.size()), 0.1 * area, 5 * std::sqrt(0.1 * area));
     const Eigen::Rotation2Dd turn(placed.heading_rad);
-    for (const Obstacle& trunk : placed.trunks) {
+    for (const Obstacle& trunk : placed.obstacles) {
       EXPECT_GE(trunk.from_world.x(), config.clear_m);
       const Vector2d there = placed.launch_m + turn * trunk.from_world.head<2>();
       EXPECT_TRUE(
@@ -169,7 +169,7 @@ TEST(Inventory, DrawnForestsAreLikeTheMeasuredOne) {
   };
   for (std::uint64_t seed = 1000; seed < 1060; ++seed) {
     add(one, random_forest(random, seed), random);
-    add(other, place_stems(stems, measured, seed).trunks, measured);
+    add(other, place_stems(stems, measured, seed).obstacles, measured);
   }
   const StandFigures drawn_figures = figures_of(one), measured_figures = figures_of(other);
   EXPECT_NEAR(drawn_figures.stems_per_ha / measured_figures.stems_per_ha, 1, 0.1);

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "perception/obstacle_point.hpp"
+#include "planning/autopilot_config.hpp"
+#include "planning/flight_model.hpp"
+#include "planning/plan.hpp"
+
+namespace understory {
+
+/// One request for a plan. World frame of the estimator; heights are above the ground.
+struct PlanRequest {
+  FlightState start;                       ///< where the aircraft will be at t_ns
+  std::int64_t t_ns = 0;                   ///< when the plan takes effect
+  std::vector<ObstaclePoint> points = {};  ///< obstacle points that the map trusts
+  /// distance flown until now; a point's own distance_flown_m less than this is how far it may have drifted
+  double distance_flown_m = 0;
+  /// Whether a point has come since the last plan that concerns() says may change it. Where none has, a
+  /// planner may keep its plan without a search.
+  bool outdated = true;
+};
+
+/// Decides the way of the aircraft. Equal requests in equal order must give equal plans: a planner counts
+/// iterations instead of measuring time, and owns its random generators.
+class Planner {
+ public:
+  virtual ~Planner() = default;
+
+  /// A plan from the start on: its t_ns is the request's, its first point is the start, its points are evenly
+  /// spaced in time and reach as far as the planner looks ahead. There is always one, even where every way is
+  /// blocked.
+  virtual Plan plan(const PlanRequest& request) = 0;
+
+  /// Whether `point`, which the map did not hold when `plan` was made, may change the plan. The autopilot
+  /// then asks for a new plan at the next opportunity, instead of at the end of the period.
+  virtual bool concerns(const ObstaclePoint& /*point*/, const Plan& /*plan*/) const { return true; }
+
+  /// How the plans came about. A planner counts what it knows of; all other counts stay zero.
+  const PlannerCounts& counts() const { return counts_; }
+
+ protected:
+  PlannerCounts counts_;
+};
+
+/// What a planner is made from. All of it may be gone after the planner has been made.
+struct PlannerContext {
+  const PlannerConfig& config;
+  const FlightModel& model;
+  const Mission& mission;
+  std::uint64_t seed = 0;  ///< of the planner's random generators
+};
+
+}  // namespace understory

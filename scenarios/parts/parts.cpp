@@ -1,0 +1,163 @@
+#include "scenarios/parts/parts.hpp"
+
+#include <algorithm>
+
+#include "estimation/dead_reckoning.hpp"
+#include "estimation/filter.hpp"
+#include "perception/full_stereo/full_stereo.hpp"
+#include "perception/pushbroom/pushbroom_stereo.hpp"
+#include "perception/rectification/rectify.hpp"
+#include "planning/avoidance_planner.hpp"
+#include "planning/planners.hpp"
+#include "scenarios/course/inventory.hpp"
+#include "scenarios/flight/oracles.hpp"
+#include "scenarios/scenario/scenario.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
+
+namespace understory {
+namespace {
+
+std::vector<double> rig_depth_m(const Scenario&, const StereoRig& rig) { return {rig.detection_depth_m}; }
+
+std::vector<double> pushbroom_depths_m(const Scenario& scenario, const StereoRig& rig) {
+  const std::vector<double> depths_m = stated_depths_m(scenario.perception.pushbroom, rig);
+  return depths_m.empty() ? std::vector{rig.detection_depth_m} : depths_m;
+}
+
+double pushbroom_cost_s(const PerceptionSection& perception) {
+  const PushbroomConfig& config = perception.pushbroom;
+  const std::size_t depths = std::max({std::size_t{1}, config.depths_m.size(), config.disparities_px.size()});
+  return perception.compute.pushbroom_s *
+         (1 + perception.compute.more_depths * (static_cast<double>(depths) - 1));
+}
+
+std::unique_ptr<ObstacleDetector> pushbroom_of(const FlightContext& context) {
+  const PushbroomConfig& config = context.scenario.perception.pushbroom;
+  check_depths(config, context.rig.rig, "perception.depths_m", "perception.pushbroom");
+  return std::make_unique<PushbroomStereo>(context.rig, config);
+}
+
+template <auto matcher>
+std::unique_ptr<ObstacleDetector> full_stereo_of(const FlightContext& context) {
+  const PerceptionSection& perception = context.scenario.perception;
+  auto detector =
+      std::make_unique<FullStereoDetector>(context.rig.rig, perception.*matcher, perception.full_stereo);
+  if (!context.rig.calibration) return detector;
+  return std::make_unique<RectifyingDetector>(*context.rig.calibration, std::move(detector));
+}
+
+void add_detectors(PartList<DetectorPart>& detectors) {
+  detectors.add({.name = "pushbroom",
+                 .meaning = "pushbroom stereo at the depths of perception.depths_m",
+                 .make = pushbroom_of,
+                 .cost_s = pushbroom_cost_s,
+                 .depths_m = pushbroom_depths_m});
+  detectors.add({.name = "stereo_bm",
+                 .meaning = "OpenCV's block matcher over all depths",
+                 .make = full_stereo_of<&PerceptionSection::stereo_bm>,
+                 .cost_s = [](const PerceptionSection& section) { return section.compute.stereo_bm_s; }});
+  detectors.add({.name = "stereo_sgbm",
+                 .meaning = "OpenCV's semi-global matcher over all depths",
+                 .make = full_stereo_of<&PerceptionSection::stereo_sgbm>,
+                 .cost_s = [](const PerceptionSection& section) { return section.compute.stereo_sgbm_s; }});
+  detectors.add({.name = "true_depth",
+                 .meaning = "exact depth from the simulator, at the rig's detection depth",
+                 .make =
+                     [](const FlightContext& context) {
+                       return std::make_unique<TrueDepth>(context.rig.rig, context.obstacles, context.truth);
+                     },
+                 .needs_images = false,
+                 .depths_m = rig_depth_m});
+  detectors.add({.name = "none",
+                 .meaning = "detects nothing: the blind aircraft",
+                 .make = [](const FlightContext&) { return std::make_unique<NoDetector>(); },
+                 .needs_images = false});
+}
+
+void add_state_sources(PartList<StateSourcePart>& sources) {
+  sources.add({.name = "filter",
+               .meaning = "the error-state Kalman filter",
+               .make = [](const FlightContext& context) {
+                 return std::make_unique<Filter>(context.scenario.estimation.filter);
+               }});
+  sources.add({.name = "dead_reckoning",
+               .meaning = "pitot and gyro alone, integrated",
+               .make = [](const FlightContext& context) {
+                 const EstimationSection& estimation = context.scenario.estimation;
+                 return std::make_unique<DeadReckoning>(estimation.dead_reckoning, estimation.filter);
+               }});
+  sources.add(
+      {.name = "truth", .meaning = "the simulator's exact state", .make = [](const FlightContext& context) {
+         return std::make_unique<TrueState>(context.truth);
+       }});
+}
+
+template <TreeMaker tree>
+std::unique_ptr<Planner> tree_planner_of(const PlannerPartContext& context) {
+  return std::make_unique<AvoidancePlanner>(context, tree);
+}
+
+void add_planners(PartList<PlannerPart>& planners) {
+  planners.add({.name = "sst",
+                .meaning = "a tree of manoeuvres that SST grows, which keeps cheap ways",
+                .make = tree_planner_of<sst_tree>});
+  planners.add({.name = "rrt",
+                .meaning = "a tree of manoeuvres that RRT grows, towards random states",
+                .make = tree_planner_of<rrt_tree>});
+  planners.add({.name = "est",
+                .meaning = "a tree of manoeuvres that EST grows, where it has few nodes",
+                .make = tree_planner_of<est_tree>});
+  planners.add({.name = "library",
+                .meaning = "the manoeuvre with the largest clearance from a list",
+                .make = [](const PlannerPartContext& context) {
+                  return library_planner(context, context.scenario.autopilot.library);
+                }});
+  planners.add({.name = "straight",
+                .meaning = "straight on, through everything",
+                .make = [](const PlannerPartContext& context) { return straight_planner(context); }});
+}
+
+Planted planted_forest(const CourseContext& context) {
+  const ForestConfig& forest = context.scenario.forest;
+  if (forest.trees_file.empty()) return {random_forest(forest, context.seed)};
+  return place_stems(stems_of(forest), forest, context.seed);
+}
+
+void add_courses(PartList<CoursePart>& courses) {
+  courses.add({.name = "forest", .meaning = "random or measured trees", .make = planted_forest});
+  courses.add({.name = "goalposts",
+               .meaning = "two uprights and a crossbar",
+               .make = [](const CourseContext& context) {
+                 return Planted{goalposts(context.scenario.goalposts, context.seed)};
+               }});
+  courses.add(
+      {.name = "clear", .meaning = "no obstacles", .make = [](const CourseContext&) { return Planted{}; }});
+  courses.add({.name = "windows",
+               .meaning = "a facade of equal windows behind the goal",
+               .make = [](const CourseContext& context) {
+                 return Planted{windows(context.scenario.windows, context.scenario.goal_x_m())};
+               }});
+  courses.add({.name = "fence",
+               .meaning = "fences of equal palings beside and across the way",
+               .make = [](const CourseContext& context) {
+                 return Planted{fence(context.scenario.fence, context.scenario.goal_x_m())};
+               }});
+}
+
+Parts built_in_parts() {
+  Parts parts;
+  add_detectors(parts.detectors);
+  add_state_sources(parts.state_sources);
+  add_planners(parts.planners);
+  add_courses(parts.courses);
+  return parts;
+}
+
+}  // namespace
+
+Parts& parts() {
+  static Parts all = built_in_parts();
+  return all;
+}
+
+}  // namespace understory

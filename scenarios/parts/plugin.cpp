@@ -1,0 +1,87 @@
+#include "scenarios/parts/plugin.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <deque>
+#include <exception>
+#include <sstream>
+
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/output/program.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The first line in which the stamps differ, as "needs ..., has ..."; empty where they are equal.
+std::string difference_of(const std::string& ours, const std::string& theirs) {
+  std::istringstream needed(ours), given(theirs);
+  std::string one, other;
+  while (std::getline(needed, one)) {
+    if (!std::getline(given, other)) other = "nothing";
+    if (one != other) return fmt::format("was built for '{}', this program needs '{}'", other, one);
+  }
+  return "";
+}
+
+template <typename Function>
+Function function_in(void* library, const char* name) {
+  return reinterpret_cast<Function>(dlsym(library, name));
+}
+
+/// Adds the parts of a library that has been opened, all or none.
+void add_parts(void* library, const std::string& file, const std::string& asked_by) {
+  const auto fail = [&](const std::string& why) {
+    throw ScenarioError(fmt::format("{}: {}: {}", asked_by, file, why));
+  };
+  const auto stamp = function_in<const char* (*)()>(library, "understory_plugin_stamp");
+  const auto add = function_in<void (*)(Parts&)>(library, "understory_plugin_add");
+  if (stamp == nullptr || add == nullptr)
+    fail("is not a plug-in: it has no UNDERSTORY_PLUGIN (docs/integrate.md)");
+  if (const std::string difference = difference_of(plugin_stamp(), stamp()); !difference.empty())
+    fail(difference + "; build it again with this version's understory_add_plugin");
+  Parts more = parts();
+  try {
+    add(more);
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+  const auto mark = [&](auto& list, const auto& before) {
+    for (std::size_t i = before.all().size(); i < list.all().size(); ++i) list.all()[i].plugin = file;
+    return list.all().size() - before.all().size();
+  };
+  const std::size_t added = mark(more.detectors, parts().detectors) +
+                            mark(more.state_sources, parts().state_sources) +
+                            mark(more.planners, parts().planners) + mark(more.courses, parts().courses);
+  if (added == 0) fail("adds no part");
+  parts() = std::move(more);
+}
+
+}  // namespace
+
+std::vector<std::string>& given_plugins() {
+  static std::vector<std::string> files;
+  return files;
+}
+
+const Plugin& load_plugin(const fs::path& file, const std::string& asked_by) {
+  static std::deque<Plugin> loaded;  // references to its entries stay valid
+  std::error_code error;
+  const fs::path found = fs::canonical(file, error);
+  if (error)
+    throw ScenarioError(fmt::format("{}: {}: {}", asked_by, fs::absolute(file).string(), error.message()));
+  for (const Plugin& one : loaded)
+    if (one.file == found) return one;
+  if (!fs::is_regular_file(found))
+    throw ScenarioError(fmt::format("{}: {}: must be a shared library", asked_by, found.string()));
+  const std::string hash = digest_of_file(found);
+  void* library = dlopen(found.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) throw ScenarioError(fmt::format("{}: cannot be loaded: {}", asked_by, dlerror()));
+  add_parts(library, found.string(), asked_by);
+  loaded.push_back({found.string(), hash});
+  return loaded.back();
+}
+
+}  // namespace understory
