@@ -1,6 +1,7 @@
-# What is installed, in two components: the program with its data, and what runs on an aircraft as a CMake package,
-# find_package(understory COMPONENTS perception estimation). docs/example uses the second from outside the tree;
-# tests/package builds that and runs the program from a prefix that was moved.
+# What is installed, in two components: the program with its data, and a CMake package with what runs on an aircraft
+# and what plug-ins need, find_package(understory COMPONENTS perception estimation plugin). docs/example and
+# docs/examples use the second from outside the tree; tests/package builds them, runs the program from a prefix that was
+# moved, and flies the plug-ins.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
@@ -9,6 +10,9 @@ include(GNUInstallDirs)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 install(TARGETS understory)
 install(TARGETS understory_picture_codecs LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/understory)
+if(UNDERSTORY_SIM)
+  install(TARGETS understory_evolution LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/understory)
+endif()
 install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/understory)
 foreach(folder library campaigns evaluations tunings paths)
   install(DIRECTORY scenarios/${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/understory/scenarios)
@@ -34,12 +38,15 @@ set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME development)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/understory)
 set_target_properties(perception_io PROPERTIES EXPORT_NAME perception)
 set_target_properties(perception PROPERTIES EXPORT_NAME detection)
-install(TARGETS understory_settings opencv_core_parts opencv_file_parts perception_types pushbroom_kernel perception
+set_target_properties(understory_plugin PROPERTIES EXPORT_NAME plugin)
+install(TARGETS understory_plugin understory_settings opencv_core_parts opencv_file_parts perception_types pushbroom_kernel perception
                 picture_codecs perception_text perception_io estimation_types estimation
         EXPORT understory-targets)
 install(EXPORT understory-targets NAMESPACE understory:: DESTINATION ${package_folder})
-install(DIRECTORY perception estimation DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/understory
-        FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY perception estimation planning sim scenarios DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/understory
+        FILES_MATCHING PATTERN "*.hpp" PATTERN node_modules EXCLUDE)
+install(FILES ${PROJECT_BINARY_DIR}/generated/understory_header_hash.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/understory)
+install(FILES cmake/understory_plugin.cmake DESTINATION ${package_folder})
 configure_package_config_file(cmake/understory-config.cmake.in understory-config.cmake
                               INSTALL_DESTINATION ${package_folder})
 write_basic_package_version_file(understory-config-version.cmake COMPATIBILITY SameMinorVersion)

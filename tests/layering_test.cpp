@@ -48,7 +48,7 @@ std::string top(const std::string& path) {
   return ours ? first : "";
 }
 
-/// Of a path in scenarios its folder there: `flight` of scenarios/flight/oracles.hpp.
+/// Of a path in scenarios its folder there: `flight` of scenarios/parts/oracles.hpp.
 std::string room(const std::string& path) {
   const std::string rest = path.substr(path.find('/') + 1);
   return top(path) == "scenarios" ? rest.substr(0, rest.find('/')) : "";
@@ -147,8 +147,8 @@ TEST(Layering, FoldersReachOnlyWhomTheyMay) {
 /// apart.
 bool arrow_points_down(const std::string& from, const std::string& to) {
   static const std::map<std::string, int> floors{
-      {"config", 1}, {"course", 2}, {"scenario", 3}, {"flight", 4},     {"recording", 5}, {"detect", 5},
-      {"bench", 5},  {"tuning", 6}, {"campaign", 6}, {"evaluation", 6}, {"cli", 7}};
+      {"config", 1}, {"course", 2}, {"parts", 3},  {"scenario", 4}, {"flight", 5},     {"recording", 6},
+      {"detect", 6}, {"bench", 6},  {"tuning", 7}, {"campaign", 7}, {"evaluation", 7}, {"cli", 8}};
   if (from == "statistics" || from == "output") return false;  // they know nobody
   if (to == "statistics" || to == "output") return true;
   if (from == "report") return to == "config";

@@ -1,8 +1,9 @@
-// A state source of one's own: the filter, with the heading of the magnetometer alone. It wraps a part of ours.
+// A state source of one's own: the filter, with the heading of the magnetometer alone. It wraps a part of
+// ours.
 #include <cmath>
 #include <variant>
 
-#include "scenarios/parts/plugin.hpp"
+#include "scenarios/scenario/plugin.hpp"
 
 namespace {
 

@@ -2,7 +2,9 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "scenarios/parts/plugin.hpp"
+#include <opencv2/core.hpp>
+
+#include "scenarios/scenario/plugin.hpp"
 
 namespace {
 
@@ -18,7 +20,8 @@ template <typename Visitor>
 void visit_fields(Visitor& visit, EdgeConfig& config) {
   visit("depth_m", config.depth_m, 2.0, 40.0, "depth at which edges are compared");
   visit("minimum_edge", config.minimum_edge, 1, 2000, "smallest Sobel response along the rows of an edge");
-  visit("maximum_difference", config.maximum_difference, 0.0, 255.0, "largest mean difference of gray levels");
+  visit("maximum_difference", config.maximum_difference, 0.0, 255.0,
+        "largest mean difference of gray levels");
 }
 
 class EdgeDetector : public ObstacleDetector {
@@ -27,18 +30,21 @@ class EdgeDetector : public ObstacleDetector {
 
   const std::vector<StereoHit>& detect(const StereoFrame& frame) override {
     hits_.clear();
-    const int disparity_px =
-        static_cast<int>(std::lround(rig_.focal_px * rig_.baseline_m / config_.depth_m + rig_.infinity_px));
+    const int disparity_px = static_cast<int>(std::lround(rig_.disparity_px(config_.depth_m)));
     cv::Sobel(frame.left, edges_, CV_16S, 1, 0);
     for (int row = 0; row + size_px <= rig_.height_px * 4 / 5; row += size_px)
       for (int column = std::max(0, disparity_px); column + size_px <= rig_.width_px; column += size_px) {
-        const cv::Rect here(column, row, size_px, size_px), there(column - disparity_px, row, size_px, size_px);
+        const cv::Rect here(column, row, size_px, size_px),
+            there(column - disparity_px, row, size_px, size_px);
         double strongest = 0;
         cv::minMaxLoc(cv::abs(edges_(here)), nullptr, &strongest);
-        const double difference = cv::norm(frame.left(here), frame.right(there), cv::NORM_L1) / (size_px * size_px);
+        const double difference =
+            cv::norm(frame.left(here), frame.right(there), cv::NORM_L1) / (size_px * size_px);
         if (strongest < config_.minimum_edge || difference > config_.maximum_difference) continue;
-        hits_.push_back({.position_camera = point(column + size_px / 2, row + size_px / 2),
-                         .column_px = column, .row_px = row, .disparity_px = double(disparity_px)});
+        StereoHit& hit = hits_.emplace_back();
+        hit.position_camera = point(column + size_px / 2, row + size_px / 2);
+        hit.column_px = column, hit.row_px = row;
+        hit.disparity_px = disparity_px;
       }
     return hits_;
   }
@@ -60,8 +66,10 @@ class EdgeDetector : public ObstacleDetector {
 UNDERSTORY_PLUGIN(parts) {
   parts.detectors.add({.name = "edges",
                        .meaning = "patches on upright edges that match at one depth",
-                       .make = [](const FlightContext& context) {
-                         return std::make_unique<EdgeDetector>(context.rig.rig, own_config<EdgeConfig>(context));
-                       }},
+                       .make =
+                           [](const FlightContext& context) {
+                             return std::make_unique<EdgeDetector>(context.rig.rig,
+                                                                   own_config<EdgeConfig>(context));
+                           }},
                       EdgeConfig{});
 }

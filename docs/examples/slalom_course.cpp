@@ -1,5 +1,5 @@
 // A course of one's own: poles to the left and right of the way by turns.
-#include "scenarios/parts/plugin.hpp"
+#include "scenarios/scenario/plugin.hpp"
 
 namespace {
 
@@ -32,5 +32,6 @@ Planted slalom(const CourseContext& context) {
 }  // namespace
 
 UNDERSTORY_PLUGIN(parts) {
-  parts.courses.add({.name = "slalom", .meaning = "poles left and right by turns", .make = slalom}, SlalomConfig{});
+  parts.courses.add({.name = "slalom", .meaning = "poles left and right by turns", .make = slalom},
+                    SlalomConfig{});
 }

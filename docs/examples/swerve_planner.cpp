@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "planning/manoeuvre.hpp"
-#include "scenarios/parts/plugin.hpp"
+#include "scenarios/scenario/plugin.hpp"
 
 namespace {
 
@@ -17,7 +17,8 @@ struct SwerveConfig {
 template <typename Visitor>
 void visit_fields(Visitor& visit, SwerveConfig& config) {
   visit("bank_rad", config.bank_rad, 0.1, 1.5, "bank of a swerve");
-  visit("hold_s", config.hold_s, 0.1, 3.0, "time for which the bank is held before the course guidance takes over");
+  visit("hold_s", config.hold_s, 0.1, 3.0,
+        "time for which the bank is held before the course guidance takes over");
 }
 
 class SwervePlanner : public Planner {
@@ -30,7 +31,8 @@ class SwervePlanner : public Planner {
     const TrajectoryConfig& limits = planner_.trajectory;
     const ObstacleField field(planner_.field, request.points, request.distance_flown_m);
     const FlightTask task{model_, limits, mission_, field, request.start.position_world};
-    Plan best{.t_ns = request.t_ns};
+    Plan best;
+    best.t_ns = request.t_ns;
     for (const double bank_rad : {0.0, -config_.bank_rad, config_.bank_rad}) {
       const Manoeuvre manoeuvre{{{bank_rad, 0}, bank_rad == 0 ? 0 : config_.hold_s}};
       Rollout rollout = fly_out(task, request.start, manoeuvre, limits.minimum_clearance_m, true, false);
@@ -55,8 +57,10 @@ class SwervePlanner : public Planner {
 UNDERSTORY_PLUGIN(parts) {
   parts.planners.add({.name = "swerve",
                       .meaning = "straight on, or a bank to the side with more room",
-                      .make = [](const PlannerPartContext& context) {
-                        return std::make_unique<SwervePlanner>(context, own_config<SwerveConfig>(context));
-                      }},
+                      .make =
+                          [](const PlannerPartContext& context) {
+                            return std::make_unique<SwervePlanner>(context,
+                                                                   own_config<SwerveConfig>(context));
+                          }},
                      SwerveConfig{});
 }

@@ -1,5 +1,5 @@
 #include "scenarios/cli/arguments.hpp"
-#include "scenarios/parts/plugin.hpp"
+#include "scenarios/scenario/plugin.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

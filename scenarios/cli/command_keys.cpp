@@ -116,6 +116,8 @@ constexpr Chapter chapters[]{
     {"perception.compute.", "Detection: the computer",
      "A simulated computer that is busy with each pair for a stated time (docs/thesis.md)."},
     {"estimation.", "Estimation", "Which state the stack believes in: the filter's, or the truth."},
+    {"estimation.dead_reckoning.", "Estimation: dead reckoning",
+     "The state from pitot and gyro alone (estimation.source: dead_reckoning)."},
     {"estimation.filter.", "Estimation: filter",
      "The error-state Kalman filter (docs/estimator.md). Standard deviations are one sigma. The scenario "
      "sets "
@@ -132,8 +134,10 @@ constexpr Chapter chapters[]{
     {"autopilot.planner.trajectory.", "Planner: trajectory",
      "Limits and costs of a trajectory. Costs are dimensionless, per second of flight; the cheapest wins."},
     {"autopilot.planner.search.", "Planner: search",
-     "The tree of manoeuvres that OMPL grows (SST: Li, Littlefield & Bekris 2016). A manoeuvre is a row of "
-     "commands, each a bank and a climb for a time."},
+     "The tree of manoeuvres that OMPL grows where autopilot.method is sst (Li, Littlefield & Bekris 2016), "
+     "rrt or est. A manoeuvre is a row of commands, each a bank and a climb for a time."},
+    {"autopilot.library.", "Planner: library",
+     "The planner that chooses from a list of manoeuvres (autopilot.method: library)."},
     {"autopilot.planner.improvement.", "Planner: improvement",
      "Random changes that make the manoeuvre found cheaper."},
     {"autopilot.follower.", "Autopilot: path follower",

@@ -8,8 +8,8 @@
 #include "scenarios/config/keys.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/progress_line.hpp"
-#include "scenarios/parts/part_check.hpp"
-#include "scenarios/parts/plugin.hpp"
+#include "scenarios/cli/part_check.hpp"
+#include "scenarios/scenario/plugin.hpp"
 #include "scenarios/report/table.hpp"
 
 namespace understory {

@@ -20,24 +20,23 @@ bool needs_images(const Scenario& scenario, const std::vector<FlightObserver*>& 
 
 }  // namespace
 
-Flight::Flight(const Scenario& scenario, const FlightMachine& machine, std::vector<FlightObserver*> observers)
+Flight::Flight(const Scenario& scenario, const FlightMachine& machine, std::vector<FlightObserver*> observers,
+               FlightParts parts)
     : scenario_(scenario),
       observers_(std::move(observers)),
       rig_(rig_of(scenario, machine.models_folder)),
       world_(stopwatch_.time("setup", [&] { return world_of(scenario, machine.models_folder); })),
       aircraft_(aircraft_of(scenario, world_)),
-      cameras_(needs_images(scenario, observers_)
+      cameras_(parts.detector || needs_images(scenario, observers_)
                    ? stopwatch_.time("context",
                                      [&] { return cameras_of(scenario, world_, rig_, machine.renderer); })
                    : nullptr),
       sensors_(scenario),
       drops_(scenario.cameras.drop_probability, seed_for(scenario.sensor_seed(), "camera_drops")),
       computer_(nanoseconds(scenario.perception.cost_s())),
-      detector_(detector_of(scenario_, rig_, world_.obstacles, history_)),
-      state_source_(state_source_of(scenario_, rig_, world_.obstacles, history_)),
-      planner_(planner_of(scenario_)),
-      autopilot_(autopilot_config_of(scenario, rig_.rig), scenario.airframe, rig_.rig, *detector_,
-                 *state_source_, *planner_),
+      parts_(with_rest(std::move(parts))),
+      autopilot_(autopilot_config_of(scenario, rig_.rig), scenario.airframe, rig_.rig, *parts_.detector,
+                 *parts_.state_source, *parts_.planner),
       referee_(scenario),
       clock_(scenario) {
   if (!world_.woods) return;
@@ -45,6 +44,14 @@ Flight::Flight(const Scenario& scenario, const FlightMachine& machine, std::vect
   for (const AircraftPart& part : aircraft_.shape().parts)
     boxes.push_back({Eigen::Isometry3d(Eigen::Translation3d(part.centre_body)), part.half_size_m});
   leaves_.emplace(world_.woods->leaf_cards, std::move(boxes));
+}
+
+/// Those that were not handed over are the scenario's.
+FlightParts Flight::with_rest(FlightParts parts) const {
+  if (!parts.detector) parts.detector = detector_of(scenario_, rig_, world_.obstacles, history_);
+  if (!parts.state_source) parts.state_source = state_source_of(scenario_, rig_, world_.obstacles, history_);
+  if (!parts.planner) parts.planner = planner_of(scenario_);
+  return parts;
 }
 
 bool Flight::in_leaves() const { return leaves_ && leaves_->touches(truth().T_world_body); }

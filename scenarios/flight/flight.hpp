@@ -13,7 +13,7 @@
 #include "planning/autopilot.hpp"
 #include "scenarios/flight/flight_computer.hpp"
 #include "scenarios/flight/onboard_sensors.hpp"
-#include "scenarios/flight/oracles.hpp"
+#include "scenarios/parts/oracles.hpp"
 #include "scenarios/flight/referee.hpp"
 #include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/scenario/scenario.hpp"
@@ -52,6 +52,13 @@ struct FlightMachine {
   RendererKind renderer = RendererKind::osmesa;
 };
 
+/// Parts that a program hands to a flight, in place of those that the scenario names. Null: the scenario's.
+struct FlightParts {
+  std::unique_ptr<ObstacleDetector> detector = nullptr;
+  std::unique_ptr<StateSource> state_source = nullptr;
+  std::unique_ptr<Planner> planner = nullptr;
+};
+
 /// A flight that one can hold, step and ask. Its scenario alone decides it; observers and other flights in
 /// this process, earlier or open now, have no effect. Flights may be open side by side on one thread, with
 /// one renderer: MuJoCo's OpenGL functions are one per process, and the other renderer is refused.
@@ -60,7 +67,8 @@ class Flight {
   /// Starts on the catapult, before the first step. Observers are called in their order and must outlive the
   /// flight. Throws ScenarioError, in one line, at bad input (rig, launch), MachineError where the machine
   /// fails (models, GL library).
-  Flight(const Scenario& scenario, const FlightMachine& machine, std::vector<FlightObserver*> observers = {});
+  Flight(const Scenario& scenario, const FlightMachine& machine, std::vector<FlightObserver*> observers = {},
+         FlightParts parts = {});
   Flight(const Flight&) = delete;
   Flight& operator=(const Flight&) = delete;
 
@@ -93,7 +101,7 @@ class Flight {
   const StereoFrame& frame() const { return frame_; }
   const std::vector<StereoHit>& hits() const { return autopilot_.hits(); }  ///< in that frame
   const State& state() const { return autopilot_.state(); }
-  State state_at(std::int64_t t_ns) const { return state_source_->state_at(t_ns); }
+  State state_at(std::int64_t t_ns) const { return parts_.state_source->state_at(t_ns); }
   const LocalMap& map() const { return autopilot_.map(); }
   const Plan& plan() const { return autopilot_.plan(); }
   const PlannerCounts& planner_counts() const { return autopilot_.counts(); }
@@ -105,6 +113,7 @@ class Flight {
   const Stopwatch& stopwatch() const { return stopwatch_; }
 
  private:
+  FlightParts with_rest(FlightParts parts) const;
   void sense();
   void expose();
   void process(StereoFrame frame);
@@ -124,9 +133,7 @@ class Flight {
   FrameDrops drops_;
   FlightComputer computer_;
   TruthHistory history_;
-  std::unique_ptr<ObstacleDetector> detector_;
-  std::unique_ptr<StateSource> state_source_;
-  std::unique_ptr<Planner> planner_;
+  FlightParts parts_;
   Autopilot autopilot_;
   Referee referee_;
   FlightClock clock_;

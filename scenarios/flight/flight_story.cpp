@@ -8,7 +8,7 @@
 
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "scenarios/flight/clearance.hpp"
-#include "scenarios/flight/oracles.hpp"
+#include "scenarios/parts/oracles.hpp"
 
 namespace understory {
 namespace {

@@ -14,8 +14,8 @@
 #include "scenarios/config/keys.hpp"
 #include "scenarios/config/named_seed.hpp"
 #include "scenarios/parts/checked_parts.hpp"
-#include "scenarios/parts/plugin.hpp"
 #include "scenarios/scenario/filter_for_sensors.hpp"
+#include "scenarios/scenario/plugin.hpp"
 #include "sim/aircraft/aerodynamics.hpp"
 #include "sim/scene/world_config.hpp"
 

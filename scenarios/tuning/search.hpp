@@ -76,10 +76,17 @@ void search(const Space& space, const Objective& objective, const SearchConfig& 
 /// Points of a grid: as many as it has.
 std::size_t grid_size(const Space& space);
 
-/// The two methods of the library (pagmo): in a file of their own, whose headers compile slowly.
+/// The two methods of the library (pagmo): in a file of their own, whose headers compile slowly, and in the
+/// program in a module of their own, which loads slowly (docs/decisions/014).
 void search_by_cma_es(const Space& space, const Objective& objective, const SearchConfig& config,
                       const Evaluate& evaluate);
 void search_by_nsga2(const Space& space, const Objective& objective, const SearchConfig& config,
                      const Evaluate& evaluate);
+
+/// Both, as the module hands them over.
+struct EvolutionMethods {
+  using Method = void (*)(const Space&, const Objective&, const SearchConfig&, const Evaluate&);
+  Method cma_es, nsga2;
+};
 
 }  // namespace understory

@@ -30,13 +30,12 @@ using Flight = std::vector<Samples>;
 
 class Tape : public StateSource {
  public:
-  void on(const ImuSample& sample) override { flight.emplace_back().imu = sample; }
-  void on(const PitotSample& sample) override { flight.back().pitot = sample; }
-  void on(const BarometerSample& sample) override { flight.back().barometer = sample; }
-  void on(const MagnetometerSample& sample) override { flight.back().magnetometer = sample; }
-  void on(const GpsSample&) override {}
-  void on(const ResightingSample&) override {}
-  void on(const ThrustSample&) override {}
+  void on(const Sample& sample) override {
+    if (const auto* imu = std::get_if<ImuSample>(&sample)) flight.emplace_back().imu = *imu;
+    if (const auto* pitot = std::get_if<PitotSample>(&sample)) flight.back().pitot = *pitot;
+    if (const auto* barometer = std::get_if<BarometerSample>(&sample)) flight.back().barometer = *barometer;
+    if (const auto* field = std::get_if<MagnetometerSample>(&sample)) flight.back().magnetometer = *field;
+  }
   const State& state() const override { return none_; }
   State state_at(std::int64_t) const override { return none_; }
   Flight flight;

@@ -69,7 +69,7 @@ Scenario forest(const std::vector<std::string>& settings) {
 TEST(MismatchPage, TheEstimateFollowedIsTheOneThatFlew) {
   Scenario scenario = forest(short_forest);
   scenario.mismatch = adverse(10);
-  const FlightTrace flight = traced_flight(scenario, StateKind::filter);
+  const FlightTrace flight = traced_flight(scenario, "filter");
   double maximum_m = 0;
   for (const TrialMoment& moment : run_trial(flight, trial_of(flight, scenario.sensor_seed())))
     if (moment.truth.t_ns * physics_rate_hz >= flight.release_step * 1'000'000'000)

@@ -4,8 +4,9 @@
 
 #include "perception/io/calibration_file.hpp"
 #include "planning/autopilot.hpp"
+#include "scenarios/flight/flight.hpp"
 #include "scenarios/flight/onboard_sensors.hpp"
-#include "scenarios/flight/oracles.hpp"
+#include "scenarios/parts/oracles.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "tests/closed_loop/flown.hpp"
 
@@ -19,15 +20,13 @@ const std::vector<std::string> blind_and_short{"perception.detector=none", "came
 /// Writes down what arrives, and when by the IMU's clock.
 class Listener : public StateSource {
  public:
-  void on(const ImuSample& sample) override { now_ns = sample.t_ns; }
-  void on(const PitotSample&) override {}
-  void on(const BarometerSample&) override { ++altitudes; }
-  void on(const MagnetometerSample&) override {}
-  void on(const ResightingSample&) override {}
-  void on(const ThrustSample&) override {}
-  void on(const GpsSample& fix) override {
-    fixes.push_back(fix);
-    ages_ns.push_back(now_ns - fix.t_ns);
+  void on(const Sample& sample) override {
+    if (const auto* imu = std::get_if<ImuSample>(&sample)) now_ns = imu->t_ns;
+    if (std::holds_alternative<BarometerSample>(sample)) ++altitudes;
+    const auto* fix = std::get_if<GpsSample>(&sample);
+    if (fix == nullptr) return;
+    fixes.push_back(*fix);
+    ages_ns.push_back(now_ns - fix->t_ns);
   }
   const State& state() const override { return state_; }
   State state_at(std::int64_t) const override { return state_; }
@@ -47,8 +46,8 @@ Listener heard(const std::vector<std::string>& settings) {
   const StereoRig rig = read_rig(UNDERSTORY_SOURCE_DIR "/models/rigs/" + scenario.rig + ".yaml");
   Listener listener;
   NoDetector detector;
-  Autopilot autopilot(scenario.autopilot.autopilot, scenario.airframe, rig, scenario.mission(), detector,
-                      listener, 1);
+  const std::unique_ptr<Planner> planner = planner_of(scenario);
+  Autopilot autopilot(scenario.autopilot.autopilot, scenario.airframe, rig, detector, listener, *planner);
   OnboardSensors sensors(scenario);
   for (FlightClock clock(scenario); clock.step() <= 2 * physics_rate_hz; clock.advance()) {
     Truth truth;

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "planning/path_follower.hpp"
-#include "scenarios/flight/oracles.hpp"
+#include "scenarios/parts/oracles.hpp"
 #include "sim/aircraft/aircraft.hpp"
 
 /// The reduced model that plans are made with, against MuJoCo flying the follower's elevons.

@@ -6,8 +6,9 @@
 #include "perception/io/calibration_file.hpp"
 #include "planning/autopilot.hpp"
 #include "scenarios/config/named_seed.hpp"
+#include "scenarios/flight/flight.hpp"
 #include "scenarios/flight/onboard_sensors.hpp"
-#include "scenarios/flight/oracles.hpp"
+#include "scenarios/parts/oracles.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "sim/aircraft/aircraft.hpp"
 #include "sim/sensors/sensors.hpp"
@@ -52,8 +53,8 @@ struct Loop {
     TruthHistory history;
     OpeningEyes eyes(rig, obstacles, history, opens_ns);
     TrueState state_source(history);
-    Autopilot autopilot(scenario.autopilot.autopilot, scenario.airframe, rig, scenario.mission(), eyes,
-                        state_source, seed_for(1000, "planner"));
+    const std::unique_ptr<Planner> planner = planner_of(scenario);
+    Autopilot autopilot(scenario.autopilot.autopilot, scenario.airframe, rig, eyes, state_source, *planner);
     Imu imu(scenario.sensors.sensors.imu, seed_for(1000, "imu"));
     const auto latency_ns = static_cast<std::int64_t>(scenario.cameras.latency_s * 1e9);
     std::deque<StereoFrame> pending;

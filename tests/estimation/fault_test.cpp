@@ -17,20 +17,20 @@ namespace {
 struct Tampered : StateSource {
   explicit Tampered(const FilterConfig& config) : filter(config) {}
   static double at(std::int64_t t_ns) { return 1e-9 * static_cast<double>(t_ns); }
-  void on(const ImuSample& sample) override {
+  void on(const Sample& sample) override {
+    std::visit([this](const auto& one) { on(one); }, sample);
+  }
+  void on(const ImuSample& sample) {
     if (!imu_lost(at(sample.t_ns))) filter.on(sample);
   }
-  void on(const PitotSample& sample) override {
+  void on(const PitotSample& sample) {
     if (pitot_lost(at(sample.t_ns))) return;
     filter.on(PitotSample{sample.t_ns, pitot(at(sample.t_ns), sample.airspeed_mps)});
   }
-  void on(const BarometerSample& sample) override {
+  void on(const BarometerSample& sample) {
     filter.on(BarometerSample{sample.t_ns, barometer(at(sample.t_ns), sample.altitude_m)});
   }
-  void on(const MagnetometerSample& sample) override { filter.on(sample); }
-  void on(const GpsSample& sample) override { filter.on(sample); }
-  void on(const ResightingSample& sample) override { filter.on(sample); }
-  void on(const ThrustSample& sample) override { filter.on(sample); }
+  void on(const auto& sample) { filter.on(sample); }
   const State& state() const override { return filter.state(); }
   State state_at(std::int64_t t_ns) const override { return filter.state_at(t_ns); }
 

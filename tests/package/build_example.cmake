@@ -23,6 +23,12 @@ if(NOT understory_perception_FOUND OR NOT understory_estimation_FOUND)
 endif()
 ")
 must(${CMAKE_COMMAND} -S ${WORK}/nameless -B ${WORK}/nameless/build -D CMAKE_PREFIX_PATH=${WORK}/prefix)
+# Parts of one's own, built against the installed headers.
+if(SIM)
+  must(${CMAKE_COMMAND} -S ${EXAMPLES} -B ${WORK}/parts -G Ninja -D CMAKE_PREFIX_PATH=${WORK}/prefix
+       -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_BUILD_TYPE=Release -D "CMAKE_CXX_FLAGS=-Wall -Wextra -Werror")
+  must(${CMAKE_COMMAND} --build ${WORK}/parts)
+endif()
 # The installed program finds its module of picture codecs and its data wherever the prefix was moved to, from any
 # folder, and knows nothing of the source tree.
 file(RENAME ${WORK}/prefix ${WORK}/moved)
@@ -36,6 +42,16 @@ if(SIM)
   if(NOT EXISTS ${WORK}/flight/flight.mp4)
     message(FATAL_ERROR "the installed program filmed no flight: ${output}")
   endif()
+endif()
+if(SIM)
+  must(${WORK}/moved/bin/understory plugin ${WORK}/parts/edge_detector.so ${WORK}/parts/compass_source.so)
+  file(WRITE ${WORK}/mine.yaml "plugins: [{file: parts/swerve_planner.so}, {file: parts/slalom_course.so}]
+course: slalom
+autopilot: {method: swerve}
+perception: {detector: true_depth}
+forest: {length_m: 20}
+")
+  must(${CMAKE_COMMAND} -E chdir ${WORK} ${WORK}/moved/bin/understory fly mine.yaml --out mine)
 endif()
 file(STRINGS ${WORK}/moved/bin/understory paths REGEX "${SOURCE}/(models|scenarios|perception|sim|planning|estimation)")
 if(paths)

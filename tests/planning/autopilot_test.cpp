@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "planning/avoidance_planner.hpp"
 #include "planning/path_follower.hpp"
 #include "tests/perception/rigs.hpp"
 
@@ -33,13 +34,7 @@ class LevelFlight : public StateSource {
     return state;
   }
   const State& state() const override { return state_; }
-  void on(const ImuSample&) override {}
-  void on(const PitotSample&) override {}
-  void on(const BarometerSample&) override {}
-  void on(const MagnetometerSample&) override {}
-  void on(const GpsSample&) override {}
-  void on(const ResightingSample&) override {}
-  void on(const ThrustSample&) override {}
+  void on(const Sample&) override {}
 
  private:
   State state_;
@@ -53,8 +48,9 @@ class GivenHits : public ObstacleDetector {
 
 struct Flight {
   explicit Flight(const AutopilotConfig& config)
-      : autopilot(config, Airframe{}, rig, Mission{}, detector, state_source, 1) {
-    for (const std::int64_t sample_ns : {0, 1}) autopilot.on(ImuSample{sample_ns, {}, {100, 0, 0}});
+      : planner({config.planner, FlightModel({}, config.flight_model), Mission{}, 1}, sst_tree),
+        autopilot(config, Airframe{}, rig, detector, state_source, planner) {
+    for (const std::int64_t sample_ns : {0, 1}) autopilot.on(ImuSample{sample_ns, Vector3d::Zero(), {100, 0, 0}});
   }
 
   int plans() const { return static_cast<int>(autopilot.counts().replans); }
@@ -88,6 +84,7 @@ struct Flight {
   StereoRig rig = support::house_rig("long.yaml");
   GivenHits detector;
   LevelFlight state_source;
+  AvoidancePlanner planner;
   Autopilot autopilot;
   std::int64_t tick = 0;
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <random>
 
+#include "planning/planners.hpp"
 #include "tests/planning/forests.hpp"
 
 namespace understory {
@@ -12,6 +13,7 @@ namespace {
 
 constexpr std::int64_t replan_ns = 40'000'000;
 const Mission mission;
+const PlannerConfig defaults;
 const FlightModel model({}, {});
 
 FlightState level_start() {
@@ -34,8 +36,8 @@ std::int64_t total(const PlannerCounts& counts) {
 }
 
 TEST(AvoidancePlanner, FliesStraightWhereNothingIsInTheWay) {
-  AvoidancePlanner planner({}, model, mission, 1);
-  const Plan plan = planner.plan(level_start(), 5'000'000, {}, 0);
+  AvoidancePlanner planner({defaults, model, mission, 1}, sst_tree);
+  const Plan plan = planner.plan({level_start(), 5'000'000});
   EXPECT_EQ(plan.origin, PlanOrigin::straight);
   EXPECT_EQ(plan.t_ns, 5'000'000);
   EXPECT_EQ(planner.counts().straight, 1);
@@ -54,10 +56,10 @@ TEST(AvoidancePlanner, PlansNeverTouchAKnownTrunk) {
     std::mt19937_64 generator(seed);
     const std::vector<Trunk> trunks = random_forest(generator, 16, 7, 30);
     const std::vector<ObstaclePoint> points = points_of(trunks);
-    AvoidancePlanner planner(config, model, mission, seed);
+    AvoidancePlanner planner({config, model, mission, seed}, sst_tree);
     FlightState state = level_start();
     for (int replan = 0; replan < 40; ++replan) {
-      const Plan plan = planner.plan(state, replan * replan_ns, points, 0);
+      const Plan plan = planner.plan({state, replan * replan_ns, points});
       ASSERT_GE(plan.points.size(), 2u);
       if (plan.origin == PlanOrigin::fallback) break;  // a fallback is not free of collision
       EXPECT_GE(plan_distance_m(plan, trunks, config.field), limit_m - 1e-9)
@@ -74,8 +76,8 @@ TEST(AvoidancePlanner, PlansNeverTouchAKnownTrunk) {
 }
 
 TEST(AvoidancePlanner, BoxedInItFallsBackAndSaysSo) {
-  AvoidancePlanner planner({}, model, mission, 1);
-  const Plan plan = planner.plan(level_start(), 0, points_of(wall(6)), 0);
+  AvoidancePlanner planner({defaults, model, mission, 1}, sst_tree);
+  const Plan plan = planner.plan({level_start(), 0, points_of(wall(6))});
   EXPECT_EQ(plan.origin, PlanOrigin::fallback);
   EXPECT_FALSE(plan.points.empty());
   EXPECT_EQ(planner.counts().fallback, 1);
@@ -86,12 +88,12 @@ TEST(AvoidancePlanner, KeepsItsPlanWhileThatIsGood) {
   PlannerConfig config;
   config.kept_cost_ratio = 100;
   config.refresh_replans = 1000;
-  AvoidancePlanner planner(config, model, mission, 1);
+  AvoidancePlanner planner({config, model, mission, 1}, sst_tree);
   const std::vector<ObstaclePoint> points = points_of({{{9, 0.1}}});
-  const Plan first = planner.plan(level_start(), 0, points, 0);
+  const Plan first = planner.plan({level_start(), 0, points});
   ASSERT_EQ(first.origin, PlanOrigin::solved);
   const FlightState state = follow_plan(level_start(), first, replan_ns);
-  const Plan second = planner.plan(state, replan_ns, points, 0);
+  const Plan second = planner.plan({state, replan_ns, points});
   EXPECT_EQ(second.origin, PlanOrigin::kept);
   EXPECT_EQ(planner.counts().kept, 1);
   // Kept means the same path: its points are the first plan's, one replan later.
@@ -103,14 +105,14 @@ TEST(AvoidancePlanner, KeepsItsPlanWhileThatIsGood) {
 
 TEST(AvoidancePlanner, GivesUpAPlanThatIsBlockedByWhatIsNewlySeen) {
   const PlannerConfig config;
-  AvoidancePlanner planner(config, model, mission, 1);
+  AvoidancePlanner planner({config, model, mission, 1}, sst_tree);
   std::vector<Trunk> trunks{{{9, 0.1}}};
-  const Plan first = planner.plan(level_start(), 0, points_of(trunks), 0);
+  const Plan first = planner.plan({level_start(), 0, points_of(trunks)});
   ASSERT_EQ(first.origin, PlanOrigin::solved);
   const PlanPoint& there = first.points[first.points.size() * 3 / 4];
   trunks.push_back({there.position_world.head<2>()});
   const FlightState state = follow_plan(level_start(), first, replan_ns);
-  const Plan second = planner.plan(state, replan_ns, points_of(trunks), 0);
+  const Plan second = planner.plan({state, replan_ns, points_of(trunks)});
   EXPECT_NE(second.origin, PlanOrigin::kept);
   EXPECT_NE(second.origin, PlanOrigin::straight);
   if (second.origin == PlanOrigin::solved) {
@@ -118,28 +120,57 @@ TEST(AvoidancePlanner, GivesUpAPlanThatIsBlockedByWhatIsNewlySeen) {
   }
 }
 
-TEST(AvoidancePlanner, WithoutOmplThePrimitivesAnswer) {
-  PlannerConfig config;
-  config.use_ompl = false;
-  AvoidancePlanner planner(config, model, mission, 1);
-  const std::vector<Trunk> trunks{{{9, 0.1}}};
-  const Plan plan = planner.plan(level_start(), 0, points_of(trunks), 0);
-  EXPECT_EQ(plan.origin, PlanOrigin::fallback);
-  EXPECT_EQ(planner.counts().solved, 0);
-  // With one trunk alone the primitive with the maximum clearance passes it.
-  EXPECT_GT(plan_distance_m(plan, trunks, config.field),
-            config.field.wing_radius_m + config.field.sigma_zero_m);
+/// Every tree gets past a trunk, and gives the same plan again.
+TEST(AvoidancePlanner, EveryTreeFindsAWayAndRepeatsIt) {
+  const std::vector<ObstaclePoint> points = points_of({{{9, 0.1}}, {{12, -1.5}}, {{11, 2}}});
+  for (const TreeMaker tree : {sst_tree, rrt_tree, est_tree}) {
+    const auto planned = [&](std::uint64_t seed) {
+      AvoidancePlanner planner({defaults, model, mission, seed}, tree);
+      return planner.plan({level_start(), 0, points});
+    };
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      const Plan plan = planned(seed), again = planned(seed);
+      EXPECT_EQ(plan.origin, PlanOrigin::solved);
+      EXPECT_GE(plan.clearance_m, defaults.trajectory.minimum_clearance_m);
+      ASSERT_EQ(plan.points.size(), again.points.size());
+      for (std::size_t i = 0; i < plan.points.size(); ++i)
+        EXPECT_EQ(plan.points[i].position_world, again.points[i].position_world);
+    }
+  }
+}
+
+TEST(LibraryPlanner, TakesTheWidestWayAndKeepsItWhileItIsSafe) {
+  const auto planner = library_planner({defaults, model, mission, 1}, {});
+  EXPECT_EQ(planner->plan({level_start(), 0}).origin, PlanOrigin::straight);
+  const std::vector<ObstaclePoint> points = points_of({{{9, 0.3}}});
+  const Plan first = planner->plan({level_start(), replan_ns, points});
+  ASSERT_EQ(first.origin, PlanOrigin::solved);
+  EXPECT_GE(first.clearance_m, ManoeuvreLibraryConfig{}.safe_clearance_m);
+  EXPECT_LT(first.points[first.points.size() / 2].position_world.y(), 0) << "away from the trunk";
+  const FlightState state = follow_plan(level_start(), first, replan_ns);
+  EXPECT_EQ(planner->plan({state, 2 * replan_ns, points}).origin, PlanOrigin::kept);
+  EXPECT_EQ(planner->plan({level_start(), 3 * replan_ns, points_of(wall(6))}).origin, PlanOrigin::fallback);
+}
+
+TEST(StraightPlanner, FliesThroughEverythingAndSaysSo) {
+  const auto planner = straight_planner({defaults, model, mission, 1});
+  const Plan plan = planner->plan({level_start(), 0, points_of({{{9, 0.1}}})});
+  EXPECT_EQ(plan.origin, PlanOrigin::straight);
+  EXPECT_LT(plan.clearance_m, 0);
+  EXPECT_NEAR(plan.points.back().position_world.y(), 0, 0.01);
+  EXPECT_EQ(planner->counts().obstacle_ahead, 1);
+  EXPECT_FALSE(planner->concerns({}, plan));
 }
 
 TEST(AvoidancePlanner, AReplanCanBeRepeated) {
   std::mt19937_64 generator(5);
   const std::vector<ObstaclePoint> points = points_of(random_forest(generator, 14, 5, 14));
   const auto flown = [&] {
-    AvoidancePlanner planner({}, model, mission, 9);
+    AvoidancePlanner planner({defaults, model, mission, 9}, sst_tree);
     std::vector<Eigen::Vector3d> path;
     FlightState state = level_start();
     for (int replan = 0; replan < 6; ++replan) {
-      const Plan plan = planner.plan(state, replan * replan_ns, points, 0);
+      const Plan plan = planner.plan({state, replan * replan_ns, points});
       for (const PlanPoint& point : plan.points) path.push_back(point.position_world);
       state = follow_plan(state, plan, replan_ns);
     }

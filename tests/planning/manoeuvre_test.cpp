@@ -1,11 +1,13 @@
 #include "planning/manoeuvre.hpp"
 
+
 #include <gtest/gtest.h>
 
 #include <ompl/datastructures/NearestNeighborsLinear.h>
 #include <cmath>
 #include <random>
 
+#include "planning/manoeuvre_search.hpp"
 #include "tests/planning/forests.hpp"
 
 namespace understory {
@@ -19,7 +21,7 @@ struct Flight {
   }
   FlightTask task() const { return {model, config, mission, field, start.position_world}; }
   std::optional<Manoeuvre> search(std::uint64_t seed) const {
-    return search_manoeuvre(task(), start, {}, ManoeuvreSearchConfig{}, seed);
+    return search_manoeuvre(task(), start, {}, ManoeuvreSearchConfig{}, seed, sst_tree);
   }
 
   FlightModel model{Airframe{}, FlightModelConfig{}};

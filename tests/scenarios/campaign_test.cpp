@@ -52,7 +52,7 @@ TEST_F(CampaignFile, FliesEverySeedInEveryConditionOfOverridesAndGrid) {
   EXPECT_EQ(campaign.conditions[3].name, "forest-blind-cruise_speed_mps=12");
   EXPECT_EQ(campaign.conditions[4].name, "dense-ours-cruise_speed_mps=10");
   const Scenario blind = scenario_from_text(campaign.conditions[3].scenario_text, "blind");
-  EXPECT_EQ(blind.perception.detector, DetectorKind::none);
+  EXPECT_EQ(blind.perception.detector, "none");
   EXPECT_EQ(blind.autopilot.autopilot.flight_model.cruise_speed_mps, 12);
   const std::vector<CampaignTask> tasks = tasks_of(campaign);
   ASSERT_EQ(tasks.size(), 32u);
@@ -79,13 +79,11 @@ TEST_F(CampaignFile, PutsFilesOfKeysUnderItsOwn) {
 TEST_F(CampaignFile, KeysOverAllConditionsLeaveTheirNames) {
   const fs::path file = folder.write("both.yaml", "scenarios: [forest, dense]\nseeds: 1\n");
   const Campaign plain = load_campaign(file, in_library);
-  const Campaign changed =
-      load_campaign(file, in_library, {parse_assignment("autopilot.planner.use_ompl=false")});
+  const Campaign changed = load_campaign(file, in_library, {parse_assignment("autopilot.method=library")});
   ASSERT_EQ(changed.conditions.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(changed.conditions[i].name, plain.conditions[i].name);
-    EXPECT_FALSE(
-        scenario_from_text(changed.conditions[i].scenario_text, "x").autopilot.autopilot.planner.use_ompl);
+    EXPECT_EQ(scenario_from_text(changed.conditions[i].scenario_text, "x").autopilot.method, "library");
   }
   expect_part(support::refusal_of([&] { load_campaign(file, in_library, {parse_assignment("seed=3")}); }),
               "seed: expected no seed here");

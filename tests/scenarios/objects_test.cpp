@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "perception/io/pose_file.hpp"
-#include "scenarios/flight/oracles.hpp"
+#include "scenarios/parts/oracles.hpp"
 #include "scenarios/recording/carried_path.hpp"
 #include "scenarios/recording/record.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"

@@ -7,7 +7,7 @@
 
 #include "scenarios/course/courses.hpp"
 #include "scenarios/flight/clearance.hpp"
-#include "scenarios/flight/oracles.hpp"
+#include "scenarios/parts/oracles.hpp"
 #include "sim/aircraft/aircraft.hpp"
 #include "sim/cameras/stereo_cameras.hpp"
 #include "sim/scene/leaf_contact.hpp"

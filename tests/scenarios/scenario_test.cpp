@@ -49,8 +49,8 @@ TEST(Scenario, TheLibraryIsWhatTheMissionSays) {
             120);
   EXPECT_EQ(load_scenario(library / "dense.yaml").forest.square_metres_per_tree, 25);
   EXPECT_EQ(load_scenario(library / "paper.yaml").rig, "paper");
-  EXPECT_EQ(load_scenario(library / "clear.yaml").course, Course::clear);
-  EXPECT_EQ(load_scenario(library / "goalposts.yaml").course, Course::goalposts);
+  EXPECT_EQ(load_scenario(library / "clear.yaml").course, "clear");
+  EXPECT_EQ(load_scenario(library / "goalposts.yaml").course, "goalposts");
   EXPECT_EQ(load_scenario(library / "windy.yaml").wind_world_mps, Eigen::Vector3d(0, 3, 0));
 }
 
@@ -104,7 +104,7 @@ TEST(Scenario, TwoOfTheLibraryDifferOnlyInWhatTheirCommentsSay) {
   int compared = 0;
   for (const auto& entry : fs::directory_iterator(library)) {
     const std::string name = entry.path().stem().string(), text = content_of(entry.path());
-    if (load_scenario(entry.path()).course != Course::forest) continue;
+    if (load_scenario(entry.path()).course != "forest") continue;
     ++compared;
     for (const auto& [key, value] : flat_keys(scenario_to_text(load_scenario(entry.path())), name)) {
       if (key == "name" || value == value_in(forest, key)) continue;
@@ -156,7 +156,8 @@ TEST(Scenario, OldNamesAreRefusedWithTheNewOnes) {
 }
 
 TEST(Scenario, EveryDefaultIsWritten) {
-  const std::string text = scenario_to_text(Scenario{});
+  const Scenario scenario;
+  const std::string text = scenario_to_text(scenario);
   for (const char* key : {"square_metres_per_tree", "latency_s", "lens_cap", "mass_kg", "maximum_altitude_m",
                           "invisible", "detector", "source"}) {
     expect_part(text, std::string(key) + ": ");

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "planning/path_follower.hpp"
-#include "scenarios/flight/oracles.hpp"
+#include "scenarios/parts/oracles.hpp"
 #include "sim/aircraft/aerodynamics.hpp"
 #include "tests/validation/sections.hpp"
 

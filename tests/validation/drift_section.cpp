@@ -98,7 +98,7 @@ struct VelocityError {
 };
 
 /// One variant in one air, all flights together.
-struct Sample {
+struct DriftSample {
   std::vector<DriftTally> drifts{sights_m.size()};
   std::vector<VelocityError> velocity = {};  ///< for six seconds
 
@@ -118,8 +118,8 @@ struct Sample {
 };
 
 /// A sample of each variant over the flights in one air; of the others an empty one.
-std::vector<Sample> sampled(const Air& air, int flights, const std::vector<std::size_t>& rows) {
-  std::vector<Sample> samples(variants.size());
+std::vector<DriftSample> sampled(const Air& air, int flights, const std::vector<std::size_t>& rows) {
+  std::vector<DriftSample> samples(variants.size());
   measure_flights(
       flights, [&](int i) { return forest_in(air, first_seed + static_cast<std::uint64_t>(i)); }, 3.0,
       [&](int number, const FlightTrace& flight) {
@@ -134,7 +134,7 @@ std::vector<Sample> sampled(const Air& air, int flights, const std::vector<std::
   return samples;
 }
 
-std::string cell(const Sample& sample) {
+std::string cell(const DriftSample& sample) {
   const DriftTally& drift = sample.drift();
   return fmt::format("{:.2f} / {:.2f} ({:.2f}, {:.2f})", drift.quantile_m(), drift.across_quantile_m(),
                      drift.rms_m(), drift.stated_rms_m());
@@ -142,9 +142,9 @@ std::string cell(const Sample& sample) {
 
 constexpr const char* passing_label = "drift at passing, 95th percentile (m)";
 
-std::string sight_picture(const Sample& calm, const Sample& turbulent) {
+std::string sight_picture(const DriftSample& calm, const DriftSample& turbulent) {
   LinePlot plot{"Drift over the way to the obstacle", "detected ahead (m)", passing_label};
-  const auto series = [&](const std::string& name, const Sample& sample) {
+  const auto series = [&](const std::string& name, const DriftSample& sample) {
     Series one{name, sights_m};
     for (const DriftTally& tally : sample.drifts) one.y.push_back(tally.quantile_m());
     one.mark = Mark::line_and_dots;
@@ -156,7 +156,7 @@ std::string sight_picture(const Sample& calm, const Sample& turbulent) {
 
 constexpr std::size_t over_wind[] = {row_default, row_windy, row_second, row_gps};
 
-std::string wind_picture(const std::vector<std::pair<double, std::vector<Sample>>>& by_wind) {
+std::string wind_picture(const std::vector<std::pair<double, std::vector<DriftSample>>>& by_wind) {
   LinePlot plot{"Drift over 10 m against wind with its turbulence", "wind across (m/s)", passing_label};
   for (const std::size_t row : over_wind) {
     std::string name = variants[row].name;
@@ -168,7 +168,7 @@ std::string wind_picture(const std::vector<std::pair<double, std::vector<Sample>
   return to_svg({plot});
 }
 
-std::string second_depth_picture(const std::vector<Sample>& turbulent) {
+std::string second_depth_picture(const std::vector<DriftSample>& turbulent) {
   LinePlot plot{"Waking in a wind of 3 m/s with turbulence", "since the release (s)",
                 "error of the ground velocity, rms (m/s)"};
   std::size_t row = row_unknown;
@@ -184,7 +184,7 @@ Section drift_section(int flights) {
   std::vector<std::size_t> rows;
   for (std::size_t row = 0; row < variants.size(); ++row) rows.push_back(row);
   const std::vector<std::size_t> few(std::begin(over_wind), std::end(over_wind));
-  const std::vector<Sample> calm = sampled({}, flights, rows), steady = sampled({3, false}, flights, rows),
+  const std::vector<DriftSample> calm = sampled({}, flights, rows), steady = sampled({3, false}, flights, rows),
                             turbulent = sampled({3, true}, flights, rows);
   Section section{"drift"};
   section.blocks.insert({{"flights", fmt::format("{}", flights)}});

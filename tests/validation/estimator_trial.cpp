@@ -12,7 +12,7 @@
 #include "scenarios/flight/flight.hpp"
 #include "scenarios/flight/flight_logger.hpp"
 #include "scenarios/flight/onboard_sensors.hpp"
-#include "scenarios/flight/oracles.hpp"
+#include "scenarios/parts/oracles.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
@@ -92,8 +92,8 @@ FilterConfig woken_at(const Truth& truth, FilterConfig filter) {
 
 }  // namespace
 
-FlightTrace traced_flight(Scenario scenario, StateKind flown_on) {
-  scenario.perception.detector = DetectorKind::true_depth;
+FlightTrace traced_flight(Scenario scenario, const std::string& flown_on) {
+  scenario.perception.detector = "true_depth";
   scenario.estimation.source = flown_on;
   FlightLogger logger;
   Flight flight(scenario, {UNDERSTORY_SOURCE_DIR "/models"}, {&logger});

@@ -29,7 +29,7 @@ struct FlightTrace {
 
 /// Flies `scenario` on true depth (no image is rendered) and keeps the truth. On the true state no estimate
 /// decides anything; on the filter, the flight is what its errors made of it. Throws as Flight does.
-FlightTrace traced_flight(Scenario scenario, StateKind flown_on = StateKind::truth);
+FlightTrace traced_flight(Scenario scenario, const std::string& flown_on = "truth");
 
 /// The air of a series of flights, across the flight's direction.
 struct Air {

@@ -228,7 +228,7 @@ FlightTally fly_seeds(Scenario scenario, const std::vector<FilterConfig>& others
   tally.others.resize(others.size());
   for (int i = 0; i < seeds.count; ++i) {
     scenario.seed = seeds.first + static_cast<std::uint64_t>(i);
-    const FlightTrace flight = traced_flight(scenario, StateKind::filter);
+    const FlightTrace flight = traced_flight(scenario, "filter");
     tally.outcomes.push_back(flight.result.outcome);
     tally.speed_sum_mps += flight.result.mean_speed_mps;
     tally.drift.add(drifts_with(scenario.estimation.filter, flight));

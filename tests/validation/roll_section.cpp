@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "planning/flight_model.hpp"
-#include "scenarios/flight/oracles.hpp"
+#include "scenarios/parts/oracles.hpp"
 #include "sim/aircraft/aerodynamics.hpp"
 #include "tests/validation/sections.hpp"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "planning/path_follower.hpp"
-#include "scenarios/flight/oracles.hpp"
+#include "scenarios/parts/oracles.hpp"
 #include "tests/validation/sections.hpp"
 
 namespace understory {

@@ -1,4 +1,4 @@
-#include "scenarios/flight/oracles.hpp"
+#include "scenarios/parts/oracles.hpp"
 
 #include <algorithm>
 #include <cmath>

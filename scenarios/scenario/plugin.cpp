@@ -1,4 +1,4 @@
-#include "scenarios/parts/plugin.hpp"
+#include "scenarios/scenario/plugin.hpp"
 
 #include <dlfcn.h>
 #include <fmt/format.h>

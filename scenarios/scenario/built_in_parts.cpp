@@ -10,7 +10,7 @@
 #include "planning/avoidance_planner.hpp"
 #include "planning/planners.hpp"
 #include "scenarios/course/inventory.hpp"
-#include "scenarios/flight/oracles.hpp"
+#include "scenarios/parts/oracles.hpp"
 #include "scenarios/scenario/scenario.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
 

@@ -1,0 +1,32 @@
+// Plug-ins that cannot be loaded, one for each WRONG_... that is defined.
+#if defined(WRONG_NO_ENTRY)
+extern "C" int something_else() { return 1; }
+#elif defined(WRONG_STAMP)
+extern "C" const char* understory_plugin_stamp() { return "headers of understory 0.0.1: 0123456789abcdef\n"; }
+extern "C" void understory_plugin_add(void*) {}
+#elif defined(WRONG_SYMBOL)
+extern "C" int a_function_that_nobody_has();
+extern "C" const char* understory_plugin_stamp() { return a_function_that_nobody_has() == 1 ? "" : "x"; }
+extern "C" void understory_plugin_add(void*) {}
+#else
+#include <stdexcept>
+
+#include "scenarios/scenario/plugin.hpp"
+
+UNDERSTORY_PLUGIN(parts) {
+#if defined(WRONG_NAME_TAKEN)
+  parts.detectors.add({.name = "mine", .meaning = "", .make = [](const understory::FlightContext& context) {
+                         return understory::parts().detectors.find("none")->make(context);
+                       }});
+  parts.detectors.add(*parts.detectors.find("pushbroom"));
+#elif defined(WRONG_NAME)
+  auto part = *parts.detectors.find("none");
+  part.name = "My Detector";
+  parts.detectors.add(part);
+#elif defined(WRONG_THROWS)
+  throw std::runtime_error("no licence for " + std::to_string(parts.detectors.all().size()));
+#else
+  (void)parts;
+#endif
+}
+#endif
