@@ -60,6 +60,15 @@ class SeededSst : public oc::SST {
     nn_ = std::make_shared<NearestMotions<Motion*>>();
     witnesses_ = std::make_shared<NearestMotions<Motion*>>();
   }
+  // OMPL 1.5.2 deletes the witnesses and leaves their states and controls: 7 kB a search.
+  ~SeededSst() override {
+    std::vector<Motion*> witnesses;
+    witnesses_->list(witnesses);
+    for (Motion* witness : witnesses) {
+      si_->freeState(witness->state_);
+      siC_->freeControl(witness->control_);
+    }
+  }
 };
 
 }  // namespace

@@ -24,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int usual_inputs = 24;
 constexpr double slowest_s = 0.1;          ///< of one call: twelve frames at 120 Hz
 constexpr double most_growth_bytes = 3e5;  ///< of the heap, over the last nine tenths of the calls
-constexpr double longest_memory_check_s = 20;
+constexpr double longest_memory_check_s = 5;
 
 /// An input beside the usual ones.
 enum class Odd { no, empty, repeated };

@@ -137,7 +137,10 @@ void add_other_detectors(Parts& parts) {
     };
   });
   add_detector(parts, "leaky", [] {
-    return [](const StereoFrame&, std::vector<StereoHit>&) { new std::vector<double>(50, 1.0); };
+    return [](const StereoFrame&, std::vector<StereoHit>&) {
+      static std::vector<double>* newest = nullptr;
+      newest = new std::vector<double>(50, newest == nullptr ? 1.0 : newest->front());
+    };
   });
   add_detector(parts, "throws", [] {
     return [](const StereoFrame&, std::vector<StereoHit>&) { throw std::logic_error("this must not be"); };

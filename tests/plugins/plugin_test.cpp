@@ -117,7 +117,7 @@ TEST_F(Plugins, TakePartInCampaignsAndTuning) {
 TEST_F(Plugins, ThatBreakTheirPromisesEndTheFlightAsAFailedMachine) {
   const std::pair<const char*, const char*> cases[] = {
       {"perception.detector=not_finite",
-       "detector 'not_finite': detect() gave hit 2 of 2, which is not finite"},
+       "detector 'not_finite': detect() gave hit 1 of 1, which is not finite"},
       {"perception.detector=outside", "detector 'outside': detect() gave hit 1 of 1, at column"},
       {"perception.detector=unordered",
        "detector 'unordered': detect() gave hit 2 of 2, above the hit before it"},
