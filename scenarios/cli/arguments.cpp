@@ -89,9 +89,14 @@ fs::path rig_path(const std::string& argument) {
 void add_settings_option(Command& command, std::vector<std::string>& settings) {
   command.texts("--set", "KEY=VALUE", settings,
                 "override a key of the scenario, for example forest.length_m=30; repeatable");
-  command.texts("--plugin", "FILE", given_plugins(),
-                "shared library with detectors, planners, state sources or courses of your own, which the "
-                "scenario can then name (docs/integrate.md); repeatable");
+  add_plugin_option(command);
+}
+
+void add_plugin_option(Command& command) {
+  command.texts(
+      "--plugin", "FILE", given_plugins(),
+      "shared library with detectors, planners, state sources or courses of your own, which keys can "
+      "then name (docs/integrate.md); repeatable");
 }
 
 void add_with_option(Command& command, std::vector<std::string>& with) {

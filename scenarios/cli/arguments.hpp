@@ -16,6 +16,8 @@ struct VisionConfigSources;
 
 /// --set, and --plugin.
 void add_settings_option(Command& command, std::vector<std::string>& settings);
+/// --plugin alone.
+void add_plugin_option(Command& command);
 /// --with alone.
 void add_with_option(Command& command, std::vector<std::string>& with);
 /// --preset, --with and --set, as commands that look at recordings have them.

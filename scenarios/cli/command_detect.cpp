@@ -87,6 +87,7 @@ void add_detect_command(CommandLine& line) {
   command.choice("--rectify", arguments->options.interpolation, interpolation_names,
                  "how raw images are rectified: nearest pixel or bilinear interpolation");
   add_vision_options(command, arguments->options.vision);
+  add_plugin_option(command);
   command.text("--poses", "FILE", arguments->poses,
                "file of body poses, TUM (t tx ty tz qx qy qz qw) or EuRoC ground truth; with it, map.ply is "
                "written too");

@@ -28,8 +28,11 @@ struct EvaluateArguments {
 
 int run_evaluate(EvaluateArguments arguments) {
   EvaluationOptions options;
-  arguments.vision.one_depth = true;         // full stereo is cropped to one depth's interval, to be compared
-  read_vision_config(arguments.vision, "");  // what is wrong there shows before anything is recorded
+  arguments.vision.one_depth = true;  // full stereo is cropped to one depth's interval, to be compared
+  // What is wrong there shows before anything is recorded.
+  if (const std::string detector = read_vision_config(arguments.vision, "").detector; detector != "pushbroom")
+    throw ScenarioError(
+        "perception.detector: must be pushbroom, which evaluate compares with the others, got " + detector);
   options.jobs = jobs_or_cores(arguments.jobs);
   fs::path out = arguments.out;
   std::error_code ignored;

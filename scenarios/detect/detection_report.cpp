@@ -52,6 +52,7 @@ std::string to_report(const DetectionResult& result) {
   std::string text = row("frames", frames_text(result));
   text += row("rig", fmt::format("{}: focal length {:.1f} px, baseline {:.3f} m", rig.name, rig.focal_px,
                                  rig.baseline_m));
+  if (result.depths.empty()) text += row("detector", result.detector);
   for (const DetectionResult::Depth& depth : result.depths)
     text +=
         row("looked at", fmt::format("{:.2f} m ({} px; a pixel either way {:.2f} to {:.2f} m), rows 0 to {}",

@@ -1,4 +1,6 @@
 #include "scenarios/detect/detection_run.hpp"
+#include "scenarios/parts/checked_parts.hpp"
+#include "scenarios/parts/oracles.hpp"
 
 #include <fmt/format.h>
 
@@ -174,25 +176,60 @@ std::string timings_csv(const std::vector<FrameRecord>& frames) {
   return to_csv(table);
 }
 
+/// The detector that the keys name, for rectified pairs. Without a flight around it, it has no truth.
+class RecordedDetector {
+ public:
+  RecordedDetector(const VisionConfig& config, const StereoRig& rig) : rig_{rig, {}} {
+    const DetectorPart& part = *parts().detectors.find(config.detector);
+    if (!part.needs_images)
+      throw ScenarioError(fmt::format(
+          "perception.detector: {} looks at no images; recordings have nothing else", config.detector));
+    PerceptionSection& perception = scenario_.perception;
+    perception.detector = config.detector;
+    perception.pushbroom = config.pushbroom;
+    perception.stereo_bm = config.stereo_bm;
+    perception.stereo_sgbm = config.stereo_sgbm;
+    perception.full_stereo = config.full_stereo;
+    perception.plugged = config.plugged;
+    detector_ =
+        checked(part, {scenario_, rig_, no_obstacles_, truth_, perception.plugged.find(part.name), 1});
+  }
+  RecordedDetector(const RecordedDetector&) = delete;
+  RecordedDetector& operator=(const RecordedDetector&) = delete;
+
+  ObstacleDetector& detector() { return *detector_; }
+
+ private:
+  CalibratedRig rig_;
+  Scenario scenario_;
+  std::vector<Obstacle> no_obstacles_;
+  TruthHistory truth_;
+  std::unique_ptr<ObstacleDetector> detector_;
+};
+
 /// What is known before the first frame.
-DetectionResult described(const CalibratedRig& camera, const PushbroomStereo& detector,
+DetectionResult described(const CalibratedRig& camera, const ObstacleDetector& detector,
                           const VisionConfig& config, const StereoRecording& recording) {
   DetectionResult result;
   result.rig = camera.rig;
+  result.detector = config.detector;
   result.rectified_here = camera.calibration.has_value();
-  for (int i = 0; i < detector.depth_count(); ++i)
-    result.depths.push_back(
-        {detector.detection_depth_m(i), detector.detection_disparity_px(i), detector.one_pixel_interval(i)});
+  if (const auto* pushbroom = dynamic_cast<const PushbroomStereo*>(&detector))
+    for (int i = 0; i < pushbroom->depth_count(); ++i)
+      result.depths.push_back({pushbroom->detection_depth_m(i), pushbroom->detection_disparity_px(i),
+                               pushbroom->one_pixel_interval(i)});
   result.last_row_px = camera.rig.scaled_row_px(config.pushbroom.last_row_px);
   result.frames_expected = recording.frame_count();
   result.unpaired_images = recording.unpaired();
   return result;
 }
 
+/// "detections at 10.14 m", "detections of edges".
 std::string depths_text(const DetectionResult& result) {
+  if (result.depths.empty()) return "of " + result.detector;
   std::vector<std::string> texts;
   for (const auto& depth : result.depths) texts.push_back(fmt::format("{:.2f}", depth.depth_m));
-  return fmt::format("{} m", fmt::join(texts, ", "));
+  return fmt::format("at {} m", fmt::join(texts, ", "));
 }
 
 /// What an earlier run left does not pass for this one's: OutputFolder removes it.
@@ -212,7 +249,8 @@ DetectionResult run_detection(const DetectionOptions& options) {
   CarriedMap map{poses_for(options, recording), PosedMap(config.map)};
   std::optional<Rectifier> rectifier;
   if (camera.calibration) rectifier.emplace(*camera.calibration, options.interpolation);
-  PushbroomStereo detector(camera.rig, config.pushbroom);
+  RecordedDetector recorded(config, camera.rig);
+  ObstacleDetector& detector = recorded.detector();
   std::vector<fs::path> read = options.inputs;
   read.push_back(options.rig);
   require_separate({options.output_folder}, read);
@@ -235,7 +273,7 @@ DetectionResult run_detection(const DetectionOptions& options) {
     OverlayMoment moment;
     moment.left = rectified.left;
     moment.hits = seen.hits;
-    moment.caption = fmt::format("frame {}: {} detections at {}", seen.frame, record.hits, depths);
+    moment.caption = fmt::format("frame {}: {} detections {}", seen.frame, record.hits, depths);
     if (const auto T_world_camera = map.insert(seen, camera.rig)) {
       record.in_map = true;
       moment.remembered = map.map.points();

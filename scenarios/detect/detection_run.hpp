@@ -38,6 +38,7 @@ struct FrameRecord {
 /// A recording's detections in numbers.
 struct DetectionResult {
   StereoRig rig;
+  std::string detector;         ///< value of perception.detector
   bool rectified_here = false;  ///< images came raw
   struct Depth {
     double depth_m = 0;  ///< of the whole disparity looked at

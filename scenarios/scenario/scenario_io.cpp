@@ -331,12 +331,15 @@ struct AutopilotKeys {
 };
 template <typename Visitor>
 void visit_fields(Visitor& visit, PerceptionKeys& perception) {
+  visit("detector", perception.config.detector, parts().detectors.names());
   visit("preset", perception.config.preset, pushbroom_preset_names);
   visit("depths_m", perception.config.pushbroom.depths_m, 0.1, 1000.0);
   visit("pushbroom", perception.config.pushbroom);
   visit("stereo_bm", perception.config.stereo_bm);
   visit("stereo_sgbm", perception.config.stereo_sgbm);
+  visit("full_stereo", perception.config.full_stereo);
   visit("compute", perception.config.compute);
+  visit_parts(visit, perception.config.plugged);
 }
 template <typename Visitor>
 void visit_fields(Visitor& visit, AutopilotKeys& autopilot) {
@@ -351,6 +354,7 @@ void visit_fields(Visitor& visit, VisionConfig& config) {
 }
 
 VisionConfig read_vision_config(const VisionConfigSources& sources, std::string_view rig) {
+  for (const std::string& file : given_plugins()) load_plugin(found_file(file, ""), "--plugin");
   std::vector<ConfigNode> trees;
   for (const std::string& file : sources.with) trees.push_back(parse_config_file(file));
   for (const std::string& setting : sources.settings) trees.push_back(parse_assignment(setting));

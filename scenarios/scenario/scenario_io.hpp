@@ -53,11 +53,14 @@ std::vector<Obstacle> course_obstacles(const Scenario& scenario);
 /// under a scenario's own keys (perception.preset, perception.depths_m, perception.pushbroom.X, ...,
 /// autopilot.map.X), so that a file of keys means the same in `fly`, `detect` and `evaluate`.
 struct VisionConfig {
+  std::string detector = "pushbroom";
   PushbroomPreset preset = PushbroomPreset::tuned;
   PushbroomConfig pushbroom;
   StereoBmConfig stereo_bm;
   StereoSgbmConfig stereo_sgbm;
+  FullStereoCrop full_stereo;
   ComputeConfig compute;
+  PartConfigs plugged = parts().detectors.configs();  ///< keys of the detectors of plug-ins
   LocalMapConfig map;
 };
 

@@ -96,7 +96,21 @@ TEST_F(Plugins, EveryKindFlies) {
   row("forest --seed 1003 --plugin " + plugin("slalom_course") + " --set course=slalom");
 }
 
-TEST_F(Plugins, TakePartInCampaignsAndTuning) {
+/// What a recorded flight's images give is what the flight saw: also for a detector of a plug-in.
+TEST_F(Plugins, DetectInRecordings) {
+  const std::string recording = (folder.path() / "recording").string(),
+                    out = (folder.path() / "out").string();
+  const std::string edges = " --plugin " + plugin("edge_detector") + " --set perception.detector=edges";
+  expect_success("record forest --seed 1003 --set forest.length_m=5 --quiet --out " + recording + edges);
+  const Outcome found = expect_success("detect " + recording + " --out " + out + edges);
+  expect_part(found.text, "edges");
+  EXPECT_EQ(lines_with(found.text, {"detections", "per frame"}), 1) << found.text;
+  EXPECT_GT(fs::file_size(fs::path(out) / "points.csv"), 1000u);
+  expect_refusal("detect " + recording + " --set perception.detector=true_depth", "looks at no images");
+  expect_refusal("evaluate " + recording + " --set perception.detector=none", "must be pushbroom");
+}
+
+TEST_F(Plugins, TakePartInCampaigns) {
   const fs::path campaign = folder.write(
       "c.yaml",
       "scenario: clear\nseeds: 1000..1001\noverrides:\n  - {name: ours, set: {forest.length_m: 5}}\n"
