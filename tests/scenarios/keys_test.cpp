@@ -64,7 +64,7 @@ TEST(Keys, NamesAndValuesAreThoseOfSet) {
     const std::string value =
         key["value"].is_string() ? key["value"].get<std::string>() : key["value"].dump();
     const auto name = key["key"].get<std::string>();
-    if (name.starts_with("faults[]") || name.starts_with("obstacles[]")) continue;
+    if (name.find("[]") != std::string::npos) continue;  // entries of lists that are empty
     settings += " --set '" + name + "=" + (value.empty() ? "\"\"" : value) + "'";
   }
   const std::string plain = folder.write("plain.yaml", "name: x\n").string();
