@@ -31,7 +31,8 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libunderstory-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "Static libraries, headers and CMake configuration of the pushbroom stereo
 detector with its readers, and of the error-state filter, as they run on an
-aircraft: find_package(understory COMPONENTS perception estimation).")
+aircraft, and the headers for plug-ins:
+find_package(understory COMPONENTS perception estimation plugin).")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "libeigen3-dev, libopencv-dev, libyaml-cpp-dev, libpugixml-dev, libfmt-dev, libtbb-dev, libhwy-dev")
 
