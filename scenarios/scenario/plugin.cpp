@@ -3,12 +3,15 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <deque>
 #include <exception>
 #include <sstream>
 
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/config/keys.hpp"
 #include "scenarios/output/program.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 namespace {
@@ -48,13 +51,24 @@ void add_parts(void* library, const std::string& file, const std::string& asked_
   } catch (const std::exception& error) {
     fail(error.what());
   }
-  const auto mark = [&](auto& list, const auto& before) {
-    for (std::size_t i = before.all().size(); i < list.all().size(); ++i) list.all()[i].plugin = file;
+  const std::vector<Key> keys = keys_of(Scenario());
+  const auto mark = [&](auto& list, const auto& before, const std::string& group) {
+    for (std::size_t i = before.all().size(); i < list.all().size(); ++i) {
+      auto& part = list.all()[i];
+      part.plugin = file;
+      // Its own keys would stand there.
+      const std::string name = group + part.name;
+      if (std::ranges::any_of(keys, [&](const Key& key) {
+            return key.name.starts_with(name) && key.name.find_first_of(".[", name.size()) == name.size();
+          }))
+        fail("the name '" + part.name + "' is taken by the keys " + name);
+    }
     return list.all().size() - before.all().size();
   };
-  const std::size_t added = mark(more.detectors, parts().detectors) +
-                            mark(more.state_sources, parts().state_sources) +
-                            mark(more.planners, parts().planners) + mark(more.courses, parts().courses);
+  const std::size_t added = mark(more.detectors, parts().detectors, "perception.") +
+                            mark(more.state_sources, parts().state_sources, "estimation.") +
+                            mark(more.planners, parts().planners, "autopilot.") +
+                            mark(more.courses, parts().courses, "");
   if (added == 0) fail("adds no part");
   parts() = std::move(more);
 }

@@ -156,6 +156,7 @@ TEST_F(Plugins, WrongFilesAreOneLine) {
       {plugin("wrong_symbol"), "a_function_that_nobody_has"},
       {plugin("wrong_name_taken"), "the name 'pushbroom' is taken"},
       {plugin("wrong_name"), "the name 'My Detector' must be letters"},
+      {plugin("wrong_key"), "the name 'compute' is taken by the keys perception.compute"},
       {plugin("wrong_throws"), "no licence for"},
       {plugin("wrong_nothing"), "adds no part"},
       {(folder.path() / "text.so").string(), "text.so"},

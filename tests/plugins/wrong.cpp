@@ -23,6 +23,10 @@ UNDERSTORY_PLUGIN(parts) {
   auto part = *parts.detectors.find("none");
   part.name = "My Detector";
   parts.detectors.add(part);
+#elif defined(WRONG_KEY)
+  auto part = *parts.detectors.find("none");
+  part.name = "compute";
+  parts.detectors.add(part);
 #elif defined(WRONG_THROWS)
   throw std::runtime_error("no licence for " + std::to_string(parts.detectors.all().size()));
 #else
