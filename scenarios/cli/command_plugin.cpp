@@ -5,12 +5,12 @@
 
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
+#include "scenarios/cli/part_check.hpp"
 #include "scenarios/config/keys.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/progress_line.hpp"
-#include "scenarios/cli/part_check.hpp"
-#include "scenarios/scenario/plugin.hpp"
 #include "scenarios/report/table.hpp"
+#include "scenarios/scenario/plugin.hpp"
 
 namespace understory {
 namespace {

@@ -50,7 +50,8 @@ struct Flight {
   explicit Flight(const AutopilotConfig& config)
       : planner({config.planner, FlightModel({}, config.flight_model), Mission{}, 1}, sst_tree),
         autopilot(config, Airframe{}, rig, detector, state_source, planner) {
-    for (const std::int64_t sample_ns : {0, 1}) autopilot.on(ImuSample{sample_ns, Vector3d::Zero(), {100, 0, 0}});
+    for (const std::int64_t sample_ns : {0, 1})
+      autopilot.on(ImuSample{sample_ns, Vector3d::Zero(), {100, 0, 0}});
   }
 
   int plans() const { return static_cast<int>(autopilot.counts().replans); }

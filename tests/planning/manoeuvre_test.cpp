@@ -1,6 +1,5 @@
 #include "planning/manoeuvre.hpp"
 
-
 #include <gtest/gtest.h>
 
 #include <ompl/datastructures/NearestNeighborsLinear.h>

@@ -184,8 +184,9 @@ Section drift_section(int flights) {
   std::vector<std::size_t> rows;
   for (std::size_t row = 0; row < variants.size(); ++row) rows.push_back(row);
   const std::vector<std::size_t> few(std::begin(over_wind), std::end(over_wind));
-  const std::vector<DriftSample> calm = sampled({}, flights, rows), steady = sampled({3, false}, flights, rows),
-                            turbulent = sampled({3, true}, flights, rows);
+  const std::vector<DriftSample> calm = sampled({}, flights, rows),
+                                 steady = sampled({3, false}, flights, rows),
+                                 turbulent = sampled({3, true}, flights, rows);
   Section section{"drift"};
   section.blocks.insert({{"flights", fmt::format("{}", flights)}});
   for (const std::size_t row : rows)
