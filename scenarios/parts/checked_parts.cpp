@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <mutex>
@@ -123,9 +123,10 @@ class CheckedStateSource : public StateSource {
 
   void on(const Sample& sample) override {
     callee_.call("on()", [&] { source_->on(sample); });
-    check("state() after on()", state());
-    if (state().t_ns < newest_ns_) callee_.fail("on()", "moved the time of the state back");
-    newest_ns_ = state().t_ns;
+    const State& now = state();
+    check("state() after on()", now);
+    if (now.t_ns < newest_ns_) callee_.fail("on()", "moved the time of the state back");
+    newest_ns_ = now.t_ns;
   }
   const State& state() const override {
     return callee_.call("state()", [&]() -> const State& { return source_->state(); });
