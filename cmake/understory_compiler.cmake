@@ -18,6 +18,8 @@ target_compile_options(understory_settings INTERFACE
 # Warnings are the project's own affair: who uses the installed package keeps theirs.
 target_compile_options(understory_settings INTERFACE
   "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wnon-virtual-dtor;-Werror;-ffp-contract=off>")
+# Everything can be part of a shared library: the Python module holds the whole testbed.
+target_compile_options(understory_settings INTERFACE "$<BUILD_INTERFACE:-fPIC;-fno-semantic-interposition>")
 if(UNDERSTORY_SANITIZE)
   # GCC's manual: with sanitizers on, -Wmaybe-uninitialized reports what is not so (std::regex in GCC 12).
   target_compile_options(understory_settings INTERFACE

@@ -60,7 +60,7 @@ bool Autopilot::concerns_the_plan(std::int64_t t_ns) const {
 }
 
 void Autopilot::replan(std::int64_t t_ns) {
-  if (!in_flight(t_ns) || next_plan_due_ns_ >= 0) return;
+  if (pilot_ != nullptr || !in_flight(t_ns) || next_plan_due_ns_ >= 0) return;
   const double period_s =
       plan_.origin == PlanOrigin::straight ? config_.straight_period_s : config_.avoiding_period_s;
   if (!plan_outdated_ && t_ns - planned_ns_ < nanoseconds(period_s)) return;
@@ -92,8 +92,10 @@ Controls Autopilot::controls(std::int64_t t_ns) {
     next_plan_due_ns_ = -1;
   }
   const std::int64_t effective_ns = t_ns + nanoseconds(model_.airframe().input_delay_s);
-  const Controls controls =
-      follow(model_, config_.follower, command_at(plan_, effective_ns), state_source_.state());
+  const State& state = state_source_.state();
+  const Controls controls = pilot_ != nullptr
+                                ? pilot_->controls(t_ns, state)
+                                : follow(model_, config_.follower, command_at(plan_, effective_ns), state);
   state_source_.on(ThrustSample{t_ns, controls.thrust_n});
   return controls;
 }

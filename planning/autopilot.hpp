@@ -12,6 +12,7 @@
 #include "planning/airframe.hpp"
 #include "planning/autopilot_config.hpp"
 #include "planning/path_follower.hpp"
+#include "planning/pilot.hpp"
 #include "planning/planner.hpp"
 
 namespace understory {
@@ -23,6 +24,8 @@ class Autopilot {
  public:
   Autopilot(const AutopilotConfig& config, const Airframe& airframe, const StereoRig& rig,
             ObstacleDetector& detector, StateSource& state_source, Planner& planner);
+  /// From now on `pilot` flies, which must outlive this; no plans are made.
+  void hand_over(Pilot& pilot) { pilot_ = &pilot; }
 
   void on(const Sample& sample);
   void on(const StereoFrame& frame);
@@ -49,6 +52,7 @@ class Autopilot {
   StateSource& state_source_;
   FlightModel model_;
   Planner& planner_;
+  Pilot* pilot_ = nullptr;  ///< null: planner and path follower fly
   LocalMap map_;
   Resightings resightings_;
   std::vector<StereoHit> hits_;

@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <thread>
 
 #include "perception/io/calibration_file.hpp"
@@ -22,69 +21,7 @@ namespace fs = std::filesystem;
 constexpr std::array<std::pair<std::string_view, double>, 3> meters_per_unit{
     {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}}};
 
-bool has_data(const fs::path& folder) {
-  std::error_code ignored;
-  return fs::is_directory(folder / "models", ignored) && fs::is_directory(folder / "scenarios", ignored);
-}
-
-std::vector<std::string> yaml_names(const fs::path& folder) {
-  std::error_code ignored;
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder, ignored))
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 }  // namespace
-
-fs::path data_root() {
-  if (const char* given = std::getenv("UNDERSTORY_ROOT")) {
-    if (has_data(given)) return given;
-    throw ScenarioError(
-        fmt::format("UNDERSTORY_ROOT={}: must be a folder with models/ and scenarios/", given));
-  }
-  std::error_code ignored;
-  for (fs::path folder = fs::read_symlink("/proc/self/exe", ignored); folder.has_relative_path();) {
-    folder = folder.parent_path();
-    if (has_data(folder / "share/understory")) return folder / "share/understory";
-    if (has_data(folder)) return folder;
-  }
-  throw MachineError(
-      "models/ and scenarios/ are missing: install them, or set UNDERSTORY_ROOT to their folder");
-}
-
-fs::path library_file(const std::string& argument, const char* folder, const char* noun) {
-  std::error_code ignored;
-  const bool is_folder = fs::is_directory(argument, ignored);  // may be called as a file of the library is
-  if (!is_folder && fs::exists(argument, ignored)) return argument;
-  const fs::path in_root = data_root() / argument;  // scenarios/library/forest.yaml, from any folder
-  if (fs::is_regular_file(in_root, ignored)) return in_root;
-  const bool is_name = argument.find('/') == std::string::npos && !argument.ends_with(".yaml");
-  const fs::path library = data_root() / "scenarios" / folder, named = library / (argument + ".yaml");
-  if (is_name && fs::exists(named, ignored)) return named;
-  if (is_folder) throw ScenarioError(fmt::format("{}: must be a {} file, is a folder", argument, noun));
-  if (!is_name) throw ScenarioError(fmt::format("{}: cannot read this {} file", argument, noun));
-  const std::vector<std::string> names = yaml_names(library);
-  throw ScenarioError(fmt::format("{}: no such {} file, and none in the library, which has: {}{}", argument,
-                                  noun, fmt::join(names, ", "), did_you_mean(argument, names)));
-}
-
-std::vector<std::string> scenario_names() { return yaml_names(data_root() / "scenarios" / "library"); }
-
-fs::path scenario_file(const std::string& argument) { return library_file(argument, "library", "scenario"); }
-
-std::vector<std::string> rig_names() { return yaml_names(data_root() / "models" / "rigs"); }
-
-fs::path rig_path(const std::string& argument) {
-  std::error_code ignored;
-  if (fs::exists(argument, ignored)) return argument;
-  const bool is_name = argument.find_first_of("/.") == std::string::npos;
-  const fs::path named = data_root() / "models" / "rigs" / (argument + ".yaml");
-  if (is_name && fs::exists(named, ignored)) return named;
-  throw ScenarioError(fmt::format("{}: no such rig file or calibration; rigs of the library: {}", argument,
-                                  fmt::join(rig_names(), ", ")));
-}
 
 void add_settings_option(Command& command, std::vector<std::string>& settings) {
   command.texts("--set", "KEY=VALUE", settings,
@@ -95,8 +32,8 @@ void add_settings_option(Command& command, std::vector<std::string>& settings) {
 void add_plugin_option(Command& command) {
   command.texts(
       "--plugin", "FILE", given_plugins(),
-      "shared library with detectors, planners, state sources or courses of your own, which keys can "
-      "then name (docs/integrate.md); repeatable");
+      "shared library or Python file with detectors, planners, state sources or courses of your own, which "
+      "keys can then name (docs/integrate.md); repeatable");
 }
 
 void add_with_option(Command& command, std::vector<std::string>& with) {

@@ -24,10 +24,11 @@ Flight::Flight(const Scenario& scenario, const FlightMachine& machine, std::vect
                FlightParts parts)
     : scenario_(scenario),
       observers_(std::move(observers)),
+      has_own_detector_(parts.detector != nullptr),
       rig_(rig_of(scenario, machine.models_folder)),
       world_(stopwatch_.time("setup", [&] { return world_of(scenario, machine.models_folder); })),
       aircraft_(aircraft_of(scenario, world_)),
-      cameras_(parts.detector || needs_images(scenario, observers_)
+      cameras_(has_own_detector_ || needs_images(scenario, observers_)
                    ? stopwatch_.time("context",
                                      [&] { return cameras_of(scenario, world_, rig_, machine.renderer); })
                    : nullptr),
@@ -39,6 +40,7 @@ Flight::Flight(const Scenario& scenario, const FlightMachine& machine, std::vect
                  *parts_.state_source, *parts_.planner),
       referee_(scenario),
       clock_(scenario) {
+  if (parts_.pilot) autopilot_.hand_over(*parts_.pilot);
   if (!world_.woods) return;
   std::vector<WingBox> boxes;
   for (const AircraftPart& part : aircraft_.shape().parts)
@@ -51,6 +53,7 @@ FlightParts Flight::with_rest(FlightParts parts) const {
   if (!parts.detector) parts.detector = detector_of(scenario_, rig_, world_.obstacles, history_);
   if (!parts.state_source) parts.state_source = state_source_of(scenario_, rig_, world_.obstacles, history_);
   if (!parts.planner) parts.planner = planner_of(scenario_);
+  if (!parts.pilot) parts.pilot = pilot_of(scenario_);
   return parts;
 }
 
@@ -89,11 +92,17 @@ void Flight::expose() {
   const bool taken = computer_.will_take(arrival_ns, clock_.next_camera_t_ns() + latency_ns) ||
                      !scenario_.every_frame_arrives();
   StereoFrame frame{t_ns - scenario_.cameras.cameras.exposure_lag_ns(), {}, {}};
-  if (cameras_ && taken) {
+  if (cameras_ && taken && is_looked_at()) {
     const auto timed = stopwatch_.time("render");
     frame = cameras_->capture(truth().T_world_body, t_ns);
   }
   if (sensors_.faults().pass(frame)) computer_.send(std::move(frame), arrival_ns);
+}
+
+/// A detector that was handed over looks at all of them.
+bool Flight::is_looked_at() const {
+  return has_own_detector_ || scenario_.perception.part().needs_images ||
+         std::ranges::any_of(observers_, &FlightObserver::wants_frame);
 }
 
 void Flight::process(StereoFrame frame) {

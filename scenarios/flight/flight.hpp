@@ -35,6 +35,8 @@ class FlightObserver {
 
   /// Whether images must be rendered even where no detector looks at them. Called once, before the flight.
   virtual bool needs_images() const { return false; }
+  /// Whether it looks at the frame that is exposed now. Frames that nobody looks at are not rendered.
+  virtual bool wants_frame() const { return needs_images(); }
   /// The stage of result.json to which its wall time counts; a literal.
   virtual const char* stage() const { return "record"; }
 
@@ -57,6 +59,8 @@ struct FlightParts {
   std::unique_ptr<ObstacleDetector> detector = nullptr;
   std::unique_ptr<StateSource> state_source = nullptr;
   std::unique_ptr<Planner> planner = nullptr;
+  /// Flies in place of the planner. Null where the scenario names no actions: the planner flies.
+  std::unique_ptr<Pilot> pilot = nullptr;
 };
 
 /// A flight that one can hold, step and ask. Its scenario alone decides it; observers and other flights in
@@ -101,6 +105,8 @@ class Flight {
   const StereoFrame& frame() const { return frame_; }
   const std::vector<StereoHit>& hits() const { return autopilot_.hits(); }  ///< in that frame
   const State& state() const { return autopilot_.state(); }
+  /// Whether the autopilot has felt the launch and gives controls, or takes them from a pilot.
+  bool in_flight() const { return autopilot_.in_flight(clock_.t_ns()); }
   State state_at(std::int64_t t_ns) const { return parts_.state_source->state_at(t_ns); }
   const LocalMap& map() const { return autopilot_.map(); }
   const Plan& plan() const { return autopilot_.plan(); }
@@ -116,6 +122,7 @@ class Flight {
   FlightParts with_rest(FlightParts parts) const;
   void sense();
   void expose();
+  bool is_looked_at() const;
   void process(StereoFrame frame);
   void act();
   void tell(void (FlightObserver::*event)(const Flight&));
@@ -124,6 +131,7 @@ class Flight {
   Stopwatch stopwatch_;
   Scenario scenario_;
   std::vector<FlightObserver*> observers_;
+  bool has_own_detector_;  ///< was handed over
   CalibratedRig rig_;
   World world_;
   Aircraft aircraft_;
@@ -168,6 +176,10 @@ std::unique_ptr<StateSource> state_source_of(const Scenario& scenario, const Cal
 
 /// What decides the way.
 std::unique_ptr<Planner> planner_of(const Scenario& scenario);
+
+/// Flies the actions of autopilot.actions; null where that is empty. ScenarioError where the file cannot be
+/// read.
+std::unique_ptr<Pilot> pilot_of(const Scenario& scenario);
 
 AutopilotConfig autopilot_config_of(const Scenario& scenario, const StereoRig& rig);
 

@@ -5,9 +5,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "perception/io/text_file.hpp"
 #include "perception/pushbroom/pushbroom_stereo.hpp"
+#include "scenarios/config/bad_input.hpp"
 #include "scenarios/config/config_writer.hpp"
 #include "scenarios/config/named_seed.hpp"
+#include "scenarios/flight/actions.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/parts/checked_parts.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
@@ -79,6 +82,14 @@ std::unique_ptr<Planner> planner_of(const Scenario& scenario) {
   const PlannerContext context{autopilot.autopilot.planner, model, mission,
                                seed_for(scenario.seed, "planner")};
   return checked(part, {context, scenario, autopilot.plugged.find(part.name)});
+}
+
+std::unique_ptr<Pilot> pilot_of(const Scenario& scenario) {
+  const std::string& file = scenario.autopilot.actions;
+  if (file.empty()) return nullptr;
+  return bad_input_if_refused([&] {
+    return std::make_unique<RecordedPilot>(parse_actions(read_file(file, maximum_table_bytes), file));
+  });
 }
 
 AutopilotConfig autopilot_config_of(const Scenario& scenario, const StereoRig& rig) {

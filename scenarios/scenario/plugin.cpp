@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <deque>
 #include <exception>
+#include <functional>
 #include <sstream>
 
 #include "scenarios/config/config_tree.hpp"
@@ -34,8 +35,10 @@ Function function_in(void* library, const char* name) {
   return reinterpret_cast<Function>(dlsym(library, name));
 }
 
-/// Adds the parts of a library that has been opened, all or none.
-void add_parts(void* library, const std::string& file, const std::string& asked_by) {
+/// Opens a library. Gives the function that adds its parts.
+std::function<void(Parts&)> opened_library(const std::string& file, const std::string& asked_by) {
+  void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) throw ScenarioError(fmt::format("{}: cannot be loaded: {}", asked_by, dlerror()));
   const auto fail = [&](const std::string& why) {
     throw ScenarioError(fmt::format("{}: {}: {}", asked_by, file, why));
   };
@@ -45,9 +48,35 @@ void add_parts(void* library, const std::string& file, const std::string& asked_
     fail("is not a plug-in: it has no UNDERSTORY_PLUGIN (docs/integrate.md)");
   if (const std::string difference = difference_of(plugin_stamp(), stamp()); !difference.empty())
     fail(difference + "; build it again with this version's understory_add_plugin");
+  return add;
+}
+
+/// Opens Python, where that has not been done. libpython's names are made global, which numpy's libraries
+/// need.
+std::function<void(Parts&)> opened_python(const std::string& file, const std::string& asked_by) {
+  if (python_loader() == nullptr) {
+    void* module = dlopen("understory_python.so", RTLD_NOW | RTLD_GLOBAL);
+    const char* error = module == nullptr ? dlerror() : nullptr;
+    const auto start =
+        module == nullptr ? nullptr : function_in<void (*)()>(module, "understory_start_python");
+    if (start == nullptr)
+      throw MachineError(fmt::format("{}: {}: plug-ins in Python need the package python3-understory: {}",
+                                     asked_by, file, error != nullptr ? error : "its module is broken"));
+    start();
+  }
+  return [file](Parts& parts) { python_loader()(file, parts); };
+}
+
+/// Adds the parts of a plug-in, all or none.
+void add_parts(const std::function<void(Parts&)>& add, const std::string& file, const std::string& asked_by) {
+  const auto fail = [&](const std::string& why) {
+    throw ScenarioError(fmt::format("{}: {}: {}", asked_by, file, why));
+  };
   Parts more = parts();
   try {
     add(more);
+  } catch (const MachineError&) {
+    throw;
   } catch (const std::exception& error) {
     fail(error.what());
   }
@@ -75,6 +104,11 @@ void add_parts(void* library, const std::string& file, const std::string& asked_
 
 }  // namespace
 
+PythonLoader& python_loader() {
+  static PythonLoader loader = nullptr;
+  return loader;
+}
+
 std::vector<std::string>& given_plugins() {
   static std::vector<std::string> files;
   return files;
@@ -89,11 +123,12 @@ const Plugin& load_plugin(const fs::path& file, const std::string& asked_by) {
   for (const Plugin& one : loaded)
     if (one.file == found) return one;
   if (!fs::is_regular_file(found))
-    throw ScenarioError(fmt::format("{}: {}: must be a shared library", asked_by, found.string()));
+    throw ScenarioError(
+        fmt::format("{}: {}: must be a shared library or a Python file", asked_by, found.string()));
   const std::string hash = digest_of_file(found);
-  void* library = dlopen(found.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) throw ScenarioError(fmt::format("{}: cannot be loaded: {}", asked_by, dlerror()));
-  add_parts(library, found.string(), asked_by);
+  const auto add = found.extension() == ".py" ? opened_python(found.string(), asked_by)
+                                              : opened_library(found.string(), asked_by);
+  add_parts(add, found.string(), asked_by);
   loaded.push_back({found.string(), hash});
   return loaded.back();
 }

@@ -11,8 +11,8 @@
 #include "scenarios/scenario/scenario.hpp"
 #include "understory_header_hash.hpp"
 
-/// Plug-ins: shared libraries that add parts (docs/integrate.md). A plug-in is compiled against these headers
-/// alone; the program that loads it has the functions behind them.
+/// Plug-ins: shared libraries and Python files that add parts (docs/integrate.md, docs/python.md). A library
+/// is compiled against these headers alone; the program that loads it has the functions behind them.
 namespace understory {
 
 /// What a plug-in and the program must have in common, a line each: "name: value".
@@ -57,6 +57,12 @@ struct Plugin {
 /// there, is not a shared library, lacks a symbol, is not a plug-in, was built for something else (what, and
 /// what is needed), or adds a part whose name is taken.
 const Plugin& load_plugin(const std::filesystem::path& file, const std::string& asked_by);
+
+/// Runs a Python file, whose decorators add parts to `parts`. Throws ScenarioError, one line that names file
+/// and line.
+using PythonLoader = void (*)(const std::string& file, Parts& parts);
+/// Set by the Python module. Null: Python is not there yet; the first plug-in that ends in .py opens it.
+PythonLoader& python_loader();
 
 /// The files of --plugin, which every scenario that is read then loads.
 std::vector<std::string>& given_plugins();

@@ -166,6 +166,10 @@ struct AutopilotSection {
   /// Planner. sst, rrt, est: OMPL grows a tree of manoeuvres with the method of this name; library: the best
   /// of a list of manoeuvres; straight: straight on, through everything.
   std::string method = "sst";
+  /// File with the controls of a flight that somebody else flew (docs/python.md), which are flown again in
+  /// place of the planner's; empty: the planner flies. A relative path is looked for beside the scenario
+  /// file, then in the working directory.
+  std::string actions;
   int replan_rate_hz = 120;  ///< highest rate at which the autopilot starts plans; must divide 1200
   AutopilotConfig autopilot;
   ManoeuvreLibraryConfig library;
@@ -314,6 +318,7 @@ template <typename Visitor>
 void visit_fields(Visitor& visit, AutopilotSection& section) {
   visit("preset", section.preset, planning_preset_names);
   visit("method", section.method, parts().planners.names());
+  visit("actions", section.actions);
   visit("replan_rate_hz", section.replan_rate_hz, 1, 1200);
   visit_fields(visit, section.autopilot);
   visit("library", section.library);

@@ -249,6 +249,8 @@ Scenario compose(const Sources& sources, const std::string& name) {
   scenario.rig = rig_file(scenario.rig, origin_of(sources, "rig"));
   scenario.forest.trees_file =
       found_trees_file(scenario.forest.trees_file, origin_of(sources, "forest.trees_file"));
+  scenario.autopilot.actions =
+      found_file(scenario.autopilot.actions, origin_of(sources, "autopilot.actions"));
   check(scenario, sources, name);
   return scenario;
 }

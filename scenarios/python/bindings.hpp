@@ -1,0 +1,77 @@
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "estimation/state_source.hpp"
+#include "perception/obstacle_detector.hpp"
+#include "planning/planner.hpp"
+#include "scenarios/parts/parts.hpp"
+
+/// The Python module `_understory`, which the package `understory` wraps (docs/python.md).
+namespace understory {
+
+namespace py = pybind11;
+
+/// A hit, and a point of the map, as records of numpy arrays. Fields as in StereoHit and ObstaclePoint.
+struct HitRecord {
+  double position_camera[3];
+  std::int32_t column_px, row_px;
+  double disparity_px, score, edge_sum, near_m, far_m;
+};
+struct PointRecord {
+  double position_world[3];
+  std::int64_t t_ns;
+  double score, distance_flown_m;
+  std::int32_t sightings;
+};
+
+py::array_t<HitRecord> array_of(const std::vector<StereoHit>& hits);
+py::array_t<PointRecord> array_of(const std::vector<ObstaclePoint>& points);
+/// An image as a read-only array that keeps it alive: no copy is made.
+py::array array_of(const cv::Mat& image);
+
+/// Objects of Python as parts. They call Python with its lock held. Throw std::runtime_error, one line, where
+/// an object lacks a method, raises, or gives what cannot be understood; a traceback goes to standard error.
+std::unique_ptr<ObstacleDetector> detector_from(const py::object& object);
+std::unique_ptr<StateSource> state_source_from(const py::object& object);
+std::unique_ptr<Planner> planner_from(const py::object& object);
+/// The same behind the checks that a plug-in's parts get (checked_parts.hpp), for objects handed to a flight.
+std::unique_ptr<ObstacleDetector> checked_detector_from(const py::object& object, const CalibratedRig& rig);
+std::unique_ptr<StateSource> checked_state_source_from(const py::object& object);
+std::unique_ptr<Planner> checked_planner_from(const py::object& object);
+
+/// An exception of Python as one line: "ValueError: too small (mine.py:12)".
+std::string told(py::error_already_set& error);
+/// Prints the traceback; throws the line as std::runtime_error.
+[[noreturn]] void throw_as_ours(py::error_already_set& error);
+
+/// Calls Python with its lock held; its exceptions become std::runtime_error.
+template <typename Function>
+auto in_python(Function&& function) {
+  const py::gil_scoped_acquire lock;
+  try {
+    return function();
+  } catch (py::error_already_set& error) {
+    throw_as_ours(error);
+  } catch (const py::cast_error& error) {
+    throw std::runtime_error(std::string("gave what cannot be understood: ") + error.what());
+  }
+}
+
+/// Whether a part in Python was interrupted from the keyboard since the last call. The flight then ended with
+/// an error that is none of the part's.
+bool was_interrupted();
+
+// What the module holds, a file each.
+void bind_types(py::module_& module);   ///< plain data: samples, states, frames, plans
+void bind_parts(py::module_& module);   ///< parts written in Python
+void bind_flight(py::module_& module);  ///< scenarios and flights
+
+}  // namespace understory

@@ -1,0 +1,209 @@
+#include <fmt/format.h>
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <utility>
+
+#include "scenarios/output/errors.hpp"
+#include "scenarios/parts/checked_parts.hpp"
+#include "scenarios/parts/oracles.hpp"
+#include "scenarios/python/bindings.hpp"
+#include "scenarios/scenario/scenario.hpp"
+
+namespace understory {
+namespace {
+
+std::atomic<bool> interrupted = false;
+
+/// An object of Python that a part owns: it is let go with the interpreter's lock held.
+class Held {
+ public:
+  explicit Held(py::object object) : object_(std::move(object)) {}
+  Held(const Held&) = delete;
+  Held& operator=(const Held&) = delete;
+  ~Held() {
+    if (!Py_IsInitialized()) {
+      object_.release();
+      return;
+    }
+    const py::gil_scoped_acquire lock;
+    object_ = py::object();
+  }
+  const py::object& operator*() const { return object_; }
+  bool has(const char* method) const { return py::hasattr(object_, method); }
+
+ private:
+  py::object object_;
+};
+
+std::vector<StereoHit> hits_of(const py::object& given) {
+  const auto expected = [] {
+    return std::runtime_error("must give an array of understory.hit_dtype (understory.hits() makes one)");
+  };
+  if (!py::isinstance<py::array_t<HitRecord>>(given)) throw expected();
+  const auto records = py::array_t<HitRecord, py::array::c_style>::ensure(given);
+  if (!records || records.ndim() != 1) throw expected();
+  std::vector<StereoHit> hits(static_cast<std::size_t>(records.shape(0)));
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const HitRecord& record = records.data()[i];
+    hits[i].position_camera = Eigen::Vector3d(record.position_camera);
+    hits[i].column_px = record.column_px;
+    hits[i].row_px = record.row_px;
+    hits[i].disparity_px = record.disparity_px;
+    hits[i].score = record.score;
+    hits[i].edge_sum = record.edge_sum;
+    hits[i].depth = {record.near_m, record.far_m};
+  }
+  return hits;
+}
+
+void require_method(const py::object& object, const char* kind, const char* method) {
+  if (!py::hasattr(object, method))
+    throw std::runtime_error(fmt::format("a {} must have a method {}()", kind, method));
+}
+
+class PythonDetector : public ObstacleDetector {
+ public:
+  explicit PythonDetector(py::object object) : object_(std::move(object)) {}
+  const std::vector<StereoHit>& detect(const StereoFrame& frame) override {
+    hits_ = in_python([&] { return hits_of((*object_).attr("detect")(frame)); });
+    return hits_;
+  }
+
+ private:
+  Held object_;
+  std::vector<StereoHit> hits_;
+};
+
+class PythonStateSource : public StateSource {
+ public:
+  explicit PythonStateSource(py::object object) : object_(std::move(object)) {
+    newest_ = in_python([&] { return py::cast<State>((*object_).attr("state")()); });
+  }
+  void on(const Sample& sample) override {
+    newest_ = in_python([&] {
+      (*object_).attr("on")(sample);
+      return py::cast<State>((*object_).attr("state")());
+    });
+  }
+  const State& state() const override { return newest_; }
+  State state_at(std::int64_t t_ns) const override {
+    return in_python([&] { return py::cast<State>((*object_).attr("state_at")(t_ns)); });
+  }
+
+ private:
+  Held object_;
+  State newest_;
+};
+
+class PythonPlanner : public Planner {
+ public:
+  explicit PythonPlanner(py::object object)
+      : object_(std::move(object)), has_concerns_(object_.has("concerns")) {}
+  Plan plan(const PlanRequest& request) override {
+    Plan plan = in_python([&] { return py::cast<Plan>((*object_).attr("plan")(request)); });
+    counts_.replans += 1;
+    counts_.straight += plan.origin == PlanOrigin::straight;
+    counts_.solved += plan.origin == PlanOrigin::solved;
+    counts_.kept += plan.origin == PlanOrigin::kept;
+    counts_.fallback += plan.origin == PlanOrigin::fallback;
+    return plan;
+  }
+  bool concerns(const ObstaclePoint& point, const Plan& plan) const override {
+    if (!has_concerns_) return true;
+    return in_python([&] {
+      return py::cast<bool>((*object_).attr("concerns")(Eigen::Vector3d(point.position_world), plan));
+    });
+  }
+
+ private:
+  Held object_;
+  bool has_concerns_;
+};
+
+template <typename Made, typename Adapter>
+std::unique_ptr<Made> adapted(const py::object& object, const char* kind, const char* method) {
+  require_method(object, kind, method);
+  return std::make_unique<Adapter>(object);
+}
+
+/// A part that makes itself from an object; the context of its making is not looked at.
+template <typename One, typename Make>
+One part_around(const py::object& object, Make make) {
+  One part;
+  part.name = py::str(py::type::of(object).attr("__name__"));
+  part.plugin = "Python";
+  part.make = std::move(make);
+  return part;
+}
+
+const Scenario& empty_scenario() {
+  static const Scenario scenario;
+  return scenario;
+}
+
+}  // namespace
+
+std::string told(py::error_already_set& error) {
+  if (error.matches(PyExc_KeyboardInterrupt)) interrupted = true;
+  std::string text = py::str(error.type().attr("__name__"));
+  text += ": " + std::string(py::str(error.value()));
+  py::object trace = error.trace();
+  std::string place;
+  while (trace && !trace.is_none()) {
+    const std::string file = py::str(trace.attr("tb_frame").attr("f_code").attr("co_filename"));
+    const bool is_ours = file.starts_with("<frozen") || file.ends_with("/understory/parts.py");
+    if (!is_ours)
+      place =
+          fmt::format(" ({}:{})", file.substr(file.rfind('/') + 1), py::cast<int>(trace.attr("tb_lineno")));
+    trace = trace.attr("tb_next");
+  }
+  return text + place;
+}
+
+void throw_as_ours(py::error_already_set& error) {
+  const std::string line = told(error);
+  if (!interrupted) {
+    error.restore();
+    PyErr_Print();
+  }
+  throw std::runtime_error(line);
+}
+
+std::unique_ptr<ObstacleDetector> detector_from(const py::object& object) {
+  return adapted<ObstacleDetector, PythonDetector>(object, "detector", "detect");
+}
+
+std::unique_ptr<StateSource> state_source_from(const py::object& object) {
+  return adapted<StateSource, PythonStateSource>(object, "state source", "state");
+}
+
+std::unique_ptr<Planner> planner_from(const py::object& object) {
+  return adapted<Planner, PythonPlanner>(object, "planner", "plan");
+}
+
+std::unique_ptr<ObstacleDetector> checked_detector_from(const py::object& object, const CalibratedRig& rig) {
+  const auto part =
+      part_around<DetectorPart>(object, [&](const FlightContext&) { return detector_from(object); });
+  return checked(part, {empty_scenario(), rig, {}, TruthHistory()});
+}
+
+std::unique_ptr<StateSource> checked_state_source_from(const py::object& object) {
+  const auto part =
+      part_around<StateSourcePart>(object, [&](const FlightContext&) { return state_source_from(object); });
+  return checked(part, {empty_scenario(), CalibratedRig(), {}, TruthHistory()});
+}
+
+std::unique_ptr<Planner> checked_planner_from(const py::object& object) {
+  const auto part =
+      part_around<PlannerPart>(object, [&](const PlannerPartContext&) { return planner_from(object); });
+  const AutopilotConfig& config = empty_scenario().autopilot.autopilot;
+  const FlightModel model(Airframe(), config.flight_model);
+  return checked(part, {{config.planner, model, Mission()}, empty_scenario()});
+}
+
+bool was_interrupted() { return interrupted.exchange(false); }
+
+}  // namespace understory

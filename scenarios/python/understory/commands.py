@@ -1,0 +1,175 @@
+"""The commands of the program from Python: each runs `understory`, and reads what it leaves."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any, Mapping, Optional, Sequence
+
+import numpy as np
+
+import _understory
+
+from .flight import settings_of
+
+
+class CommandFailed(RuntimeError):
+    """A command ended with an error: status 2 for bad input, 3 for a machine that failed."""
+
+    def __init__(self, status: int, message: str) -> None:
+        super().__init__(message)
+        self.status = status
+
+
+def program() -> str:
+    """The program that belongs to this module: $UNDERSTORY_PROGRAM, beside the build tree's module, else in PATH."""
+    given = os.environ.get("UNDERSTORY_PROGRAM")
+    if given:
+        return given
+    module = Path(_understory.__file__).resolve() if getattr(_understory, "__file__", None) else None
+    if module is not None:
+        for folder in (module.parent.parent, *(parent / "bin" for parent in module.parents)):
+            if os.access(folder / "understory", os.X_OK) and (folder / "understory").is_file():
+                return str(folder / "understory")
+    found = shutil.which("understory")
+    if found is None:
+        raise FileNotFoundError("the program understory was not found: install it, or set UNDERSTORY_PROGRAM")
+    return found
+
+
+def run(arguments: Sequence[str | os.PathLike], quiet: bool = True, accepted: Sequence[int] = (0,)) -> tuple[int, str]:
+    """Run a command. Returns its status and what it printed. Raises CommandFailed at a status that is not accepted."""
+    command = [program(), *[os.fspath(argument) for argument in arguments]]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE if quiet else None, text=True
+    ) as process:
+        try:
+            printed, complained = process.communicate()
+        except BaseException:
+            process.terminate()
+            raise
+    if process.returncode not in accepted:
+        lines = (complained or printed or "").strip().splitlines()
+        message = lines[-1] if lines else f"{' '.join(command)} ended with status {process.returncode}"
+        raise CommandFailed(process.returncode, message.removeprefix("understory: "))
+    if not quiet:
+        sys.stdout.write(printed)
+    return process.returncode, printed
+
+
+def _options(set: Optional[Mapping[str, Any]], plugins: Sequence[str | os.PathLike]) -> list[str]:
+    options = []
+    for setting in settings_of(set):
+        options += ["--set", setting]
+    for plugin in plugins:
+        options += ["--plugin", os.fspath(plugin)]
+    return options
+
+
+class Campaign:
+    """A campaign's folder: rows, summary and page of its flights."""
+
+    def __init__(self, folder: str | os.PathLike) -> None:
+        self.folder = Path(folder)
+        if not (self.folder / "flights.csv").is_file():
+            raise FileNotFoundError(f"{self.folder}: no flights.csv: not the folder of a campaign")
+
+    @property
+    def rows(self) -> np.ndarray:
+        """A record for each flight, fields as in flights.csv (docs/campaigns.md)."""
+        return np.genfromtxt(
+            self.folder / "flights.csv", delimiter=",", names=True, dtype=None, encoding="utf-8", deletechars=""
+        )
+
+    def to_pandas(self) -> Any:
+        """The same as a pandas.DataFrame, where pandas is installed."""
+        import pandas
+
+        return pandas.read_csv(self.folder / "flights.csv")
+
+    @property
+    def page(self) -> Path:
+        """The page of the campaign."""
+        return self.folder / "campaign.html"
+
+    def __repr__(self) -> str:
+        return f"<understory.Campaign {self.folder}>"
+
+
+def campaign(
+    file: str | os.PathLike | Mapping[str, Any],
+    out: str | os.PathLike,
+    set: Optional[Mapping[str, Any]] = None,
+    plugins: Sequence[str | os.PathLike] = (),
+    jobs: Optional[int] = None,
+    resume: bool = False,
+    quiet: bool = True,
+) -> Campaign:
+    """Fly a campaign: a file, a name of the library, or what would stand in the file as a dictionary,
+    {"scenario": "forest", "seeds": "1000..1019"}. Equals `understory campaign`."""
+    options = _options(set, plugins) + ["--out", os.fspath(out)]
+    if jobs is not None:
+        options += ["--jobs", str(jobs)]
+    if resume:
+        options.append("--resume")
+    if isinstance(file, Mapping):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "campaign.yaml"
+            path.write_text(json.dumps(dict(file)), encoding="utf-8")  # JSON is YAML
+            run(["campaign", path, *options], quiet)
+    else:
+        run(["campaign", file, *options], quiet)
+    return Campaign(out)
+
+
+def gate(
+    baseline: str | os.PathLike | Campaign, candidate: str | os.PathLike | Campaign, quiet: bool = True
+) -> tuple[bool, str]:
+    """Whether the candidate's flights are as good as the baseline's, and what `understory gate` says about it."""
+    folders = [one.folder if isinstance(one, Campaign) else one for one in (baseline, candidate)]
+    status, text = run(["gate", "--baseline", folders[0], "--candidate", folders[1]], quiet, (0, 1))
+    return status == 0, text
+
+
+def evaluate(
+    inputs: str | os.PathLike | Sequence[str | os.PathLike],
+    out: str | os.PathLike,
+    set: Optional[Mapping[str, Any]] = None,
+    plugins: Sequence[str | os.PathLike] = (),
+    every: int = 1,
+    quiet: bool = True,
+) -> dict[str, Any]:
+    """Compare detections on recordings with true depth. Equals `understory evaluate`; returns evaluation.json."""
+    folders = [inputs] if isinstance(inputs, (str, os.PathLike)) else list(inputs)
+    run(["evaluate", *folders, "--out", out, "--every", str(every), *_options(set, plugins)], quiet)
+    return json.loads((Path(out) / "evaluation.json").read_text(encoding="utf-8"))
+
+
+def record(
+    scenario: str | os.PathLike,
+    out: str | os.PathLike,
+    seed: Optional[int] = None,
+    set: Optional[Mapping[str, Any]] = None,
+    plugins: Sequence[str | os.PathLike] = (),
+    path: Optional[str | os.PathLike] = None,
+    quiet: bool = True,
+) -> Path:
+    """Record a flight, or cameras carried along the poses of `path`, as a EuRoC data set. Returns its folder. Equals
+    `understory record`."""
+    options = _options(set, plugins) + ["--out", os.fspath(out)]
+    if seed is not None:
+        options += ["--seed", str(seed)]
+    if path is not None:
+        options += ["--path", os.fspath(path)]
+    run(["record", scenario, *options], quiet, (0, 1))
+    return Path(out)
+
+
+def keys() -> list[dict[str, str]]:
+    """Every key of a scenario: key, default, unit, range, meaning. Equals `understory keys --json`."""
+    return _understory.keys()

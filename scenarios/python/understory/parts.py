@@ -1,0 +1,150 @@
+"""Parts of your own, written in Python: detectors, state sources, planners and courses.
+
+A part is a class (or any callable) that makes it from a context, under a name that scenarios can give::
+
+    @understory.detector("edges", keys=[understory.Key("depth_m", 8.0, 2.0, 50.0, "depth that is looked at")])
+    class Edges:
+        "Corners at one depth."                     # its meaning, for lists
+        def __init__(self, context): ...            # context.rig, context.config["depth_m"], context.seed
+        def detect(self, frame): ...                # frame.left, frame.right, frame.t_ns; returns hits(...)
+
+`understory fly forest --plugin mine.py --set perception.detector=edges` flies it.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import inspect
+import os
+import sys
+from typing import Any, Callable, Sequence
+
+import numpy as np
+
+import _understory
+
+_Factory = Callable[..., Any]
+
+
+def _meaning(factory: _Factory) -> str:
+    text = (inspect.getdoc(factory) or "").strip().splitlines()
+    return text[0] if text else "no description"
+
+
+def _file(factory: _Factory) -> str:
+    try:
+        return os.path.abspath(inspect.getfile(factory))
+    except (TypeError, OSError):
+        return "Python"
+
+
+def detector(
+    name: str,
+    keys: Sequence[_understory.Key] = (),
+    needs_images: bool = True,
+    cost_s: float = 0.0,
+) -> Callable[[_Factory], _Factory]:
+    """Name a detector. The factory gets a context with rig, config, seed and make_detector(name); what it makes has
+    detect(frame), which returns an array of hit_dtype, from top to bottom.
+
+    cost_s: time that a pair costs the aircraft's computer, before perception.compute.factor.
+    """
+
+    def register(factory: _Factory) -> _Factory:
+        _understory.add_detector(
+            name, _meaning(factory), _file(factory), list(keys), factory, needs_images, float(cost_s)
+        )
+        return factory
+
+    return register
+
+
+def state_source(name: str, keys: Sequence[_understory.Key] = ()) -> Callable[[_Factory], _Factory]:
+    """Name a state source. What the factory makes has on(sample), state() and state_at(t_ns), which return a State;
+    context.make_state_source("filter") gives one of ours to build on."""
+
+    def register(factory: _Factory) -> _Factory:
+        _understory.add_state_source(name, _meaning(factory), _file(factory), list(keys), factory)
+        return factory
+
+    return register
+
+
+def planner(name: str, keys: Sequence[_understory.Key] = ()) -> Callable[[_Factory], _Factory]:
+    """Name a planner. What the factory makes has plan(request), which returns a Plan: context.fly(request, commands)
+    makes one from commands (bank_rad, climb_mps, duration_s), with its clearance_m. It may have
+    concerns(position_world, plan): whether a new point of the map makes the plan outdated."""
+
+    def register(factory: _Factory) -> _Factory:
+        _understory.add_planner(name, _meaning(factory), _file(factory), list(keys), factory)
+        return factory
+
+    return register
+
+
+def course(name: str, keys: Sequence[_understory.Key] = ()) -> Callable[[_Factory], _Factory]:
+    """Name a course: a function of (seed, goal_x_m, **keys) that returns a list of Obstacle. Equal arguments must give
+    equal obstacles."""
+
+    def register(factory: _Factory) -> _Factory:
+        _understory.add_course(name, _meaning(factory), _file(factory), list(keys), factory)
+        return factory
+
+    return register
+
+
+def trunk(x_m: float, y_m: float, radius_m: float = 0.15, height_m: float = 12.0, name: str = "trunk") -> Any:
+    """An upright trunk on the ground at (x_m, y_m)."""
+    return _understory.Obstacle(name, [x_m, y_m, 0.0], [x_m, y_m, height_m], radius_m)
+
+
+def hits(
+    rig: _understory.StereoRig,
+    columns_px: Any,
+    rows_px: Any,
+    disparities_px: Any,
+    scores: Any = 0.0,
+    block_px: int = 5,
+) -> np.ndarray:
+    """Hits from blocks of the left image, sorted from top to bottom: an array of hit_dtype.
+
+    columns_px, rows_px: top left corner of each block; disparities_px: u_left - u_right; one number stands for all.
+    """
+    columns = np.atleast_1d(np.asarray(columns_px, dtype=np.int32))
+    rows = np.broadcast_to(np.asarray(rows_px, dtype=np.int32), columns.shape)
+    disparities = np.broadcast_to(np.asarray(disparities_px, dtype=float), columns.shape)
+    if columns.ndim != 1:
+        raise ValueError(f"columns_px must have one dimension, got shape {columns.shape}")
+    depths = rig.depth_m(disparities)
+    middle = 0.5 * (block_px - 1)
+    array = np.zeros(len(columns), dtype=_understory.hit_dtype)
+    array["column_px"], array["row_px"], array["disparity_px"] = columns, rows, disparities
+    array["score"] = scores
+    array["position_camera"][:, 0] = (columns + middle - rig.center_left_x_px) * depths / rig.focal_px
+    array["position_camera"][:, 1] = (rows + middle - rig.center_y_px) * depths / rig.focal_px
+    array["position_camera"][:, 2] = depths
+    array["near_m"], array["far_m"] = rig.depth_m(disparities + 1), rig.depth_m(disparities - 1)
+    return array[np.lexsort((array["column_px"], array["row_px"]))]
+
+
+def load_plugin(file: str | os.PathLike) -> str:
+    """Load a plug-in, a shared library or a Python file, whose parts scenarios can then name. Returns its path."""
+    return _understory.load_plugin(os.fspath(file))
+
+
+def parts() -> dict[str, list[str]]:
+    """Names of all parts, by kind."""
+    return _understory.parts()
+
+
+def _run_plugin(file: str) -> None:
+    """Run a plug-in's file as a module of its own name; its decorators add the parts. Called by load_plugin."""
+    name = os.path.splitext(os.path.basename(file))[0]
+    folder = os.path.dirname(file)
+    if folder not in sys.path:
+        sys.path.append(folder)  # for modules beside it
+    spec = importlib.util.spec_from_file_location(name, file)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    spec.loader.exec_module(module)
