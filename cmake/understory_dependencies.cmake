@@ -24,14 +24,8 @@ add_library(ompl_only INTERFACE)
 target_include_directories(ompl_only SYSTEM INTERFACE ${OMPL_INCLUDE_DIRS})
 target_link_libraries(ompl_only INTERFACE ${OMPL_LIBRARIES})
 
-# Debian's mujocoConfig.cmake asks for OpenGL's development files and an include folder of libqhull that nothing
-# here needs (GL is opened at run time): find the library itself.
 if(UNDERSTORY_SIM)
-  find_path(MUJOCO_INCLUDE_DIR mujoco/mujoco.h REQUIRED)
-  find_library(MUJOCO_LIBRARY mujoco REQUIRED)
-  add_library(mujoco::mujoco SHARED IMPORTED)
-  set_target_properties(mujoco::mujoco PROPERTIES
-    IMPORTED_LOCATION "${MUJOCO_LIBRARY}" INTERFACE_INCLUDE_DIRECTORIES "${MUJOCO_INCLUDE_DIR}")
+  include(understory_mujoco)
 
   # Tuning's optimisers. Its headers see Boost.Serialization, whose library is linked, and TBB.
   find_package(pagmo REQUIRED)

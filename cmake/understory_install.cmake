@@ -1,7 +1,7 @@
-# What is installed, in two components: the program with its data, and a CMake package with what runs on an aircraft
-# and what plug-ins need, find_package(understory COMPONENTS perception estimation plugin). docs/example and
-# docs/examples use the second from outside the tree; tests/package builds them, runs the program from a prefix that was
-# moved, and flies the plug-ins.
+# What is installed, in three components: the program with its data; a CMake package with what runs on an aircraft, what
+# plug-ins need, and the whole testbed, find_package(understory COMPONENTS perception estimation plugin simulation); the
+# Python module. docs/example and docs/examples use the second from outside the tree; tests/package builds them, runs the
+# program from a prefix that was moved, and flies the plug-ins.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
@@ -43,8 +43,17 @@ install(TARGETS understory_plugin understory_settings opencv_core_parts opencv_f
                 picture_codecs perception_text perception_io estimation_types estimation
         EXPORT understory-targets)
 install(EXPORT understory-targets NAMESPACE understory:: DESTINATION ${package_folder})
+# The whole testbed, with what it links: a set of its own, so that an aircraft's program needs none of it.
+if(UNDERSTORY_SIM AND NOT UNDERSTORY_SANITIZE)
+  set_target_properties(scenarios PROPERTIES EXPORT_NAME simulation)
+  install(TARGETS scenarios scenarios_files scenarios_flight_computer scenarios_pages scenarios_pictures scenarios_rig
+                  scenarios_scenario scenarios_truth autopilot planning planning_types sim sim_types ompl_only
+          EXPORT understory-simulation-targets)
+  install(EXPORT understory-simulation-targets NAMESPACE understory:: DESTINATION ${package_folder})
+  install(FILES cmake/understory_mujoco.cmake DESTINATION ${package_folder})
+endif()
 install(DIRECTORY perception estimation planning sim scenarios DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/understory
-        FILES_MATCHING PATTERN "*.hpp" PATTERN node_modules EXCLUDE)
+        FILES_MATCHING PATTERN "*.hpp" PATTERN node_modules EXCLUDE PATTERN python EXCLUDE)
 install(FILES ${PROJECT_BINARY_DIR}/generated/understory_header_hash.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/understory)
 install(FILES cmake/understory_plugin.cmake DESTINATION ${package_folder})
 configure_package_config_file(cmake/understory-config.cmake.in understory-config.cmake
@@ -52,3 +61,13 @@ configure_package_config_file(cmake/understory-config.cmake.in understory-config
 write_basic_package_version_file(understory-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/understory-config.cmake ${PROJECT_BINARY_DIR}/understory-config-version.cmake
         DESTINATION ${package_folder})
+
+# Debian's folder for all versions of Python 3. Elsewhere than in /usr it goes into PYTHONPATH.
+if(understory_has_python)
+  set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME python)
+  install(TARGETS python_module LIBRARY DESTINATION ${python_packages})
+  install(TARGETS understory_python LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/understory)
+  install(DIRECTORY scenarios/python/understory DESTINATION ${python_packages} FILES_MATCHING PATTERN "*.py" PATTERN py.typed
+          PATTERN __pycache__ EXCLUDE)
+  install(FILES scenarios/python/_understory.pyi DESTINATION ${python_packages})
+endif()

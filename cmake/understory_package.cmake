@@ -6,6 +6,9 @@ set(CPACK_PACKAGE_CONTACT "The Understory developers <understory@example.org>")
 set(CPACK_PACKAGE_HOMEPAGE_URL "")
 set(CPACK_GENERATOR DEB)
 set(CPACK_COMPONENTS_ALL program development)
+if(understory_has_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
     OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
@@ -32,9 +35,20 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "Static libraries, headers and CMake configuration of the pushbroom stereo
 detector with its readers, and of the error-state filter, as they run on an
 aircraft, and the headers for plug-ins:
-find_package(understory COMPONENTS perception estimation plugin).")
+find_package(understory COMPONENTS perception estimation plugin); and the
+whole testbed for programs of one's own: COMPONENTS simulation.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "libeigen3-dev, libopencv-dev, libyaml-cpp-dev, libpugixml-dev, libfmt-dev, libtbb-dev, libhwy-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libmujoco-dev, libompl-dev, libzstd-dev, nlohmann-json3-dev")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-understory)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "Flights, parts and Gymnasium environments in Python:
+import understory; and plug-ins in Python for the program understory.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "understory (= ${PROJECT_VERSION}-1), python3-numpy, python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR})")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-opencv, python3-matplotlib, python3-pandas")
 
 # Debian asks for a copyright file and a changelog in each package.
 file(READ LICENSE license)
@@ -50,7 +64,7 @@ add_custom_command(OUTPUT ${pages}/changelog.gz ${pages}/changelog.Debian.gz VER
   COMMAND sh -ec "gzip -9n <${PROJECT_SOURCE_DIR}/CHANGELOG.md >${pages}/changelog.gz"
   COMMAND sh -ec "gzip -9n <${pages}/changelog >${pages}/changelog.Debian.gz")
 add_custom_target(debian_pages ALL DEPENDS ${pages}/changelog.gz ${pages}/changelog.Debian.gz)
-foreach(component program development)
+foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   string(TOUPPER ${component} key)
   install(FILES ${pages}/copyright ${pages}/changelog.gz ${pages}/changelog.Debian.gz COMPONENT ${component}
           DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_${key}_PACKAGE_NAME})

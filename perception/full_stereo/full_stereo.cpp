@@ -29,6 +29,32 @@ int mode_of(SgbmPaths paths) {
   return cv::StereoSGBM::MODE_SGBM;
 }
 
+/// `cell_m`: room to work in.
+void add_cell(const cv::Mat& depth_m, const StereoRig& rig, const FullStereoCrop& crop, int column_px,
+              int row_px, std::vector<float>& cell_m, std::vector<StereoHit>& hits) {
+  cell_m.clear();
+  for (int v = row_px; v < row_px + crop.cell_px; ++v) {
+    const auto* row = depth_m.ptr<float>(v);
+    for (int u = column_px; u < column_px + crop.cell_px; ++u)
+      if (row[u] >= crop.minimum_depth_m && row[u] <= crop.maximum_depth_m) cell_m.push_back(row[u]);
+  }
+  if (cell_m.size() < static_cast<std::size_t>(crop.minimum_pixels_per_cell)) return;
+  const auto middle = cell_m.begin() + static_cast<std::ptrdiff_t>(cell_m.size() / 2);
+  std::nth_element(cell_m.begin(), middle, cell_m.end());
+  const double z_m = *middle, center_px = 0.5 * (crop.cell_px - 1);
+  StereoHit hit;
+  hit.column_px = column_px;
+  hit.row_px = row_px;
+  hit.disparity_px = rig.disparity_px(z_m);
+  hit.position_camera = {(column_px + center_px - rig.center_left_x_px) * z_m / rig.focal_px,
+                         (row_px + center_px - rig.center_y_px) * z_m / rig.focal_px, z_m};
+  if (hit.position_camera.y() > crop.maximum_below_m) return;
+  // Beyond half a pixel another whole disparity would have matched better.
+  hit.depth = rig.depths_around(hit.disparity_px, uncertainty_px);
+  if (!std::isfinite(hit.depth.far_m)) hit.depth.far_m = crop.maximum_depth_m;
+  hits.push_back(hit);
+}
+
 }  // namespace
 
 FullStereoDetector::FullStereoDetector(const StereoRig& rig, const FullStereoCrop& crop, int window_px,
@@ -109,36 +135,19 @@ FullStereoCrop one_pixel_crop(const StereoRig& rig) {
 
 const std::vector<StereoHit>& FullStereoDetector::detect(const StereoFrame& frame) {
   match(frame);
-  hits_.clear();
-  const int cell_px = crop_.cell_px;
-  const int last_row_px = std::min(rig_.scaled_row_px(crop_.last_row_px), rig_.height_px - cell_px);
-  for (int row_px = 0; row_px <= last_row_px; row_px += cell_px)
-    for (int column_px = 0; column_px + cell_px <= rig_.width_px; column_px += cell_px)
-      add_cell(column_px, row_px);
+  hits_of_depth(depth_m_, rig_, crop_, hits_);
   return hits_;
 }
 
-void FullStereoDetector::add_cell(int column_px, int row_px) {
-  cell_m_.clear();
-  for (int v = row_px; v < row_px + crop_.cell_px; ++v) {
-    const auto* row = depth_m_.ptr<float>(v);
-    for (int u = column_px; u < column_px + crop_.cell_px; ++u)
-      if (row[u] >= crop_.minimum_depth_m && row[u] <= crop_.maximum_depth_m) cell_m_.push_back(row[u]);
-  }
-  if (cell_m_.size() < static_cast<std::size_t>(crop_.minimum_pixels_per_cell)) return;
-  const auto middle = cell_m_.begin() + static_cast<std::ptrdiff_t>(cell_m_.size() / 2);
-  std::nth_element(cell_m_.begin(), middle, cell_m_.end());
-  const double z_m = *middle, center_px = 0.5 * (crop_.cell_px - 1);
-  StereoHit hit;
-  hit.column_px = column_px;
-  hit.row_px = row_px;
-  hit.disparity_px = rig_.disparity_px(z_m);
-  hit.position_camera = {(column_px + center_px - rig_.center_left_x_px) * z_m / rig_.focal_px,
-                         (row_px + center_px - rig_.center_y_px) * z_m / rig_.focal_px, z_m};
-  if (hit.position_camera.y() > crop_.maximum_below_m) return;
-  hit.depth = rig_.depths_around(hit.disparity_px, uncertainty_px);
-  if (!std::isfinite(hit.depth.far_m)) hit.depth.far_m = crop_.maximum_depth_m;
-  hits_.push_back(hit);
+void hits_of_depth(const cv::Mat& depth_m, const StereoRig& rig, const FullStereoCrop& crop,
+                   std::vector<StereoHit>& hits) {
+  hits.clear();
+  std::vector<float> cell_m;
+  const int cell_px = crop.cell_px;
+  const int last_row_px = std::min(rig.scaled_row_px(crop.last_row_px), rig.height_px - cell_px);
+  for (int row_px = 0; row_px <= last_row_px; row_px += cell_px)
+    for (int column_px = 0; column_px + cell_px <= rig.width_px; column_px += cell_px)
+      add_cell(depth_m, rig, crop, column_px, row_px, cell_m, hits);
 }
 
 }  // namespace understory

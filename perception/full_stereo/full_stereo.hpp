@@ -14,11 +14,15 @@ namespace understory {
 /// disparity nearest to its detection depth.
 FullStereoCrop one_pixel_crop(const StereoRig& rig);
 
+/// Hits of a dense depth image: CV_32FC1, metres along the optical axis of the left camera, 0 where unknown.
+/// A hit is a cell of the left image with enough pixels at the wanted depths, at the median of those; its
+/// score and edge sum are 0. Its depth interval is that of half a pixel of disparity either way.
+void hits_of_depth(const cv::Mat& depth_m, const StereoRig& rig, const FullStereoCrop& crop,
+                   std::vector<StereoHit>& hits);
+
 /// Full stereo in the detector's place, which the pushbroom detector does without (docs/decisions/012):
-/// OpenCV matches every pixel. A hit is a cell of the left image with enough pixels at the wanted depths, at
-/// the median of those; its score and edge sum are 0, for full stereo tells neither. Its depth interval is
-/// that of half a pixel of disparity either way, beyond which another whole disparity would have matched
-/// better. Does not depend on the number of OpenCV's threads.
+/// OpenCV matches every pixel; hits are those of hits_of_depth(). Does not depend on the number of OpenCV's
+/// threads.
 class FullStereoDetector : public ObstacleDetector {
  public:
   /// Precondition (asserted): window_px is odd, disparities a multiple of 16, smoothness_2 above
@@ -36,7 +40,6 @@ class FullStereoDetector : public ObstacleDetector {
   FullStereoDetector(const StereoRig& rig, const FullStereoCrop& crop, int window_px, int min_disparity_px,
                      int disparities);
   void match(const StereoFrame& frame);
-  void add_cell(int column_px, int row_px);
 
   StereoRig rig_;
   FullStereoCrop crop_;
@@ -49,7 +52,6 @@ class FullStereoDetector : public ObstacleDetector {
   cv::Ptr<cv::StereoMatcher> matcher_;
   cv::Mat left_, right_, disparity_;  // padded; disparity CV_16S, sixteenths of a pixel
   cv::Mat depth_m_;
-  std::vector<float> cell_m_;
   std::vector<StereoHit> hits_;
 };
 

@@ -5,6 +5,7 @@
 #include "perception/perception_config.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
+#include "scenarios/config/config_tree.hpp"
 #include "scenarios/evaluation/evaluation.hpp"
 #include "scenarios/evaluation/evaluation_report.hpp"
 #include "scenarios/evaluation/evaluation_suite.hpp"
@@ -22,17 +23,34 @@ struct EvaluateArguments {
   std::vector<std::string> inputs;
   VisionConfigSources vision;
   std::string out;
+  std::vector<std::string> detectors, disparities;
   int every = 1;
   int jobs = 0;
 };
+
+/// Throws where one of the names is no detector of a plug-in. Ours are compared anyway.
+void require_detectors(const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    const DetectorPart* part = parts().detectors.find(name);
+    if (part == nullptr)
+      throw ScenarioError(fmt::format("--detector {}: there is no such detector{}", name,
+                                      did_you_mean(name, parts().detectors.names())));
+    if (part->plugin.empty())
+      throw ScenarioError(
+          fmt::format("--detector {}: must be of a plug-in; Understory's own are compared anyway", name));
+  }
+}
 
 int run_evaluate(EvaluateArguments arguments) {
   EvaluationOptions options;
   arguments.vision.one_depth = true;  // full stereo is cropped to one depth's interval, to be compared
   // What is wrong there shows before anything is recorded.
   if (const std::string detector = read_vision_config(arguments.vision, "").detector; detector != "pushbroom")
-    throw ScenarioError(
-        "perception.detector: must be pushbroom, which evaluate compares with the others, got " + detector);
+    throw ScenarioError("perception.detector: must be pushbroom here; --detector adds another, got " +
+                        detector);
+  require_detectors(arguments.detectors);
+  for (const std::string& given : arguments.disparities)
+    options.settings.disparities.push_back(disparity_folder_of(given));
   options.jobs = jobs_or_cores(arguments.jobs);
   fs::path out = arguments.out;
   std::error_code ignored;
@@ -51,8 +69,10 @@ int run_evaluate(EvaluateArguments arguments) {
                                    data_root() / "models");
   else
     options.folders.assign(arguments.inputs.begin(), arguments.inputs.end());
-  options.settings = {read_vision_config(arguments.vision, rig_named_in(options.folders.front())),
-                      arguments.every};
+  static_cast<VisionConfig&>(options.settings) =
+      read_vision_config(arguments.vision, rig_named_in(options.folders.front()));
+  options.settings.every = arguments.every;
+  options.settings.detectors = arguments.detectors;
   ProgressLine line;
   options.on_progress = [&](std::int64_t frames, std::int64_t expected) {
     line.show(fmt::format("{} of {} frames", frames, expected), static_cast<std::size_t>(frames),
@@ -79,6 +99,13 @@ void add_evaluate_command(CommandLine& line) {
                 "scenarios/evaluations",
                 1);
   add_vision_options(command, arguments->vision);
+  add_plugin_option(command);
+  command.texts("--detector", "NAME", arguments->detectors,
+                "also compare this detector of a plug-in; repeatable");
+  command.texts(
+      "--disparities", "NAME=FOLDER", arguments->disparities,
+      "disparities of another program for each pair, PFM or 16-bit PNG in 1/256 px, named as the left "
+      "images (docs/evaluate.md); repeatable");
   command.whole("--every", arguments->every, 1, 1000, "use every N-th frame only");
   add_jobs_option(command, arguments->jobs, "recordings");
   command.text("--out", "FOLDER", arguments->out, "results folder (default: evaluations/NAME)");

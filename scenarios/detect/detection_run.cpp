@@ -1,6 +1,6 @@
 #include "scenarios/detect/detection_run.hpp"
-#include "scenarios/parts/checked_parts.hpp"
-#include "scenarios/parts/oracles.hpp"
+
+#include "scenarios/detect/recorded_detector.hpp"
 
 #include <fmt/format.h>
 
@@ -176,37 +176,6 @@ std::string timings_csv(const std::vector<FrameRecord>& frames) {
   return to_csv(table);
 }
 
-/// The detector that the keys name, for rectified pairs. Without a flight around it, it has no truth.
-class RecordedDetector {
- public:
-  RecordedDetector(const VisionConfig& config, const StereoRig& rig) : rig_{rig, {}} {
-    const DetectorPart& part = *parts().detectors.find(config.detector);
-    if (!part.needs_images)
-      throw ScenarioError(fmt::format(
-          "perception.detector: {} looks at no images; recordings have nothing else", config.detector));
-    PerceptionSection& perception = scenario_.perception;
-    perception.detector = config.detector;
-    perception.pushbroom = config.pushbroom;
-    perception.stereo_bm = config.stereo_bm;
-    perception.stereo_sgbm = config.stereo_sgbm;
-    perception.full_stereo = config.full_stereo;
-    perception.plugged = config.plugged;
-    detector_ =
-        checked(part, {scenario_, rig_, no_obstacles_, truth_, perception.plugged.find(part.name), 1});
-  }
-  RecordedDetector(const RecordedDetector&) = delete;
-  RecordedDetector& operator=(const RecordedDetector&) = delete;
-
-  ObstacleDetector& detector() { return *detector_; }
-
- private:
-  CalibratedRig rig_;
-  Scenario scenario_;
-  std::vector<Obstacle> no_obstacles_;
-  TruthHistory truth_;
-  std::unique_ptr<ObstacleDetector> detector_;
-};
-
 /// What is known before the first frame.
 DetectionResult described(const CalibratedRig& camera, const ObstacleDetector& detector,
                           const VisionConfig& config, const StereoRecording& recording) {
@@ -249,7 +218,7 @@ DetectionResult run_detection(const DetectionOptions& options) {
   CarriedMap map{poses_for(options, recording), PosedMap(config.map)};
   std::optional<Rectifier> rectifier;
   if (camera.calibration) rectifier.emplace(*camera.calibration, options.interpolation);
-  RecordedDetector recorded(config, camera.rig);
+  RecordedDetector recorded(config, config.detector, camera.rig);
   ObstacleDetector& detector = recorded.detector();
   std::vector<fs::path> read = options.inputs;
   read.push_back(options.rig);

@@ -40,19 +40,31 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
 
 }  // namespace
 
+void EvaluationSum::make_room(const EvaluationSettings& settings) {
+  algorithms.assign(algorithm_names.begin(), algorithm_names.end());
+  append(algorithms, settings.detectors);
+  for (const DisparityFolder& given : settings.disparities) algorithms.push_back(given.name);
+  const std::size_t count = algorithms.size();
+  tallies.resize(count);
+  sightings.resize(count);
+  hits.resize(count);
+  paced.resize(count);
+  cost_ms.resize(count);
+  disparities.resize(count);
+}
+
 void EvaluationSum::add(const EvaluationSum& other) {
   frames += other.frames;
   recordings += other.recordings;
   seconds += other.seconds;
-  for (std::size_t i = 0; i < algorithm_count; ++i) {
+  for (std::size_t i = 0; i < algorithms.size(); ++i) {
     tallies[i].add(other.tallies[i]);
     append(sightings[i], other.sightings[i]);
     hits[i] += other.hits[i];
-  }
-  for (std::size_t i = 0; i < computed_count; ++i) {
     append(cost_ms[i], other.cost_ms[i]);
     paced[i].frames += other.paced[i].frames;
     append(paced[i].sightings, other.paced[i].sightings);
+    disparities[i].add(other.disparities[i]);
   }
   for (std::size_t i = 0; i < published.size(); ++i) published[i].add(other.published[i]);
   for (std::size_t i = 0; i < invariance.size(); ++i) {
@@ -115,6 +127,7 @@ Evaluation evaluate(const EvaluationOptions& options) {
   });
 
   evaluation.all.name = "all";
+  evaluation.all.make_room(options.settings);
   for (const RecordingEvaluation& recording : evaluation.recordings) {
     evaluation.all.add(recording.sum);
     const auto scene = std::ranges::find(evaluation.scenes, recording.sum.name, &EvaluationSum::name);

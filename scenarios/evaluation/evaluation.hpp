@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/evaluation/disparity_files.hpp"
 #include "scenarios/evaluation/obstacle_sightings.hpp"
 #include "scenarios/evaluation/published_evaluations.hpp"
 #include "scenarios/evaluation/vision_tally.hpp"
@@ -18,11 +19,14 @@ namespace understory {
 /// evaluations with memory, `compute` the aircraft's computer, for what it finds at its own pace, `enabled`
 /// or not.
 struct EvaluationSettings : VisionConfig {
-  int every = 1;  ///< every n-th frame only
+  int every = 1;                                  ///< every n-th frame only
+  std::vector<std::string> detectors = {};        ///< further ones, by the names of their parts
+  std::vector<DisparityFolder> disparities = {};  ///< of other programs
 };
 
-/// The algorithms of one table, in its order: first those that a computer has to compute. All look at the
-/// same depths.
+/// The algorithms that every evaluation has; the first four have to be computed, and so have those that
+/// follow all six: the settings' detectors, then their disparities. All look at the same depths, detectors of
+/// one's own where they like.
 enum AlgorithmIndex { our_rule, the_papers_rule, stereo_bm, stereo_sgbm, true_depth, at_random };
 inline constexpr std::size_t algorithm_count = 6, computed_count = 4;
 inline constexpr std::array<const char*, algorithm_count> algorithm_names{
@@ -54,17 +58,26 @@ struct EvaluationSum {
   std::string name;  ///< of the scene; "all"
   std::int64_t frames = 0, recordings = 0;
   double seconds = 0;
-  std::array<VisionTally, algorithm_count> tallies;
-  std::array<std::vector<ObstacleSighting>, algorithm_count> sightings;
-  std::array<std::int64_t, algorithm_count> hits{};
-  std::array<PacedResult, computed_count> paced;
-  std::array<std::vector<double>, computed_count> cost_ms;  ///< per frame, on one thread of this machine
+  std::vector<std::string> algorithms;  ///< names; what follows has a place for each
+  std::vector<VisionTally> tallies;
+  std::vector<std::vector<ObstacleSighting>> sightings;
+  std::vector<std::int64_t> hits;
+  std::vector<PacedResult> paced;            ///< of those that are computed
+  std::vector<std::vector<double>> cost_ms;  ///< per frame, on one thread of this machine; of those, too
+  std::vector<DisparityErrors> disparities;  ///< of those that match every pixel
   std::array<PublishedScores, published_algorithms.size()> published;
   std::vector<InvarianceRow> invariance;
   std::vector<PrecisionRecallCurve> curves;
 
+  /// Places for all algorithms of the settings, with nothing in them.
+  void make_room(const EvaluationSettings& settings);
   void add(const EvaluationSum& other);
 };
+
+/// Whether a computer has to compute the algorithm of this place.
+constexpr bool is_computed(std::size_t algorithm) {
+  return algorithm < computed_count || algorithm >= algorithm_count;
+}
 
 /// A frame with many false positives, to be shown.
 struct WorstFrame {

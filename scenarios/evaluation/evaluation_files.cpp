@@ -51,7 +51,7 @@ Json algorithm_json(const EvaluationSum& sum, std::size_t index) {
   std::int64_t hidden = 0;
   const Share near = found_within(sum.sightings[index], 1),
               far = found_within(sum.sightings[index], 3, &hidden);
-  Json json{{"name", algorithm_names[index]}, {"hits", sum.hits[index]}};
+  Json json{{"name", sum.algorithms[index]}, {"hits", sum.hits[index]}};
   for (std::size_t i = 0; i < tolerance_count; ++i) {
     json["precision"][tolerance_names[i]] = to_json(tally.rates[i].precision);
     json["recall"][tolerance_names[i]] = to_json(tally.rates[i].recall);
@@ -63,7 +63,15 @@ Json algorithm_json(const EvaluationSum& sum, std::size_t index) {
   json["found_within_1_m"] = to_json(near);
   json["found_within_3_m"] = to_json(far);
   json["hidden_within_3_m"] = hidden;
-  if (index < computed_count) json["median_ms"] = quantile(sum.cost_ms[index], 0.5);
+  if (is_computed(index)) json["median_ms"] = quantile(sum.cost_ms[index], 0.5);
+  if (const DisparityErrors& errors = sum.disparities[index]; errors.true_pixels > 0)
+    json["disparities"] = {{"true_pixels", errors.true_pixels},
+                           {"matched", errors.matched},
+                           {"bad_1", errors.bad_1},
+                           {"bad_2", errors.bad_2},
+                           {"bad_4", errors.bad_4},
+                           {"end_point_error_px",
+                            errors.sum_px / static_cast<double>(std::max<std::int64_t>(1, errors.matched))}};
   for (const auto& [name, bins] : tally.parts)
     for (const auto& [bin, rates] : bins) json["parts"][name][bin] = to_json(rates);
   return json;
@@ -72,12 +80,14 @@ Json algorithm_json(const EvaluationSum& sum, std::size_t index) {
 Json sum_json(const EvaluationSum& sum) {
   Json json{
       {"name", sum.name}, {"recordings", sum.recordings}, {"frames", sum.frames}, {"seconds", sum.seconds}};
-  for (std::size_t i = 0; i < algorithm_count; ++i) json["algorithms"].push_back(algorithm_json(sum, i));
-  for (std::size_t i = 0; i < computed_count; ++i)
-    json["computer"].push_back({{"name", algorithm_names[i]},
-                                {"frames", sum.paced[i].frames},
-                                {"found_within_1_m", to_json(found_within(sum.paced[i].sightings, 1))},
-                                {"found_within_3_m", to_json(found_within(sum.paced[i].sightings, 3))}});
+  for (std::size_t i = 0; i < sum.algorithms.size(); ++i)
+    json["algorithms"].push_back(algorithm_json(sum, i));
+  for (std::size_t i = 0; i < sum.algorithms.size(); ++i)
+    if (is_computed(i))
+      json["computer"].push_back({{"name", sum.algorithms[i]},
+                                  {"frames", sum.paced[i].frames},
+                                  {"found_within_1_m", to_json(found_within(sum.paced[i].sightings, 1))},
+                                  {"found_within_3_m", to_json(found_within(sum.paced[i].sightings, 3))}});
   for (std::size_t i = 0; i < published_algorithms.size(); ++i)
     json["paper"].push_back({{"name", algorithm_names[published_algorithms[i]]},
                              {"single_frame", to_json(sum.published[i].single_frame)},

@@ -181,8 +181,9 @@ LinePlot response_plot(const Evaluation& evaluation) {
   plot.title = "Recall over the true distance of the blocks";
   plot.x_label = "true distance, m";
   plot.y_label = "recall, %";
-  for (const std::size_t i : {our_rule, the_papers_rule, stereo_bm, stereo_sgbm}) {
-    Series series{.name = algorithm_names[i], .mark = Mark::line};
+  for (std::size_t i = 0; i < evaluation.all.algorithms.size(); ++i) {
+    if (!is_computed(i)) continue;
+    Series series{.name = evaluation.all.algorithms[i], .mark = Mark::line};
     const std::vector<Share>& response = evaluation.all.tallies[i].response;
     for (std::size_t bin = 0; bin < response.size(); ++bin) {
       if (response[bin].of < 20) continue;

@@ -21,6 +21,7 @@ class EvaluationRecording {
   explicit EvaluationRecording(const std::filesystem::path& folder, const CalibrationOptions& options = {});
 
   const StereoRig& rig() const { return camera_.rig; }
+  bool is_raw() const { return camera_.calibration.has_value(); }
   bool has_depth() const { return has_depth_; }
   bool has_objects() const { return !objects_.empty(); }
   bool has_poses() const { return !true_poses_.empty(); }

@@ -12,7 +12,13 @@
 namespace understory {
 namespace {
 
-constexpr std::array compared{our_rule, the_papers_rule, stereo_bm, stereo_sgbm};
+/// All that are computed.
+std::vector<std::size_t> compared(const EvaluationSum& sum) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < sum.algorithms.size(); ++i)
+    if (is_computed(i)) places.push_back(i);
+  return places;
+}
 
 std::string percent(double share) { return number_text(100 * share, 1); }
 std::string per_frame(std::int64_t value, const EvaluationSum& sum, int decimals) {
@@ -105,9 +111,9 @@ EvaluationTable algorithms_table(const Evaluation& evaluation) {
                "trunk precision", "recall 0.25 m", "0.50 m", "1.00 m", "one pixel", "F", "false/s",
                "found 1 m", "found 3 m", "ms/frame"}};
   const EvaluationSum& all = evaluation.all;
-  for (std::size_t i = 0; i < algorithm_count; ++i) {
+  for (std::size_t i = 0; i < all.algorithms.size(); ++i) {
     const VisionTally& tally = all.tallies[i];
-    std::vector<std::string> row{algorithm_names[i], per_frame(all.hits[i], all, 1)};
+    std::vector<std::string> row{all.algorithms[i], per_frame(all.hits[i], all, 1)};
     for (const Rates& rates : tally.rates) row.push_back(share_text(rates.precision));
     row.push_back(share_text(tally.at_one_pixel().trunk_precision));
     for (const Rates& rates : tally.rates) row.push_back(share_text(rates.recall));
@@ -115,7 +121,7 @@ EvaluationTable algorithms_table(const Evaluation& evaluation) {
     row.push_back(number_text(tally.false_per_second(), 0));
     for (const double reach_m : {1.0, 3.0})
       row.push_back(share_text(found_within(all.sightings[i], reach_m)));
-    row.push_back(i < computed_count ? number_text(quantile(all.cost_ms[i], 0.5), 3) : "-");
+    row.push_back(is_computed(i) ? number_text(quantile(all.cost_ms[i], 0.5), 3) : "-");
     table.rows.push_back(std::move(row));
   }
   return {"algorithms",
@@ -125,8 +131,8 @@ EvaluationTable algorithms_table(const Evaluation& evaluation) {
 
 EvaluationTable intervals_table(const Evaluation& evaluation) {
   Table table{{"algorithm", "precision", "recall", "found within 1 m", "found within 3 m"}};
-  for (const std::size_t i : compared)
-    table.add(algorithm_names[i], resampled_text(evaluation, i, &Rates::precision),
+  for (const std::size_t i : compared(evaluation.all))
+    table.add(evaluation.all.algorithms[i], resampled_text(evaluation, i, &Rates::precision),
               resampled_text(evaluation, i, &Rates::recall),
               wilson_text(found_within(evaluation.all.sightings[i], 1)),
               wilson_text(found_within(evaluation.all.sightings[i], 3)));
@@ -155,10 +161,10 @@ EvaluationTable scenes_table(const Evaluation& evaluation) {
 EvaluationTable computer_table(const Evaluation& evaluation) {
   Table table{{"algorithm", "frames/s", "precision", "found within 1 m", "found within 3 m"}};
   const EvaluationSum& all = evaluation.all;
-  for (std::size_t i = 0; i < computed_count; ++i) {
+  for (const std::size_t i : compared(all)) {
     const PacedResult& paced = all.paced[i];
     table.rows.push_back(
-        {algorithm_names[i],
+        {all.algorithms[i],
          number_text(all.seconds > 0 ? static_cast<double>(paced.frames) / all.seconds : 0, 1),
          share_text(all.tallies[i].at_one_pixel().precision), wilson_text(found_within(paced.sightings, 1)),
          wilson_text(found_within(paced.sightings, 3))});
@@ -172,7 +178,7 @@ EvaluationTable computer_table(const Evaluation& evaluation) {
 EvaluationTable on_the_path_table(const Evaluation& evaluation) {
   Table table{{"algorithm", "obstacles", "found", "detections each, median", "lowest tenth",
                "first detection at, m, median", "third detection at, m, median"}};
-  for (std::size_t i = 0; i < algorithm_count; ++i) {
+  for (std::size_t i = 0; i < evaluation.all.algorithms.size(); ++i) {
     Share found;
     std::vector<double> hits, first_m, third_m;
     for (const ObstacleSighting& sighting : evaluation.all.sightings[i]) {
@@ -185,8 +191,8 @@ EvaluationTable on_the_path_table(const Evaluation& evaluation) {
     const auto part = [](const std::vector<double>& values, double q, int decimals) {
       return values.empty() ? "-" : number_text(quantile(values, q), decimals);
     };
-    table.add(algorithm_names[i], found.of, share_text(found), part(hits, 0.5, 0), part(hits, 0.1, 0),
-              part(first_m, 0.5, 2), part(third_m, 0.5, 2));
+    table.add(evaluation.all.algorithms[i], found.of, share_text(found), part(hits, 0.5, 0),
+              part(hits, 0.1, 0), part(first_m, 0.5, 2), part(third_m, 0.5, 2));
   }
   return {"on_the_path", "Obstacles that a wing would touch, straight on from where they came into view",
           std::move(table)};
@@ -205,17 +211,43 @@ EvaluationTable parts_table(const Evaluation& evaluation) {
 }
 
 EvaluationTable false_hits_table(const Evaluation& evaluation) {
-  Table table{{"on", "pushbroom", "pushbroom, original", "StereoBM", "StereoSGBM"}};
-  const double seconds = evaluation.all.seconds;
-  std::map<std::string, std::array<double, compared.size()>> per_second;
-  for (const std::size_t i : compared)
-    for (const auto& [what, times] : evaluation.all.tallies[i].false_on)
-      per_second[what][i] = seconds > 0 ? static_cast<double>(times) / seconds : 0;
+  const EvaluationSum& all = evaluation.all;
+  const std::vector<std::size_t> places = compared(all);
+  Table table{{"on"}};
+  std::map<std::string, std::vector<double>> per_second;
+  for (std::size_t column = 0; column < places.size(); ++column) {
+    table.head.push_back(all.algorithms[places[column]]);
+    for (const auto& [what, times] : all.tallies[places[column]].false_on) {
+      per_second[what].resize(places.size());
+      per_second[what][column] = all.seconds > 0 ? static_cast<double>(times) / all.seconds : 0;
+    }
+  }
   for (const auto& [what, rates] : per_second) {
     std::vector<std::string>& row = table.rows.emplace_back(1, what);
     for (const double rate : rates) row.push_back(number_text(rate, 1));
   }
   return {"false_positives", "What false positives lie on: how many a second, at one pixel",
+          std::move(table)};
+}
+
+EvaluationTable disparities_table(const Evaluation& evaluation) {
+  Table table{{"algorithm", "matched, %", "bad-1, %", "bad-2, %", "bad-4, %", "end-point error, px"}};
+  const EvaluationSum& all = evaluation.all;
+  for (std::size_t i = 0; i < all.algorithms.size(); ++i) {
+    const DisparityErrors& errors = all.disparities[i];
+    if (errors.true_pixels == 0) continue;
+    const auto share = [](std::int64_t part, std::int64_t of) {
+      return of > 0 ? percent(static_cast<double>(part) / static_cast<double>(of)) : "-";
+    };
+    table.add(all.algorithms[i], share(errors.matched, errors.true_pixels),
+              share(errors.bad_1, errors.matched), share(errors.bad_2, errors.matched),
+              share(errors.bad_4, errors.matched),
+              errors.matched > 0 ? number_text(errors.sum_px / static_cast<double>(errors.matched), 3) : "-");
+  }
+  return {"disparities",
+          "Disparities of every pixel that has a true depth: share matched; of these, off by more than 1, 2 "
+          "and 4 px, "
+          "and the mean error",
           std::move(table)};
 }
 
@@ -244,6 +276,7 @@ std::vector<EvaluationTable> evaluation_tables(const Evaluation& evaluation) {
     }
     tables.push_back(parts_table(evaluation));
     tables.push_back(false_hits_table(evaluation));
+    tables.push_back(disparities_table(evaluation));
   }
   tables.push_back(invariance_table(evaluation));
   return tables;

@@ -1,5 +1,7 @@
 #include "scenarios/evaluation/evaluation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <limits>
@@ -10,6 +12,7 @@
 
 #include "perception/full_stereo/full_stereo.hpp"
 #include "perception/pushbroom/pushbroom_stereo.hpp"
+#include "scenarios/detect/recorded_detector.hpp"
 #include "scenarios/evaluation/evaluation_recording.hpp"
 #include "scenarios/evaluation/ground_truth.hpp"
 #include "scenarios/flight/stopwatch.hpp"
@@ -23,18 +26,22 @@ namespace fs = std::filesystem;
 constexpr std::int64_t compared_every = 8;  // the paper's evaluations: 15 frames a second
 constexpr std::size_t worst_kept = 8;
 
+std::string name_of(const fs::path& folder) {
+  return folder.has_filename() ? folder.filename().string() : folder.parent_path().filename().string();
+}
+
 /// "level-1203" is of the scene "level": what stands behind the last hyphen is a seed, where it is a number.
 std::string scene_of(const fs::path& folder) {
-  const std::string name =
-      folder.has_filename() ? folder.filename().string() : folder.parent_path().filename().string();
+  const std::string name = name_of(folder);
   const std::size_t hyphen = name.find_last_of('-');
   const bool numbered = hyphen != std::string::npos && hyphen > 0 && hyphen + 1 < name.size() &&
                         name.find_first_not_of("0123456789", hyphen + 1) == std::string::npos;
   return numbered ? name.substr(0, hyphen) : name;
 }
 
-/// Of a frame, on the aircraft's computer.
+/// Of a frame, on the aircraft's computer. What disparities cost nobody knows.
 double cost_s(std::size_t algorithm, const ComputeConfig& compute) {
+  if (algorithm >= algorithm_count) return 0;
   if (algorithm == stereo_bm) return compute.factor * compute.stereo_bm_s;
   if (algorithm == stereo_sgbm) return compute.factor * compute.stereo_sgbm_s;
   return compute.factor * compute.pushbroom_s;
@@ -109,6 +116,31 @@ class CurveSweeps {
   std::vector<std::vector<std::unique_ptr<ObstacleDetector>>> detectors_;  ///< a curve's, point by point
 };
 
+/// What another program has found, in a detector's place.
+class GivenDisparities : public ObstacleDetector {
+ public:
+  /// `recording`: the folder's name, which the disparities of several recordings are sorted by.
+  GivenDisparities(const DisparityFolder& given, const std::string& recording, const StereoRig& rig,
+                   const FullStereoCrop& crop)
+      : folder_(given.folder), rig_(rig), crop_(crop) {
+    std::error_code ignored;
+    if (fs::is_directory(folder_ / recording, ignored)) folder_ /= recording;
+  }
+  const std::vector<StereoHit>& detect(const StereoFrame& frame) override {
+    depth_m_ = depth_of_disparity(read_disparity(folder_, frame.t_ns, rig_), rig_);
+    hits_of_depth(depth_m_, rig_, crop_, hits_);
+    return hits_;
+  }
+  const cv::Mat& depth_m() const { return depth_m_; }
+
+ private:
+  fs::path folder_;
+  StereoRig rig_;
+  FullStereoCrop crop_;
+  cv::Mat depth_m_;
+  std::vector<StereoHit> hits_;
+};
+
 class Evaluator {
  public:
   Evaluator(const fs::path& folder, const EvaluationSettings& settings)
@@ -121,17 +153,41 @@ class Evaluator {
     for (const RecordedObject& object : recording_.objects()) kinds_[object.number] = object.kind;
     const PushbroomConfig paper = papers_rule_beside(settings.pushbroom);
     const FullStereoCrop crop = crop_beside(settings.pushbroom, rig);
+    if (recording_.is_raw() && !settings.disparities.empty())
+      throw ScenarioError(fmt::format(
+          "{}: --disparities requires a recording of rectified images; this one has raw ones (record without "
+          "cameras.raw)",
+          folder.string()));
+    result_.sum.make_room(settings);
+    const std::size_t count = result_.sum.algorithms.size();
     auto block_matching = std::make_unique<FullStereoDetector>(rig, settings.stereo_bm, crop);
+    auto semi_global = std::make_unique<FullStereoDetector>(rig, settings.stereo_sgbm, crop);
+    dense_ = {{stereo_bm, &block_matching->depth_m()}, {stereo_sgbm, &semi_global->depth_m()}};
+    detectors_.resize(count);
+    detectors_[our_rule] = std::make_unique<PushbroomStereo>(rig, settings.pushbroom);
+    detectors_[the_papers_rule] = std::make_unique<PushbroomStereo>(rig, paper);
     stereo_bm_ = block_matching.get();
-    detectors_ = {std::make_unique<PushbroomStereo>(rig, settings.pushbroom),
-                  std::make_unique<PushbroomStereo>(rig, paper), std::move(block_matching),
-                  std::make_unique<FullStereoDetector>(rig, settings.stereo_sgbm, crop)};
+    detectors_[stereo_bm] = std::move(block_matching);
+    detectors_[stereo_sgbm] = std::move(semi_global);
+    std::vector<double> costs_s(count);
+    for (std::size_t i = 0; i < count; ++i) costs_s[i] = cost_s(i, settings.compute);
+    std::size_t next = algorithm_count;
+    for (const std::string& name : settings.detectors) {
+      brought_.push_back(std::make_unique<RecordedDetector>(settings, name, rig));
+      costs_s[next++] = brought_.back()->cost_s();
+    }
+    for (const DisparityFolder& given : settings.disparities) {
+      auto detector = std::make_unique<GivenDisparities>(given, name_of(folder), rig, crop);
+      dense_.emplace_back(next, &detector->depth_m());
+      detectors_[next++] = std::move(detector);
+    }
+    hits_.resize(count);
     for (std::size_t i = 0; i < published_algorithms.size(); ++i)
       published_.emplace_back(rig, grid_, settings.map);
-    for (std::size_t i = 0; i < algorithm_count; ++i)
+    for (std::size_t i = 0; i < count; ++i) {
       sightings_.emplace_back(recording_.objects(), rig.baseline_m);
-    for (std::size_t i = 0; i < computed_count; ++i)
-      paced_.emplace_back(recording_.objects(), rig.baseline_m, cost_s(i, settings.compute));
+      paced_.emplace_back(recording_.objects(), rig.baseline_m, costs_s[i]);
+    }
     for (const bool on : {false, true})
       for (const auto& [name, rule] :
            {std::pair("original", paper), std::pair("as given", settings.pushbroom)}) {
@@ -170,15 +226,18 @@ class Evaluator {
 
  private:
   void detect(const EvaluationFrame& frame) {
-    for (std::size_t i = 0; i < computed_count; ++i) {
+    for (std::size_t i = 0; i < hits_.size(); ++i) {
+      if (!is_computed(i)) continue;
+      const std::size_t further = i - algorithm_count;
+      ObstacleDetector& detector = detectors_[i] != nullptr ? *detectors_[i] : brought_[further]->detector();
       const auto begin = std::chrono::steady_clock::now();
-      const std::vector<StereoHit>& seen = detectors_[i]->detect(frame.pair);
+      const std::vector<StereoHit>& seen = detector.detect(frame.pair);
       result_.sum.cost_ms[i].push_back(1e3 * seconds_since(begin));
       hits_[i] = seen;
     }
     hits_[at_random] = random_hits(hits_[our_rule].size(), grid_, recording_.rig(), random_);
     if (recording_.has_depth()) hits_[true_depth] = true_depth_hits(frame.truth, grid_, recording_.rig());
-    for (std::size_t i = 0; i < algorithm_count; ++i)
+    for (std::size_t i = 0; i < hits_.size(); ++i)
       result_.sum.hits[i] += static_cast<std::int64_t>(hits_[i].size());
   }
 
@@ -211,12 +270,14 @@ class Evaluator {
     DueBlocks due;
     if (recording_.has_depth()) {
       due = due_blocks(frame.truth, grid_);
-      for (std::size_t i = 0; i < algorithm_count; ++i) {
+      for (const auto& [place, depth_m] : dense_)
+        result_.sum.disparities[place].count(*depth_m, frame.truth.depth_mm, recording_.rig());
+      for (std::size_t i = 0; i < hits_.size(); ++i) {
         tally(frame, grid_, recording_.rig(), kinds_, due, hits_[i], result_.sum.tallies[i]);
         sightings_[i].add(frame, grid_, due[one_pixel], hits_[i]);
       }
-      for (std::size_t i = 0; i < computed_count; ++i)
-        paced_[i].add(frame, next_t_ns, grid_, due[one_pixel], hits_[i]);
+      for (std::size_t i = 0; i < hits_.size(); ++i)
+        if (is_computed(i)) paced_[i].add(frame, next_t_ns, grid_, due[one_pixel], hits_[i]);
       keep_if_bad(frame, index);
       sweeps_->add(frame, due[one_pixel]);
     }
@@ -231,11 +292,11 @@ class Evaluator {
 
   void finish() {
     EvaluationSum& sum = result_.sum;
-    for (std::size_t i = 0; i < algorithm_count; ++i) {
+    for (std::size_t i = 0; i < hits_.size(); ++i) {
       sum.tallies[i].seconds = sum.seconds;
       if (result_.has_objects) sum.sightings[i] = sightings_[i].passed();
+      if (is_computed(i)) sum.paced[i] = paced_[i].result();
     }
-    for (std::size_t i = 0; i < computed_count; ++i) sum.paced[i] = paced_[i].result();
     for (std::size_t i = 0; i < published_.size(); ++i) sum.published[i] = published_[i].scores();
     if (sweeps_) sum.curves = sweeps_->curves();
     std::ranges::stable_sort(result_.worst, std::ranges::greater{}, &WorstFrame::false_hits);
@@ -246,9 +307,11 @@ class Evaluator {
   EvaluationRecording recording_;
   DetectionGrid grid_;
   std::map<int, std::string> kinds_;
-  std::array<std::unique_ptr<ObstacleDetector>, computed_count> detectors_;
-  const FullStereoDetector* stereo_bm_ = nullptr;             ///< one of them
-  std::array<std::vector<StereoHit>, algorithm_count> hits_;  ///< of this frame
+  std::vector<std::unique_ptr<ObstacleDetector>> detectors_;   ///< null: not computed, or brought
+  std::vector<std::unique_ptr<RecordedDetector>> brought_;     ///< the settings' detectors
+  std::vector<std::pair<std::size_t, const cv::Mat*>> dense_;  ///< places and depths of this frame
+  const FullStereoDetector* stereo_bm_ = nullptr;              ///< one of them
+  std::vector<std::vector<StereoHit>> hits_;                   ///< of this frame
   std::mt19937_64 random_{1};
   std::vector<PublishedEvaluations> published_;
   std::vector<ObstacleSightings> sightings_;

@@ -175,7 +175,7 @@ class HeldFlight {
     const Flight& now = flight();
     if (imu_rows < 1 || imu_rows > static_cast<py::ssize_t>(watcher_.imu.size()))
       throw py::value_error("imu_rows: must be 1 to 16");
-    py::array_t<float> imu({imu_rows, py::ssize_t{6}}), air(2), gravity(3);
+    py::array_t<float> imu({imu_rows, py::ssize_t{6}}), air(4), gravity(3);
     float* to = imu.mutable_data();
     for (py::ssize_t row = 0; row < imu_rows; ++row) {
       const std::size_t back = static_cast<std::size_t>(imu_rows - 1 - row);
@@ -189,6 +189,8 @@ class HeldFlight {
     air.mutable_data()[0] = static_cast<float>(pitot ? pitot->airspeed_mps : 0);
     air.mutable_data()[1] = static_cast<float>(state.altitude_m);
     const Eigen::Matrix3d& turn = state.T_world_body.linear();
+    air.mutable_data()[2] = static_cast<float>(state.T_world_body.translation().y());
+    air.mutable_data()[3] = static_cast<float>(std::atan2(turn(1, 0), turn(0, 0)));
     for (int axis = 0; axis < 3; ++axis) gravity.mutable_data()[axis] = static_cast<float>(-turn(2, axis));
     return py::make_tuple(imu, air, gravity);
   }

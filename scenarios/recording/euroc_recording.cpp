@@ -29,7 +29,7 @@ std::string text_of(const char* header, const std::map<std::int64_t, std::string
 
 /// Noisy images hardly compress, so the uncompressed size estimates the size of the PNGs.
 std::uintmax_t expected_bytes(const Scenario& scenario, const StereoRig& rig, double expected_s) {
-  const double per_frame = 6.0 * rig.width_px * rig.height_px;
+  const double per_frame = 8.0 * rig.width_px * rig.height_px;
   return static_cast<std::uintmax_t>(per_frame * scenario.cameras.rate_hz * expected_s);
 }
 
@@ -69,8 +69,8 @@ EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario,
     throw ScenarioError(
         fmt::format("{}: more obstacles than images of objects can number (65534)", scenario.name));
   require_free_space(folder_, expected_bytes(scenario, rig.rig, expected_s));
-  for (const char* sensor :
-       {"cam0/data", "cam1/data", "depth0/data", "objects0/data", "imu0", "state_groundtruth_estimate0"})
+  for (const char* sensor : {"cam0/data", "cam1/data", "depth0/data", "depth1/data", "objects0/data", "imu0",
+                             "state_groundtruth_estimate0"})
     prepare_output_folder(folder_ / sensor);
 
   // The flight's own IMU draws its constants from this seed.
@@ -83,7 +83,8 @@ EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario,
   const int camera_hz = scenario.cameras.rate_hz;
   write_whole_file(folder_ / "cam0/sensor.yaml", camera_sensor_text(cameras[0], rig_, camera_hz));
   write_whole_file(folder_ / "cam1/sensor.yaml", camera_sensor_text(cameras[1], rig_, camera_hz));
-  write_whole_file(folder_ / "depth0/sensor.yaml", depth_sensor_text(rig_, camera_hz));
+  write_whole_file(folder_ / "depth0/sensor.yaml", depth_sensor_text(rig_, camera_hz, Side::left));
+  write_whole_file(folder_ / "depth1/sensor.yaml", depth_sensor_text(rig_, camera_hz, Side::right));
   write_whole_file(folder_ / "objects0/sensor.yaml", objects_sensor_text(rig_, camera_hz));
   write_whole_file(folder_ / "objects0/objects.csv", objects_text(wood));
   write_whole_file(folder_ / "imu0/sensor.yaml",
@@ -103,6 +104,23 @@ void EurocRecording::on_step(const Flight& flight) {
   const std::optional<ImuSample>& sample = flight.newest<ImuSample>();
   if (sample && sample->t_ns == flight.clock().t_ns()) add(*sample);
   add_estimate(flight.state());
+  add_sensors(flight);
+}
+
+/// At every step of control: what has reached the autopilot since the last one.
+void EurocRecording::add_sensors(const Flight& flight) {
+  const auto add_newest = [&]<typename Sample>(const char* folder, const std::optional<Sample>& newest) {
+    const auto known = newest_ns_.try_emplace(folder, -1).first;
+    if (!newest || newest->t_ns <= known->second) return;
+    known->second = newest->t_ns;
+    sensor_lines_[folder] += sample_line(*newest);
+  };
+  add_newest("pitot0", flight.newest<PitotSample>());
+  add_newest("barometer0", flight.newest<BarometerSample>());
+  add_newest("magnetometer0", flight.newest<MagnetometerSample>());
+  add_newest("gps0", flight.newest<GpsSample>());
+  sensor_lines_["controls0"] += controls_line(flight.clock().t_ns(), flight.controls());
+  sensor_lines_["body0"] += body_line(flight.truth());
 }
 
 void EurocRecording::observe(const Truth& truth) {
@@ -158,6 +176,7 @@ void EurocRecording::add(const StereoFrame& frame, const StereoCameras& cameras)
   write_picture(folder_ / "cam1/data" / name, frame.right);
   const TrueView view = cameras.true_view(truth.T_world_body);
   write_picture(folder_ / "depth0/data" / name, depth_in_millimetres(view.depth_m));
+  write_picture(folder_ / "depth1/data" / name, depth_in_millimetres(view.right_depth_m));
   write_picture(folder_ / "objects0/data" / name, view.objects);
   image_lines_ += fmt::format("{},{}\n", recorded_ns(frame.t_ns), name);
   ++frames_;
@@ -167,10 +186,14 @@ void EurocRecording::finish() {
   if (frames_ == 0)
     throw ScenarioError(
         fmt::format("{}: the scenario's cameras gave no frame", folder_.parent_path().string()));
-  for (const char* camera : {"cam0", "cam1", "depth0", "objects0"})
+  for (const char* camera : {"cam0", "cam1", "depth0", "depth1", "objects0"})
     write_whole_file(folder_ / camera / "data.csv", image_header + image_lines_);
   write_whole_file(folder_ / "imu0/data.csv", imu_header + imu_lines_);
   write_whole_file(folder_ / "state_groundtruth_estimate0/data.csv", text_of(state_header, true_states_));
+  for (const auto& [sensor, lines] : sensor_lines_) {
+    prepare_output_folder(folder_ / sensor);
+    write_whole_file(folder_ / sensor / "data.csv", sample_header(sensor) + lines);
+  }
   if (!estimates_.empty()) {
     prepare_output_folder(folder_ / "estimate0");
     write_whole_file(folder_ / "estimate0/sensor.yaml",

@@ -55,11 +55,15 @@ std::string vector_text(const Eigen::Vector3d& v, int digits) {
   return fmt::format(",{:.{}f},{:.{}f},{:.{}f}", v.x(), digits, v.y(), digits, v.z(), digits);
 }
 
+Eigen::Isometry3d T_body_right_of(const StereoRig& rig) {
+  return rig.T_body_camera * Eigen::Translation3d(rig.baseline_m, 0, 0);
+}
+
 }  // namespace
 
 std::array<RecordedCamera, 2> recorded_cameras(const CalibratedRig& calibrated) {
   const StereoRig& rig = calibrated.rig;
-  Eigen::Isometry3d T_body_right = rig.T_body_camera * Eigen::Translation3d(rig.baseline_m, 0, 0);
+  Eigen::Isometry3d T_body_right = T_body_right_of(rig);
   if (!calibrated.calibration)
     return {RecordedCamera{rectified_camera(rig, rig.center_left_x_px), rig.T_body_camera},
             RecordedCamera{rectified_camera(rig, rig.center_right_x_px), T_body_right}};
@@ -86,10 +90,15 @@ std::string camera_sensor_text(const RecordedCamera& recorded, const StereoRig& 
              list_text(camera.rectification.val), P(0, 0), P(0, 2), P(1, 2), rig.detection_depth_m);
 }
 
-std::string depth_sensor_text(const StereoRig& rig, int rate_hz) {
-  return head_text("depth", "true depth along the optical axis of the rectified left camera",
-                   rig.T_body_camera) +
-         pinhole_text(rectified_camera(rig, rig.center_left_x_px), rig, rate_hz) +
+std::string depth_sensor_text(const StereoRig& rig, int rate_hz, Side side) {
+  const bool left = side == Side::left;
+  const Eigen::Isometry3d T_body_eye = left ? rig.T_body_camera : T_body_right_of(rig);
+  return head_text("depth",
+                   fmt::format("true depth along the optical axis of the rectified {} camera",
+                               left ? "left" : "right"),
+                   T_body_eye) +
+         pinhole_text(rectified_camera(rig, left ? rig.center_left_x_px : rig.center_right_x_px), rig,
+                      rate_hz) +
          "depth_unit_m: 0.001 # 16-bit PNG; 0: nothing within 65.535 m\n";
 }
 
@@ -120,6 +129,49 @@ std::string state_sensor_text(const std::string& comment) {
 std::string imu_line(const ImuSample& sample) {
   return fmt::format("{}", recorded_ns(sample.t_ns)) + vector_text(sample.angular_rate_body_radps, 9) +
          vector_text(sample.specific_force_body_mps2, 9) + "\n";
+}
+
+std::string sample_line(const PitotSample& sample) {
+  return fmt::format("{},{:.9f}\n", recorded_ns(sample.t_ns), sample.airspeed_mps);
+}
+
+std::string sample_line(const BarometerSample& sample) {
+  return fmt::format("{},{:.9f}\n", recorded_ns(sample.t_ns), sample.altitude_m);
+}
+
+std::string sample_line(const MagnetometerSample& sample) {
+  return fmt::format("{}", recorded_ns(sample.t_ns)) + vector_text(sample.field_body_ut, 9) + "\n";
+}
+
+std::string sample_line(const GpsSample& sample) {
+  return fmt::format("{}", recorded_ns(sample.t_ns)) + vector_text(sample.position_world_m, 9) +
+         vector_text(sample.velocity_world_mps, 9) + "\n";
+}
+
+std::string controls_line(std::int64_t t_ns, const Controls& controls) {
+  return fmt::format("{},{:.9f},{:.9f},{:.9f}\n", recorded_ns(t_ns), controls.left_elevon_rad,
+                     controls.right_elevon_rad, controls.thrust_n);
+}
+
+std::string body_line(const Truth& truth) {
+  return fmt::format("{}", recorded_ns(truth.t_ns)) + vector_text(truth.angular_rate_body_radps, 9) +
+         vector_text(truth.specific_force_body_mps2, 9) + vector_text(truth.wind_world_mps, 9) +
+         fmt::format(",{:.9f},{:.9f},{:.9f}\n", truth.left_elevon_rad, truth.right_elevon_rad,
+                     truth.thrust_n);
+}
+
+std::string sample_header(const std::string& folder) {
+  const std::string time = "#timestamp [ns],";
+  const std::string surfaces = "left_elevon [rad],right_elevon [rad],thrust [N]\n";
+  if (folder == "pitot0") return time + "airspeed [m s^-1]\n";
+  if (folder == "barometer0") return time + "altitude [m]\n";
+  if (folder == "magnetometer0") return time + "field_x [uT],field_y [uT],field_z [uT]\n";
+  if (folder == "gps0") return time + "p_x [m],p_y [m],p_z [m],v_x [m s^-1],v_y [m s^-1],v_z [m s^-1]\n";
+  if (folder == "controls0") return time + surfaces;
+  return time +
+         "w_x [rad s^-1],w_y [rad s^-1],w_z [rad s^-1],a_x [m s^-2],a_y [m s^-2],a_z [m s^-2],"
+         "wind_x [m s^-1],wind_y [m s^-1],wind_z [m s^-1]," +
+         surfaces;
 }
 
 std::string objects_text(const Wood& wood) {

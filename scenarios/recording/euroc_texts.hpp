@@ -8,6 +8,8 @@
 
 #include "estimation/samples.hpp"
 #include "perception/io/calibration_file.hpp"
+#include "planning/airframe.hpp"
+#include "sim/aircraft/truth.hpp"
 #include "sim/scene/trees.hpp"
 #include "sim/sensors/sensors.hpp"
 
@@ -32,8 +34,9 @@ std::array<RecordedCamera, 2> recorded_cameras(const CalibratedRig& rig);
 /// A camera's sensor.yaml. Beyond EuRoC's keys: how the pair is rectified and at which depth the detector
 /// looks, as read_euroc_calibration takes them.
 std::string camera_sensor_text(const RecordedCamera& camera, const StereoRig& rig, int rate_hz);
-/// That of the depth images, which are of the rectified left camera whatever the images are.
-std::string depth_sensor_text(const StereoRig& rig, int rate_hz);
+enum class Side { left, right };
+/// That of the depth images, which are of a rectified camera whatever the images are.
+std::string depth_sensor_text(const StereoRig& rig, int rate_hz, Side side);
 /// That of the images of objects, which are of the same camera.
 std::string objects_sensor_text(const StereoRig& rig, int rate_hz);
 /// imu0/sensor.yaml: noise per root hertz; the random walks are 0 where the scenario has them off.
@@ -56,6 +59,17 @@ inline constexpr const char* objects_header =
     "#number,name,kind,from_x [m],from_y [m],from_z [m],to_x [m],to_y [m],to_z [m],radius [m]\n";
 
 std::string imu_line(const ImuSample& sample);
+
+/// Lines of the data.csv files of pitot0, barometer0, magnetometer0, gps0, controls0 and body0, and their
+/// first lines by folder. body0 is the truth beyond the pose: angular rate, acceleration minus gravity, wind,
+/// surfaces.
+std::string sample_line(const PitotSample& sample);
+std::string sample_line(const BarometerSample& sample);
+std::string sample_line(const MagnetometerSample& sample);
+std::string sample_line(const GpsSample& sample);
+std::string controls_line(std::int64_t t_ns, const Controls& controls);
+std::string body_line(const Truth& truth);
+std::string sample_header(const std::string& folder);
 
 /// objects0/objects.csv: what the numbers in the images of objects stand for, the ground first. World frame.
 /// A tree's trunk is one object and its branches another, with a line for each piece; its leaves, the plants,

@@ -40,11 +40,13 @@ double distance_m(const Eigen::Vector3d& point_world, const GeomBox& box);
 /// Metres along the optical axis from OpenGL's depth value in 0 .. 1.
 inline double depth_of_gl(double value) { return near_m * far_m / (far_m - value * (far_m - near_m)); }
 
-/// Depth and object at every pixel of a camera's view.
+/// Depth and object at every pixel of the left camera's view, and depth in the right one's.
 struct TrueView {
-  cv::Mat depth_m;  ///< CV_32FC1: along the optical axis; the far plane's where there is nothing
+  cv::Mat
+      depth_m;  ///< of the left eye, CV_32FC1: along the optical axis; the far plane's where there is nothing
   cv::Mat objects;  ///< CV_16UC1: the numbers of sim/scene/obstacle.hpp; nothing, too, where a far obstacle
                     ///< was culled
+  cv::Mat right_depth_m;  ///< of the right eye
 };
 
 /// Gray image of one eye from rendered RGBA (rows bottom up, `stride_px` pixels each): green where something

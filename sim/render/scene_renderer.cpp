@@ -237,13 +237,14 @@ TrueView SceneRenderer::true_left_view(const std::array<Eye, 2>& eyes) {
       1;  // flat: a geom's number for its colour
   const std::uint8_t* pixels = render(eyes, WoodsDrawing::numbers);
   scene_->shown.flags[mjRND_SEGMENT] = scene_->shown.flags[mjRND_IDCOLOR] = 0;
-  return {read_depth(eyes[0]), object_numbers(pixels, 2 * eyes[0].width_px, eyes[0])};
+  return {read_depth(eyes[0]), object_numbers(pixels, 2 * eyes[0].width_px, eyes[0]),
+          read_depth(eyes[1], eyes[0].width_px)};
 }
 
-cv::Mat SceneRenderer::read_depth(const Eye& eye) {
+cv::Mat SceneRenderer::read_depth(const Eye& eye, int from_px) {
   cv::Mat depth(eye.height_px, eye.width_px, CV_32FC1);
   std::vector<float> values(depth.total());
-  mjr_readPixels(nullptr, values.data(), {0, 0, depth.cols, depth.rows}, &scene_->context);
+  mjr_readPixels(nullptr, values.data(), {from_px, 0, depth.cols, depth.rows}, &scene_->context);
   for (int row = 0; row < depth.rows; ++row) {
     const float* source = values.data() + static_cast<std::size_t>(depth.rows - 1 - row) * depth.cols;
     std::transform(source, source + depth.cols, depth.ptr<float>(row),

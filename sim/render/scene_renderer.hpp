@@ -46,7 +46,8 @@ class SceneRenderer {
   /// RGBA of both eyes side by side, as OffscreenContext::finished_pixels.
   const std::uint8_t* render(const std::array<Eye, 2>& eyes, WoodsDrawing drawing = WoodsDrawing::shaded);
   /// Of the left eye's view as last rendered.
-  cv::Mat read_depth(const Eye& eye);
+  /// Of the eye whose picture begins at this column.
+  cv::Mat read_depth(const Eye& eye, int from_px = 0);
 
   const mjModel_& model_;
   double view_distance_m_;

@@ -29,6 +29,16 @@ if(SIM)
        -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_BUILD_TYPE=Release -D "CMAKE_CXX_FLAGS=-Wall -Wextra -Werror")
   must(${CMAKE_COMMAND} --build ${WORK}/parts)
 endif()
+# A program of one's own around a flight.
+if(SIM)
+  must(${CMAKE_COMMAND} -S ${EXAMPLES}/closed_loop -B ${WORK}/loop -G Ninja -D CMAKE_PREFIX_PATH=${WORK}/prefix
+       -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_BUILD_TYPE=Release -D "CMAKE_CXX_FLAGS=-Wall -Wextra -Werror")
+  must(${CMAKE_COMMAND} --build ${WORK}/loop)
+  must(${WORK}/loop/closed_loop ${WORK}/prefix/share/understory 1003)
+  if(NOT output MATCHES "goal")
+    message(FATAL_ERROR "the closed loop lost its flight: ${output}")
+  endif()
+endif()
 # The installed program finds its module of picture codecs and its data wherever the prefix was moved to, from any
 # folder, and knows nothing of the source tree.
 file(RENAME ${WORK}/prefix ${WORK}/moved)
@@ -52,6 +62,16 @@ perception: {detector: true_depth}
 forest: {length_m: 20}
 ")
   must(${CMAKE_COMMAND} -E chdir ${WORK} ${WORK}/moved/bin/understory fly mine.yaml --out mine)
+endif()
+if(PYTHON)
+  set(ENV{PYTHONPATH} ${WORK}/moved/lib/python3/dist-packages)
+  must(${PYTHON} -B -c "import understory; print(understory.Flight('clear', set={'forest.length_m': 10}).run()['outcome'], understory.commands.program())")
+  if(NOT output MATCHES "goal ${WORK}/moved/bin/understory")
+    message(FATAL_ERROR "the installed Python module did not fly: ${output}")
+  endif()
+  must(${WORK}/moved/bin/understory fly forest --with ${WORK}/brief.yaml --plugin ${EXAMPLES}/python/swerve_planner.py
+       --set autopilot.method=python_swerve --out ${WORK}/python_flight)
+  unset(ENV{PYTHONPATH})
 endif()
 file(STRINGS ${WORK}/moved/bin/understory paths REGEX "${SOURCE}/(models|scenarios|perception|sim|planning|estimation)")
 if(paths)

@@ -1,9 +1,14 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <string>
 
+#include "perception/io/calibration_file.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -86,6 +91,54 @@ TEST(EvaluateCommand, RecordsASuiteAndJudgesIt) {
   fs::remove(out / "recordings/short-1008/mav0/depth0/data" /
              fs::directory_iterator(out / "recordings/short-1008/mav0/depth0/data")->path().filename());
   expect_refusal("evaluate " + folders + " --out " + again.string(), "cannot read this file");
+}
+
+/// The true disparities of a recording's frames, as another program would leave them: PFM rows from the
+/// bottom up.
+void write_true_disparities(const fs::path& recording, const fs::path& to, double focal_px_times_baseline_m) {
+  fs::create_directories(to);
+  for (const auto& entry : fs::directory_iterator(recording / "mav0/depth0/data")) {
+    const cv::Mat depth_mm = cv::imread(entry.path().string(), cv::IMREAD_UNCHANGED);
+    cv::Mat disparity(depth_mm.size(), CV_32FC1, cv::Scalar(std::numeric_limits<double>::infinity()));
+    for (int row = 0; row < depth_mm.rows; ++row)
+      for (int column = 0; column < depth_mm.cols; ++column)
+        if (const auto value_mm = depth_mm.at<std::uint16_t>(row, column); value_mm > 0)
+          disparity.at<float>(row, column) = static_cast<float>(1e3 * focal_px_times_baseline_m / value_mm);
+    cv::flip(disparity, disparity, 0);
+    std::ofstream file(to / (entry.path().stem().string() + ".pfm"), std::ios::binary);
+    file << "Pf\n" << disparity.cols << " " << disparity.rows << "\n-1.0\n";
+    file.write(reinterpret_cast<const char*>(disparity.data),
+               static_cast<std::streamsize>(disparity.total() * sizeof(float)));
+  }
+}
+
+TEST(EvaluateCommand, DisparitiesOfOthersStandBesideOurs) {
+  const TemporaryFolder folder;
+  const fs::path recording = folder.path() / "walk-7", given = folder.path() / "given",
+                 out = folder.path() / "out";
+  expect_success(
+      "record forest --seed 1007 --walk=5 --height 3 --set cameras.rate_hz=10 --set time_limit_s=1 --quiet "
+      "--out " +
+      recording.string());
+  const auto rig = understory::read_calibrated_rig(recording, {}).rig;
+  ASSERT_NEAR(rig.infinity_disparity_px(), 0, 1e-9);
+  write_true_disparities(recording, given / "walk-7", rig.focal_px * rig.baseline_m);
+  expect_success("evaluate " + recording.string() + " --disparities exact=" + given.string() + " --out " +
+                 out.string());
+  nlohmann::json exact, block_matching;
+  for (const nlohmann::json& algorithm : figures(out)["all"]["algorithms"]) {
+    if (algorithm["name"] == "exact") exact = algorithm;
+    if (algorithm["name"] == "StereoBM") block_matching = algorithm;
+    EXPECT_EQ(algorithm.contains("disparities"), algorithm["name"] == "exact" ||
+                                                     algorithm["name"] == "StereoBM" ||
+                                                     algorithm["name"] == "StereoSGBM");
+  }
+  EXPECT_EQ(exact["disparities"]["matched"], exact["disparities"]["true_pixels"]);
+  EXPECT_EQ(exact["disparities"]["bad_1"], 0);
+  EXPECT_LT(exact["disparities"]["end_point_error_px"], 1e-4);
+  EXPECT_GT(exact["precision"]["one pixel"]["share"], 0.99);
+  EXPECT_GT(block_matching["disparities"]["bad_1"], 0);
+  expect_part(content_of(out / "tables/disparities.csv"), "exact,100.0,0.0,0.0,0.0,0.000");
 }
 
 TEST(EvaluateCommand, WrongInputIsRefusedInOneLine) {

@@ -141,12 +141,20 @@ def evaluate(
     out: str | os.PathLike,
     set: Optional[Mapping[str, Any]] = None,
     plugins: Sequence[str | os.PathLike] = (),
+    detectors: Sequence[str] = (),
+    disparities: Optional[Mapping[str, str | os.PathLike]] = None,
     every: int = 1,
     quiet: bool = True,
 ) -> dict[str, Any]:
-    """Compare detections on recordings with true depth. Equals `understory evaluate`; returns evaluation.json."""
+    """Compare detections on recordings with true depth: Understory's detectors, those of plug-ins by name, and
+    disparities of other programs, {name: folder}. Equals `understory evaluate`; returns evaluation.json."""
     folders = [inputs] if isinstance(inputs, (str, os.PathLike)) else list(inputs)
-    run(["evaluate", *folders, "--out", out, "--every", str(every), *_options(set, plugins)], quiet)
+    options = _options(set, plugins)
+    for name in detectors:
+        options += ["--detector", name]
+    for name, folder in dict(disparities or {}).items():
+        options += ["--disparities", f"{name}={os.fspath(folder)}"]
+    run(["evaluate", *folders, "--out", out, "--every", str(every), *options], quiet)
     return json.loads((Path(out) / "evaluation.json").read_text(encoding="utf-8"))
 
 

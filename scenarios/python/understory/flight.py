@@ -75,17 +75,20 @@ class Flight:
         renderer: str = "osmesa",
     ) -> None:
         named = dict(set or {})
-        objects = {}
-        for kind, key, given in (
-            ("detector", "perception.detector", detector),
-            ("state_source", "estimation.source", state_source),
-            ("planner", "autopilot.method", planner),
+        objects: dict[str, Any] = {}
+        for kind, key, given, methods in (
+            ("detector", "perception.detector", detector, ("detect",)),
+            ("state_source", "estimation.source", state_source, ("on", "state", "state_at")),
+            ("planner", "autopilot.method", planner, ("plan",)),
         ):
+            objects[kind] = None
             if isinstance(given, str):
                 named[key] = given
-                objects[kind] = None
-            else:
-                objects[kind] = given
+                continue
+            lacking = [] if given is None else [method for method in methods if not hasattr(given, method)]
+            if lacking:
+                raise TypeError(f"{kind}: must be a name or an object with {lacking[0]}(), got {type(given).__name__}")
+            objects[kind] = given
         if isinstance(scenario, _understory.Scenario):
             if named or rig is not None:
                 raise ValueError("a Scenario is complete: give set, rig and names of parts to load_scenario()")

@@ -31,7 +31,7 @@ except ImportError:
 
 __all__ = ["AutoresetMode", "FlightEnv", "VectorEnv"]
 
-OBSERVATIONS = ("images", "imu", "airspeed", "altitude", "gravity", "hits", "map", "depth")
+OBSERVATIONS = ("images", "imu", "airspeed", "altitude", "gravity", "course", "hits", "map", "depth")
 MAXIMUM_BANK_RAD = 1.2
 MAXIMUM_CLIMB_MPS = 3.0
 MOST_HITS = 256
@@ -51,6 +51,7 @@ class FlightEnv(_Base):
         airspeed  float32 (1,): m/s, as the pitot tube measures it;
         altitude  float32 (1,): m above the ground, as the estimator believes;
         gravity   float32 (3,): its direction in body axes, as the estimator believes;
+        course    float32 (2,): offset to the left of the course, m, and heading, rad, as the estimator believes;
         hits      float32 (256, 3): detections in the newest pair, m, left camera's axes; rows without one are 0;
         map       float32 (32, 3): the nearest points of the obstacle memory, m, body axes; rows without one are
                   (100, 0, 0);
@@ -129,7 +130,7 @@ class FlightEnv(_Base):
         if name == "depth":
             rig = self._scenario.rig
             return Box(0.0, FAR_M, (rig.height_px, rig.width_px), np.float32)
-        shape = {"imu": (self._imu_rows, 6), "airspeed": (1,), "altitude": (1,), "gravity": (3,)}
+        shape = {"imu": (self._imu_rows, 6), "airspeed": (1,), "altitude": (1,), "course": (2,)}
         if name == "gravity":
             return Box(-1.0001, 1.0001, (3,), np.float32)
         if name == "hits":
@@ -233,7 +234,9 @@ class FlightEnv(_Base):
             elif name == "airspeed":
                 observation[name] = air[:1]
             elif name == "altitude":
-                observation[name] = air[1:]
+                observation[name] = air[1:2]
+            elif name == "course":
+                observation[name] = air[2:]
             elif name == "gravity":
                 observation[name] = gravity
             elif name == "images":

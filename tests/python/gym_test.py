@@ -1,0 +1,205 @@
+"""The environments keep Gymnasium's contract: what its check_env asks for, asked here without it."""
+
+import multiprocessing
+import os
+import signal
+import unittest
+
+import numpy as np
+
+from tests.python.support import SHORT, InFolder, native
+from understory.gym import OBSERVATIONS, AutoresetMode, FlightEnv, VectorEnv
+
+CHEAP = {"scenario": "forest", "set": SHORT, "observe": ("imu", "gravity", "map"), "detector": "true_depth"}
+ALL = {"scenario": "forest", "set": SHORT, "observe": OBSERVATIONS, "render_mode": "rgb_array"}
+
+
+def same(one, other):
+    return one.keys() == other.keys() and all(np.array_equal(one[name], other[name]) for name in one)
+
+
+def shares(one, other):
+    return any(np.shares_memory(a, b) for a in one.values() for b in other.values())
+
+
+class Contract(InFolder):
+    def test_spaces_hold_what_is_returned_and_no_array_is_shared(self):
+        env = FlightEnv(**ALL)
+        env.action_space.seed(1)
+        env.observation_space.seed(1)
+        self.assertTrue(env.observation_space.contains(env.observation_space.sample()))
+        before, info = env.reset(seed=1003)
+        self.assertTrue(env.observation_space.contains(before))
+        self.assertEqual(info["flight_seed"], 1003)
+        for _ in range(60):
+            action = env.action_space.sample()
+            self.assertTrue(env.action_space.contains(action))
+            observation, reward, terminated, truncated, info = env.step(0.1 * action)
+            self.assertTrue(env.observation_space.contains(observation))
+            self.assertFalse(shares(before, observation))
+            self.assertIs(type(reward), float)
+            self.assertIs(type(terminated), bool)
+            self.assertIs(type(truncated), bool)
+            before = observation
+        self.assertEqual(env.render().shape, (480, 640, 3))
+        env.close()
+        env.close()
+
+    def test_a_seed_decides_an_episode(self):
+        def episode(env, seed):
+            observation, _ = env.reset(seed=seed)
+            seen, total = [observation], 0.0
+            for step in range(40):
+                observation, reward, *_ = env.step(np.array([0.3 * np.sin(step), 0.1], np.float32))
+                seen.append(observation)
+                total += reward
+            return seen, total
+
+        env, other = FlightEnv(**CHEAP), FlightEnv(**CHEAP)
+        one, again, elsewhere, different = episode(env, 5), episode(env, 5), episode(other, 5), episode(other, 6)
+        for a, b, c in zip(one[0], again[0], elsewhere[0]):
+            self.assertTrue(same(a, b) and same(a, c))
+        self.assertEqual(one[1], again[1])
+        self.assertFalse(all(same(a, b) for a, b in zip(one[0], different[0])))
+
+    def test_a_seed_decides_the_episodes_after_it(self):
+        def seeds(env):
+            return [env.reset(seed=7)[1]["flight_seed"]] + [env.reset()[1]["flight_seed"] for _ in range(3)]
+
+        self.assertEqual(seeds(FlightEnv(**CHEAP)), seeds(FlightEnv(**CHEAP)))
+
+    def test_endings_are_terminated_or_truncated_and_rewarded(self):
+        def ended(settings, action):
+            env = FlightEnv(scenario="clear", observe=("gravity",), set={"forest.length_m": 20, **settings})
+            env.reset(seed=1000)
+            total = 0.0
+            while True:
+                _, reward, terminated, truncated, info = env.step(action)
+                total += reward
+                if terminated or truncated:
+                    return info["outcome"], terminated, truncated, round(total, 1)
+
+        self.assertEqual(ended({}, [0, 0]), ("goal", True, False, 2.0))
+        self.assertEqual(ended({"time_limit_s": 1.5}, [0, 0])[:3], ("time", False, True))
+        outcome, terminated, truncated, total = ended({}, [1, -1])
+        self.assertIn(outcome, ("ground", "out_of_bounds"))
+        self.assertEqual((terminated, truncated), (True, False))
+        self.assertLess(total, 0)
+
+    def test_an_episode_flies_again_natively(self):
+        for more in ({}, {"observe": ("images", "imu")}, {"observe": ("map",), "act": "control", "step": "control"}):
+            env = FlightEnv(**{**CHEAP, **more})
+            env.reset(seed=1003)
+            while True:
+                action = np.full(env.action_space.shape, 0.02)
+                _, _, terminated, truncated, info = env.step(action)
+                if terminated or truncated:
+                    break
+            file = self.folder / "episode.yaml"
+            env.save(file)
+            status = 0 if info["outcome"] == "goal" else 1
+            self.assertEqual(native(file, status=status), info["digest"], more)
+
+    def test_two_environments_in_one_process(self):
+        train, test = FlightEnv(**CHEAP), FlightEnv(**CHEAP)
+        train.reset(seed=1), test.reset(seed=2)
+        for _ in range(10):
+            train.step([0, 0]), test.step([0, 0])
+
+    def test_gymnasiums_own_check(self):
+        try:
+            import gymnasium
+            from gymnasium.utils.env_checker import check_env
+        except ImportError:
+            self.skipTest("gymnasium is not installed: its own check_env was not run")
+        import understory
+
+        gymnasium.register_envs(understory)
+        check_env(gymnasium.make("understory/Forest-v0").unwrapped)
+
+
+class Vector(InFolder):
+    def test_next_step_resets_in_the_step_after_the_end(self):
+        with VectorEnv(2, CHEAP) as env:
+            self.assertEqual(env.metadata["autoreset_mode"], AutoresetMode("NextStep"))
+            observation, infos = env.reset(seed=1003)
+            self.assertEqual(infos["flight_seed"].tolist(), [1003, 1004])
+            self.assertTrue(env.observation_space.contains(observation))
+            ended = np.zeros(2, bool)
+            for _ in range(600):
+                before = observation
+                observation, rewards, terminated, truncated, infos = env.step(np.zeros((2, 2)))
+                self.assertFalse(shares(before, observation))
+                if ended.any():
+                    self.assertEqual(infos["_t_s"].tolist(), ended.tolist())
+                    self.assertEqual(rewards[ended].tolist(), [0.0] * int(ended.sum()))
+                    break
+                ended = terminated | truncated
+            self.assertTrue(ended.any())
+
+    def test_batches_equal_single_environments(self):
+        alone = FlightEnv(**CHEAP)
+        expected = [alone.reset(seed=1004)[0]] + [alone.step([0.1, 0.0])[0] for _ in range(20)]
+        with VectorEnv(2, CHEAP) as env:
+            seen = [env.reset(seed=1003)[0]] + [env.step(np.full((2, 2), [0.1, 0.0]))[0] for _ in range(20)]
+        for batch, one in zip(seen, expected):
+            self.assertTrue(same({name: array[1] for name, array in batch.items()}, one))
+
+    def test_same_step_gives_the_last_observation_apart(self):
+        with VectorEnv(1, CHEAP, "SameStep") as env:
+            env.reset(seed=1003)
+            while True:
+                observation, _, terminated, truncated, infos = env.step(np.zeros((1, 2)))
+                if terminated[0] or truncated[0]:
+                    break
+            self.assertIn("outcome", infos["final_info"][0])
+            self.assertFalse(same(infos["final_obs"][0], {name: array[0] for name, array in observation.items()}))
+            env.step(np.zeros((1, 2)))
+
+    def test_disabled_resets_what_is_asked_for(self):
+        with VectorEnv(2, CHEAP, AutoresetMode.DISABLED) as env:
+            env.reset(seed=1003)
+            ended = np.zeros(2, bool)
+            while not ended.any():
+                observation, _, terminated, truncated, _ = env.step(np.zeros((2, 2)))
+                ended = terminated | truncated
+            with self.assertRaisesRegex(RuntimeError, "reset_mask"):
+                env.step(np.zeros((2, 2)))
+            after, _ = env.reset(options={"reset_mask": ended})
+            for index in range(2):
+                kept = same({n: a[index] for n, a in after.items()}, {n: a[index] for n, a in observation.items()})
+                self.assertEqual(kept, not ended[index])
+            env.step(np.zeros((2, 2)))
+
+    def test_a_worker_that_dies_is_replaced_and_its_episode_truncated(self):
+        with VectorEnv(2, CHEAP) as env:
+            env.reset(seed=1003)
+            os.kill(env._workers[1][0].pid, signal.SIGKILL)
+            _, _, terminated, truncated, infos = env.step(np.zeros((2, 2)))
+            self.assertEqual((terminated.tolist(), truncated.tolist()), ([False, False], [False, True]))
+            self.assertIn("status -9", infos["worker_died"][1])
+            _, _, _, truncated, infos = env.step(np.zeros((2, 2)))
+            self.assertEqual((truncated.tolist(), infos["_flight_seed"].tolist()), ([False, False], [False, True]))
+            env.step(np.zeros((2, 2)))
+
+    def test_views_are_the_memory_itself_where_asked_for(self):
+        with VectorEnv(1, CHEAP, copy=False) as env:
+            first, _ = env.reset(seed=1003)
+            second, *_ = env.step(np.zeros((1, 2)))
+            self.assertTrue(shares(first, second))
+            del first, second
+
+    def test_closing_leaves_no_process_and_no_shared_memory(self):
+        env = VectorEnv(2, CHEAP)
+        env.reset(seed=1)
+        processes = [worker[0] for worker in env._workers]
+        files = set(os.listdir("/dev/shm")) if os.path.isdir("/dev/shm") else set()
+        env.close()
+        env.close()
+        self.assertFalse(any(process.is_alive() for process in processes))
+        self.assertEqual(multiprocessing.active_children(), [])
+        self.assertEqual(files, set(os.listdir("/dev/shm")) if os.path.isdir("/dev/shm") else set())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,207 @@
+"""Wrong uses of the Python module, each with what it is answered: one line that says what was wrong."""
+
+import os
+import subprocess
+import sys
+import unittest
+
+import numpy as np
+
+import understory
+from tests.python.support import SHORT, InFolder
+from understory.gym import FlightEnv, VectorEnv
+
+InputError, MachineError = understory.InputError, understory.MachineError
+
+
+def flight(**more):
+    return understory.Flight("clear", set=SHORT, **more)
+
+
+def flown(**more):
+    return understory.Flight("forest", seed=1003, set=SHORT, **more).run()
+
+
+def env(**more):
+    return FlightEnv("clear", set=SHORT, **{"observe": ("imu",), **more})
+
+
+def begun(**more):
+    one = env(**more)
+    one.reset(seed=1)
+    return one
+
+
+class Detecting:
+    """A detector that gives what it is told."""
+
+    def __init__(self, given):
+        self.given = given
+
+    def detect(self, frame):
+        return self.given(frame) if callable(self.given) else self.given
+
+
+def one_hit(**fields):
+    def hits(_):
+        array = understory.hits(RIG, [100], [80], RIG.disparity_px(10.0))
+        for name, value in fields.items():
+            array[name] = value
+        return array
+
+    return hits
+
+
+class Planning:
+    def __init__(self, given):
+        self.given = given
+
+    def plan(self, request):
+        return self.given
+
+
+RIG = understory.load_scenario("clear").rig
+
+WRONG = [
+    # scenarios and keys
+    ("no such scenario", lambda: understory.Flight("forrest"), InputError, "did you mean forest"),
+    ("no such file", lambda: understory.Flight("./nothing.yaml"), InputError, "nothing.yaml"),
+    ("unknown key", lambda: understory.Flight("forest", set={"forest.lenght_m": 3}), InputError, "did you mean"),
+    ("key out of range", lambda: flight(seed=-1), InputError, "seed"),
+    ("word for a number", lambda: understory.Flight("forest", set={"forest.length_m": "long"}), InputError, "length_m"),
+    ("value of a wrong kind", lambda: understory.Flight("forest", set={"forest.length_m": {}}), TypeError, "length_m"),
+    ("no such rig", lambda: flight(rig="none"), InputError, "rig"),
+    ("no such detector", lambda: flight(detector="none_such"), InputError, "perception.detector"),
+    ("set beside a Scenario", lambda: understory.Flight(understory.load_scenario("clear"), set=SHORT), ValueError,
+     "load_scenario"),
+    ("no such renderer", lambda: flight(renderer="vulkan"), ValueError, "osmesa"),
+    # order of calls
+    ("no such step", lambda: flight().step("frame"), ValueError, "physics, control, camera or end"),
+    ("result before the end", lambda: flight().result, RuntimeError, "has not ended"),
+    ("result without a record", lambda: flight(record=False).result, RuntimeError, "record=True"),
+    ("page before the end", lambda: flight().report(), RuntimeError, "has not ended"),
+    ("depth without images", lambda: flight(detector="none").depth, RuntimeError, "images=True"),
+    ("chase view without images", lambda: flight(detector="none").chase_view(), RuntimeError, "images=True"),
+    ("controls of a planner's flight", lambda: flight().control(0, 0, 0), RuntimeError, "by_hand=True"),
+    ("writing to an image", lambda: flown_image().fill(0), ValueError, "read-only"),
+    # parts
+    ("a detector without detect()", lambda: flight(detector=object()), TypeError, r"detect\(\)"),
+    ("a planner without plan()", lambda: flight(planner=object()), TypeError, r"plan\(\)"),
+    ("a state source without state()", lambda: flight(state_source=object()), TypeError, r"state\(\)"),
+    ("a detector that gives None", lambda: flown(detector=Detecting(None)), MachineError, "hit_dtype"),
+    ("a detector that gives a list", lambda: flown(detector=Detecting([1, 2])), MachineError, "hit_dtype"),
+    ("a detector that gives floats", lambda: flown(detector=Detecting(np.zeros((3, 3)))), MachineError, "hit_dtype"),
+    ("a hit outside the image", lambda: flown(detector=Detecting(one_hit(column_px=5000))), MachineError, "outside"),
+    ("a hit that is not finite", lambda: flown(detector=Detecting(one_hit(disparity_px=np.nan))), MachineError,
+     "finite"),
+    ("a hit behind the camera", lambda: flown(detector=Detecting(one_hit(position_camera=(0, 0, -1)))), MachineError,
+     "behind"),
+    ("a detector that raises", lambda: flown(detector=Detecting(lambda _: 1 / 0)), MachineError, "ZeroDivisionError"),
+    ("a planner that gives None", lambda: flown(planner=Planning(None)), MachineError, "plan"),
+    ("a name that is taken", lambda: understory.detector("pushbroom")(Detecting), ValueError, "is taken"),
+    ("a name with blanks", lambda: understory.course("my course")(list), ValueError, "letters a-z"),
+    ("a kind of obstacle that is none", lambda: understory.Obstacle("a", [0, 0, 0], [0, 0, 1], 0.1, "tree"),
+     ValueError, "trunk"),
+    ("images of two shapes", lambda: understory.StereoFrame(np.zeros((4, 4), "u1"), np.zeros((4, 5), "u1")),
+     ValueError, "one shape"),
+    ("an image of floats", lambda: understory.StereoFrame(np.zeros((4, 4)), np.zeros((4, 4))), ValueError, "uint8"),
+    ("hits of two dimensions", lambda: understory.hits(RIG, [[1]], [[1]], 20), ValueError, "one dimension"),
+    ("no such plug-in", lambda: understory.load_plugin("nothing.py"), InputError, "nothing.py"),
+    # environments
+    ("unknown observation", lambda: env(observe=("sonar",)), ValueError, "sonar"),
+    ("unknown action", lambda: env(act="stick"), ValueError, "stick"),
+    ("unknown step", lambda: env(step="frame"), ValueError, "frame"),
+    ("unknown render mode", lambda: env(render_mode="human"), ValueError, "human"),
+    ("step before reset", lambda: env().step([0, 0]), RuntimeError, "before reset"),
+    ("render before reset", lambda: env(render_mode="rgb_array").render(), RuntimeError, "before reset"),
+    ("save before reset", lambda: env().save("a.yaml"), RuntimeError, "before reset"),
+    ("action of a wrong shape", lambda: begun().step([0, 0, 0]), ValueError, "shape"),
+    ("action out of bounds", lambda: begun().step([0, 2]), ValueError, "within"),
+    ("action that is not finite", lambda: begun().step([np.nan, 0]), ValueError, "within"),
+    ("unknown option", lambda: env().reset(options={"sed": 1}), ValueError, "sed"),
+    ("no environments", lambda: VectorEnv(0), ValueError, "at least 1"),
+    ("unknown autoreset mode", lambda: VectorEnv(1, {}, "Sometimes"), ValueError, "Sometimes"),
+    ("wrong settings of workers", lambda: VectorEnv(1, {"scenario": "forrest"}), InputError, "did you mean"),
+    # files
+    ("a folder that is no campaign", lambda: understory.Campaign("/tmp"), FileNotFoundError, "flights.csv"),
+    ("a campaign that is none", lambda: understory.campaign({"scenario": "forest"}, "never"), understory.CommandFailed,
+     "seeds"),
+]
+
+
+def flown_image():
+    one = understory.Flight("forest", seed=1003, set=SHORT)
+    while one.left.size == 0:
+        one.step("camera")
+    return one.left
+
+
+class WrongUses(unittest.TestCase):
+    def test_each_is_answered_in_one_line(self):
+        self.assertGreaterEqual(len(WRONG), 30)
+        for name, use, kind, words in WRONG:
+            with self.subTest(name):
+                with self.assertRaisesRegex(kind, words) as caught:
+                    use()
+                self.assertNotIn("\n", str(caught.exception).strip())
+
+    def test_an_error_ends_a_flight_for_good(self):
+        one = understory.Flight("forest", seed=1003, set=SHORT, detector=Detecting(None))
+        for _ in range(2):
+            with self.assertRaisesRegex(MachineError, "hit_dtype"):
+                one.run()
+
+    def test_vector_environments_are_asked_in_order(self):
+        with VectorEnv(2, {"scenario": "clear", "set": SHORT, "observe": ("imu",)}) as vector:
+            for use, words in (
+                (lambda: vector.step(np.zeros((2, 2))), "before reset"),
+                (lambda: vector.reset(seed=[1]), "one number or 2"),
+                (lambda: vector.reset(options={"reset_mask": [1, 0]}), "2 booleans"),
+            ):
+                with self.assertRaisesRegex((RuntimeError, ValueError), words):
+                    use()
+            vector.reset(seed=1)
+            with self.assertRaisesRegex(ValueError, "shape"):
+                vector.step(np.zeros(2))
+        with self.assertRaisesRegex(RuntimeError, "closed"):
+            vector.reset()
+
+
+class OtherProcesses(InFolder):
+    def python(self, code):
+        return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+
+    def test_a_fork_after_the_import_flies_without_images(self):
+        code = (
+            "import os, understory\n"
+            "understory.Flight('clear', set={'forest.length_m': 5}, detector='none').run()\n"
+            "child = os.fork()\n"
+            "if child == 0:\n"
+            "    understory.Flight('clear', set={'forest.length_m': 5}, detector='none').run(); os._exit(0)\n"
+            "print(os.waitpid(child, 0)[1])\n"
+        )
+        ended = self.python(code)
+        self.assertEqual(ended.stdout, "0\n", ended.stderr)
+
+    def test_a_program_that_ends_in_the_middle_of_flights_ends(self):
+        code = (
+            "import understory\n"
+            "from understory.gym import VectorEnv\n"
+            "if __name__ == '__main__':\n"
+            "    flight = understory.Flight('forest'); flight.step('camera')\n"
+            "    vector = VectorEnv(1, {'scenario': 'clear', 'observe': ('imu',)}); vector.reset(seed=1)\n"
+        )
+        file = self.folder / "ends.py"
+        file.write_text(code)
+        ended = subprocess.run([sys.executable, file], capture_output=True, text=True, timeout=60)
+        self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+
+    def test_the_data_folder_can_be_named(self):
+        surroundings = {**os.environ, "UNDERSTORY_ROOT": "/nowhere"}
+        ended = subprocess.run([sys.executable, "-c", "import understory; understory.Flight('forest')"],
+                               capture_output=True, text=True, timeout=60, env=surroundings)
+        self.assertIn("UNDERSTORY_ROOT=/nowhere: must be a folder with models/ and scenarios/", ended.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

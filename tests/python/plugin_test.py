@@ -1,0 +1,166 @@
+"""Parts in Python take part in the program's commands, and the examples of docs/examples/python work."""
+
+import importlib.util
+import shutil
+import sys
+import unittest
+
+import understory
+from tests.python.support import EXAMPLES, SOURCE, InFolder, native, program
+
+HAS_OPENCV = importlib.util.find_spec("cv2") is not None
+HAS_MYPY = shutil.which("mypy") is not None
+SHORT = ["--set", "forest.length_m=20"]
+
+MINE = '''
+import understory
+
+@understory.detector("wrapped", keys=[understory.Key("gain", 1.0, 0.1, 2.0, "does nothing"),
+                                      understory.Key("count", 3, 0, 5, "a whole number"),
+                                      understory.Key("flag", True, "yes or no"),
+                                      understory.Key("word", "a", "any word")])
+class Wrapped:
+    "ours, wrapped"
+    def __init__(self, context):
+        assert context.config == {"gain": 0.5, "count": 3, "flag": True, "word": "a"}, context.config
+        self.inner = context.make_detector("pushbroom")
+    def detect(self, frame):
+        return self.inner.detect(frame)
+
+@understory.planner("wrapped_sst")
+class Planner:
+    "SST, wrapped"
+    def __init__(self, context):
+        self.inner = context.make_planner("sst")
+    def plan(self, request):
+        return self.inner.plan(request)
+    def concerns(self, position_world, plan):
+        return self.inner.concerns(position_world, plan)
+
+@understory.state_source("wrapped_filter")
+class Source:
+    "the filter, wrapped"
+    def __init__(self, context):
+        self.inner = context.make_state_source("filter")
+    def on(self, sample):
+        self.inner.on(sample)
+    def state(self):
+        return self.inner.state()
+    def state_at(self, t_ns):
+        return self.inner.state_at(t_ns)
+
+@understory.course("two_trunks")
+def two_trunks(seed, goal_x_m):
+    "a gate of two trunks"
+    return [understory.trunk(15, 2 + seed % 2), understory.trunk(15, -2)]
+'''
+
+
+class Plugins(InFolder):
+    def setUp(self):
+        super().setUp()
+        self.mine = self.folder / "mine.py"
+        self.mine.write_text(MINE)
+
+    def fly(self, *settings):
+        arguments = ["forest", "--seed", 1003, *SHORT, "--plugin", self.mine]
+        for setting in settings:
+            arguments += ["--set", setting]
+        return native(*arguments)
+
+    def test_our_parts_wrapped_have_our_digest(self):
+        ours = native("forest", "--seed", 1003, *SHORT)
+        self.assertEqual(self.fly("perception.detector=wrapped", "perception.wrapped.gain=0.5"), ours)
+        self.assertEqual(self.fly("autopilot.method=wrapped_sst"), ours)
+        self.assertEqual(self.fly("estimation.source=wrapped_filter"), ours)
+
+    def test_a_course_is_flown(self):
+        program("fly", "forest", *SHORT, "--plugin", self.mine, "--set", "course=two_trunks", "--out",
+                self.folder / "run", "--quiet")
+        self.assertEqual((self.folder / "run" / "obstacles.csv").read_text().count("trunk"), 2)
+
+    def test_they_are_listed_with_their_keys(self):
+        printed = program("plugin", self.mine)
+        for words in ("perception.detector=wrapped", "perception.wrapped.gain", "does nothing", "0.1 .. 2",
+                      "course=two_trunks", "a gate of two trunks"):
+            self.assertIn(words, printed)
+
+    def test_keys_have_bounds(self):
+        said = program("fly", "forest", "--plugin", self.mine, "--set", "perception.wrapped.gain=3", status=2)
+        self.assertIn("perception.wrapped.gain", said)
+
+    def test_they_are_checked(self):
+        self.mine.write_text(MINE[: MINE.index("@understory.planner")].replace('"gain": 0.5', '"gain": 1.0'))
+        self.assertIn("8 checks, 0 faults", program("plugin", self.mine, "--check"))
+
+    def test_what_is_wrong_with_a_file_is_one_line(self):
+        for code, words in (
+            ("import nothing_there", "ModuleNotFoundError: No module named 'nothing_there' (mine.py:1)"),
+            ("x = (", "SyntaxError"),
+            ("x = 3", "adds no part"),
+            ("import understory\n@understory.course('forest')\ndef f(): pass", "the name 'forest' is taken"),
+            ("import understory\n@understory.detector('world')\nclass W: pass\n1 / 0", "ZeroDivisionError"),
+        ):
+            self.mine.write_text(code)
+            said = program("plugin", self.mine, status=2)
+            self.assertIn(words, said)
+            self.assertEqual(said.count("\n"), 1, said)
+
+    def test_an_exception_ends_a_flight_as_a_failed_machine_with_its_traceback(self):
+        self.mine.write_text(MINE.replace("return self.inner.detect(frame)", "return frame.middle"))
+        said = program("fly", "forest", *SHORT, "--plugin", self.mine, "--set", "perception.detector=wrapped",
+                       "--set", "perception.wrapped.gain=0.5", "--out", self.folder / "run", status=3)
+        self.assertIn("Traceback (most recent call last)", said)
+        self.assertIn("detector 'wrapped': detect() threw: AttributeError", said.splitlines()[-1])
+
+    def test_campaigns_fly_them(self):
+        one = understory.campaign({"scenario": "forest", "seeds": "1003..1004", "set": {"forest.length_m": 20}},
+                                  self.folder / "ours", jobs=1)
+        other = understory.campaign({"scenario": "forest", "seeds": "1003..1004", "set": {"forest.length_m": 20}},
+                                    self.folder / "theirs", plugins=[self.mine], jobs=1,
+                                    set={"perception.detector": "wrapped", "perception.wrapped.gain": 0.5})
+        self.assertEqual(one.rows["digest"].tolist(), other.rows["digest"].tolist())
+        self.assertEqual(one.rows["outcome"].tolist(), ["goal", "goal"])
+        passed, text = understory.gate(one, other)
+        self.assertTrue(passed, text)
+
+    def test_recordings_are_evaluated_from_python(self):
+        folder = understory.record("forest", self.folder / "recording", seed=1003, set={"forest.length_m": 6})
+        figures = understory.evaluate(folder, self.folder / "evaluation", every=8)
+        self.assertIn("pushbroom", str(figures))
+
+
+class Examples(InFolder):
+    @unittest.skipUnless(HAS_OPENCV, "python3-opencv is not installed")
+    def test_the_detector_flies(self):
+        native("forest", "--seed", 1003, *SHORT, "--plugin", EXAMPLES / "edge_detector.py", "--set",
+               "perception.detector=python_edges")
+
+    def test_the_planner_flies(self):
+        native("forest", "--seed", 1003, *SHORT, "--plugin", EXAMPLES / "swerve_planner.py", "--set",
+               "autopilot.method=python_swerve")
+
+    def test_the_policy_flies(self):
+        sys.path.insert(0, str(EXAMPLES))
+        import gym_policy
+        from understory.gym import FlightEnv
+
+        env = FlightEnv("forest", set={"forest.length_m": 20}, observe=gym_policy.OBSERVE, detector="true_depth")
+        total, info = gym_policy.fly(env, gym_policy.policy, 1003)
+        self.assertEqual(info["outcome"], "goal")
+        self.assertGreater(total, 1.5)
+
+
+@unittest.skipUnless(HAS_MYPY, "mypy is not installed")
+class Types(unittest.TestCase):
+    def test_the_package_and_its_stubs_agree(self):
+        import subprocess
+
+        package = SOURCE / "scenarios" / "python" / "understory"
+        ended = subprocess.run(["mypy", "--config-file", str(SOURCE / "tests/python/mypy.ini"), str(package)],
+                               capture_output=True, text=True, cwd=SOURCE / "scenarios" / "python")
+        self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
