@@ -19,10 +19,17 @@ function(take_common_headers folder)
   list(REMOVE_ITEM targets "" ${take_EXCEPT})
   foreach(target IN LISTS targets)
     get_target_property(type ${target} TYPE)
-    if(type STREQUAL STATIC_LIBRARY)
+    if(type STREQUAL STATIC_LIBRARY AND target IN_LIST reads_scenarios)
+      target_precompile_headers(${target} REUSE_FROM understory_scenario_headers)
+    elseif(type STREQUAL STATIC_LIBRARY)
       target_precompile_headers(${target} REUSE_FROM understory_headers)
     endif()
   endforeach()
 endfunction()
 
 precompiled_headers(understory_headers LIBRARIES Eigen3::Eigen HEADERS ${common_headers})
+# What reads scenarios shares their header, too, which is most of what is left to read there.
+set(scenario_headers ${common_headers} ${PROJECT_SOURCE_DIR}/scenarios/scenario/scenario_io.hpp)
+precompiled_headers(understory_scenario_headers LIBRARIES Eigen3::Eigen opencv_core_parts HEADERS ${scenario_headers})
+set(reads_scenarios scenarios scenarios_campaign scenarios_campaign_reports scenarios_detection scenarios_evaluation
+    scenarios_evaluation_reports scenarios_logs scenarios_rig scenarios_scenario scenarios_tuning)

@@ -59,7 +59,7 @@ struct Cloud {
     return false;
   }
 };
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3>;
+using PointTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3>;
 
 }  // namespace
 
@@ -94,7 +94,7 @@ std::vector<double> nearest_distances_m(const std::vector<Eigen::Vector3d>& from
   std::vector<double> distances_m(from.size(), std::numeric_limits<double>::infinity());
   if (to.empty() || from.empty()) return distances_m;
   const Cloud cloud{to};
-  Tree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+  PointTree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(16));
   tree.buildIndex();
   for (std::size_t i = 0; i < from.size(); ++i) {
     unsigned int index = 0;

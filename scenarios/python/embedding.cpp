@@ -20,7 +20,7 @@ std::string package_folder() {
   std::error_code ignored;
   dladdr(reinterpret_cast<const void*>(&package_folder), &info);
   const fs::path here = fs::canonical(info.dli_fname, ignored).parent_path();
-  for (const fs::path& folder : {here / "python", here / "../../python3/dist-packages"})
+  for (const fs::path& folder : {here / "python", here / UNDERSTORY_PYTHON_PACKAGES})
     if (fs::exists(folder / "understory/__init__.py", ignored)) return fs::canonical(folder).string();
   throw MachineError(
       "plug-ins in Python need the package python3-understory: found no understory/__init__.py");

@@ -65,7 +65,10 @@ forest: {length_m: 20}
 endif()
 if(PYTHON)
   set(ENV{PYTHONPATH} ${WORK}/moved/lib/python3/dist-packages)
-  must(${PYTHON} -B -c "import understory; print(understory.Flight('clear', set={'forest.length_m': 10}).run()['outcome'], understory.commands.program())")
+  file(WRITE ${WORK}/installed.py "import understory
+print(understory.Flight('clear', set={'forest.length_m': 10}).run()['outcome'], understory.commands.program())
+")
+  must(${PYTHON} -B ${WORK}/installed.py)
   if(NOT output MATCHES "goal ${WORK}/moved/bin/understory")
     message(FATAL_ERROR "the installed Python module did not fly: ${output}")
   endif()

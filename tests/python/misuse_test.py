@@ -83,11 +83,12 @@ WRONG = [
     ("depth without images", lambda: flight(detector="none").depth, RuntimeError, "images=True"),
     ("chase view without images", lambda: flight(detector="none").chase_view(), RuntimeError, "images=True"),
     ("controls of a planner's flight", lambda: flight().control(0, 0, 0), RuntimeError, "by_hand=True"),
+    ("the run folder of a flight by hand", lambda: flight(by_hand=True).save_run("never"), RuntimeError, r"save\(\)"),
     ("writing to an image", lambda: flown_image().fill(0), ValueError, "read-only"),
     # parts
     ("a detector without detect()", lambda: flight(detector=object()), TypeError, r"detect\(\)"),
     ("a planner without plan()", lambda: flight(planner=object()), TypeError, r"plan\(\)"),
-    ("a state source without state()", lambda: flight(state_source=object()), TypeError, r"state\(\)"),
+    ("a state source without on()", lambda: flight(state_source=object()), TypeError, r"on\(\)"),
     ("a detector that gives None", lambda: flown(detector=Detecting(None)), MachineError, "hit_dtype"),
     ("a detector that gives a list", lambda: flown(detector=Detecting([1, 2])), MachineError, "hit_dtype"),
     ("a detector that gives floats", lambda: flown(detector=Detecting(np.zeros((3, 3)))), MachineError, "hit_dtype"),
@@ -195,6 +196,25 @@ class OtherProcesses(InFolder):
         file.write_text(code)
         ended = subprocess.run([sys.executable, file], capture_output=True, text=True, timeout=60)
         self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+
+    def test_the_keyboard_interrupts_environments_and_leaves_no_process(self):
+        file = self.folder / "interrupted.py"
+        file.write_text(
+            "import multiprocessing, os, signal, threading\n"
+            "import numpy as np\n"
+            "from understory.gym import VectorEnv\n"
+            "if __name__ == '__main__':\n"
+            "    vector = VectorEnv(2, {'scenario': 'clear', 'observe': ('imu',)})\n"
+            "    vector.reset(seed=1)\n"
+            "    threading.Timer(1.0, lambda: os.killpg(0, signal.SIGINT)).start()\n"
+            "    try:\n"
+            "        while True: vector.step(np.zeros((2, 2)))\n"
+            "    except KeyboardInterrupt: print('interrupted', multiprocessing.active_children())\n"
+            "    try: vector.step(np.zeros((2, 2)))\n"
+            "    except RuntimeError as error: print(error)\n"
+        )
+        ended = subprocess.run([sys.executable, file], capture_output=True, text=True, timeout=60, start_new_session=True)
+        self.assertEqual(ended.stdout, "interrupted []\nthe environments are closed\n", ended.stderr)
 
     def test_the_data_folder_can_be_named(self):
         surroundings = {**os.environ, "UNDERSTORY_ROOT": "/nowhere"}

@@ -77,7 +77,7 @@ class Plugins(InFolder):
     def test_a_course_is_flown(self):
         program("fly", "forest", *SHORT, "--plugin", self.mine, "--set", "course=two_trunks", "--out",
                 self.folder / "run", "--quiet")
-        self.assertEqual((self.folder / "run" / "obstacles.csv").read_text().count("trunk"), 2)
+        self.assertEqual((self.folder / "run" / "obstacles.csv").read_text().count(",trunk,"), 2)
 
     def test_they_are_listed_with_their_keys(self):
         printed = program("plugin", self.mine)
@@ -114,11 +114,11 @@ class Plugins(InFolder):
         self.assertIn("detector 'wrapped': detect() threw: AttributeError", said.splitlines()[-1])
 
     def test_campaigns_fly_them(self):
-        one = understory.campaign({"scenario": "forest", "seeds": "1003..1004", "set": {"forest.length_m": 20}},
-                                  self.folder / "ours", jobs=1)
-        other = understory.campaign({"scenario": "forest", "seeds": "1003..1004", "set": {"forest.length_m": 20}},
-                                    self.folder / "theirs", plugins=[self.mine], jobs=1,
-                                    set={"perception.detector": "wrapped", "perception.wrapped.gain": 0.5})
+        flown = {"scenario": "forest", "seeds": "1003..1004"}
+        short = {"forest.length_m": 20}
+        one = understory.campaign(flown, self.folder / "ours", set=short, jobs=1)
+        wrapped = {**short, "perception.detector": "wrapped", "perception.wrapped.gain": 0.5}
+        other = understory.campaign(flown, self.folder / "theirs", set=wrapped, plugins=[self.mine], jobs=1)
         self.assertEqual(one.rows["digest"].tolist(), other.rows["digest"].tolist())
         self.assertEqual(one.rows["outcome"].tolist(), ["goal", "goal"])
         passed, text = understory.gate(one, other)

@@ -95,7 +95,7 @@ TEST(EvaluateCommand, RecordsASuiteAndJudgesIt) {
 
 /// The true disparities of a recording's frames, as another program would leave them: PFM rows from the
 /// bottom up.
-void write_true_disparities(const fs::path& recording, const fs::path& to, double focal_px_times_baseline_m) {
+void write_true_disparities(const fs::path& recording, const fs::path& to, const understory::StereoRig& rig) {
   fs::create_directories(to);
   for (const auto& entry : fs::directory_iterator(recording / "mav0/depth0/data")) {
     const cv::Mat depth_mm = cv::imread(entry.path().string(), cv::IMREAD_UNCHANGED);
@@ -103,7 +103,7 @@ void write_true_disparities(const fs::path& recording, const fs::path& to, doubl
     for (int row = 0; row < depth_mm.rows; ++row)
       for (int column = 0; column < depth_mm.cols; ++column)
         if (const auto value_mm = depth_mm.at<std::uint16_t>(row, column); value_mm > 0)
-          disparity.at<float>(row, column) = static_cast<float>(1e3 * focal_px_times_baseline_m / value_mm);
+          disparity.at<float>(row, column) = static_cast<float>(rig.disparity_px(1e-3 * value_mm));
     cv::flip(disparity, disparity, 0);
     std::ofstream file(to / (entry.path().stem().string() + ".pfm"), std::ios::binary);
     file << "Pf\n" << disparity.cols << " " << disparity.rows << "\n-1.0\n";
@@ -121,8 +121,7 @@ TEST(EvaluateCommand, DisparitiesOfOthersStandBesideOurs) {
       "--out " +
       recording.string());
   const auto rig = understory::read_calibrated_rig(recording, {}).rig;
-  ASSERT_NEAR(rig.infinity_disparity_px(), 0, 1e-9);
-  write_true_disparities(recording, given / "walk-7", rig.focal_px * rig.baseline_m);
+  write_true_disparities(recording, given / "walk-7", rig);
   expect_success("evaluate " + recording.string() + " --disparities exact=" + given.string() + " --out " +
                  out.string());
   nlohmann::json exact, block_matching;

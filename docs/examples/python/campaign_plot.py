@@ -29,11 +29,10 @@ def main(folder, picture, seeds="1000..1009"):
         {
             "scenario": "forest",
             "seeds": seeds,
-            "set": {"perception.detector": "true_depth"},
             "grid": {"forest.square_metres_per_tree": SQUARE_METRES_PER_TREE},
         },
         folder,
-        resume=True,
+        set={"perception.detector": "true_depth"},
     )
     rows = campaign.rows
     stems, shares, errors = [], [], []

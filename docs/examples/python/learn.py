@@ -15,7 +15,7 @@ from understory.gym import FlightEnv
 LATERAL_M = np.linspace(-3.5, 3.5, 9)
 AHEAD_M = ((1.0, 5.0), (4.0, 9.0), (8.0, 14.0))
 FEATURES = len(LATERAL_M) * len(AHEAD_M) + 5
-ROUNDS, CANDIDATES, KEPT, EPISODES = 24, 32, 8, 10
+ROUNDS, CANDIDATES, KEPT, EPISODES = 16, 24, 6, 8
 
 
 def features(observation):

@@ -95,6 +95,7 @@ class Flight:
             loaded = scenario if seed is None else scenario.with_seed(seed)
         else:
             loaded = load_scenario(scenario, seed, named, rig=rig)
+        self._by_hand = by_hand
         self._core = _understory.Flight(
             loaded,
             objects["detector"],
@@ -266,7 +267,10 @@ class Flight:
         return page
 
     def save_run(self, folder: str | os.PathLike) -> None:
-        """Write the run folder that `understory fly --out` writes. The folder must be new or empty."""
+        """Write the run folder that `understory fly --out` writes. The folder must be new or empty. Of a flight by
+        hand only save() tells how it was flown."""
+        if self._by_hand:
+            raise RuntimeError("a flight by hand has no run folder: save() writes a scenario that flies it again")
         self._core.save_run(os.fspath(folder))
 
     def save(self, file: str | os.PathLike) -> None:

@@ -37,6 +37,7 @@ MAXIMUM_CLIMB_MPS = 3.0
 MOST_HITS = 256
 MOST_POINTS = 32
 FAR_M = 100.0
+CELL_M = 0.4
 
 
 class FlightEnv(_Base):
@@ -53,8 +54,8 @@ class FlightEnv(_Base):
         gravity   float32 (3,): its direction in body axes, as the estimator believes;
         course    float32 (2,): offset to the left of the course, m, and heading, rad, as the estimator believes;
         hits      float32 (256, 3): detections in the newest pair, m, left camera's axes; rows without one are 0;
-        map       float32 (32, 3): the nearest points of the obstacle memory, m, body axes; rows without one are
-                  (100, 0, 0);
+        map       float32 (32, 3): the obstacle memory, one point for each cell of 0.4 m of the ground, the nearest
+                  first, m, body axes; rows without one are (100, 0, 0);
         depth     float32 (rows, columns): true depth, m, at most 100.
     act: "command": bank and climb for the path follower, 1 is 1.2 rad (right wing down) and 3 m/s;
         "control": left and right elevon and thrust, -1 to 1 over the airframe's range.
@@ -285,10 +286,12 @@ def _padded(rows: np.ndarray, count: int, filler: tuple[float, float, float]) ->
 
 
 def _map_of(core: _understory.Flight) -> np.ndarray:
-    """The nearest points of the memory, nearest first, body axes."""
+    """Points of the memory, one a cell, nearest first, body axes: a trunk that was seen often is a few points."""
     points = core.map["position_world"]
     if len(points) == 0:
         return _padded(points, MOST_POINTS, (FAR_M, 0.0, 0.0))
+    cells = np.floor(points[:, :2] / CELL_M).astype(np.int64)
+    points = points[np.unique(cells[:, 0] * 1_000_003 + cells[:, 1], return_index=True)[1]]
     pose = core.state.T_world_body
     body = (points - pose[:3, 3]) @ pose[:3, :3]
     order = np.argsort(np.einsum("ij,ij->i", body, body), kind="stable")[:MOST_POINTS]

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import enum
 import mmap
 import multiprocessing
 import os
+import signal
 import traceback
 from multiprocessing import reduction
-from typing import Any, Mapping, Optional, Sequence
+from typing import Any, Iterator, Mapping, Optional, Sequence
 
 import numpy as np
 
@@ -47,6 +49,7 @@ def _work(pipe: Any, memory_file: Any, size: int, layout: Any, index: int, setti
     """A worker: an environment that is told by the pipe and observes into the shared memory."""
     from .gym import FlightEnv
 
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all processes of a terminal; this one is told
     descriptor = memory_file.detach()
     memory = mmap.mmap(descriptor, size)
     os.close(descriptor)
@@ -80,7 +83,7 @@ def _work(pipe: Any, memory_file: Any, size: int, layout: Any, index: int, setti
             elif order == "save":
                 env.save(given)
                 pipe.send(("done", None))
-    except (EOFError, KeyboardInterrupt):
+    except EOFError:  # the process that told it has ended
         pass
     except Exception as error:  # told in one line; what led to it goes to standard error
         traceback.print_exc()
@@ -200,15 +203,34 @@ class VectorEnv:
                 raise ValueError(f"seed: must be one number or {self.num_envs}, got {len(seeds)}")
         infos: dict[str, Any] = {}
         chosen = np.flatnonzero(mask)
-        for index in chosen:
-            self._tell(index, "reset", {"seed": seeds[index]})
-        for index in chosen:
-            try:
-                self._add(infos, index, self._answer(index))
-            except _Died as died:
-                raise RuntimeError(f"reset: {died}") from None
-            self._ended[index], self._began[index] = False, True
+        with self._whole_calls():
+            for index in chosen:
+                self._tell(index, "reset", {"seed": seeds[index]})
+            for index in chosen:
+                self._add(infos, index, self._reset_answer(index, seeds[index]))
+                self._ended[index], self._began[index] = False, True
         return self._observations(), infos
+
+    def _reset_answer(self, index: int, seed: Optional[int]) -> Any:
+        """What a worker says to a reset; one that died before is replaced and asked again."""
+        try:
+            return self._answer(index)
+        except _Died:
+            self._replace(index)
+            self._tell(index, "reset", {"seed": seed})
+        try:
+            return self._answer(index)
+        except _Died as died:
+            raise RuntimeError(f"reset: {died}") from None
+
+    @contextlib.contextmanager
+    def _whole_calls(self) -> Iterator[None]:
+        """A call that is interrupted leaves answers in the pipes: the environments are closed then."""
+        try:
+            yield
+        except KeyboardInterrupt:
+            self.close()
+            raise
 
     def step(
         self, actions: Any
@@ -225,35 +247,33 @@ class VectorEnv:
             raise RuntimeError(f"step(): the episodes of {ended} have ended: reset them with options['reset_mask']")
         at_once = self.autoreset_mode is AutoresetMode.SAME_STEP
         resets = self._ended.copy()
-        for index in range(self.num_envs):
-            if resets[index]:
-                self._tell(index, "reset", {})
-            else:
-                self._tell(index, "step", (actions[index], at_once))
         rewards = np.zeros(self.num_envs)
         terminated, truncated = np.zeros(self.num_envs, bool), np.zeros(self.num_envs, bool)
         infos: dict[str, Any] = {}
-        for index in range(self.num_envs):
-            try:
-                answer = self._answer(index)
-            except _Died as died:
-                truncated[index] = True
-                self._add(infos, index, {"worker_died": str(died)})
-                self._replace(index)
-                if at_once:
-                    self._tell(index, "reset", {})
-                    self._answer(index)
-                self._ended[index] = not at_once
-                continue
-            if resets[index]:
-                self._add(infos, index, answer)
-                self._ended[index] = False
-                continue
-            rewards[index], terminated[index], truncated[index], info, last = answer
-            self._add(infos, index, info)
-            if last is not None:
-                self._add(infos, index, {"final_obs": last[0], "final_info": last[1]})
-            self._ended[index] = (terminated[index] or truncated[index]) and not at_once
+        with self._whole_calls():
+            for index in range(self.num_envs):
+                order = ("reset", {"seed": None}) if resets[index] else ("step", (actions[index], at_once))
+                self._tell(index, *order)
+            for index in range(self.num_envs):
+                if resets[index]:
+                    self._add(infos, index, self._reset_answer(index, None))
+                    self._ended[index] = False
+                    continue
+                try:
+                    rewards[index], terminated[index], truncated[index], info, last = self._answer(index)
+                except _Died as died:
+                    truncated[index] = True
+                    self._add(infos, index, {"worker_died": str(died)})
+                    self._replace(index)
+                    if at_once:
+                        self._tell(index, "reset", {"seed": None})
+                        self._answer(index)
+                    self._ended[index] = not at_once
+                    continue
+                self._add(infos, index, info)
+                if last is not None:
+                    self._add(infos, index, {"final_obs": last[0], "final_info": last[1]})
+                self._ended[index] = (terminated[index] or truncated[index]) and not at_once
         return self._observations(), rewards, terminated, truncated, infos
 
     def _add(self, infos: dict[str, Any], index: int, info: Mapping[str, Any]) -> None:

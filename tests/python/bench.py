@@ -1,0 +1,156 @@
+"""Speed of the Python module, as ratios by turns in one run: python3 -m tests.python.bench (docs/benchmarks.md).
+
+PYTHONPATH and UNDERSTORY_PROGRAM as in CMakeLists.txt beside it. Takes about four minutes on a quiet machine.
+"""
+
+import json
+import multiprocessing
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+import understory
+from tests.python.support import program
+from understory.gym import FlightEnv, VectorEnv
+
+CAMERAS = {"scenario": "forest"}
+BARE = {"observe": ("imu", "airspeed", "altitude", "gravity"), "act": "control", "step": "control", "record": False}
+
+
+def native_loop_s(seed):
+    """Wall time of the program's loop, without set-up."""
+    with tempfile.TemporaryDirectory() as folder:
+        program("fly", "forest", "--seed", seed, "--quiet", "--out", Path(folder) / "run")
+        result = json.loads((Path(folder) / "run" / "result.json").read_text())
+    return result["wall_s"] - sum(result["timings"][stage]["total_s"] for stage in ("setup", "context"))
+
+
+def python_loop_s(seed):
+    flight = understory.Flight("forest", seed=seed)
+    begin = time.perf_counter()
+    while flight.step("camera"):
+        pass
+    return time.perf_counter() - begin
+
+
+def steps_per_s(vector, count, seed):
+    vector.reset(seed=seed)
+    actions = np.zeros(vector.action_space.shape)
+    begin = time.perf_counter()
+    for _ in range(count):
+        vector.step(actions)
+    return vector.num_envs * count / (time.perf_counter() - begin)
+
+
+def _serve(pipe):
+    env = FlightEnv(**CAMERAS)
+    while True:
+        order, given = pipe.recv()
+        if order == "close":
+            return
+        pipe.send(env.reset(seed=given) if order == "reset" else env.step(given))
+
+
+class PipePool:
+    """The yardstick: the same workers, with observations pickled through pipes."""
+
+    def __init__(self, count):
+        context = multiprocessing.get_context("spawn")
+        self.pipes, self.num_envs = [], count
+        for _ in range(count):
+            ours, theirs = context.Pipe()
+            context.Process(target=_serve, args=(theirs,), daemon=True).start()
+            self.pipes.append(ours)
+        self.action_space = np.zeros((count, 2))
+
+    def ask(self, order, given):
+        for index, pipe in enumerate(self.pipes):
+            pipe.send((order, given[index]))
+        answers = [pipe.recv() for pipe in self.pipes]
+        return {name: np.stack([answer[0][name] for answer in answers]) for name in answers[0][0]}
+
+    def reset(self, seed):
+        return self.ask("reset", [seed + index for index in range(self.num_envs)])
+
+    def step(self, actions):
+        return self.ask("step", actions)
+
+    def close(self):
+        for pipe in self.pipes:
+            pipe.send(("close", None))
+
+
+def control_steps_per_s(scenario):
+    env = FlightEnv(scenario, **BARE)
+    action, steps, seconds = [0.0, 0.0, 0.6], 0, 0.0
+    for seed in range(1000, 1012):
+        env.reset(seed=seed)
+        begin, over = time.perf_counter(), False
+        while not over:
+            _, _, terminated, truncated, _ = env.step(action)
+            steps, over = steps + 1, terminated or truncated
+        seconds += time.perf_counter() - begin
+    return steps / seconds
+
+
+def reset_ms(settings):
+    env = FlightEnv("forest", **settings)
+    env.reset(seed=1000)
+    times = []
+    for seed in range(1001, 1011):
+        begin = time.perf_counter()
+        env.reset(seed=seed)
+        times.append(1e3 * (time.perf_counter() - begin))
+    return statistics.median(times)
+
+
+def wall_s(command, repeats=7):
+    times = []
+    for _ in range(repeats):
+        begin = time.perf_counter()
+        subprocess.run(command, check=True, capture_output=True)
+        times.append(time.perf_counter() - begin)
+    return statistics.median(times)
+
+
+def by_turns(one, other, turns):
+    """Median of one's values over other's, turn by turn."""
+    return statistics.median([one(turn) / other(turn) for turn in range(turns)])
+
+
+def main():
+    def show(what, value, digits=2):
+        print(f"{what:75s} {value:10.{digits}f}", flush=True)
+
+    show("stepping forest at camera rate, speed against the program's",
+         by_turns(lambda turn: native_loop_s(1000 + turn), lambda turn: python_loop_s(1000 + turn), 7), 3)
+    one, two, pool = VectorEnv(1, CAMERAS), VectorEnv(2, CAMERAS), PipePool(2)
+    show("two environments with cameras against one",
+         by_turns(lambda turn: steps_per_s(two, 200, 1000 + turn), lambda turn: steps_per_s(one, 200, 1000 + turn), 5))
+    show("VectorEnv of two against two over pipes and pickle, with cameras",
+         by_turns(lambda turn: steps_per_s(two, 200, 1000 + turn), lambda turn: steps_per_s(pool, 200, 1000 + turn), 5))
+    for closing in (one, two, pool):
+        closing.close()
+    for scenario in ("clear", "forest"):
+        show(f"control steps a second, one core, {scenario}",
+             statistics.median([control_steps_per_s(scenario) for _ in range(3)]), 0)
+    show("reset without cameras, ms", reset_ms(BARE), 1)
+    show("reset with cameras, ms", reset_ms({}), 1)
+    with tempfile.TemporaryDirectory() as folder:
+        mine = Path(folder) / "mine.py"
+        mine.write_text("import understory\n@understory.course('mine')\ndef mine(seed, goal_x_m): return []\n")
+        executable = understory.commands.program()
+        show("a plug-in in Python adds to a process, s",
+             wall_s([executable, "plugin", str(mine)]) - wall_s([executable, "plugin"]), 3)
+    bare, numpy = wall_s([sys.executable, "-c", "pass"]), wall_s([sys.executable, "-c", "import numpy"])
+    show("import understory, s", wall_s([sys.executable, "-c", "import understory"]) - bare, 3)
+    show("of these numpy, s", numpy - bare, 3)
+
+
+if __name__ == "__main__":
+    main()
