@@ -125,7 +125,8 @@ TEST(EvaluateCommand, DisparitiesOfOthersStandBesideOurs) {
   expect_success("evaluate " + recording.string() + " --disparities exact=" + given.string() + " --out " +
                  out.string());
   nlohmann::json exact, block_matching;
-  for (const nlohmann::json& algorithm : figures(out)["all"]["algorithms"]) {
+  const nlohmann::json all = figures(out)["all"];
+  for (const nlohmann::json& algorithm : all["algorithms"]) {
     if (algorithm["name"] == "exact") exact = algorithm;
     if (algorithm["name"] == "StereoBM") block_matching = algorithm;
     EXPECT_EQ(algorithm.contains("disparities"), algorithm["name"] == "exact" ||
