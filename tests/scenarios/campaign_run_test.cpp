@@ -52,11 +52,17 @@ class CampaignRun : public testing::Test {
           "2", "--resume", nullptr);
     _exit(127);
   }
+  /// Empty where the process has ended in the meantime.
+  static std::string command_of(const fs::path& process) try {
+    return content_of(process / "cmdline");
+  } catch (const std::exception&) {
+    return "";
+  }
   /// The process that flies `id`, once it does.
   pid_t process_of(const std::string& id) const {  // ours: other tests fly flights of that name beside us
     for (int attempt = 0; attempt < 2000; ++attempt) {
       for (const auto& process : fs::directory_iterator("/proc")) {
-        const std::string command = content_of(process.path() / "cmdline");
+        const std::string command = command_of(process.path());
         if (command.find(path.string()) != std::string::npos &&
             command.find("/" + id + ".json") != std::string::npos)
           return std::stoi(process.path().filename().string());

@@ -13,7 +13,7 @@ import numpy as np
 
 import understory
 
-SQUARE_METRES_PER_TREE = [100, 50, 30, 20]
+SQUARE_METRES_PER_TREE = [50, 25, 16, 10]
 
 
 def interval(successes, count):

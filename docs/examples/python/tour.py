@@ -11,10 +11,10 @@ flight = understory.Flight("forest", seed=1003, set={"forest.length_m": 40}, ima
 print(flight, "rig", flight.rig.name, "looks", flight.rig.detection_depth_m, "m ahead")
 
 # %% [markdown]
-# The catapult fires after a quarter of a second. Two seconds later the aircraft is among the first trees.
+# The catapult fires after a quarter of a second. The forest begins 20 m ahead: fly until the detector sees three blocks.
 
 # %%
-while flight.t_s < 2.5 and flight.step("camera"):
+while len(flight.hits) < 3 and flight.step("camera"):
     pass
 print(f"{flight.t_s:.2f} s, at {np.round(flight.truth.position_world_m, 2)}, {flight.pitot.airspeed_mps:.1f} m/s")
 print(f"the left image: {flight.left.shape}, mean gray {flight.left.mean():.0f}")
