@@ -32,6 +32,10 @@ struct PointRecord {
   std::int32_t sightings;
 };
 
+/// Tells numpy of both. Numpy is imported when it is needed first: it takes two thirds of the time to import
+/// this.
+void register_records();
+
 py::array_t<HitRecord> array_of(const std::vector<StereoHit>& hits);
 py::array_t<PointRecord> array_of(const std::vector<ObstaclePoint>& points);
 /// An image as a read-only array that keeps it alive: no copy is made.

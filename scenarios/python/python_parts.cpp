@@ -42,6 +42,7 @@ std::vector<StereoHit> hits_of(const py::object& given) {
   const auto expected = [] {
     return std::runtime_error("must give an array of understory.hit_dtype (understory.hits() makes one)");
   };
+  register_records();
   if (!py::isinstance<py::array_t<HitRecord>>(given)) throw expected();
   const auto records = py::array_t<HitRecord, py::array::c_style>::ensure(given);
   if (!records || records.ndim() != 1) throw expected();

@@ -192,7 +192,18 @@ void bind_planning(py::module_& module) {
 
 }  // namespace
 
+void register_records() {
+  static const bool registered = [] {
+    PYBIND11_NUMPY_DTYPE(HitRecord, position_camera, column_px, row_px, disparity_px, score, edge_sum, near_m,
+                         far_m);
+    PYBIND11_NUMPY_DTYPE(PointRecord, position_world, t_ns, score, distance_flown_m, sightings);
+    return true;
+  }();
+  static_cast<void>(registered);
+}
+
 py::array_t<HitRecord> array_of(const std::vector<StereoHit>& hits) {
+  register_records();
   py::array_t<HitRecord> array(static_cast<py::ssize_t>(hits.size()));
   HitRecord* record = array.mutable_data();
   for (const StereoHit& hit : hits) {
@@ -209,6 +220,7 @@ py::array_t<HitRecord> array_of(const std::vector<StereoHit>& hits) {
 }
 
 py::array_t<PointRecord> array_of(const std::vector<ObstaclePoint>& points) {
+  register_records();
   py::array_t<PointRecord> array(static_cast<py::ssize_t>(points.size()));
   PointRecord* record = array.mutable_data();
   for (const ObstaclePoint& point : points) {
@@ -239,11 +251,14 @@ py::array array_of(const cv::Mat& image) {
 }
 
 void bind_types(py::module_& module) {
-  PYBIND11_NUMPY_DTYPE(HitRecord, position_camera, column_px, row_px, disparity_px, score, edge_sum, near_m,
-                       far_m);
-  PYBIND11_NUMPY_DTYPE(PointRecord, position_world, t_ns, score, distance_flown_m, sightings);
-  module.attr("hit_dtype") = py::dtype::of<HitRecord>();
-  module.attr("point_dtype") = py::dtype::of<PointRecord>();
+  module.def("hit_dtype", [] {
+    register_records();
+    return py::dtype::of<HitRecord>();
+  });
+  module.def("point_dtype", [] {
+    register_records();
+    return py::dtype::of<PointRecord>();
+  });
   bind_samples(module);
   bind_states(module);
   bind_vision(module);

@@ -14,6 +14,10 @@ RuntimeError), each with one line that says what was wrong.
 """
 
 import sys as _sys
+from typing import TYPE_CHECKING as _TYPE_CHECKING
+from typing import Any as _Any
+
+import _understory
 
 from _understory import (
     Controls,
@@ -30,8 +34,6 @@ from _understory import (
     StereoRig,
     Truth,
     __version__,
-    hit_dtype,
-    point_dtype,
 )
 
 from .commands import Campaign, CommandFailed, campaign, evaluate, gate, keys, record
@@ -73,6 +75,20 @@ __all__ = [
     "state_source",
     "trunk",
 ]
+
+if _TYPE_CHECKING:
+    import numpy as _np
+
+    hit_dtype: _np.dtype[_np.void]
+    point_dtype: _np.dtype[_np.void]
+
+
+def __getattr__(name: str) -> _Any:
+    """The types of records, made when they are asked for: numpy is imported then."""
+    if name in ("hit_dtype", "point_dtype"):
+        return getattr(_understory, name)()
+    raise AttributeError(f"module 'understory' has no attribute '{name}'")
+
 
 if "gymnasium" in _sys.modules:  # gymnasium.register_envs(understory) expects environments to be registered by then
     from . import gym as _gym  # noqa: F401

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
-import subprocess
 import sys
-import tempfile
 from pathlib import Path
-from typing import Any, Mapping, Optional, Sequence
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence
 
 import _understory
+
+if TYPE_CHECKING:
+    import numpy as np
 
 from .flight import settings_of
 
@@ -36,6 +34,8 @@ def program() -> str:
         for folder in (module.parent.parent, *(parent / "bin" for parent in module.parents)):
             if os.access(folder / "understory", os.X_OK) and (folder / "understory").is_file():
                 return str(folder / "understory")
+    import shutil
+
     found = shutil.which("understory")
     if found is None:
         raise FileNotFoundError("the program understory was not found: install it, or set UNDERSTORY_PROGRAM")
@@ -44,6 +44,8 @@ def program() -> str:
 
 def run(arguments: Sequence[str | os.PathLike], quiet: bool = True, accepted: Sequence[int] = (0,)) -> tuple[int, str]:
     """Run a command. Returns its status and what it printed. Raises CommandFailed at a status that is not accepted."""
+    import subprocess
+
     command = [program(), *[os.fspath(argument) for argument in arguments]]
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE if quiet else None, text=True
@@ -82,6 +84,8 @@ class Campaign:
     @property
     def rows(self) -> np.ndarray:
         """A record for each flight, fields as in flights.csv (docs/campaigns.md)."""
+        import numpy as np
+
         return np.genfromtxt(
             self.folder / "flights.csv", delimiter=",", names=True, dtype=None, encoding="utf-8", deletechars=""
         )
@@ -118,6 +122,8 @@ def campaign(
     if resume:
         options.append("--resume")
     if isinstance(file, Mapping):
+        import tempfile
+
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "campaign.yaml"
             path.write_text(json.dumps(dict(file)), encoding="utf-8")  # JSON is YAML

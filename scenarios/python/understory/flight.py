@@ -4,22 +4,26 @@ from __future__ import annotations
 
 import html
 import os
-from typing import Any, Mapping, Optional, Sequence
-
-import numpy as np
+from numbers import Real
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence
 
 import _understory
+
+if TYPE_CHECKING:
+    import numpy as np
 
 
 def settings_of(set: Optional[Mapping[str, Any]], **more: Any) -> list[str]:
     """Keys and values as `--set` takes them: numbers, words, truth values, lists of them."""
 
     def text(key: str, value: Any) -> str:
-        if isinstance(value, (bool, np.bool_)):
+        if hasattr(value, "tolist"):  # of numpy
+            value = value.tolist()
+        if isinstance(value, bool):
             return "true" if value else "false"
-        if isinstance(value, (int, float, str, np.integer, np.floating)):
+        if isinstance(value, (Real, str)):
             return str(value)
-        if isinstance(value, (list, tuple, np.ndarray)):
+        if isinstance(value, (list, tuple)):
             return "[" + ", ".join(text(key, one) for one in value) + "]"
         raise TypeError(f"{key}: must be a number, a word, a truth value or a list of them, got {type(value).__name__}")
 
@@ -256,7 +260,7 @@ class Flight:
 
     def chase_view(self, width_px: int = 640, height_px: int = 480) -> np.ndarray:
         """A picture from behind the aircraft, uint8, (rows, columns, 3), red first. Needs images."""
-        return np.ascontiguousarray(self._core.chase_view(width_px, height_px)[:, :, ::-1])
+        return self._core.chase_view(width_px, height_px)[:, :, ::-1].copy()
 
     def report(self, file: Optional[str | os.PathLike] = None) -> str:
         """The flight's page: one HTML text that needs nothing else. With `file`, it is also written there."""

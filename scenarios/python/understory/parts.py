@@ -13,29 +13,27 @@ A part is a class (or any callable) that makes it from a context, under a name t
 
 from __future__ import annotations
 
-import importlib.util
-import inspect
 import os
 import sys
-from typing import Any, Callable, Sequence
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, Callable, Sequence
 
 import _understory
+
+if TYPE_CHECKING:
+    import numpy as np
 
 _Factory = Callable[..., Any]
 
 
 def _meaning(factory: _Factory) -> str:
-    text = (inspect.getdoc(factory) or "").strip().splitlines()
+    text = (factory.__doc__ or "").strip().splitlines()
     return text[0] if text else "no description"
 
 
 def _file(factory: _Factory) -> str:
-    try:
-        return os.path.abspath(inspect.getfile(factory))
-    except (TypeError, OSError):
-        return "Python"
+    """The file that a part was written in; parts typed into a session have none."""
+    file = getattr(sys.modules.get(getattr(factory, "__module__", "")), "__file__", None)
+    return "Python" if file is None else os.path.abspath(file)
 
 
 def detector(
@@ -110,6 +108,8 @@ def hits(
 
     columns_px, rows_px: top left corner of each block; disparities_px: u_left - u_right; one number stands for all.
     """
+    import numpy as np
+
     columns = np.atleast_1d(np.asarray(columns_px, dtype=np.int32))
     rows = np.broadcast_to(np.asarray(rows_px, dtype=np.int32), columns.shape)
     disparities = np.broadcast_to(np.asarray(disparities_px, dtype=float), columns.shape)
@@ -117,7 +117,7 @@ def hits(
         raise ValueError(f"columns_px must have one dimension, got shape {columns.shape}")
     depths = rig.depth_m(disparities)
     middle = 0.5 * (block_px - 1)
-    array = np.zeros(len(columns), dtype=_understory.hit_dtype)
+    array = np.zeros(len(columns), dtype=_understory.hit_dtype())
     array["column_px"], array["row_px"], array["disparity_px"] = columns, rows, disparities
     array["score"] = scores
     array["position_camera"][:, 0] = (columns + middle - rig.center_left_x_px) * depths / rig.focal_px
@@ -139,6 +139,8 @@ def parts() -> dict[str, list[str]]:
 
 def _run_plugin(file: str) -> None:
     """Run a plug-in's file as a module of its own name; its decorators add the parts. Called by load_plugin."""
+    import importlib.util
+
     name = os.path.splitext(os.path.basename(file))[0]
     folder = os.path.dirname(file)
     if folder not in sys.path:
