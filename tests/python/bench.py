@@ -174,7 +174,7 @@ def main():
              wall_s([executable, "plugin", str(mine)]) - wall_s([executable, "plugin"]), 3)
     bare, numpy = wall_s([sys.executable, "-c", "pass"]), wall_s([sys.executable, "-c", "import numpy"])
     show("import understory, s", wall_s([sys.executable, "-c", "import understory"]) - bare, 3)
-    show("of these numpy, s", numpy - bare, 3)
+    show("import numpy, for comparison, s", numpy - bare, 3)
 
 
 if __name__ == "__main__":
