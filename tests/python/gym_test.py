@@ -62,6 +62,19 @@ class Contract(InFolder):
         self.assertEqual(one[1], again[1])
         self.assertFalse(all(same(a, b) for a, b in zip(one[0], different[0])))
 
+    def test_looking_changes_nothing(self):
+        def digest(**more):
+            env = FlightEnv(**{**CHEAP, **more})
+            env.reset(seed=1003)
+            while True:
+                _, _, terminated, truncated, info = env.step([0.0, 0.0])
+                if "render_mode" in more:
+                    env.render()
+                if terminated or truncated:
+                    return info["digest"]
+
+        self.assertEqual(digest(), digest(render_mode="rgb_array", observe=("images", "depth", "map")))
+
     def test_a_seed_decides_the_episodes_after_it(self):
         def seeds(env):
             return [env.reset(seed=7)[1]["flight_seed"]] + [env.reset()[1]["flight_seed"] for _ in range(3)]

@@ -106,6 +106,11 @@ WRONG = [
     ("images of two shapes", lambda: understory.StereoFrame(np.zeros((4, 4), "u1"), np.zeros((4, 5), "u1")),
      ValueError, "one shape"),
     ("an image of floats", lambda: understory.StereoFrame(np.zeros((4, 4)), np.zeros((4, 4))), ValueError, "uint8"),
+    ("a hit beyond infinity", lambda: understory.hits(RIG, [1], [1], RIG.infinity_disparity_px), ValueError, "infinity"),
+    ("a class for an object", lambda: flight(detector=Detecting), TypeError, "call it first"),
+    ("saving a flight with an object", lambda: flight(detector=Detecting(one_hit())).save("never.yaml"), RuntimeError,
+     "by name"),
+    ("a plug-in of an environment that is not there", lambda: env(plugins=["gone.py"]), InputError, "gone.py"),
     ("hits of two dimensions", lambda: understory.hits(RIG, [[1]], [[1]], 20), ValueError, "one dimension"),
     ("no such plug-in", lambda: understory.load_plugin("nothing.py"), InputError, "nothing.py"),
     # environments
@@ -164,6 +169,12 @@ class WrongUses(unittest.TestCase):
             vector.reset(seed=1)
             with self.assertRaisesRegex(ValueError, "shape"):
                 vector.step(np.zeros(2))
+            with self.assertRaisesRegex(ValueError, "within"):
+                vector.step(np.array([[0, 0], [0, np.nan]]))
+            with self.assertRaisesRegex(RuntimeError, "save: "):
+                vector.save(0, "/nowhere/never.yaml")
+            _, _, _, truncated, infos = vector.step(np.zeros((2, 2)))  # none of these has ended an episode
+            self.assertEqual((truncated.tolist(), infos), ([False, False], {}))
         with self.assertRaisesRegex(RuntimeError, "closed"):
             vector.reset()
 

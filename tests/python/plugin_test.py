@@ -157,7 +157,7 @@ class Types(unittest.TestCase):
         import subprocess
 
         package = SOURCE / "scenarios" / "python" / "understory"
-        ended = subprocess.run(["mypy", "--config-file", str(SOURCE / "tests/python/mypy.ini"), str(package)],
+        ended = subprocess.run(["mypy", "--cache-dir=/dev/null", "--config-file", str(SOURCE / "tests/python/mypy.ini"), str(package)],
                                capture_output=True, text=True, cwd=SOURCE / "scenarios" / "python")
         self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
 

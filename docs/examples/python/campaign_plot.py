@@ -3,6 +3,7 @@
 python3 campaign_plot.py results/density density.png        (python3-matplotlib)
 """
 
+import os
 import sys
 
 import matplotlib
@@ -25,16 +26,14 @@ def interval(successes, count):
 
 
 def main(folder, picture, seeds="1000..1009"):
-    campaign = understory.campaign(
-        {
+    if not os.path.exists(os.path.join(folder, "flights.csv")):
+        flown = {
             "scenario": "forest",
             "seeds": seeds,
             "grid": {"forest.square_metres_per_tree": SQUARE_METRES_PER_TREE},
-        },
-        folder,
-        set={"perception.detector": "true_depth"},
-    )
-    rows = campaign.rows
+        }
+        understory.campaign(flown, folder, set={"perception.detector": "true_depth"})
+    rows = understory.Campaign(folder).rows
     stems, shares, errors = [], [], []
     for area in SQUARE_METRES_PER_TREE:
         flown = rows[rows["square_metres_per_tree"] == area]

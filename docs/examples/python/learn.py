@@ -5,7 +5,6 @@
 """
 
 import multiprocessing
-import os
 import sys
 
 import numpy as np
@@ -67,7 +66,6 @@ _env = None
 
 def _begin():
     global _env
-    os.environ["OMP_NUM_THREADS"] = "1"
     _env = FlightEnv("forest", observe=("altitude", "gravity", "course", "map"), detector="true_depth", record=False)
 
 

@@ -1,6 +1,6 @@
 # %% [markdown]
 # # A flight, step by step
-# Each cell stands alone in an editor that knows the percent format, or in a notebook (`jupytext --to ipynb tour.py`).
+# Run the cells in order, in an editor that knows the percent format or in a notebook (`jupytext --to ipynb tour.py`).
 
 # %%
 import numpy as np
@@ -20,7 +20,8 @@ print(f"{flight.t_s:.2f} s, at {np.round(flight.truth.position_world_m, 2)}, {fl
 print(f"the left image: {flight.left.shape}, mean gray {flight.left.mean():.0f}")
 
 # %% [markdown]
-# What the detector saw in this frame, and what the map still holds of earlier ones.
+# What the detector saw in this frame, and what the map still holds of earlier ones. The true depth is drawn where the
+# aircraft is now; the frame is one latency (8 ms, 9 cm of flight) older.
 
 # %%
 depth_m = flight.depth

@@ -83,12 +83,30 @@ class Campaign:
 
     @property
     def rows(self) -> np.ndarray:
-        """A record for each flight, fields as in flights.csv (docs/campaigns.md)."""
+        """A structured array, a record for each flight, fields as in flights.csv (docs/campaigns.md). A field is of
+        numbers where all its cells are numbers or empty (nan), else of words; seeds are whole numbers."""
+        import csv
+
         import numpy as np
 
-        return np.genfromtxt(
-            self.folder / "flights.csv", delimiter=",", names=True, dtype=None, encoding="utf-8", deletechars=""
-        )
+        with open(self.folder / "flights.csv", encoding="utf-8", newline="") as file:
+            names, *rows = list(csv.reader(file))
+        fields = []
+        for index, name in enumerate(names):
+            cells = [row[index] for row in rows]
+            if name == "seed":
+                fields.append(np.array(cells, dtype=np.int64))
+                continue
+            try:
+                if name in ("id", "condition", "reason", "outcome", "digest"):
+                    raise ValueError
+                fields.append(np.array([float(cell) if cell else np.nan for cell in cells]))
+            except ValueError:
+                fields.append(np.array(cells, dtype=str))
+        array = np.empty(len(rows), dtype=[(name, field.dtype) for name, field in zip(names, fields)])
+        for name, field in zip(names, fields):
+            array[name] = field
+        return array
 
     def to_pandas(self) -> Any:
         """The same as a pandas.DataFrame, where pandas is installed."""
@@ -98,8 +116,11 @@ class Campaign:
 
     @property
     def page(self) -> Path:
-        """The page of the campaign."""
-        return self.folder / "campaign.html"
+        """The page of the campaign; `understory report` is run where there is none yet."""
+        page = self.folder / "report.html"
+        if not page.is_file():
+            run(["report", self.folder])
+        return page
 
     def __repr__(self) -> str:
         return f"<understory.Campaign {self.folder}>"
@@ -115,7 +136,8 @@ def campaign(
     quiet: bool = True,
 ) -> Campaign:
     """Fly a campaign: a file, a name of the library, or what would stand in the file as a dictionary,
-    {"scenario": "forest", "seeds": "1000..1019"}. Equals `understory campaign`."""
+    {"scenario": "forest", "seeds": "1000..1019"}. Equals `understory campaign`. Flights that could not be flown have a
+    reason in their rows."""
     options = _options(set, plugins) + ["--out", os.fspath(out)]
     if jobs is not None:
         options += ["--jobs", str(jobs)]
@@ -127,9 +149,9 @@ def campaign(
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "campaign.yaml"
             path.write_text(json.dumps(dict(file)), encoding="utf-8")  # JSON is YAML
-            run(["campaign", path, *options], quiet)
+            run(["campaign", path, *options], quiet, (0, 1))
     else:
-        run(["campaign", file, *options], quiet)
+        run(["campaign", file, *options], quiet, (0, 1))
     return Campaign(out)
 
 

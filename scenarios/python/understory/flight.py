@@ -56,7 +56,8 @@ class Flight:
     detector, state_source, planner: a name that the scenario could give (ours, or one of a plug-in's), or an object of
         your own: a detector has detect(frame), a state source on(sample), state() and state_at(t_ns), a planner
         plan(request).
-    by_hand: the planner rests; command() or control() says what to fly.
+    by_hand: you fly, and the planner makes no plans: call command() or control(). Before the first call elevons and
+        thrust are 0; on the catapult nothing has an effect (in_flight).
     images: render images even where no detector looks at them.
     record: keep what result, trajectory, digest and report() need; without it a step is cheaper.
 
@@ -90,6 +91,8 @@ class Flight:
                 named[key] = given
                 continue
             lacking = [] if given is None else [method for method in methods if not hasattr(given, method)]
+            if isinstance(given, type):
+                raise TypeError(f"{kind}: must be an object, got the class {given.__name__}: call it first")
             if lacking:
                 raise TypeError(f"{kind}: must be a name or an object with {lacking[0]}(), got {type(given).__name__}")
             objects[kind] = given
@@ -99,7 +102,8 @@ class Flight:
             loaded = scenario if seed is None else scenario.with_seed(seed)
         else:
             loaded = load_scenario(scenario, seed, named, rig=rig)
-        self._by_hand = by_hand
+        self._by_hand, self._record = by_hand, record
+        self._has_objects = any(given is not None for given in objects.values())
         self._core = _understory.Flight(
             loaded,
             objects["detector"],
@@ -162,12 +166,14 @@ class Flight:
 
     @property
     def truth(self) -> _understory.Truth:
-        """The true state."""
+        """The true state: T_world_body (4x4), position_world_m, velocity_world_mps, angular_rate_body_radps,
+        specific_force_body_mps2, wind_world_mps, left_elevon_rad, right_elevon_rad, thrust_n."""
         return self._core.truth
 
     @property
     def estimate(self) -> _understory.State:
-        """The state that the autopilot believes."""
+        """The state that the autopilot believes: T_world_body (4x4), position_world_m, velocity_body_mps, altitude_m,
+        covariance and more. Its world frame drifts slowly against the true one."""
         return self._core.state
 
     @property
@@ -177,7 +183,8 @@ class Flight:
 
     @property
     def plan(self) -> _understory.Plan:
-        """The plan in force."""
+        """The plan in force: t_ns, origin, clearance_m, and points, rows of t_s, x, y, z, speed, heading, climb angle,
+        bank, commanded bank, commanded climb (m, m/s, rad)."""
         return self._core.plan
 
     @property
@@ -202,7 +209,8 @@ class Flight:
 
     @property
     def depth(self) -> np.ndarray:
-        """True depth in the left image with the aircraft where it is now, float32, metres along the optical axis."""
+        """True depth in the left image with the aircraft where it is now, float32, metres along the optical axis. The
+        newest frame is at least one latency (8 ms, 9 cm of flight) older. Needs a detector that looks, or images=True."""
         return self._core.depth
 
     @property
@@ -212,45 +220,53 @@ class Flight:
 
     @property
     def hits(self) -> np.ndarray:
-        """Detections in the newest frame, records of hit_dtype: left camera's frame."""
+        """Detections in the newest frame, records of hit_dtype: position_camera (m; x right, y down, z ahead, left
+        camera), column_px and row_px (top left corner of the block), disparity_px, score, edge_sum, near_m, far_m."""
         return self._core.hits
 
     @property
     def map(self) -> np.ndarray:
-        """Points that the map remembers, records of point_dtype: the estimate's world frame."""
+        """Points that the map remembers, records of point_dtype: position_world (m, the estimate's frame), t_ns, score,
+        distance_flown_m, sightings."""
         return self._core.map
 
     @property
     def imu(self) -> Any:
-        """Newest IMU sample, or None. So pitot, barometer, magnetometer, gps."""
+        """The newest IMU sample that has reached the autopilot, or None before the first: t_ns,
+        angular_rate_body_radps, specific_force_body_mps2."""
         return self._core.imu
 
     @property
     def pitot(self) -> Any:
+        """The newest airspeed along body x: t_ns, airspeed_mps; None before the first."""
         return self._core.pitot
 
     @property
     def barometer(self) -> Any:
+        """The newest height above the launch's ground: t_ns, altitude_m; None before the first."""
         return self._core.barometer
 
     @property
     def magnetometer(self) -> Any:
+        """The newest field in body axes: t_ns, field_body_ut; None before the first."""
         return self._core.magnetometer
 
     @property
     def gps(self) -> Any:
+        """The newest fix: t_ns (of the measurement), position_world_m, velocity_world_mps; None without GPS."""
         return self._core.gps
 
     # What it leaves.
 
     @property
     def result(self) -> dict[str, Any]:
-        """Everything of result.json but its lists, once the flight has ended."""
+        """All single values of result.json, once the flight has ended; lists are left out. Needs record=True."""
         return self._core.result
 
     @property
     def digest(self) -> str:
-        """Hash of the flight's data: equal digests mean equal flights, bit for bit."""
+        """Hash of the flight's data: equal digests mean equal flights, bit for bit. As result, it
+        needs the flight's end and record=True; so do report() and save_run()."""
         return self._core.result["digest"]
 
     @property
@@ -271,19 +287,25 @@ class Flight:
         return page
 
     def save_run(self, folder: str | os.PathLike) -> None:
-        """Write the run folder that `understory fly --out` writes. The folder must be new or empty. Of a flight by
-        hand only save() tells how it was flown."""
+        """Write the run folder that `understory fly --out` writes. The folder must be new or empty. A flight by hand
+        has no run folder; use save()."""
         if self._by_hand:
             raise RuntimeError("a flight by hand has no run folder: save() writes a scenario that flies it again")
+        self._require_named_parts()
         self._core.save_run(os.fspath(folder))
 
     def save(self, file: str | os.PathLike) -> None:
-        """Write a scenario that flies this flight again: `understory fly FILE`. Of a flight by hand, its controls go
-        beside it, into FILE's name with .actions.csv."""
+        """Write a scenario that flies this flight again: `understory fly FILE`. For a flight by hand, a second file
+        beside it holds the controls: mine.yaml gets mine.actions.csv."""
+        self._require_named_parts()
         save_scenario(self._core, file)
 
+    def _require_named_parts(self) -> None:
+        if self._has_objects:
+            raise RuntimeError("no file can name an object: give parts by name (a plug-in) to save this flight")
+
     def _repr_html_(self) -> str:
-        if self.outcome is None:
+        if self.outcome is None or not self._record:
             return f"<p>{self.scenario.name}, seed {self.scenario.seed}, {self.t_s:.2f} s flown</p>"
         page = html.escape(self.report(), quote=True)
         return f'<iframe srcdoc="{page}" width="100%" height="700" style="border:0"></iframe>'

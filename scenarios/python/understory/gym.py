@@ -18,8 +18,9 @@ import numpy as np
 import _understory
 
 from .flight import load_scenario, save_scenario
-from .spaces import Box, Dict
-from .vector_env import AutoresetMode, VectorEnv
+from .parts import load_plugin
+from .spaces import Box, Dict, checked_actions
+from .vector_env import AutoresetMode, VectorEnv, WorkerDied
 
 try:
     import gymnasium
@@ -29,7 +30,7 @@ except ImportError:
     gymnasium = None
     _Base = object
 
-__all__ = ["AutoresetMode", "FlightEnv", "VectorEnv"]
+__all__ = ["AutoresetMode", "FlightEnv", "VectorEnv", "WorkerDied"]
 
 OBSERVATIONS = ("images", "imu", "airspeed", "altitude", "gravity", "course", "hits", "map", "depth")
 MAXIMUM_BANK_RAD = 1.2
@@ -43,30 +44,36 @@ CELL_M = 0.4
 class FlightEnv(_Base):
     """One flight an episode: from the catapult's end to the goal, or to whatever ends it before.
 
-    scenario, set, detector, state_source: as in understory.Flight. The planner rests. Where nothing is observed that
-        needs a detector, there is none; else the scenario's own. Both can be named.
+    scenario: a file, or a name of the library. set: keys over its own.
+    detector, state_source: names of parts, objects are not accepted. Where nothing is observed that needs a detector,
+        there is none; else it is the scenario's own. The planner makes no plans.
+    plugins: files of parts that names may mean; each worker of a VectorEnv loads them, too.
     observe: any of
         images    uint8 (2, rows, columns): the newest pair, left and right;
-        imu       float32 (n, 6): angular rate (rad/s) and specific force (m/s^2) in body axes, the samples since the
-                  last step, oldest first;
+        imu       float32 (n, 6): angular rate (rad/s) and specific force (m/s^2) in body axes, the newest n samples,
+                  oldest first; n is the IMU's rate over the rate of steps, rounded up, so that a sample may be seen
+                  in two steps;
         airspeed  float32 (1,): m/s, as the pitot tube measures it;
         altitude  float32 (1,): m above the ground, as the estimator believes;
         gravity   float32 (3,): its direction in body axes, as the estimator believes;
         course    float32 (2,): offset to the left of the course, m, and heading, rad, as the estimator believes;
-        hits      float32 (256, 3): detections in the newest pair, m, left camera's axes; rows without one are 0;
+        hits      float32 (256, 3): detections in the newest pair, m, left camera's axes (x right, y down, z ahead); rows without one are 0;
         map       float32 (32, 3): the obstacle memory, one point for each cell of 0.4 m of the ground, the nearest
                   first, m, body axes; rows without one are (100, 0, 0);
         depth     float32 (rows, columns): true depth, m, at most 100.
     act: "command": bank and climb for the path follower, 1 is 1.2 rad (right wing down) and 3 m/s;
         "control": left and right elevon and thrust, -1 to 1 over the airframe's range.
-    step: "camera": a step lasts until the next frame (about 1/120 s); "control": one control step (1/200 s).
+    step: "camera": a step lasts until the next frame reaches the autopilot (1/120 s, longer where a frame is lost);
+        "control": one control step (1/200 s).
     record: keep what env.flight_result and digests need; without it a step is cheaper.
 
     Reward of a step: (progress along the course in m) / (distance of the goal in m), + 1 at the goal, - 1 where the
-    aircraft hits an obstacle or the ground or leaves the band. These end an episode as terminated; the scenario's time
-    limit ends it as truncated.
+    aircraft hits an obstacle or the ground, or leaves the course's sides or its altitude band (outcome out_of_bounds).
+    These end an episode as terminated; the scenario's time limit ends it as truncated.
 
-    An action counts from the next control step on. An observation holds what has reached the autopilot by then.
+    reset() flies from the catapult, with surfaces neutral and no thrust, until the second frame after the aircraft takes
+    controls (0.03 s). An action takes effect at the next control step. An observation holds only what has reached the
+    autopilot, so images are one latency old.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 120}
@@ -83,6 +90,7 @@ class FlightEnv(_Base):
         render_mode: Optional[str] = None,
         record: bool = True,
         render_size: tuple[int, int] = (640, 480),
+        plugins: Sequence[str | os.PathLike] = (),
     ) -> None:
         unknown = [name for name in observe if name not in OBSERVATIONS]
         if unknown:
@@ -93,6 +101,8 @@ class FlightEnv(_Base):
             raise ValueError(f"step: must be 'camera' or 'control', got {step!r}")
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode: must be 'rgb_array' or None, got {render_mode!r}")
+        for plugin in plugins:
+            load_plugin(plugin)
         settings = {"autopilot.method": "straight", **dict(set or {})}
         if detector is None and not {"hits", "map"} & {*observe}:
             detector = "none"
@@ -144,7 +154,8 @@ class FlightEnv(_Base):
         self, *, seed: Optional[int] = None, options: Optional[Mapping[str, Any]] = None
     ) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
         """Begin an episode. seed: also the flight's seed, so that the episode flies the course of `understory fly
-        --seed`; without it the flight's seed is drawn. options: {"flight_seed": n} names it without a new generator."""
+        --seed`; without it the flight's seed is drawn. options={"flight_seed": n} sets this flight's seed and leaves the random
+        generator as it is."""
         if gymnasium is not None:
             super().reset(seed=seed)
         elif seed is not None or self._np_random is None:
@@ -155,7 +166,7 @@ class FlightEnv(_Base):
             raise ValueError(f"options: may have flight_seed, got {sorted(asked)[0]!r}")
         if flight_seed is None:
             flight_seed = int(self.np_random.integers(1 << 32))
-        self.close()
+        self._core = None  # the flight before is let go first
         self._core = _understory.Flight(
             self._scenario.with_seed(int(flight_seed)), None, None, None, True, self._images, self._record, "osmesa"
         )
@@ -164,7 +175,8 @@ class FlightEnv(_Base):
         while flies and not self._core.in_flight:
             flies = self._core.advance_control()
         self._core.draw_images(True)
-        while flies and self._images and self._core.frame.left.size == 0:
+        frames = self._core.frames
+        while flies and self._core.frames < frames + 2:  # the first of these was exposed on the catapult
             flies = self._core.advance_camera()
         self._ended = not flies
         self._progress_m = self._core.progress_m
@@ -194,18 +206,12 @@ class FlightEnv(_Base):
         core = self._core
         if core is None or self._ended:
             raise RuntimeError("step() before reset(): the episode has ended or none has begun")
-        values = np.asarray(action, dtype=float)
-        if values.shape != self.action_space.shape:
-            raise ValueError(f"action: must have shape {self.action_space.shape}, got {values.shape}")
+        values = checked_actions(action, self.action_space.shape, "action")
         if self._act == "command":
             bank, climb = values.tolist()
-            if not (-1 <= bank <= 1 and -1 <= climb <= 1):
-                raise ValueError(f"action: must lie within -1 and 1, got {values.tolist()}")
             core.command(bank * MAXIMUM_BANK_RAD, climb * MAXIMUM_CLIMB_MPS)
         else:
             left, right, thrust = values.tolist()
-            if not (-1 <= left <= 1 and -1 <= right <= 1 and -1 <= thrust <= 1):
-                raise ValueError(f"action: must lie within -1 and 1, got {values.tolist()}")
             middle, reach = self._elevon_middle_rad, self._elevon_reach_rad
             core.tell(middle + left * reach, middle + right * reach, 0.5 * (thrust + 1) * self._max_thrust_n)
         flies = core.advance_camera() if self._by_camera else core.advance_control()
@@ -266,8 +272,8 @@ class FlightEnv(_Base):
         return np.ascontiguousarray(self._core.chase_view(*self._render_size)[:, :, ::-1])
 
     def save(self, file: str | os.PathLike) -> None:
-        """Write the episode until now as a scenario, and its controls beside it: `understory fly FILE` flies it again,
-        with the same digest."""
+        """Write the episode that has ended as a scenario, and its controls beside it: `understory fly FILE` flies it again,
+        with the same digest. Before its end, the replay goes on with the last controls."""
         if self._core is None:
             raise RuntimeError("save() before reset(): there is no episode")
         save_scenario(self._core, file)

@@ -69,7 +69,7 @@ def state_source(name: str, keys: Sequence[_understory.Key] = ()) -> Callable[[_
 
 
 def planner(name: str, keys: Sequence[_understory.Key] = ()) -> Callable[[_Factory], _Factory]:
-    """Name a planner. What the factory makes has plan(request), which returns a Plan: context.fly(request, commands)
+    """Name a planner. Its context is the one way to make a Plan, so that a planner needs a name. What the factory makes has plan(request), which returns a Plan: context.fly(request, commands)
     makes one from commands (bank_rad, climb_mps, duration_s), with its clearance_m. It may have
     concerns(position_world, plan): whether a new point of the map makes the plan outdated."""
 
@@ -110,11 +110,15 @@ def hits(
     """
     import numpy as np
 
-    columns = np.atleast_1d(np.asarray(columns_px, dtype=np.int32))
-    rows = np.broadcast_to(np.asarray(rows_px, dtype=np.int32), columns.shape)
-    disparities = np.broadcast_to(np.asarray(disparities_px, dtype=float), columns.shape)
+    columns, rows, disparities = np.broadcast_arrays(
+        np.atleast_1d(np.asarray(columns_px, dtype=np.int32)),
+        np.asarray(rows_px, dtype=np.int32),
+        np.asarray(disparities_px, dtype=float),
+    )
     if columns.ndim != 1:
-        raise ValueError(f"columns_px must have one dimension, got shape {columns.shape}")
+        raise ValueError(f"columns_px, rows_px and disparities_px must have one dimension, got shape {columns.shape}")
+    if np.any(disparities <= rig.infinity_disparity_px):
+        raise ValueError(f"disparities_px must be more than the rig's {rig.infinity_disparity_px:.2f} px of infinity")
     depths = rig.depth_m(disparities)
     middle = 0.5 * (block_px - 1)
     array = np.zeros(len(columns), dtype=_understory.hit_dtype())
@@ -123,7 +127,10 @@ def hits(
     array["position_camera"][:, 0] = (columns + middle - rig.center_left_x_px) * depths / rig.focal_px
     array["position_camera"][:, 1] = (rows + middle - rig.center_y_px) * depths / rig.focal_px
     array["position_camera"][:, 2] = depths
-    array["near_m"], array["far_m"] = rig.depth_m(disparities + 1), rig.depth_m(disparities - 1)
+    farther = np.maximum(disparities - 1, rig.infinity_disparity_px)
+    array["near_m"] = rig.depth_m(disparities + 1)
+    with np.errstate(divide="ignore"):
+        array["far_m"] = rig.depth_m(farther)  # infinite where a pixel less reaches infinity
     return array[np.lexsort((array["column_px"], array["row_px"]))]
 
 
@@ -141,7 +148,7 @@ def _run_plugin(file: str) -> None:
     """Run a plug-in's file as a module of its own name; its decorators add the parts. Called by load_plugin."""
     import importlib.util
 
-    name = os.path.splitext(os.path.basename(file))[0]
+    name = "understory_plugin_" + os.path.splitext(os.path.basename(file))[0]  # no name of another module
     folder = os.path.dirname(file)
     if folder not in sys.path:
         sys.path.append(folder)  # for modules beside it
@@ -149,4 +156,8 @@ def _run_plugin(file: str) -> None:
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
-    spec.loader.exec_module(module)
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[name]
+        raise

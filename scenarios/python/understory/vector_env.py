@@ -14,7 +14,7 @@ from typing import Any, Iterator, Mapping, Optional, Sequence
 
 import numpy as np
 
-from .spaces import batched
+from .spaces import batched, checked_actions
 
 try:
     from gymnasium.vector import AutoresetMode
@@ -81,11 +81,14 @@ def _work(pipe: Any, memory_file: Any, size: int, layout: Any, index: int, setti
                 show(observation)
                 pipe.send(("done", (reward, terminated, truncated, info, last)))
             elif order == "save":
-                env.save(given)
-                pipe.send(("done", None))
+                try:
+                    env.save(given)
+                    pipe.send(("done", None))
+                except (OSError, RuntimeError) as error:  # the episode goes on
+                    pipe.send(("done", f"{type(error).__name__}: {error}"))
     except EOFError:  # the process that told it has ended
         pass
-    except Exception as error:  # told in one line; what led to it goes to standard error
+    except BaseException as error:  # told in one line; what led to it goes to standard error
         traceback.print_exc()
         pipe.send(("failed", f"{type(error).__name__}: {error}"))
     finally:
@@ -101,8 +104,10 @@ class VectorEnv:
     final_info), "Disabled" (reset(options={"reset_mask": ...}) resets).
     copy: batches are copies; without, they are views of the shared memory that the next call overwrites.
 
-    Workers are new processes, never forks of this one: OpenGL does not outlive a fork. A worker that dies is replaced;
-    its episode ends as truncated, with the reason in info["worker_died"].
+    Workers are new processes, never forks of this one: OpenGL does not outlive a fork. They import the script that makes
+    them, which therefore needs `if __name__ == "__main__":`. Parts of your own come to them through
+    settings["plugins"]. A worker that dies is replaced; its episode ends as truncated, with the reason in
+    infos["worker_died"]. Wrong arguments raise here and end no episode. It is no subclass of Gymnasium's VectorEnv.
     """
 
     def __init__(
@@ -136,13 +141,10 @@ class VectorEnv:
         self._ended = np.zeros(count, bool)
         self._began = np.zeros(count, bool)
         self._spawn = multiprocessing.get_context("spawn")
-        try:
+        with self._whole_calls():
             self._workers = [self._start(index) for index in range(count)]
             for index in range(count):
                 self._answer(index)
-        except BaseException:
-            self.close()
-            raise
 
     def _start(self, index: int) -> tuple[Any, Any]:
         ours, theirs = self._spawn.Pipe()
@@ -218,17 +220,17 @@ class VectorEnv:
         except _Died:
             self._replace(index)
             self._tell(index, "reset", {"seed": seed})
-        try:
-            return self._answer(index)
-        except _Died as died:
-            raise RuntimeError(f"reset: {died}") from None
+        return self._answer(index)
 
     @contextlib.contextmanager
     def _whole_calls(self) -> Iterator[None]:
-        """A call that is interrupted leaves answers in the pipes: the environments are closed then."""
+        """A call that ends early leaves answers in the pipes: the environments are closed then."""
         try:
             yield
-        except KeyboardInterrupt:
+        except _Died as died:
+            self.close()
+            raise WorkerDied(str(died)) from None
+        except BaseException:
             self.close()
             raise
 
@@ -238,10 +240,8 @@ class VectorEnv:
         """Fly one step in each. Returns batched observations, rewards, terminated, truncated, and infos."""
         self._require_open()
         if not self._began.all():
-            raise RuntimeError("step() before reset()")
-        actions = np.asarray(actions)
-        if actions.shape != self.action_space.shape:
-            raise ValueError(f"actions: must have shape {self.action_space.shape}, got {actions.shape}")
+            raise RuntimeError("step() before reset(): reset all environments first")
+        actions = checked_actions(actions, self.action_space.shape, "actions")
         if self.autoreset_mode is AutoresetMode.DISABLED and self._ended.any():
             ended = np.flatnonzero(self._ended).tolist()
             raise RuntimeError(f"step(): the episodes of {ended} have ended: reset them with options['reset_mask']")
@@ -263,11 +263,13 @@ class VectorEnv:
                     rewards[index], terminated[index], truncated[index], info, last = self._answer(index)
                 except _Died as died:
                     truncated[index] = True
+                    last_seen = {name: array[index].copy() for name, array in self._batch.items()}
                     self._add(infos, index, {"worker_died": str(died)})
                     self._replace(index)
                     if at_once:
                         self._tell(index, "reset", {"seed": None})
-                        self._answer(index)
+                        info = {"worker_died": str(died)}
+                        self._add(infos, index, {**self._answer(index), "final_obs": last_seen, "final_info": info})
                     self._ended[index] = not at_once
                     continue
                 self._add(infos, index, info)
@@ -288,14 +290,13 @@ class VectorEnv:
             infos["_" + name][index] = True
 
     def save(self, index: int, file: str | os.PathLike) -> None:
-        """FlightEnv.save of one environment."""
+        """FlightEnv.save of one environment, of the episode that it is in: with SameStep that is the one begun anew."""
         self._require_open()
         self._tell(index, "save", os.path.abspath(os.fspath(file)))
-        try:
-            self._answer(index)
-        except _Died as died:
-            self._replace(index)
-            raise RuntimeError(f"save: {died}") from None
+        with self._whole_calls():
+            fault = self._answer(index)
+        if fault is not None:
+            raise RuntimeError(f"save: {fault}")
 
     def _require_open(self) -> None:
         if self._memory is None:
@@ -329,6 +330,11 @@ class VectorEnv:
             self.close()
         except Exception:  # the interpreter is going down
             pass
+
+
+class WorkerDied(RuntimeError):
+    """A worker ended where no episode can be truncated: when it began, or twice in a reset. The environments are closed.
+    A script that makes a VectorEnv needs `if __name__ == "__main__":`, since each worker imports it."""
 
 
 class _Died(Exception):
