@@ -97,7 +97,7 @@ TEST(DamagedJson, OfEveryKindIsReadToOneLineAtMost) {
   for (const Reader& reader : readers) {
     const std::string whole = content_of(at + reader.file);
     ASSERT_FALSE(whole.empty()) << reader.file;
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < 10; ++i) {
       const std::string text = damaged(whole, generator);
       for (const std::string& command : reader.commands) {
         std::ofstream(at + reader.file, std::ios::binary | std::ios::trunc) << text;

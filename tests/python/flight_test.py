@@ -99,7 +99,7 @@ class Values(InFolder):
         self.assertEqual(flight.chase_view(64, 48).shape, (48, 64, 3))
         flight.run()
         self.assertEqual(flight.result["outcome"], flight.outcome)
-        self.assertIn(f"outcome", flight.result)
+        self.assertIn("outcome", flight.result)
         self.assertEqual(flight.trajectory.shape[1], 12)
         page = flight.report(self.folder / "page.html")
         self.assertIn("<html", page)

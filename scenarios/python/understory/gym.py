@@ -65,7 +65,7 @@ class FlightEnv(_Base):
         "control": left and right elevon and thrust, -1 to 1 over the airframe's range.
     step: "camera": a step lasts until the next frame reaches the autopilot (1/120 s, longer where a frame is lost);
         "control": one control step (1/200 s).
-    record: keep what env.flight_result and digests need; without it a step is cheaper.
+    record: keep what the digest needs, which info has at the end; without it a step is cheaper.
 
     Reward of a step: (progress along the course in m) / (distance of the goal in m), + 1 at the goal, - 1 where the
     aircraft hits an obstacle or the ground, or leaves the course's sides or its altitude band (outcome out_of_bounds).
@@ -134,21 +134,21 @@ class FlightEnv(_Base):
             self._np_random: Optional[np.random.Generator] = None
 
     def _space_of(self, name: str) -> Any:
-        infinite = float("inf")
-        if name == "images":
+        if name in ("images", "depth"):
             rig = self._scenario.rig
-            return Box(0, 255, (2, rig.height_px, rig.width_px), np.uint8)
-        if name == "depth":
-            rig = self._scenario.rig
-            return Box(0.0, FAR_M, (rig.height_px, rig.width_px), np.float32)
-        shape = {"imu": (self._imu_rows, 6), "airspeed": (1,), "altitude": (1,), "course": (2,)}
+            size = (rig.height_px, rig.width_px)
+            return Box(0, 255, (2, *size), np.uint8) if name == "images" else Box(0.0, FAR_M, size, np.float32)
         if name == "gravity":
             return Box(-1.0001, 1.0001, (3,), np.float32)
-        if name == "hits":
-            return Box(-infinite, infinite, (MOST_HITS, 3), np.float32)
-        if name == "map":
-            return Box(-infinite, infinite, (MOST_POINTS, 3), np.float32)
-        return Box(-infinite, infinite, shape[name], np.float32)
+        shapes: dict[str, tuple[int, ...]] = {
+            "imu": (self._imu_rows, 6),
+            "airspeed": (1,),
+            "altitude": (1,),
+            "course": (2,),
+            "hits": (MOST_HITS, 3),
+            "map": (MOST_POINTS, 3),
+        }
+        return Box(-np.inf, np.inf, shapes[name], np.float32)
 
     def reset(
         self, *, seed: Optional[int] = None, options: Optional[Mapping[str, Any]] = None
