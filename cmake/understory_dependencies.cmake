@@ -38,7 +38,8 @@ if(UNDERSTORY_SIM)
 endif()
 # Debian's Python, whatever else stands in PATH: Debian's numpy belongs to it. Without it there is no Python module.
 set(understory_has_python OFF)
-if(UNDERSTORY_SIM AND UNDERSTORY_PYTHON AND NOT UNDERSTORY_SANITIZE)
+# Under the address sanitizer Python's tests load it first (LD_PRELOAD); the others cannot be loaded so.
+if(UNDERSTORY_SIM AND UNDERSTORY_PYTHON AND (NOT UNDERSTORY_SANITIZE OR UNDERSTORY_SANITIZE MATCHES "address"))
   if(NOT Python_EXECUTABLE AND EXISTS /usr/bin/python3)
     set(Python_EXECUTABLE /usr/bin/python3)
   endif()

@@ -10,13 +10,14 @@
 namespace understory {
 
 struct DeadReckoningConfig {
-  /// angle of attack that dead reckoning assumes in the whole flight: it turns the airspeed into a velocity
   double angle_of_attack_rad = 0.19;
 };
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, DeadReckoningConfig& config) {
-  visit("angle_of_attack_rad", config.angle_of_attack_rad, -0.2, 0.8);
+  visit("angle_of_attack_rad", config.angle_of_attack_rad, -0.2, 0.8,
+        "angle of attack that dead reckoning assumes in the whole flight: it turns the airspeed into a "
+        "velocity");
 }
 
 /// The state from pitot and gyro alone, without a filter: the turn rates integrated from the known attitude

@@ -15,19 +15,19 @@ enum class FilterModel {
 
 /// The pitot tube measures the speed through the air along body x, plus a bias that remains after zeroing.
 struct AirspeedConfig {
-  /// m/s, 0..20: pitot readings below this airspeed are ignored as inaccurate, unless the estimated airspeed
-  /// exceeds 1.5 times this
   double usable_mps = 6.0;
-  /// m/s, 0.01..10: Standard deviation of one pitot reading at 12 m/s. At lower airspeeds it is larger, since
-  /// pressure grows with the square of the speed. Pressure noise of 1.5 Pa and the sensor's resolution give
-  /// 0.11 m/s; the bias is a separate state.
   double sigma_mps = 0.12;
 };
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, AirspeedConfig& config) {
-  visit("usable_mps", config.usable_mps, 0.0, 20.0);
-  visit("sigma_mps", config.sigma_mps, 0.01, 10.0);
+  visit("usable_mps", config.usable_mps, 0.0, 20.0,
+        "pitot readings below this airspeed are ignored as inaccurate, unless the estimated airspeed exceeds "
+        "1.5 times this");
+  visit("sigma_mps", config.sigma_mps, 0.01, 10.0,
+        "Standard deviation of one pitot reading at 12 m/s. At lower airspeeds it is larger, since pressure "
+        "grows with the square of the speed. Pressure noise of 1.5 Pa and the sensor's resolution give 0.11 "
+        "m/s; the bias is a separate state.");
 }
 
 enum class SideslipModel {
@@ -41,21 +41,13 @@ enum class SideslipModel {
 /// body's x-y plane at the winglets. So a_y = -k V v with k = rho S / m (docs/sources.md [3]: identified
 /// flat-plate model).
 struct SideslipConfig {
-  /// How the sideways velocity is measured. lateral_force: from the winglets' side force; zero: assumed to be
-  /// 0, as in the original; off: not at all.
   SideslipModel model = SideslipModel::lateral_force;
-  double air_density_kgpm3 = 1.204;    ///< kg/m^3, 0.1..2: air density that the filter assumes
-  double winglets_area_m2 = 0.038882;  ///< m^2, 1e-4..2: area of both winglets together (docs/sources.md [3])
-  double mass_kg = 0.648412;           ///< kg, 0.05..20: mass that the filter assumes
-  /// m, -5..5: mean position of the two winglets, in body axes from the centre of mass; y is 0 by symmetry
+  double air_density_kgpm3 = 1.204;
+  double winglets_area_m2 = 0.038882;
+  double mass_kg = 0.648412;
   Eigen::Vector3d winglets_body_m{-0.08, 0.0, 0.081954};
-  /// m/s^2, 0.01..50: standard deviation of one reading of the lateral specific force
   double sigma_mps2 = 0.05;
-  /// 0..1: standard deviation of the side force model's error, as a share of the predicted force
-  /// (docs/sources.md [15])
   double model_error = 0.15;
-  /// m/s, 0.01..50: with `model: zero`, standard deviation of the assumed measurement that the sideways
-  /// velocity is 0; the default is the original aircraft's
   double zero_sigma_mps = 2.236;
 };
 
@@ -65,14 +57,23 @@ void visit_fields(Visitor& visit, SideslipConfig& config) {
         std::array<std::pair<std::string_view, SideslipModel>, 3>{
             {{"lateral_force", SideslipModel::lateral_force},
              {"zero", SideslipModel::zero},
-             {"off", SideslipModel::off}}});
-  visit("air_density_kgpm3", config.air_density_kgpm3, 0.1, 2.0);
-  visit("winglets_area_m2", config.winglets_area_m2, 1e-4, 2.0);
-  visit("mass_kg", config.mass_kg, 0.05, 20.0);
-  visit("winglets_body_m", config.winglets_body_m, -5.0, 5.0);
-  visit("sigma_mps2", config.sigma_mps2, 0.01, 50.0);
-  visit("model_error", config.model_error, 0.0, 1.0);
-  visit("zero_sigma_mps", config.zero_sigma_mps, 0.01, 50.0);
+             {"off", SideslipModel::off}}},
+        "How the sideways velocity is measured. lateral_force: from the winglets' side force; zero: assumed "
+        "to be 0, as in the original; off: not at all.");
+  visit("air_density_kgpm3", config.air_density_kgpm3, 0.1, 2.0, "air density that the filter assumes");
+  visit("winglets_area_m2", config.winglets_area_m2, 1e-4, 2.0,
+        "area of both winglets together | docs/sources.md [3]");
+  visit("mass_kg", config.mass_kg, 0.05, 20.0, "mass that the filter assumes");
+  visit("winglets_body_m", config.winglets_body_m, -5.0, 5.0,
+        "mean position of the two winglets, in body axes from the centre of mass; y is 0 by symmetry");
+  visit("sigma_mps2", config.sigma_mps2, 0.01, 50.0,
+        "standard deviation of one reading of the lateral specific force");
+  visit("model_error", config.model_error, 0.0, 1.0,
+        "standard deviation of the side force model's error, as a share of the predicted force | "
+        "docs/sources.md [15]");
+  visit("zero_sigma_mps", config.zero_sigma_mps, 0.01, 50.0,
+        "with `model: zero`, standard deviation of the assumed measurement that the sideways velocity is 0; "
+        "the default is the original aircraft's");
 }
 
 /// Angle of attack from normal specific force. The wing is a flat plate of area S. Its force is normal to it:
@@ -81,33 +82,35 @@ void visit_fields(Visitor& visit, SideslipConfig& config) {
 /// therefore balances the pitch damping: D q / (arm m) (docs/sources.md [3], identified model; trim checks
 /// within 0.1 %).
 struct AngleOfAttackConfig {
-  /// Corrects the angle of attack with the normal specific force. With a correct wing model it reduces the
-  /// drift over 10 m by 0.01 m; with lift or mass 20 % wrong it adds up to 0.2 m (docs/model_mismatch.md).
   bool enabled = false;
-  double air_density_kgpm3 = 1.204;    ///< kg/m^3, 0.1..2: air density that the filter assumes
-  double wing_area_m2 = 0.1811;        ///< m^2, 0.01..5: wing area that the filter assumes
-  double mass_kg = 0.648412;           ///< kg, 0.05..20: mass that the filter assumes
-  double pitch_damping_nmspr = 0.115;  ///< N m s/rad, 0..10: pitch damping that the filter assumes
-  double elevon_arm_m = 0.145;  ///< m, 0.01..5: distance of the elevons' force behind the centre of mass
-  /// m/s^2, 0.01..100: Standard deviation of one reading of the normal specific force. It is large on
-  /// purpose, because the error of a wrong wing model does not average out over 200 samples a second. With 1
-  /// m/s^2, a wing model 15 % wrong raises the drift over 10 m from 0.24 to 0.41 m (95th percentile, in
-  /// dodges).
+  double air_density_kgpm3 = 1.204;
+  double wing_area_m2 = 0.1811;
+  double mass_kg = 0.648412;
+  double pitch_damping_nmspr = 0.115;
+  double elevon_arm_m = 0.145;
   double sigma_mps2 = 6.0;
-  /// 0..1: standard deviation of the normal force model's error, as a share of the predicted force
   double model_error = 0.15;
 };
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, AngleOfAttackConfig& config) {
-  visit("enabled", config.enabled);
-  visit("air_density_kgpm3", config.air_density_kgpm3, 0.1, 2.0);
-  visit("wing_area_m2", config.wing_area_m2, 0.01, 5.0);
-  visit("mass_kg", config.mass_kg, 0.05, 20.0);
-  visit("pitch_damping_nmspr", config.pitch_damping_nmspr, 0.0, 10.0);
-  visit("elevon_arm_m", config.elevon_arm_m, 0.01, 5.0);
-  visit("sigma_mps2", config.sigma_mps2, 0.01, 100.0);
-  visit("model_error", config.model_error, 0.0, 1.0);
+  visit("enabled", config.enabled,
+        "Corrects the angle of attack with the normal specific force. With a correct wing model it reduces "
+        "the drift over 10 m by 0.01 m; with lift or mass 20 % wrong it adds up to 0.2 m. | "
+        "docs/model_mismatch.md");
+  visit("air_density_kgpm3", config.air_density_kgpm3, 0.1, 2.0, "air density that the filter assumes");
+  visit("wing_area_m2", config.wing_area_m2, 0.01, 5.0, "wing area that the filter assumes");
+  visit("mass_kg", config.mass_kg, 0.05, 20.0, "mass that the filter assumes");
+  visit("pitch_damping_nmspr", config.pitch_damping_nmspr, 0.0, 10.0,
+        "pitch damping that the filter assumes");
+  visit("elevon_arm_m", config.elevon_arm_m, 0.01, 5.0,
+        "distance of the elevons' force behind the centre of mass");
+  visit("sigma_mps2", config.sigma_mps2, 0.01, 100.0,
+        "Standard deviation of one reading of the normal specific force. It is large on purpose, because the "
+        "error of a wrong wing model does not average out over 200 samples a second. With 1 m/s^2, a wing "
+        "model 15 % wrong raises the drift over 10 m from 0.24 to 0.41 m (95th percentile, in dodges).");
+  visit("model_error", config.model_error, 0.0, 1.0,
+        "standard deviation of the normal force model's error, as a share of the predicted force");
 }
 
 /// The barometer measures world z plus an offset. The offset is a state; it is observed on the catapult,
@@ -115,226 +118,179 @@ void visit_fields(Visitor& visit, AngleOfAttackConfig& config) {
 /// thrust, so that the barometer reads too high by metres per newton: another state, where wash_sigma_m_per_n
 /// is not zero.
 struct AltitudeConfig {
-  /// m, 0.01..100: standard deviation of one barometer reading: 0.3 m of noise and a resolution of 0.1 m
   double sigma_m = 0.31;
-  /// m, 0..10: initial standard deviation of the barometer's offset, before the filter estimates it at rest
-  /// on the catapult
   double offset_sigma_m = 0.3;
-  /// m/sqrt(s), 0..10: random walk of the barometer's offset, which changes with weather and temperature
   double offset_walk_m_rts = 0.09;
-  /// m/N, 0..10: Initial standard deviation of the barometer error that the propeller causes, per newton of
-  /// thrust. 0: this error is not estimated.
   double wash_sigma_m_per_n = 0;
-  /// m, 0.01..100: standard deviation of one barometer reading in the separate filter that tracks the drift
-  /// of the estimated height
   double noise_m = 0.3;
-  /// m/sqrt(s), 0..10: random walk of the estimated height's drift, in the separate filter that tracks it
-  /// with the barometer
   double drift_walk_m_rts = 0.1;
 };
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, AltitudeConfig& config) {
-  visit("sigma_m", config.sigma_m, 0.01, 100.0);
-  visit("offset_sigma_m", config.offset_sigma_m, 0.0, 10.0);
-  visit("offset_walk_m_rts", config.offset_walk_m_rts, 0.0, 10.0);
-  visit("wash_sigma_m_per_n", config.wash_sigma_m_per_n, 0.0, 10.0);
-  visit("noise_m", config.noise_m, 0.01, 100.0);
-  visit("drift_walk_m_rts", config.drift_walk_m_rts, 0.0, 10.0);
+  visit("sigma_m", config.sigma_m, 0.01, 100.0,
+        "standard deviation of one barometer reading: 0.3 m of noise and a resolution of 0.1 m");
+  visit("offset_sigma_m", config.offset_sigma_m, 0.0, 10.0,
+        "initial standard deviation of the barometer's offset, before the filter estimates it at rest on the "
+        "catapult");
+  visit("offset_walk_m_rts", config.offset_walk_m_rts, 0.0, 10.0,
+        "random walk of the barometer's offset, which changes with weather and temperature");
+  visit("wash_sigma_m_per_n", config.wash_sigma_m_per_n, 0.0, 10.0,
+        "Initial standard deviation of the barometer error that the propeller causes, per newton of thrust. "
+        "0: this error is not estimated.");
+  visit("noise_m", config.noise_m, 0.01, 100.0,
+        "standard deviation of one barometer reading in the separate filter that tracks the drift of the "
+        "estimated height");
+  visit("drift_walk_m_rts", config.drift_walk_m_rts, 0.0, 10.0,
+        "random walk of the estimated height's drift, in the separate filter that tracks it with the "
+        "barometer");
 }
 
 /// The magnetometer's field, rotated into the world by the estimated attitude (which compensates the tilt),
 /// points to magnetic north, world y. Only its horizontal direction is used, not its strength or inclination.
 struct HeadingConfig {
-  /// uses the magnetometer; with smooth_frame it corrects the heading only before the launch, and other
-  /// states in flight
   bool enabled = true;
-  /// rad, 0.01..3: Standard deviation of one magnetometer heading. It is large, because the main errors last
-  /// the whole flight: a hard-iron error of 0.5 uT in a horizontal field of 19 uT turns the heading by 0.027
-  /// rad, and a tilt error turns it by 2.4 times the tilt.
   double sigma_rad = 0.35;
-  /// uT, 0..100: magnetometer readings with a weaker horizontal field than this are ignored
   double minimum_horizontal_ut = 5.0;
 };
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, HeadingConfig& config) {
-  visit("enabled", config.enabled);
-  visit("sigma_rad", config.sigma_rad, 0.01, 3.0);
-  visit("minimum_horizontal_ut", config.minimum_horizontal_ut, 0.0, 100.0);
+  visit("enabled", config.enabled,
+        "uses the magnetometer; with smooth_frame it corrects the heading only before the launch, and other "
+        "states in flight");
+  visit("sigma_rad", config.sigma_rad, 0.01, 3.0,
+        "Standard deviation of one magnetometer heading. It is large, because the main errors last the whole "
+        "flight: a hard-iron error of 0.5 uT in a horizontal field of 19 uT turns the heading by 0.027 rad, "
+        "and a tilt error turns it by 2.4 times the tilt.");
+  visit("minimum_horizontal_ut", config.minimum_horizontal_ut, 0.0, 100.0,
+        "magnetometer readings with a weaker horizontal field than this are ignored");
 }
 
 /// Velocity over ground from GPS, measured at an earlier moment. The inertial sensors alone say how the
 /// velocity has changed since, so that corrections made meanwhile are not applied twice.
 struct GroundVelocityConfig {
-  bool enabled = true;  ///< corrects the velocity with GPS, where the aircraft has a receiver
-  double sigma_mps =
-      0.2;  ///< m/s, 0.01..10: standard deviation of a GPS velocity, per axis (docs/sources.md [15])
+  bool enabled = true;
+  double sigma_mps = 0.2;
 };
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, GroundVelocityConfig& config) {
-  visit("enabled", config.enabled);
-  visit("sigma_mps", config.sigma_mps, 0.01, 10.0);
+  visit("enabled", config.enabled, "corrects the velocity with GPS, where the aircraft has a receiver");
+  visit("sigma_mps", config.sigma_mps, 0.01, 10.0,
+        "standard deviation of a GPS velocity, per axis | docs/sources.md [15]");
 }
 
 /// On the catapult the aircraft stands still at a known place: velocity and rate are zero, the specific force
 /// is gravity.
 struct RestConfig {
-  /// s, 0.01..1: length of the time window over which the filter tests whether the aircraft is at rest
   double window_s = 0.1;
-  /// m/s^2, 0.01..10: rest test: largest standard deviation of the specific force within rest.window_s, per
-  /// axis; five times the noise of one reading
   double force_deviation_mps2 = 0.25;
-  /// rad/s, 1e-4..1: rest test: largest standard deviation of the angular rate within rest.window_s, per axis
   double rate_deviation_radps = 0.012;
-  /// m/s^2, 0.01..10: rest test: largest difference between gravity and the magnitude of the mean specific
-  /// force within rest.window_s
   double force_tolerance_mps2 = 0.6;
-  /// rad/s, 0.001..5: rest test: largest magnitude of the mean angular rate within rest.window_s; six times a
-  /// gyro bias of 0.5 deg/s
   double rate_tolerance_radps = 0.05;
-  /// m/s, 1e-4..1: standard deviation of the zero velocity that the filter uses as a measurement at rest
   double velocity_sigma_mps = 0.02;
-  /// m, 1e-4..1: standard deviation of the known position that the filter uses as a measurement at rest
   double position_sigma_m = 0.01;
-  /// m/s^2, 0.001..10: standard deviation of one accelerometer reading that the filter uses at rest to
-  /// measure roll and pitch
   double force_sigma_mps2 = 0.1;
-  /// m/s^2, 0..1: Accelerometer bias, which at rest cannot be told from tilt. At the launch it adds to the
-  /// uncertainty of roll and pitch, unless the filter estimates the bias.
   double accelerometer_bias_mps2 = 0.05;
-  /// m/s^2, 5..150: The filter detects the launch when two IMU samples in a row exceed this specific force
-  /// along body x. The original's threshold was 45 (docs/sources.md [2]); a rail of 1.5 m that accelerates to
-  /// 12 m/s gives 48 plus a share of gravity.
   double launch_threshold_mps2 = 30.0;
-  /// m/s, 0..5: Standard deviation added to the forward speed at the launch, because the catapult's start and
-  /// release each fall anywhere within a 5 ms sample interval at 48 m/s^2.
   double launch_speed_sigma_mps = 0.1;
 };
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, RestConfig& config) {
-  visit("window_s", config.window_s, 0.01, 1.0);
-  visit("force_deviation_mps2", config.force_deviation_mps2, 0.01, 10.0);
-  visit("rate_deviation_radps", config.rate_deviation_radps, 1e-4, 1.0);
-  visit("force_tolerance_mps2", config.force_tolerance_mps2, 0.01, 10.0);
-  visit("rate_tolerance_radps", config.rate_tolerance_radps, 0.001, 5.0);
-  visit("velocity_sigma_mps", config.velocity_sigma_mps, 1e-4, 1.0);
-  visit("position_sigma_m", config.position_sigma_m, 1e-4, 1.0);
-  visit("force_sigma_mps2", config.force_sigma_mps2, 0.001, 10.0);
-  visit("accelerometer_bias_mps2", config.accelerometer_bias_mps2, 0.0, 1.0);
-  visit("launch_threshold_mps2", config.launch_threshold_mps2, 5.0, 150.0);
-  visit("launch_speed_sigma_mps", config.launch_speed_sigma_mps, 0.0, 5.0);
+  visit("window_s", config.window_s, 0.01, 1.0,
+        "length of the time window over which the filter tests whether the aircraft is at rest");
+  visit("force_deviation_mps2", config.force_deviation_mps2, 0.01, 10.0,
+        "rest test: largest standard deviation of the specific force within rest.window_s, per axis; five "
+        "times the noise of one reading");
+  visit("rate_deviation_radps", config.rate_deviation_radps, 1e-4, 1.0,
+        "rest test: largest standard deviation of the angular rate within rest.window_s, per axis");
+  visit("force_tolerance_mps2", config.force_tolerance_mps2, 0.01, 10.0,
+        "rest test: largest difference between gravity and the magnitude of the mean specific force within "
+        "rest.window_s");
+  visit("rate_tolerance_radps", config.rate_tolerance_radps, 0.001, 5.0,
+        "rest test: largest magnitude of the mean angular rate within rest.window_s; six times a gyro bias "
+        "of 0.5 deg/s");
+  visit("velocity_sigma_mps", config.velocity_sigma_mps, 1e-4, 1.0,
+        "standard deviation of the zero velocity that the filter uses as a measurement at rest");
+  visit("position_sigma_m", config.position_sigma_m, 1e-4, 1.0,
+        "standard deviation of the known position that the filter uses as a measurement at rest");
+  visit("force_sigma_mps2", config.force_sigma_mps2, 0.001, 10.0,
+        "standard deviation of one accelerometer reading that the filter uses at rest to measure roll and "
+        "pitch");
+  visit("accelerometer_bias_mps2", config.accelerometer_bias_mps2, 0.0, 1.0,
+        "Accelerometer bias, which at rest cannot be told from tilt. At the launch it adds to the "
+        "uncertainty of roll and pitch, unless the filter estimates the bias.");
+  visit("launch_threshold_mps2", config.launch_threshold_mps2, 5.0, 150.0,
+        "The filter detects the launch when two IMU samples in a row exceed this specific force along body "
+        "x. The original's threshold was 45; a rail of 1.5 m that accelerates to 12 m/s gives 48 plus a "
+        "share of gravity. | docs/sources.md [2]");
+  visit("launch_speed_sigma_mps", config.launch_speed_sigma_mps, 0.0, 5.0,
+        "Standard deviation added to the forward speed at the launch, because the catapult's start and "
+        "release each fall anywhere within a 5 ms sample interval at 48 m/s^2.");
 }
 
 /// Where the flight begins, and how well that is known. Standard deviations are one sigma.
 struct StartConfig {
-  /// m, -1e4..1e4: Position at the start, on the catapult: 1.5 m back along a rail that rises by 0.20 rad to
-  /// the release point (0, 0, 1.5). The scenario computes it from its launch keys.
   Eigen::Vector3d position_world_m{-1.470, 0.0, 1.202};
-  double yaw_rad = 0.0;  ///< rad, -3.15..3.15: heading at the start: angle from world x, positive to the left
-  /// rad, -1.5..1.5: pitch at the start, positive nose up; the filter measures it again while at rest on the
-  /// catapult
+  double yaw_rad = 0.0;
   double pitch_rad = 0.398;
-  /// rad, -3.15..3.15: roll at the start, positive left wing up; the filter measures it again while at rest
-  /// on the catapult
   double roll_rad = 0.0;
-  /// starts the filter in flight, with start.velocity_body_mps; false: at rest on the catapult
   bool in_flight = false;
-  /// m/s, -50..50: velocity over ground at the start, in body axes; used only with start.in_flight
   Eigen::Vector3d velocity_body_mps{0, 0, 0};
-  double tilt_sigma_rad = 0.02;  ///< rad, 0..1: standard deviation of roll and pitch at the start
-  double yaw_sigma_rad = 0.02;   ///< rad, 0..3: standard deviation of the heading at the start
-  /// m/s, 0..10: initial standard deviation of the velocity, per axis (docs/sources.md [2])
+  double tilt_sigma_rad = 0.02;
+  double yaw_sigma_rad = 0.02;
   double velocity_sigma_mps = 0.15;
-  double horizontal_sigma_m = 0.01;  ///< m, 0..100: standard deviation of x and y at the start
-  double vertical_sigma_m = 0.01;    ///< m, 0..100: standard deviation of z at the start
-  /// rad/s, 0..1: initial standard deviation of the gyro's bias, per axis
+  double horizontal_sigma_m = 0.01;
+  double vertical_sigma_m = 0.01;
   double gyro_bias_sigma_radps = 0.0087;
 };
 
 /// The states beside the base's twelve, each a switch.
 struct ExtraStatesConfig {
-  bool accelerometer_bias = true;  ///< estimates the accelerometer's bias as three further states
-  /// m/s^2, 0..5: initial standard deviation of the accelerometer's bias, per axis; 0.05 m/s^2 is 5 mg
+  bool accelerometer_bias = true;
   double accelerometer_bias_sigma_mps2 = 0.05;
-  double accelerometer_bias_walk_rthz =
-      1e-3;           ///< m/s^3/sqrt(Hz), 0..1: random walk of the accelerometer bias
-  bool wind = false;  ///< estimates the steady horizontal wind as two further states
-  /// m/s, 0..30: initial standard deviation of the steady wind, per horizontal axis
+  double accelerometer_bias_walk_rthz = 1e-3;
+  bool wind = false;
   double wind_sigma_mps = 3.0;
-  double wind_walk_rthz = 0.05;  ///< m/s^2/sqrt(Hz), 0..10: random walk of the steady wind
-  bool gust = false;             ///< estimates horizontal gusts as two further states
-  /// m/s, 0..20: standard deviation of the gust velocity, per horizontal axis (MIL-F-8785C)
+  double wind_walk_rthz = 0.05;
+  bool gust = false;
   double gust_sigma_mps = 0.6;
-  /// m, 0.1..2000: distance flown over which gusts decorrelate, the turbulence length scale (MIL-F-8785C, at
-  /// a height of 4 m)
   double gust_length_m = 30.0;
-  bool pitot_bias = true;  ///< estimates the pitot tube's bias as one further state
-  /// m/s, 0..10: initial standard deviation of the pitot tube's bias; 0.07 m/s is 1 Pa at 12 m/s
+  bool pitot_bias = true;
   double pitot_bias_sigma_mps = 0.07;
-  double pitot_bias_walk_rthz = 1e-3;  ///< m/s^2/sqrt(Hz), 0..1: random walk of the pitot tube's bias
+  double pitot_bias_walk_rthz = 1e-3;
 };
 
 /// What the filter does about sensors that fail.
 struct DistrustConfig {
-  /// 0.5..0.999999: probability that the outlier test (chi-square) accepts a measurement from a healthy
-  /// sensor
   double gate_probability = 0.999;
-  /// s, 0..1e6: a sensor counts as faulty once its measurements have failed the outlier test for longer than
-  /// this
   double gate_patience_s = 0.25;
-  /// Ignores a faulty sensor until its measurements have passed the outlier test for gate_patience_s. false:
-  /// uses its measurements although they fail the test.
   bool exclude = true;
-  /// s, 0.001..1.5: Interval between IMU samples above which the filter assumes that samples were lost: it
-  /// interpolates the motion and adds uncertainty. The scenario sets it to 1.5 sample intervals of its IMU.
   double imu_gap_s = 0.0076;
-  /// rad/s, 0..50: standard deviation of the angular rate interpolated across lost IMU samples
   double gap_rate_sigma_radps = 2.0;
-  /// m/s^2, 0..200: standard deviation of the specific force interpolated across lost IMU samples
   double gap_force_sigma_mps2 = 5.0;
-  /// s, 0.01..10: longest interval between IMU samples that the filter integrates in full; a longer one is
-  /// integrated as this long
   double longest_gap_s = 0.25;
 };
 
 /// The error-state Kalman filter. Defaults fit a consumer IMU at 200 Hz, a 1 psi pitot and a barometer, tuned
 /// for little drift of the relative position over 10 m of flight (docs/estimator.md).
 struct FilterConfig {
-  /// Meaning of three of the filter's states. gyro_bias: the gyro's bias; angular_rate: the angular rate,
-  /// which the gyro then measures, as in the original's filter (docs/estimator.md).
   FilterModel model = FilterModel::gyro_bias;
   StartConfig start;
-  double gravity_mps2 = 9.81;  ///< m/s^2, 1..20: gravity that the filter assumes
-  /// rad/s/sqrt(Hz), 0..1: Noise density of the gyro. A consumer part has 0.01 deg/s/sqrt(Hz) = 1.7e-4; the
-  /// default is twice that, because sampling at 200 Hz adds an error as large.
+  double gravity_mps2 = 9.81;
   double gyro_noise_radps_rthz = 3.5e-4;
-  /// m/s^2/sqrt(Hz), 0..10: Noise density of the accelerometer. Noise of 0.05 m/s^2 per sample at 200 Hz is a
-  /// density of 0.0035.
   double accelerometer_noise_mps2_rthz = 0.005;
-  /// 0..1: Scale error and misalignment of the gyro, as a share of the angular rate. The error keeps its sign
-  /// during a turn; the filter models it as noise that grows with the angular rate.
   double gyro_scale = 0;
-  /// 0..1: standard deviation of the accelerometer's scale error and misalignment. The filter models them as
-  /// noise that grows with the difference between specific force and gravity.
   double accelerometer_scale = 0;
-  /// m/s^2/N, 0..100: amplitude of the propeller's vibration in the accelerometer, per newton of thrust.
   double vibration_mps2pn = 0;
-  /// 1..100: Number of IMU samples that are averaged into one correction by the lateral or normal force.
-  /// Averaging keeps vibration from biasing the estimated airspeed.
   int force_samples = 1;
-  double gyro_bias_walk_rthz = 1e-5;  ///< rad/s^2/sqrt(Hz), 0..1: random walk of the gyro's bias
-  /// rad/s^2/sqrt(Hz), 0..1000: Random walk of the angular rate; used only with the model angular_rate. The
-  /// aircraft's roll accelerates at up to 50 rad/s^2 for 0.1 s.
+  double gyro_bias_walk_rthz = 1e-5;
   double rate_walk_rthz = 15.0;
-  /// keeps corrections in flight from changing position and heading, so that mapped obstacles stay in place;
-  /// false: corrections change all states (FrameGain)
   bool smooth_frame = true;
-  double max_rate_radps = 34.9;   ///< rad/s, 1..200: full scale of the gyro (2000 deg/s)
-  double max_force_mps2 = 157.0;  ///< m/s^2, 20..2000: full scale of the accelerometer (16 g)
-  /// Hz, 0.1..1000: cut-off frequency of the low-pass filter on the specific force in the estimated state
+  double max_rate_radps = 34.9;
+  double max_force_mps2 = 157.0;
   double force_low_pass_hz = 30.0;
   ExtraStatesConfig states;
   DistrustConfig distrust;
@@ -344,7 +300,6 @@ struct FilterConfig {
   AltitudeConfig altitude;
   HeadingConfig heading;
   GroundVelocityConfig gps;
-  /// corrects the velocity with the displacements that autopilot.resightings measures
   bool resightings = true;
   RestConfig rest;
 };
@@ -362,66 +317,117 @@ FilterConfig windy_filter();
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, StartConfig& config) {
-  visit("position_world_m", config.position_world_m, -1e4, 1e4);
-  visit("yaw_rad", config.yaw_rad, -3.15, 3.15);
-  visit("pitch_rad", config.pitch_rad, -1.5, 1.5);
-  visit("roll_rad", config.roll_rad, -3.15, 3.15);
-  visit("in_flight", config.in_flight);
-  visit("velocity_body_mps", config.velocity_body_mps, -50.0, 50.0);
-  visit("tilt_sigma_rad", config.tilt_sigma_rad, 0.0, 1.0);
-  visit("yaw_sigma_rad", config.yaw_sigma_rad, 0.0, 3.0);
-  visit("velocity_sigma_mps", config.velocity_sigma_mps, 0.0, 10.0);
-  visit("horizontal_sigma_m", config.horizontal_sigma_m, 0.0, 100.0);
-  visit("vertical_sigma_m", config.vertical_sigma_m, 0.0, 100.0);
-  visit("gyro_bias_sigma_radps", config.gyro_bias_sigma_radps, 0.0, 1.0);
+  visit("position_world_m", config.position_world_m, -1e4, 1e4,
+        "Position at the start, on the catapult: 1.5 m back along a rail that rises by 0.20 rad to the "
+        "release point (0, 0, 1.5). The scenario computes it from its launch keys.");
+  visit("yaw_rad", config.yaw_rad, -3.15, 3.15,
+        "heading at the start: angle from world x, positive to the left");
+  visit("pitch_rad", config.pitch_rad, -1.5, 1.5,
+        "pitch at the start, positive nose up; the filter measures it again while at rest on the catapult");
+  visit(
+      "roll_rad", config.roll_rad, -3.15, 3.15,
+      "roll at the start, positive left wing up; the filter measures it again while at rest on the catapult");
+  visit("in_flight", config.in_flight,
+        "starts the filter in flight, with start.velocity_body_mps; false: at rest on the catapult");
+  visit("velocity_body_mps", config.velocity_body_mps, -50.0, 50.0,
+        "velocity over ground at the start, in body axes; used only with start.in_flight");
+  visit("tilt_sigma_rad", config.tilt_sigma_rad, 0.0, 1.0,
+        "standard deviation of roll and pitch at the start");
+  visit("yaw_sigma_rad", config.yaw_sigma_rad, 0.0, 3.0, "standard deviation of the heading at the start");
+  visit("velocity_sigma_mps", config.velocity_sigma_mps, 0.0, 10.0,
+        "initial standard deviation of the velocity, per axis | docs/sources.md [2]");
+  visit("horizontal_sigma_m", config.horizontal_sigma_m, 0.0, 100.0,
+        "standard deviation of x and y at the start");
+  visit("vertical_sigma_m", config.vertical_sigma_m, 0.0, 100.0, "standard deviation of z at the start");
+  visit("gyro_bias_sigma_radps", config.gyro_bias_sigma_radps, 0.0, 1.0,
+        "initial standard deviation of the gyro's bias, per axis");
 }
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, ExtraStatesConfig& config) {
-  visit("accelerometer_bias", config.accelerometer_bias);
-  visit("accelerometer_bias_sigma_mps2", config.accelerometer_bias_sigma_mps2, 0.0, 5.0);
-  visit("accelerometer_bias_walk_rthz", config.accelerometer_bias_walk_rthz, 0.0, 1.0);
-  visit("wind", config.wind);
-  visit("wind_sigma_mps", config.wind_sigma_mps, 0.0, 30.0);
-  visit("wind_walk_rthz", config.wind_walk_rthz, 0.0, 10.0);
-  visit("gust", config.gust);
-  visit("gust_sigma_mps", config.gust_sigma_mps, 0.0, 20.0);
-  visit("gust_length_m", config.gust_length_m, 0.1, 2000.0);
-  visit("pitot_bias", config.pitot_bias);
-  visit("pitot_bias_sigma_mps", config.pitot_bias_sigma_mps, 0.0, 10.0);
-  visit("pitot_bias_walk_rthz", config.pitot_bias_walk_rthz, 0.0, 1.0);
+  visit("accelerometer_bias", config.accelerometer_bias,
+        "estimates the accelerometer's bias as three further states");
+  visit("accelerometer_bias_sigma_mps2", config.accelerometer_bias_sigma_mps2, 0.0, 5.0,
+        "initial standard deviation of the accelerometer's bias, per axis; 0.05 m/s^2 is 5 mg");
+  visit("accelerometer_bias_walk_rthz", config.accelerometer_bias_walk_rthz, 0.0, 1.0,
+        "random walk of the accelerometer bias |  | m/s^3/sqrt(Hz)");
+  visit("wind", config.wind, "estimates the steady horizontal wind as two further states");
+  visit("wind_sigma_mps", config.wind_sigma_mps, 0.0, 30.0,
+        "initial standard deviation of the steady wind, per horizontal axis");
+  visit("wind_walk_rthz", config.wind_walk_rthz, 0.0, 10.0,
+        "random walk of the steady wind |  | m/s^2/sqrt(Hz)");
+  visit("gust", config.gust, "estimates horizontal gusts as two further states");
+  visit("gust_sigma_mps", config.gust_sigma_mps, 0.0, 20.0,
+        "standard deviation of the gust velocity, per horizontal axis | MIL-F-8785C");
+  visit("gust_length_m", config.gust_length_m, 0.1, 2000.0,
+        "distance flown over which gusts decorrelate, the turbulence length scale (MIL-F-8785C, at a height "
+        "of 4 m) | MIL-F-8785C");
+  visit("pitot_bias", config.pitot_bias, "estimates the pitot tube's bias as one further state");
+  visit("pitot_bias_sigma_mps", config.pitot_bias_sigma_mps, 0.0, 10.0,
+        "initial standard deviation of the pitot tube's bias; 0.07 m/s is 1 Pa at 12 m/s");
+  visit("pitot_bias_walk_rthz", config.pitot_bias_walk_rthz, 0.0, 1.0,
+        "random walk of the pitot tube's bias |  | m/s^2/sqrt(Hz)");
 }
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, DistrustConfig& config) {
-  visit("gate_probability", config.gate_probability, 0.5, 0.999999);
-  visit("gate_patience_s", config.gate_patience_s, 0.0, 1e6);
-  visit("exclude", config.exclude);
-  visit("imu_gap_s", config.imu_gap_s, 0.001, 1.5);
-  visit("gap_rate_sigma_radps", config.gap_rate_sigma_radps, 0.0, 50.0);
-  visit("gap_force_sigma_mps2", config.gap_force_sigma_mps2, 0.0, 200.0);
-  visit("longest_gap_s", config.longest_gap_s, 0.01, 10.0);
+  visit("gate_probability", config.gate_probability, 0.5, 0.999999,
+        "probability that the outlier test (chi-square) accepts a measurement from a healthy sensor");
+  visit("gate_patience_s", config.gate_patience_s, 0.0, 1e6,
+        "a sensor counts as faulty once its measurements have failed the outlier test for longer than this");
+  visit("exclude", config.exclude,
+        "Ignores a faulty sensor until its measurements have passed the outlier test for gate_patience_s. "
+        "false: uses its measurements although they fail the test.");
+  visit("imu_gap_s", config.imu_gap_s, 0.001, 1.5,
+        "Interval between IMU samples above which the filter assumes that samples were lost: it interpolates "
+        "the motion and adds uncertainty. The scenario sets it to 1.5 sample intervals of its IMU.");
+  visit("gap_rate_sigma_radps", config.gap_rate_sigma_radps, 0.0, 50.0,
+        "standard deviation of the angular rate interpolated across lost IMU samples");
+  visit("gap_force_sigma_mps2", config.gap_force_sigma_mps2, 0.0, 200.0,
+        "standard deviation of the specific force interpolated across lost IMU samples");
+  visit("longest_gap_s", config.longest_gap_s, 0.01, 10.0,
+        "longest interval between IMU samples that the filter integrates in full; a longer one is integrated "
+        "as this long");
 }
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, FilterConfig& config) {
   visit("model", config.model,
         std::array<std::pair<std::string_view, FilterModel>, 2>{
-            {{"gyro_bias", FilterModel::gyro_bias}, {"angular_rate", FilterModel::angular_rate}}});
+            {{"gyro_bias", FilterModel::gyro_bias}, {"angular_rate", FilterModel::angular_rate}}},
+        "Meaning of three of the filter's states. gyro_bias: the gyro's bias; angular_rate: the angular "
+        "rate, which the gyro then measures, as in the original's filter. | docs/estimator.md");
   visit("start", config.start);
-  visit("gravity_mps2", config.gravity_mps2, 1.0, 20.0);
-  visit("gyro_noise_radps_rthz", config.gyro_noise_radps_rthz, 0.0, 1.0);
-  visit("accelerometer_noise_mps2_rthz", config.accelerometer_noise_mps2_rthz, 0.0, 10.0);
-  visit("gyro_scale", config.gyro_scale, 0.0, 1.0);
-  visit("accelerometer_scale", config.accelerometer_scale, 0.0, 1.0);
-  visit("vibration_mps2pn", config.vibration_mps2pn, 0.0, 100.0);
-  visit("force_samples", config.force_samples, 1, 100);
-  visit("gyro_bias_walk_rthz", config.gyro_bias_walk_rthz, 0.0, 1.0);
-  visit("rate_walk_rthz", config.rate_walk_rthz, 0.0, 1000.0);
-  visit("smooth_frame", config.smooth_frame);
-  visit("max_rate_radps", config.max_rate_radps, 1.0, 200.0);
-  visit("max_force_mps2", config.max_force_mps2, 20.0, 2000.0);
-  visit("force_low_pass_hz", config.force_low_pass_hz, 0.1, 1000.0);
+  visit("gravity_mps2", config.gravity_mps2, 1.0, 20.0, "gravity that the filter assumes");
+  visit("gyro_noise_radps_rthz", config.gyro_noise_radps_rthz, 0.0, 1.0,
+        "Noise density of the gyro. A consumer part has 0.01 deg/s/sqrt(Hz) = 1.7e-4; the default is twice "
+        "that, because sampling at 200 Hz adds an error as large.");
+  visit(
+      "accelerometer_noise_mps2_rthz", config.accelerometer_noise_mps2_rthz, 0.0, 10.0,
+      "Noise density of the accelerometer. Noise of 0.05 m/s^2 per sample at 200 Hz is a density of 0.0035.");
+  visit("gyro_scale", config.gyro_scale, 0.0, 1.0,
+        "Scale error and misalignment of the gyro, as a share of the angular rate. The error keeps its sign "
+        "during a turn; the filter models it as noise that grows with the angular rate.");
+  visit("accelerometer_scale", config.accelerometer_scale, 0.0, 1.0,
+        "standard deviation of the accelerometer's scale error and misalignment. The filter models them as "
+        "noise that grows with the difference between specific force and gravity.");
+  visit("vibration_mps2pn", config.vibration_mps2pn, 0.0, 100.0,
+        "amplitude of the propeller's vibration in the accelerometer, per newton of thrust.");
+  visit("force_samples", config.force_samples, 1, 100,
+        "Number of IMU samples that are averaged into one correction by the lateral or normal force. "
+        "Averaging keeps vibration from biasing the estimated airspeed.");
+  visit("gyro_bias_walk_rthz", config.gyro_bias_walk_rthz, 0.0, 1.0,
+        "random walk of the gyro's bias |  | rad/s^2/sqrt(Hz)");
+  visit("rate_walk_rthz", config.rate_walk_rthz, 0.0, 1000.0,
+        "Random walk of the angular rate; used only with the model angular_rate. The aircraft's roll "
+        "accelerates at up to 50 rad/s^2 for 0.1 s. |  | rad/s^2/sqrt(Hz)");
+  visit("smooth_frame", config.smooth_frame,
+        "keeps corrections in flight from changing position and heading, so that mapped obstacles stay in "
+        "place; false: corrections change all states (FrameGain)");
+  visit("max_rate_radps", config.max_rate_radps, 1.0, 200.0, "full scale of the gyro (2000 deg/s)");
+  visit("max_force_mps2", config.max_force_mps2, 20.0, 2000.0, "full scale of the accelerometer (16 g)");
+  visit("force_low_pass_hz", config.force_low_pass_hz, 0.1, 1000.0,
+        "cut-off frequency of the low-pass filter on the specific force in the estimated state");
   visit("states", config.states);
   visit("distrust", config.distrust);
   visit("airspeed", config.airspeed);
@@ -430,7 +436,8 @@ void visit_fields(Visitor& visit, FilterConfig& config) {
   visit("altitude", config.altitude);
   visit("heading", config.heading);
   visit("gps", config.gps);
-  visit("resightings", config.resightings);
+  visit("resightings", config.resightings,
+        "corrects the velocity with the displacements that autopilot.resightings measures");
   visit("rest", config.rest);
 }
 

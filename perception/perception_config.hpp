@@ -11,60 +11,34 @@ namespace understory {
 /// The parameters of the detector. The defaults are those of the original's public code (Barry & Tedrake
 /// 2015); each test is a switch of its own.
 struct PushbroomConfig {
-  /// Depths at which the pushbroom detector looks for obstacles; empty: only the detection depth in the rig's
-  /// file. The preset `tuned` sets two for the rig `paper`.
   std::vector<double> depths_m;
-  /// One minimum_edge_sum for each depth, in the order of depths_m; empty: minimum_edge_sum holds for all.
   std::vector<double> depths_minimum_edge_sum;
-  /// One score_limit for each depth, in the order of depths_m; empty: score_limit holds for all.
   std::vector<double> depths_score_limit;
-  /// Whole-pixel disparities to search, as the original's configuration files state them (docs/sources.md
-  /// [2]); empty: those nearest to depths_m.
   std::vector<int> disparities_px;
-  /// Whole-pixel disparity of an infinitely distant point in the invariance and uniqueness tests; ~: the
-  /// calibration's, rounded.
   std::optional<int> infinity_px;
-  int threads = 1;    ///< number of threads that search one stereo pair; it does not change the detections
-  int stride_px = 5;  ///< step from one block to the next along rows and columns; 5: side by side
-  /// matches a block at every pixel and keeps the best of each 5x5 positions; ignores stride_px
+  int threads = 1;
+  int stride_px = 5;
   bool every_pixel = false;
-  /// Top edge of the lowest row of blocks, for an image of 240 rows; it scales with the image's height. Lower
-  /// rows show the ground. The original's lastValidPixelRow, 205, is the bottom edge of its lowest blocks.
   int last_row_px = 200;
-  /// Columns at the right end of the compared area that no block touches. The original skips a block that
-  /// ends exactly at the image's edge, which is a margin of 1.
   int right_margin_px = 1;
-  /// smallest sum of the Laplacian over a block, in each image; blocks with less texture are skipped
   int minimum_edge_sum = 860;
-  /// A block matches where its score, SAD / (sum of the Laplacian over both blocks), is below this. The limit
-  /// is rounded to 1/333000.
   double score_limit = 54.0 / 333.0;
 
-  /// rejects a block that also matches near where an infinitely distant point would lie
   bool horizontal_invariance = true;
-  /// columns that the invariance test searches on each side of an infinitely distant point's column
   int invariance_columns_px = 3;
-  int invariance_rows_px = 8;      ///< rows that the invariance test searches above and below a block
-  int invariance_row_step_px = 2;  ///< step between the rows that the invariance test searches
-  /// score below which a block counts as a match in the invariance test
+  int invariance_rows_px = 8;
+  int invariance_row_step_px = 2;
   double invariance_score_limit = 108.0 / 333.0;
 
-  /// rejects a block that matches nearly as well at another disparity in the same row
   bool uniqueness = false;
-  /// factor by which the SAD at any disparity more than one pixel away must exceed the match's SAD
   double uniqueness_ratio = 2.0;
-  /// The uniqueness test searches for other matches from infinity to this depth. The paper ignores nearer
-  /// points.
   double uniqueness_minimum_depth_m = 1.5;
 
-  /// Refines a disparity to the vertex of the parabola through the SADs at the match and one pixel to either
-  /// side. It moves by half a pixel at most, and only if the match's SAD is the smallest.
   bool subpixel = false;
 
-  bool isolation = false;  ///< rejects a detection that has too few others near it in the same frame
-  /// detections, itself included, that a detection needs within isolation_radius_m to be kept
+  bool isolation = false;
   int isolation_minimum_points = 3;
-  double isolation_radius_m = 1.0;  ///< distance within which the isolation test counts other detections
+  double isolation_radius_m = 1.0;
 };
 
 /// The paper's rule as the original's code has it: its hits, their order and their scores, wherever the
@@ -108,46 +82,74 @@ inline PushbroomConfig pushbroom_of(PushbroomPreset preset, std::string_view rig
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, PushbroomConfig& config) {
-  visit("threads", config.threads, 1, 64);
-  visit("stride_px", config.stride_px, 1, 100);
-  visit("every_pixel", config.every_pixel);
-  visit("last_row_px", config.last_row_px, 0, 240);
-  visit("right_margin_px", config.right_margin_px, 0, 100);
-  visit("minimum_edge_sum", config.minimum_edge_sum, 0, 6375);
-  visit("score_limit", config.score_limit, 0.0, 10.0);
-  visit("horizontal_invariance", config.horizontal_invariance);
-  visit("invariance_columns_px", config.invariance_columns_px, 0, 50);
-  visit("invariance_rows_px", config.invariance_rows_px, 0, 50);
-  visit("invariance_row_step_px", config.invariance_row_step_px, 1, 50);
-  visit("invariance_score_limit", config.invariance_score_limit, 0.0, 10.0);
-  visit("uniqueness", config.uniqueness);
-  visit("uniqueness_ratio", config.uniqueness_ratio, 1.0, 100.0);
-  visit("uniqueness_minimum_depth_m", config.uniqueness_minimum_depth_m, 0.1, 100.0);
-  visit("depths_minimum_edge_sum", config.depths_minimum_edge_sum, 0, 6375);
-  visit("depths_score_limit", config.depths_score_limit, 0.0, 10.0);
-  visit("disparities_px", config.disparities_px, -8192, 8192);
-  visit("infinity_px", config.infinity_px, -8192, 8192);
-  visit("subpixel", config.subpixel);
-  visit("isolation", config.isolation);
-  visit("isolation_minimum_points", config.isolation_minimum_points, 1, 1000);
-  visit("isolation_radius_m", config.isolation_radius_m, 0.0, 100.0);
+  visit("threads", config.threads, 1, 64,
+        "number of threads that search one stereo pair; it does not change the detections");
+  visit("stride_px", config.stride_px, 1, 100,
+        "step from one block to the next along rows and columns; 5: side by side");
+  visit("every_pixel", config.every_pixel,
+        "matches a block at every pixel and keeps the best of each 5x5 positions; ignores stride_px");
+  visit("last_row_px", config.last_row_px, 0, 240,
+        "Top edge of the lowest row of blocks, for an image of 240 rows; it scales with the image's height. "
+        "Lower rows show the ground. The original's lastValidPixelRow, 205, is the bottom edge of its lowest "
+        "blocks.");
+  visit("right_margin_px", config.right_margin_px, 0, 100,
+        "Columns at the right end of the compared area that no block touches. The original skips a block "
+        "that ends exactly at the image's edge, which is a margin of 1.");
+  visit("minimum_edge_sum", config.minimum_edge_sum, 0, 6375,
+        "smallest sum of the Laplacian over a block, in each image; blocks with less texture are skipped");
+  visit("score_limit", config.score_limit, 0.0, 10.0,
+        "A block matches where its score, SAD / (sum of the Laplacian over both blocks), is below this. The "
+        "limit is rounded to 1/333000.");
+  visit("horizontal_invariance", config.horizontal_invariance,
+        "rejects a block that also matches near where an infinitely distant point would lie");
+  visit("invariance_columns_px", config.invariance_columns_px, 0, 50,
+        "columns that the invariance test searches on each side of an infinitely distant point's column");
+  visit("invariance_rows_px", config.invariance_rows_px, 0, 50,
+        "rows that the invariance test searches above and below a block");
+  visit("invariance_row_step_px", config.invariance_row_step_px, 1, 50,
+        "step between the rows that the invariance test searches");
+  visit("invariance_score_limit", config.invariance_score_limit, 0.0, 10.0,
+        "score below which a block counts as a match in the invariance test");
+  visit("uniqueness", config.uniqueness,
+        "rejects a block that matches nearly as well at another disparity in the same row");
+  visit("uniqueness_ratio", config.uniqueness_ratio, 1.0, 100.0,
+        "factor by which the SAD at any disparity more than one pixel away must exceed the match's SAD");
+  visit("uniqueness_minimum_depth_m", config.uniqueness_minimum_depth_m, 0.1, 100.0,
+        "The uniqueness test searches for other matches from infinity to this depth. The paper ignores "
+        "nearer points.");
+  visit("depths_minimum_edge_sum", config.depths_minimum_edge_sum, 0, 6375,
+        "One minimum_edge_sum for each depth, in the order of depths_m; empty: minimum_edge_sum holds for "
+        "all.");
+  visit("depths_score_limit", config.depths_score_limit, 0.0, 10.0,
+        "One score_limit for each depth, in the order of depths_m; empty: score_limit holds for all.");
+  visit("disparities_px", config.disparities_px, -8192, 8192,
+        "Whole-pixel disparities to search, as the original's configuration files state them; empty: those "
+        "nearest to depths_m. | docs/sources.md [2]");
+  visit("infinity_px", config.infinity_px, -8192, 8192,
+        "Whole-pixel disparity of an infinitely distant point in the invariance and uniqueness tests; ~: the "
+        "calibration's, rounded.");
+  visit("subpixel", config.subpixel,
+        "Refines a disparity to the vertex of the parabola through the SADs at the match and one pixel to "
+        "either side. It moves by half a pixel at most, and only if the match's SAD is the smallest.");
+  visit("isolation", config.isolation,
+        "rejects a detection that has too few others near it in the same frame");
+  visit("isolation_minimum_points", config.isolation_minimum_points, 1, 1000,
+        "detections, itself included, that a detection needs within isolation_radius_m to be kept");
+  visit("isolation_radius_m", config.isolation_radius_m, 0.0, 100.0,
+        "distance within which the isolation test counts other detections");
 }
 
 /// OpenCV's StereoBM with the settings of the paper's evaluation (Barry & Tedrake 2015; public evaluation
 /// code). Disparities count from the rig's infinity, so 2 .. 113 px are parallax.
 struct StereoBmConfig {
-  int window_px = 5;         ///< side of the square matching window; odd
-  int min_disparity_px = 2;  ///< smallest disparity searched, relative to that of an infinitely distant point
-  int disparities = 112;     ///< number of disparities searched; a multiple of 16
-  int texture_threshold = 427;  ///< a window with less texture gets no disparity (OpenCV's textureThreshold)
-  /// percentage by which any other match must cost more than the best (OpenCV's uniquenessRatio)
+  int window_px = 5;
+  int min_disparity_px = 2;
+  int disparities = 112;
+  int texture_threshold = 427;
   int uniqueness_percent = 18;
-  /// no effect: window of OpenCV's normalising prefilter, but its x-Sobel prefilter is in use
   int prefilter_size_px = 105;
-  int prefilter_cap = 61;  ///< limit to which the prefiltered image is clipped (OpenCV's preFilterCap)
-  /// connected patches of disparity with up to this many pixels are removed; 0: none are
+  int prefilter_cap = 61;
   int speckle_window_px = 59;
-  /// largest disparity step between neighbours within a patch, in sixteenths of a pixel
   int speckle_range = 30;
 };
 
@@ -159,151 +161,170 @@ inline constexpr std::array<std::pair<std::string_view, SgbmPaths>, 3> sgbm_path
 /// OpenCV's StereoSGBM (Hirschmueller 2008). The paper flew none: the search is StereoBM's above, the rest
 /// the values that OpenCV's documentation of cv::StereoSGBM and its sample stereo_match.cpp suggest.
 struct StereoSgbmConfig {
-  int window_px = 5;         ///< side of the square matching window; odd (OpenCV advises 3 to 11)
-  int min_disparity_px = 2;  ///< smallest disparity searched, relative to that of an infinitely distant point
-  int disparities = 112;     ///< number of disparities searched; a multiple of 16
-  /// penalty for a disparity step of one pixel; OpenCV's P1 is this times the window's area
+  int window_px = 5;
+  int min_disparity_px = 2;
+  int disparities = 112;
   int smoothness_1 = 8;
-  /// penalty for a larger step, more than smoothness_1; OpenCV's P2 is this times the window's area
   int smoothness_2 = 32;
-  /// percentage by which the best match must cost less than any other (OpenCV advises 5 to 15)
   int uniqueness_percent = 10;
-  int prefilter_cap = 63;  ///< limit to which the prefiltered image is clipped (OpenCV's preFilterCap)
-  /// largest difference between left-to-right and right-to-left disparity; -1 and 0 act as 1
+  int prefilter_cap = 63;
   int left_right_px = 1;
-  /// connected patches with up to this many pixels are removed (OpenCV advises 50 to 200)
   int speckle_window_px = 100;
-  /// largest disparity step between neighbours within a patch (OpenCV advises 1 or 2)
   int speckle_range_px = 2;
-  SgbmPaths paths = SgbmPaths::five;  ///< number of directions along which matching costs are summed
+  SgbmPaths paths = SgbmPaths::five;
 };
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, StereoBmConfig& config) {
-  visit("window_px", config.window_px, 5, 51);
-  visit("min_disparity_px", config.min_disparity_px, 1, 1000);
-  visit("disparities", config.disparities, 16, 1024);
-  visit("texture_threshold", config.texture_threshold, 0, 100000);
-  visit("uniqueness_percent", config.uniqueness_percent, 0, 100);
-  visit("prefilter_size_px", config.prefilter_size_px, 5, 255);
-  visit("prefilter_cap", config.prefilter_cap, 1, 63);
-  visit("speckle_window_px", config.speckle_window_px, 0, 10000);
-  visit("speckle_range", config.speckle_range, 0, 1000);
+  visit("window_px", config.window_px, 5, 51, "side of the square matching window; odd");
+  visit("min_disparity_px", config.min_disparity_px, 1, 1000,
+        "smallest disparity searched, relative to that of an infinitely distant point");
+  visit("disparities", config.disparities, 16, 1024, "number of disparities searched; a multiple of 16");
+  visit("texture_threshold", config.texture_threshold, 0, 100000,
+        "a window with less texture gets no disparity (OpenCV's textureThreshold)");
+  visit("uniqueness_percent", config.uniqueness_percent, 0, 100,
+        "percentage by which any other match must cost more than the best (OpenCV's uniquenessRatio)");
+  visit("prefilter_size_px", config.prefilter_size_px, 5, 255,
+        "no effect: window of OpenCV's normalising prefilter, but its x-Sobel prefilter is in use");
+  visit("prefilter_cap", config.prefilter_cap, 1, 63,
+        "limit to which the prefiltered image is clipped (OpenCV's preFilterCap)");
+  visit("speckle_window_px", config.speckle_window_px, 0, 10000,
+        "connected patches of disparity with up to this many pixels are removed; 0: none are");
+  visit("speckle_range", config.speckle_range, 0, 1000,
+        "largest disparity step between neighbours within a patch, in sixteenths of a pixel");
 }
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, StereoSgbmConfig& config) {
-  visit("window_px", config.window_px, 1, 11);
-  visit("min_disparity_px", config.min_disparity_px, 1, 1000);
-  visit("disparities", config.disparities, 16, 1024);
-  visit("smoothness_1", config.smoothness_1, 0, 1000);
-  visit("smoothness_2", config.smoothness_2, 1, 1000);
-  visit("uniqueness_percent", config.uniqueness_percent, 0, 100);
-  visit("prefilter_cap", config.prefilter_cap, 1, 127);
-  visit("left_right_px", config.left_right_px, -1, 100);
-  visit("speckle_window_px", config.speckle_window_px, 0, 10000);
-  visit("speckle_range_px", config.speckle_range_px, 0, 100);
-  visit("paths", config.paths, sgbm_paths_names);
+  visit("window_px", config.window_px, 1, 11,
+        "side of the square matching window; odd (OpenCV advises 3 to 11)");
+  visit("min_disparity_px", config.min_disparity_px, 1, 1000,
+        "smallest disparity searched, relative to that of an infinitely distant point");
+  visit("disparities", config.disparities, 16, 1024, "number of disparities searched; a multiple of 16");
+  visit("smoothness_1", config.smoothness_1, 0, 1000,
+        "penalty for a disparity step of one pixel; OpenCV's P1 is this times the window's area");
+  visit("smoothness_2", config.smoothness_2, 1, 1000,
+        "penalty for a larger step, more than smoothness_1; OpenCV's P2 is this times the window's area");
+  visit("uniqueness_percent", config.uniqueness_percent, 0, 100,
+        "percentage by which the best match must cost less than any other (OpenCV advises 5 to 15)");
+  visit("prefilter_cap", config.prefilter_cap, 1, 127,
+        "limit to which the prefiltered image is clipped (OpenCV's preFilterCap)");
+  visit("left_right_px", config.left_right_px, -1, 100,
+        "largest difference between left-to-right and right-to-left disparity; -1 and 0 act as 1");
+  visit("speckle_window_px", config.speckle_window_px, 0, 10000,
+        "connected patches with up to this many pixels are removed (OpenCV advises 50 to 200)");
+  visit("speckle_range_px", config.speckle_range_px, 0, 100,
+        "largest disparity step between neighbours within a patch (OpenCV advises 1 or 2)");
+  visit("paths", config.paths, sgbm_paths_names,
+        "number of directions along which matching costs are summed");
 }
 
 /// Which pixels of a depth image become detections.
 struct FullStereoCrop {
-  /// smallest depth of a detection (Barry & Tedrake 2015 ignore nearer points)
   double minimum_depth_m = 1.5;
-  /// Largest depth of a detection. At 15 m a pixel of disparity spans 3.5 m of depth on the paper's rig and
-  /// 1.7 m on the long rig: farther obstacles cannot be placed (our choice).
   double maximum_depth_m = 15;
-  /// Detections farther below the optical axis than this are dropped, because they show the ground. At its
-  /// detection depth the pushbroom's last row lies 2.7 m (long rig) and 2.8 m (paper's rig) below the axis.
   double maximum_below_m = 2.7;
-  /// side of the square image cells, each of which gives at most one detection; as large as the pushbroom
-  /// detector's block
   int cell_px = 5;
-  /// number of matched pixels within the depth limits that a cell needs to give a detection (our choice)
   int minimum_pixels_per_cell = 5;
-  /// lowest image row that may be the top edge of a cell, for an image of 240 rows; scaled to other heights
   int last_row_px = 205;
 };
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, FullStereoCrop& crop) {
-  visit("minimum_depth_m", crop.minimum_depth_m, 0.1, 1000.0);
-  visit("maximum_depth_m", crop.maximum_depth_m, 0.1, 1000.0);
-  visit("maximum_below_m", crop.maximum_below_m, 0.1, 1000.0);
-  visit("cell_px", crop.cell_px, 1, 100);
-  visit("minimum_pixels_per_cell", crop.minimum_pixels_per_cell, 1, 10000);
-  visit("last_row_px", crop.last_row_px, 0, 240);
+  visit("minimum_depth_m", crop.minimum_depth_m, 0.1, 1000.0,
+        "smallest depth of a detection (Barry & Tedrake 2015 ignore nearer points) | Barry & Tedrake 2015");
+  visit("maximum_depth_m", crop.maximum_depth_m, 0.1, 1000.0,
+        "Largest depth of a detection. At 15 m a pixel of disparity spans 3.5 m of depth on the paper's rig "
+        "and 1.7 m on the long rig: farther obstacles cannot be placed (our choice).");
+  visit("maximum_below_m", crop.maximum_below_m, 0.1, 1000.0,
+        "Detections farther below the optical axis than this are dropped, because they show the ground. At "
+        "its detection depth the pushbroom's last row lies 2.7 m (long rig) and 2.8 m (paper's rig) below "
+        "the axis.");
+  visit("cell_px", crop.cell_px, 1, 100,
+        "side of the square image cells, each of which gives at most one detection; as large as the "
+        "pushbroom detector's block");
+  visit(
+      "minimum_pixels_per_cell", crop.minimum_pixels_per_cell, 1, 10000,
+      "number of matched pixels within the depth limits that a cell needs to give a detection (our choice)");
+  visit("last_row_px", crop.last_row_px, 0, 240,
+        "lowest image row that may be the top edge of a cell, for an image of 240 rows; scaled to other "
+        "heights");
 }
 
 /// Which points the map keeps, and which of them it trusts.
 struct LocalMapConfig {
-  /// time since its last detection beyond which a map point is deleted (the original: 2 to 4 s)
   double max_age_s = 4.0;
-  /// The map deletes a point that lies farther behind the aircraft than this, along the heading. The distance
-  /// exceeds the half span (0.43 m) and the swing of a wing tip in a turn, so that no point beside a wing is
-  /// deleted.
   double passed_m = 2.0;
-  int max_points = 5000;  ///< largest number of points in the map; beyond it the oldest are deleted
-  /// side of the map's voxels; a detection in a voxel that already holds a point replaces that point; 0:
-  /// every detection adds a point
+  int max_points = 5000;
   double voxel_m = 0.10;
-  /// number of neighbours that a map point needs for the planner to use it (original: 2)
   int min_neighbours = 2;
-  /// distance within which two map points count as neighbours of each other
   double neighbour_radius_m = 1.0;
-  /// the planner uses a map point only after a second frame has detected it, or another point within
-  /// seen_again_radius_m
   bool seen_again = false;
-  /// distance within which a map point from another frame confirms a map point, with seen_again
   double seen_again_radius_m = 0.35;
 };
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, LocalMapConfig& config) {
-  visit("max_age_s", config.max_age_s, 0.0, 600.0);
-  visit("passed_m", config.passed_m, 0.0, 1000.0);
-  visit("max_points", config.max_points, 1, 1000000);
-  visit("voxel_m", config.voxel_m, 0.0, 10.0);
-  visit("min_neighbours", config.min_neighbours, 0, 1000);
-  visit("neighbour_radius_m", config.neighbour_radius_m, 0.01, 100.0);
-  visit("seen_again", config.seen_again);
-  visit("seen_again_radius_m", config.seen_again_radius_m, 0.0, 100.0);
+  visit("max_age_s", config.max_age_s, 0.0, 600.0,
+        "time since its last detection beyond which a map point is deleted (the original: 2 to 4 s)");
+  visit("passed_m", config.passed_m, 0.0, 1000.0,
+        "The map deletes a point that lies farther behind the aircraft than this, along the heading. The "
+        "distance exceeds the half span (0.43 m) and the swing of a wing tip in a turn, so that no point "
+        "beside a wing is deleted.");
+  visit("max_points", config.max_points, 1, 1000000,
+        "largest number of points in the map; beyond it the oldest are deleted");
+  visit("voxel_m", config.voxel_m, 0.0, 10.0,
+        "side of the map's voxels; a detection in a voxel that already holds a point replaces that point; 0: "
+        "every detection adds a point");
+  visit("min_neighbours", config.min_neighbours, 0, 1000,
+        "number of neighbours that a map point needs for the planner to use it (original: 2)");
+  visit("neighbour_radius_m", config.neighbour_radius_m, 0.01, 100.0,
+        "distance within which two map points count as neighbours of each other");
+  visit("seen_again", config.seen_again,
+        "the planner uses a map point only after a second frame has detected it, or another point within "
+        "seen_again_radius_m");
+  visit("seen_again_radius_m", config.seen_again_radius_m, 0.0, 100.0,
+        "distance within which a map point from another frame confirms a map point, with seen_again");
 }
 
 /// How two sightings of an obstacle, at a far and at a near depth, measure the drift of the odometry.
 struct ResightingsConfig {
-  bool enabled = false;          ///< measures the velocity over ground from obstacles seen at two depths
+  bool enabled = false;
   std::vector<double> depths_m;  ///< the detector's depths; the autopilot's composition sets them, no key
-  /// Horizontal distance from a cluster's centre within which detections at the same depth join the cluster.
-  /// While the aircraft flies through the depth interval of a pixel (1.6 m at 10 m), the measured positions
-  /// of a trunk spread over the same length.
   double cluster_m = 2.0;
-  int minimum_hits = 8;    ///< smallest number of detections in a cluster that is used
-  double settle_s = 0.04;  ///< time without a new detection after which a cluster is complete
-  /// Largest horizontal distance between the far and the near cluster of one obstacle: the drift in an
-  /// unknown wind of 5 m/s during the 0.5 s of flight from 10 to 5 m of depth.
+  int minimum_hits = 8;
+  double settle_s = 0.04;
   double match_m = 2.5;
-  /// a near cluster is matched only if the second nearest far cluster is at least this many times as far away
-  /// as the nearest
   double rival = 1.5;
-  double oldest_s = 0.9;  ///< longest time between the far and the near sighting of one obstacle
-  /// Standard deviation of the measured displacement along the line of sight. It covers the depth error of a
-  /// pixel that averaging leaves, and the unknown position of the trunk's surface.
+  double oldest_s = 0.9;
   double along_sigma_m = 0.25;
-  double across_sigma_m = 0.10;  ///< standard deviation of the measured displacement across the line of sight
+  double across_sigma_m = 0.10;
 };
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, ResightingsConfig& config) {
-  visit("enabled", config.enabled);
-  visit("cluster_m", config.cluster_m, 0.05, 10.0);
-  visit("minimum_hits", config.minimum_hits, 1, 10000);
-  visit("settle_s", config.settle_s, 0.0, 1.0);
-  visit("match_m", config.match_m, 0.05, 20.0);
-  visit("rival", config.rival, 1.0, 100.0);
-  visit("oldest_s", config.oldest_s, 0.05, 10.0);
-  visit("along_sigma_m", config.along_sigma_m, 0.001, 10.0);
-  visit("across_sigma_m", config.across_sigma_m, 0.001, 10.0);
+  visit("enabled", config.enabled, "measures the velocity over ground from obstacles seen at two depths");
+  visit("cluster_m", config.cluster_m, 0.05, 10.0,
+        "Horizontal distance from a cluster's centre within which detections at the same depth join the "
+        "cluster. While the aircraft flies through the depth interval of a pixel (1.6 m at 10 m), the "
+        "measured positions of a trunk spread over the same length.");
+  visit("minimum_hits", config.minimum_hits, 1, 10000,
+        "smallest number of detections in a cluster that is used");
+  visit("settle_s", config.settle_s, 0.0, 1.0,
+        "time without a new detection after which a cluster is complete");
+  visit("match_m", config.match_m, 0.05, 20.0,
+        "Largest horizontal distance between the far and the near cluster of one obstacle: the drift in an "
+        "unknown wind of 5 m/s during the 0.5 s of flight from 10 to 5 m of depth.");
+  visit("rival", config.rival, 1.0, 100.0,
+        "a near cluster is matched only if the second nearest far cluster is at least this many times as far "
+        "away as the nearest");
+  visit("oldest_s", config.oldest_s, 0.05, 10.0,
+        "longest time between the far and the near sighting of one obstacle");
+  visit("along_sigma_m", config.along_sigma_m, 0.001, 10.0,
+        "Standard deviation of the measured displacement along the line of sight. It covers the depth error "
+        "of a pixel that averaging leaves, and the unknown position of the trunk's surface.");
+  visit("across_sigma_m", config.across_sigma_m, 0.001, 10.0,
+        "standard deviation of the measured displacement across the line of sight");
 }
 
 }  // namespace understory

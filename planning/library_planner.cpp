@@ -67,6 +67,7 @@ class LibraryPlanner : public Planner {
       const double margin_m = flown(manoeuvre, false).minimum_margin_m;
       if (margin_m > maximum_m) maximum_m = margin_m, widest = manoeuvre;
     }
+    count("manoeuvres_tried") += static_cast<std::int64_t>(library_.size());
     Rollout rollout = flown(widest, true);
     const bool safe = is_safe(rollout);
     if (safe) ++counts_.found;

@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace understory {
@@ -59,44 +61,46 @@ struct Plan {
   double clearance_m = std::numeric_limits<double>::infinity();
 };
 
-/// How the replans of a flight were answered. straight + solved + kept + fallback is their number.
+/// How the replans of a flight were answered. straight + solved + kept + fallback is their number. `own` has
+/// the counts that one planner alone knows, by name; they stand in result.json.
 struct PlannerCounts {
-  std::int64_t replans = 0;  ///< number of plans made
-  /// number of plans that fly straight on, because no obstacle comes within comfortable clearance
+  std::vector<std::pair<std::string, std::int64_t>> own;
+  std::int64_t replans = 0;
   std::int64_t straight = 0;
-  std::int64_t solved = 0;  ///< number of plans that use a manoeuvre found by OMPL in the same replan
-  std::int64_t kept = 0;    ///< number of plans that continue the plan in force, because it is still good
-  /// number of plans counted in kept that continue a manoeuvre found by OMPL; the other kept plans fly
-  /// straight on
+  std::int64_t solved = 0;
+  std::int64_t kept = 0;
   std::int64_t kept_ompl = 0;
-  /// number of plans that use the predefined manoeuvre with the largest clearance, because no free manoeuvre
-  /// was found
   std::int64_t fallback = 0;
-  /// number of plans made where straight flight would violate the minimum clearance to obstacles or altitude
-  /// limits
   std::int64_t obstacle_ahead = 0;
-  /// number of plans counted in obstacle_ahead that use a manoeuvre found by OMPL, in this replan or an
-  /// earlier one
   std::int64_t obstacle_ahead_ompl = 0;
-  std::int64_t searches =
-      0;  ///< number of OMPL searches, including those that compare a kept plan with a new one
-  std::int64_t found = 0;  ///< number of OMPL searches that found a free manoeuvre
+  std::int64_t searches = 0;
+  std::int64_t found = 0;
 };
 
 /// Every count by name, for results, rows and sums: visit(name, count).
 template <typename Visitor, typename Counts>
 requires std::same_as<std::remove_const_t<Counts>, PlannerCounts>
 void visit_fields(Visitor& visit, Counts& counts) {
-  visit("replans", counts.replans);
-  visit("straight", counts.straight);
-  visit("solved", counts.solved);
-  visit("kept", counts.kept);
-  visit("kept_ompl", counts.kept_ompl);
-  visit("fallback", counts.fallback);
-  visit("obstacle_ahead", counts.obstacle_ahead);
-  visit("obstacle_ahead_ompl", counts.obstacle_ahead_ompl);
-  visit("searches", counts.searches);
-  visit("found", counts.found);
+  visit("replans", counts.replans, "number of plans made");
+  visit("straight", counts.straight,
+        "number of plans that fly straight on, because no obstacle comes within comfortable clearance");
+  visit("solved", counts.solved, "number of plans that use a manoeuvre found by OMPL in the same replan");
+  visit("kept", counts.kept, "number of plans that continue the plan in force, because it is still good");
+  visit("kept_ompl", counts.kept_ompl,
+        "number of plans counted in kept that continue a manoeuvre found by OMPL; the other kept plans fly "
+        "straight on");
+  visit("fallback", counts.fallback,
+        "number of plans that use the predefined manoeuvre with the largest clearance, because no free "
+        "manoeuvre was found");
+  visit("obstacle_ahead", counts.obstacle_ahead,
+        "number of plans made where straight flight would violate the minimum clearance to obstacles or "
+        "altitude limits");
+  visit("obstacle_ahead_ompl", counts.obstacle_ahead_ompl,
+        "number of plans counted in obstacle_ahead that use a manoeuvre found by OMPL, in this replan or an "
+        "earlier one");
+  visit("searches", counts.searches,
+        "number of OMPL searches, including those that compare a kept plan with a new one");
+  visit("found", counts.found, "number of OMPL searches that found a free manoeuvre");
 }
 
 }  // namespace understory

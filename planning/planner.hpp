@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "perception/obstacle_point.hpp"
@@ -41,6 +42,13 @@ class Planner {
   const PlannerCounts& counts() const { return counts_; }
 
  protected:
+  /// A count of the planner's own, from zero on. A name is a word as names of keys are.
+  std::int64_t& count(std::string_view name) {
+    for (auto& [known, number] : counts_.own)
+      if (known == name) return number;
+    return counts_.own.emplace_back(name, 0).second;
+  }
+
   PlannerCounts counts_;
 };
 

@@ -42,6 +42,7 @@ class SwervePlanner : public Planner {
       best.origin = bank_rad == 0 ? PlanOrigin::straight : PlanOrigin::solved;
       if (bank_rad == 0 && best.clearance_m >= limits.comfortable_clearance_m) break;
     }
+    if (best.origin == PlanOrigin::solved) ++count("swerves");
     return best;
   }
 

@@ -42,9 +42,9 @@ std::string text_of(const Parts&... parts) {
 struct RangeCheck {
   std::string fault;
   template <typename T>
-  void operator()(const char*, T&) {}
+  void operator()(const char*, T&, const char* = "") {}
   template <typename T, typename Bound>
-  void operator()(const char* name, const T& field, Bound minimum, Bound maximum) {
+  void operator()(const char* name, const T& field, Bound minimum, Bound maximum, const char* = "") {
     if constexpr (std::is_arithmetic_v<T>) {
       if (!(field >= minimum && field <= maximum))  // written so that nan is refused
         fault = text_of(name, ": must be from ", minimum, " to ", maximum, ", is ", field);

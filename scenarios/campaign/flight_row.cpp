@@ -28,15 +28,19 @@ constexpr std::array<std::string_view, 5> status_names{"flown", "crashed", "hung
 /// on, what only a flown one has.
 template <typename Row, typename Visit>
 void visit_columns(Row& row, Visit&& visit) {
-  visit("id", row.id);
-  visit("condition", row.condition);
-  visit("seed", row.seed);
-  visit("status", row.status);
-  visit("reason", row.reason);
-  visit("outcome", row.outcome);
-  visit("cruise_speed_mps", row.cruise_speed_mps);
-  visit("square_metres_per_tree", row.square_metres_per_tree);
-  visit("goal_m", row.goal_m);
+  visit("id", row.id, "name of the flight: \"<condition>-<seed>\"");
+  visit("condition", row.condition, "name of the campaign's condition: a scenario with overrides");
+  visit("seed", row.seed, "the scenario's seed, for course, wind and, without sensors.seed, sensors");
+  visit("status", row.status,
+        "flown: with an outcome; crashed: the program failed; hung: took longer than the campaign allows; "
+        "killed: from outside; refused: bad input");
+  visit("reason", row.reason, "why the flight has no outcome, in one line; empty if status is flown");
+  visit("outcome", row.outcome,
+        "how the flight ended: goal, collision, ground (touched), out_of_bounds (sides "
+        "or altitude limits) or time (limit reached); empty unless status is flown");
+  visit("cruise_speed_mps", row.cruise_speed_mps, "commanded cruise airspeed");
+  visit("square_metres_per_tree", row.square_metres_per_tree, "mean ground area per tree of the forest");
+  visit("goal_m", row.goal_m, "x coordinate of the goal plane");
   using Measures = std::conditional_t<std::is_const_v<Row>, const FlightMeasures, FlightMeasures>;
   visit_fields(visit, static_cast<Measures&>(row));
 }
@@ -52,7 +56,7 @@ bool says_something(const Value& value) {
 template <typename Put>
 void put_columns(const FlightRow& row, Put&& put) {
   bool is_measured = false;
-  visit_columns(row, [&](std::string_view name, const auto& value) {
+  visit_columns(row, [&](std::string_view name, const auto& value, std::string_view) {
     is_measured = is_measured || name == "outcome";
     if ((is_measured && !row.flown()) || !says_something(value))
       put(name, nullptr);
@@ -97,7 +101,7 @@ template <typename TextOf>
 bool take_row(FlightRow& row, TextOf&& text_of) {
   row.minimum_clearance_m = std::numeric_limits<double>::infinity();
   bool is_whole = true, is_measured = false;
-  visit_columns(row, [&](std::string_view name, auto& value) {
+  visit_columns(row, [&](std::string_view name, auto& value, std::string_view) {
     is_measured = is_measured || name == "outcome";
     const std::string text = text_of(name);
     constexpr std::array<std::string_view, 4> optional{"reason", "minimum_clearance_m",
@@ -111,12 +115,20 @@ bool take_row(FlightRow& row, TextOf&& text_of) {
 
 Table empty_table() {
   Table table;
-  FlightRow any;
-  visit_columns(any, [&](std::string_view name, const auto&) { table.head.emplace_back(name); });
+  for (const Key& column : flight_row_columns()) table.head.push_back(column.name);
   return table;
 }
 
 }  // namespace
+
+std::vector<Key> flight_row_columns() {
+  std::vector<Key> columns;
+  const FlightRow any;
+  visit_columns(any, [&](std::string_view name, const auto&, std::string_view meaning) {
+    columns.push_back(key_of(name, meaning));
+  });
+  return columns;
+}
 
 FlightRow flown_row(const std::string& condition, const Scenario& scenario, const FlightResult& result) {
   FlightRow row;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/config/keys.hpp"
 #include "scenarios/flight/flight_result.hpp"
 
 namespace understory {
@@ -26,19 +27,15 @@ enum class RunStatus {
 /// One flight of a campaign: a row of flights.csv, a line of flights.jsonl. Nothing in it depends on the
 /// machine's speed, so that a campaign flown again gives the same rows. `id` is unique within a campaign.
 struct FlightRow : FlightMeasures {
-  std::string id;          ///< name of the flight: "<condition>-<seed>"
-  std::string condition;   ///< name of the campaign's condition: a scenario with overrides
-  std::uint64_t seed = 0;  ///< the scenario's seed, for course, wind and, without sensors.seed, sensors
-  /// flown: with an outcome; crashed: the program failed; hung: took longer than the campaign allows; killed:
-  /// from outside; refused: bad input
+  std::string id;
+  std::string condition;
+  std::uint64_t seed = 0;
   RunStatus status = RunStatus::refused;
-  std::string reason;  ///< why the flight has no outcome, in one line; empty if status is flown
-  /// how the flight ended: how the flight ended: goal, collision, ground (touched), out_of_bounds (sides or
-  /// altitude limits) or time (limit reached); empty unless status is flown
+  std::string reason;
   std::string outcome;
-  double cruise_speed_mps = 0;        ///< commanded cruise airspeed
-  double square_metres_per_tree = 0;  ///< mean ground area per tree of the forest
-  double goal_m = 0;                  ///< x coordinate of the goal plane
+  double cruise_speed_mps = 0;
+  double square_metres_per_tree = 0;
+  double goal_m = 0;
   bool flown() const { return status == RunStatus::flown; }
   bool reached_goal() const { return flown() && outcome == "goal"; }
 };
@@ -57,6 +54,9 @@ struct FlightFile {
 
 /// The row of a flight that came to an outcome: a condition's name and the seed are its id.
 FlightRow flown_row(const std::string& condition, const Scenario& scenario, const FlightResult& result);
+
+/// The columns of a row in their order, with unit and meaning.
+std::vector<Key> flight_row_columns();
 
 /// One line of JSON without its newline; numbers in full precision, null where there is nothing to say.
 std::string to_json_line(const FlightRow& row);

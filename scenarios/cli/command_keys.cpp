@@ -23,28 +23,19 @@ struct KeysArguments {
   bool json = false, markdown = false;
 };
 
-/// Fields of a result or a row, whose structs say what they mean: `owner` for its own, else what both
-/// measure.
-Key key_of_measure(const char* owner, const std::string& name) {
-  const Key own = key_of_field(owner, name);
-  return own.meaning.empty() ? key_of_field("FlightMeasures", name) : own;
-}
-
-std::vector<Key> row_keys() {
-  std::vector<Key> columns;
-  for (const std::string& name : table_from_csv(to_csv(std::vector<FlightRow>{}), "columns").head)
-    columns.push_back(key_of_measure("FlightRow", name));
-  return columns;
-}
-
 std::vector<Key> result_keys() {
   std::vector<Key> keys;
-  const FlightResult result;
-  const auto add = [&](std::string_view name, const auto&) {
-    keys.push_back(key_of_measure("FlightResult", std::string(name)));
+  const auto add = [&](std::string_view name, const auto&, std::string_view meaning) {
+    keys.push_back(key_of(name, meaning));
   };
+  const FlightResult result;
   visit_fields(add, result);
-  for (const char* list : {"points_on_obstacles", "timings"}) add(list, 0);
+  add("points_on_obstacles", 0,
+      "Number of points added to the map within 0.5 m of each obstacle, by its name; only on courses of at "
+      "most "
+      "eight obstacles.");
+  add("planner_counts", 0, "counts that one planner alone knows, by name");
+  add("timings", 0, "wall time of each stage of the simulation: count, mean, maximum and total");
   return keys;
 }
 
@@ -171,9 +162,8 @@ std::string page_of(const std::vector<Key>& keys) {
       "# Keys and columns\n\n"
       "Made by `understory keys --markdown`, a test checks that it is current. `understory keys SCENARIO` "
       "shows the values of one scenario; [scenarios.md](scenarios.md) says how a scenario is written. "
-      "Meanings "
-      "and sources are the comments beside the fields; a value without a source was chosen or measured "
-      "here.\n\n{}"
+      "A value "
+      "without a source was chosen or measured here.\n\n{}"
       "## Columns of flights.csv\n\nA row per flight of a campaign; the keys of each line of flights.jsonl, "
       "too.\n\n{}\n"
       "## Keys of result.json\n\n{}\n"
@@ -189,7 +179,7 @@ std::string page_of(const std::vector<Key>& keys) {
                    return fmt::format("## {}\n\n{}\n\n{}\n", chapter.title, chapter.text,
                                       to_markdown(table_of(own, false)));
                  }),
-      to_markdown(table_of(row_keys(), true)), to_markdown(table_of(result_keys(), true)),
+      to_markdown(table_of(flight_row_columns(), true)), to_markdown(table_of(result_keys(), true)),
       trajectory_columns);
 }
 
@@ -218,9 +208,9 @@ std::string lines_of(const std::vector<Key>& keys, const std::vector<Key>& defau
         fmt::format("{}# {}: {}\n", chapter.prefix[0] == 0 ? "" : "\n", chapter.title, chapter.text);
     for (const Key& key : own) {
       const std::string& usual = std::ranges::find(defaults, key.name, &Key::name)->value;
-      text +=
-          fmt::format("{}: {}{}{}  ({})  {}{}\n", key.name, key.value, key.unit.empty() ? "" : " ", key.unit,
-                      key.range, key.meaning, key.value == usual ? "" : fmt::format("; default {}", usual));
+      text += fmt::format("{}: {}{}{}  ({})  {}{}{}\n", key.name, key.value, key.unit.empty() ? "" : " ",
+                          key.unit, key.range, key.meaning, key.source.empty() ? "" : " [" + key.source + "]",
+                          key.value == usual ? "" : fmt::format("; default {}", usual));
     }
     return text;
   });

@@ -28,7 +28,7 @@ void add_parts(const List& list, const std::string& plugin, const std::string& k
     table.add(kind, part.name, key + "=" + part.name, part.meaning);
     if (!part.defaults) continue;
     const std::string group = key.find('.') == std::string::npos ? "" : key.substr(0, key.rfind('.') + 1);
-    KeyLister lister(typeid(AnyConfig), group + part.name + ".");
+    KeyLister lister(group + part.name + ".");
     visit_fields(lister, *part.defaults->clone());
     keys.insert(keys.end(), lister.keys().begin(), lister.keys().end());
   }

@@ -25,7 +25,7 @@ class ConfigReader {
   ConfigReader(const ConfigNode& map, std::string path) : map_(map), path_(std::move(path)) {}
 
   template <typename T>
-  void operator()(std::string_view name, T& field) {
+  void operator()(std::string_view name, T& field, std::string_view = {}) {
     const ConfigNode* node = take(name);
     if (node == nullptr) return;
     if constexpr (std::is_same_v<T, bool>) {
@@ -46,7 +46,8 @@ class ConfigReader {
   }
 
   template <typename T, typename Least, typename Greatest>
-  void operator()(std::string_view name, T& field, Least minimum, Greatest maximum) {
+  requires std::is_arithmetic_v<Least>
+  void operator()(std::string_view name, T& field, Least minimum, Greatest maximum, std::string_view = {}) {
     const ConfigNode* node = take(name);
     if (node == nullptr) return;
     if constexpr (std::is_arithmetic_v<T>) {
@@ -70,8 +71,8 @@ class ConfigReader {
   }
 
   template <typename T, std::size_t N>
-  void operator()(std::string_view name, T& field,
-                  const std::array<std::pair<std::string_view, T>, N>& names) {
+  void operator()(std::string_view name, T& field, const std::array<std::pair<std::string_view, T>, N>& names,
+                  std::string_view = {}) {
     const ConfigNode* node = take(name);
     if (node == nullptr) return;
     std::vector<std::string> words;
@@ -86,7 +87,8 @@ class ConfigReader {
   }
 
   /// The value is one of `words`.
-  void operator()(std::string_view name, std::string& field, const std::vector<std::string>& words) {
+  void operator()(std::string_view name, std::string& field, const std::vector<std::string>& words,
+                  std::string_view = {}) {
     const ConfigNode* node = take(name);
     if (node == nullptr) return;
     if (node->kind != ConfigNode::Kind::scalar || std::ranges::find(words, node->text) == words.end())

@@ -19,7 +19,7 @@ namespace understory {
 class ConfigWriter {
  public:
   template <typename T>
-  void operator()(std::string_view name, T& field) {
+  void operator()(std::string_view name, T& field, std::string_view = {}) {
     if constexpr (std::is_same_v<T, bool>) {
       line(name, field ? "true" : "false");
     } else if constexpr (std::is_same_v<T, std::string>) {
@@ -36,7 +36,8 @@ class ConfigWriter {
   }
 
   template <typename T, typename Least, typename Greatest>
-  void operator()(std::string_view name, T& field, Least, Greatest) {
+  requires std::is_arithmetic_v<Least>
+  void operator()(std::string_view name, T& field, Least, Greatest, std::string_view = {}) {
     if constexpr (std::is_arithmetic_v<T>) {
       line(name, fmt::format("{}", field));
     } else if constexpr (requires { field.reset(); }) {  // std::optional
@@ -49,14 +50,15 @@ class ConfigWriter {
   }
 
   template <typename T, std::size_t N>
-  void operator()(std::string_view name, T& field,
-                  const std::array<std::pair<std::string_view, T>, N>& names) {
+  void operator()(std::string_view name, T& field, const std::array<std::pair<std::string_view, T>, N>& names,
+                  std::string_view = {}) {
     for (const auto& [word, value] : names) {
       if (field == value) line(name, word);
     }
   }
 
-  void operator()(std::string_view name, std::string& field, const std::vector<std::string>&) {
+  void operator()(std::string_view name, std::string& field, const std::vector<std::string>&,
+                  std::string_view = {}) {
     line(name, field);
   }
 

@@ -26,7 +26,8 @@ class AnyConfig {
 };
 
 /// The visitor of visit_fields() in a form that can cross the border of a library: one function for each type
-/// of field. Numbers lie from `minimum` to `maximum`. `meaning` is what `understory keys` prints.
+/// of field. Numbers lie from `minimum` to `maximum`. `meaning` is what `understory keys` prints, in the
+/// form "meaning | source | unit" (keys.hpp).
 class FieldVisitor {
  public:
   virtual ~FieldVisitor() = default;
@@ -56,6 +57,7 @@ class FieldVisitor {
     field(name, value, words, meaning);
   }
   template <typename Value, typename Least, typename Greatest>
+  requires std::is_arithmetic_v<Least>
   void operator()(std::string_view name, Value& value, Least minimum, Greatest maximum,
                   std::string_view meaning = "") {
     using Bound = std::conditional_t<std::is_same_v<Value, int>, int, double>;
@@ -79,35 +81,32 @@ class FieldVisitorOf : public FieldVisitor {
  public:
   explicit FieldVisitorOf(Visitor& visit) : visit_(visit) {}
   void field(std::string_view name, bool& value, std::string_view meaning) override {
-    visit_(name, value), explain(meaning);
+    visit_(name, value, meaning);
   }
   void field(std::string_view name, std::string& value, std::string_view meaning) override {
-    visit_(name, value), explain(meaning);
+    visit_(name, value, meaning);
   }
   void field(std::string_view name, std::string& value, const std::vector<std::string>& words,
              std::string_view meaning) override {
-    visit_(name, value, words), explain(meaning);
+    visit_(name, value, words, meaning);
   }
   void field(std::string_view name, int& value, int minimum, int maximum, std::string_view meaning) override {
-    visit_(name, value, minimum, maximum), explain(meaning);
+    visit_(name, value, minimum, maximum, meaning);
   }
   void field(std::string_view name, double& value, double minimum, double maximum,
              std::string_view meaning) override {
-    visit_(name, value, minimum, maximum), explain(meaning);
+    visit_(name, value, minimum, maximum, meaning);
   }
   void field(std::string_view name, std::vector<double>& values, double minimum, double maximum,
              std::string_view meaning) override {
-    visit_(name, values, minimum, maximum), explain(meaning);
+    visit_(name, values, minimum, maximum, meaning);
   }
   void field(std::string_view name, Eigen::Vector3d& value, double minimum, double maximum,
              std::string_view meaning) override {
-    visit_(name, value, minimum, maximum), explain(meaning);
+    visit_(name, value, minimum, maximum, meaning);
   }
 
  private:
-  void explain(std::string_view meaning) {
-    if constexpr (requires { visit_.explain(meaning); }) visit_.explain(meaning);
-  }
   Visitor& visit_;
 };
 

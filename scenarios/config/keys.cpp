@@ -1,11 +1,7 @@
 #include "scenarios/config/keys.hpp"
 
-#include <cxxabi.h>
-
-#include <algorithm>
-#include <cctype>
-#include <cstdlib>
-#include <memory>
+#include <array>
+#include <cstddef>
 
 namespace understory {
 namespace {
@@ -53,98 +49,22 @@ std::string unit_of(std::string_view name) {
   return "";
 }
 
-const FieldText* find_field(std::string_view owner, std::string_view name) {
-  const FieldText* within = nullptr;
-  for (const FieldText& field : field_texts()) {
-    if (owner != field.owner) continue;
-    if (name == field.name) return &field;
-    if (owner != field.type && within == nullptr) within = find_field(field.type, name);
-  }
-  return within;
-}
-
-bool is_number(std::string_view text) {
-  return !text.empty() && text.find_first_not_of("0123456789.e+-") == std::string_view::npos;
-}
-
-/// Comments may begin with "m/s, 0..20: ", for readers of the header: takes that away and gives its unit.
-std::string take_unit_and_range(std::string& meaning) {
-  const std::size_t dots = meaning.find("..");
-  if (dots == std::string::npos) return "";
-  const std::size_t from = meaning.rfind(' ', dots), begin = from == std::string::npos ? 0 : from + 1;
-  const std::size_t end = std::min(meaning.find_first_of(" :,", dots), meaning.size());
-  std::string_view last = std::string_view(meaning).substr(dots + 2, end - dots - 2);
-  if (last.ends_with('.')) last.remove_suffix(1);
-  if (!is_number(std::string_view(meaning).substr(begin, dots - begin)) || !is_number(last)) return "";
-  std::string unit;
-  if (begin > 0) {
-    if (begin < 3 || begin > 20 || meaning[begin - 2] != ',') return "";
-    unit = meaning.substr(0, begin - 2);
-  }
-  meaning.erase(0, std::min(meaning.find_first_not_of(" :,.", end), meaning.size()));
-  return unit;
-}
-
-/// Where the word that ends at `end` begins, and before it as long as words are names: "Barry & Tedrake ".
-std::size_t begin_of_authors(const std::string& text, std::size_t end) {
-  while (end > 1) {
-    const std::size_t space = text.rfind(' ', end - 2);
-    const std::size_t begin = space == std::string::npos ? 0 : space + 1;
-    const std::string word = text.substr(begin, end - 1 - begin);
-    const bool is_name = std::isupper(static_cast<unsigned char>(word[0])) != 0 && !word.ends_with('.');
-    if (!is_name && word != "&" && word != "et" && word != "al." && word[0] != '(') return end;
-    if (word[0] == '(') return begin + 1;
-    end = begin;
-  }
-  return end;
-}
-
-/// The pages, standards and papers that a comment names.
-std::string sources_in(const std::string& text) {
-  std::string sources;
-  const auto add = [&](const std::string& source) {
-    if (sources.find(source) == std::string::npos) sources += (sources.empty() ? "" : "; ") + source;
-  };
-  for (std::size_t at = text.find("docs/"); at != std::string::npos; at = text.find("docs/", at + 1)) {
-    std::size_t end = text.find(".md", at);
-    end = end == std::string::npos ? text.find_first_of(" ),;", at) : end + 3;
-    if (end < text.size() && text.compare(end, 2, " [") == 0) end = text.find(']', end) + 1;
-    add(text.substr(at, end - at));
-  }
-  if (text.find("MIL-F-8785C") != std::string::npos) add("MIL-F-8785C");
-  for (const char* century : {" 19", " 20"})
-    for (std::size_t at = text.find(century); at != std::string::npos; at = text.find(century, at + 1)) {
-      const std::string year = text.substr(at + 1, 4);
-      const bool is_year = year.size() == 4 && year.find_first_not_of("0123456789") == std::string::npos &&
-                           (at + 5 >= text.size() || std::isalnum(text[at + 5]) == 0);
-      const std::size_t begin = begin_of_authors(text, at + 1);
-      if (is_year && begin <= at) add(text.substr(begin, at + 5 - begin));
-    }
-  return sources;
-}
-
 }  // namespace
 
-Key key_of_field(std::string owner, const std::string& name) {
-  Key key{name, "", unit_of(name), ""};
-  const FieldText* field = find_field(owner, name);
-  if (field == nullptr) return key;
-  key.meaning = field->meaning;
-  key.source = sources_in(key.meaning);
-  if (const std::string unit = take_unit_and_range(key.meaning); !unit.empty()) key.unit = unit;
-  return key;
+Key key_of(std::string_view name, std::string_view text) {
+  constexpr std::string_view mark = " | ";
+  std::array<std::string, 3> parts;  // meaning, source, unit
+  for (std::string& part : parts) {
+    const std::size_t end = text.find(mark);
+    part = text.substr(0, end);
+    text = end == std::string_view::npos ? "" : text.substr(end + mark.size());
+  }
+  auto& [meaning, source, unit] = parts;
+  return {std::string(name), "", unit.empty() ? unit_of(name) : unit, "", meaning, source};
 }
 
-KeyLister::KeyLister(const std::type_info& owner, std::string prefix) : prefix_(std::move(prefix)) {
-  const std::unique_ptr<char, void (*)(void*)> name(
-      abi::__cxa_demangle(owner.name(), nullptr, nullptr, nullptr), std::free);
-  owner_ = name.get();
-  owner_.erase(0, owner_.rfind(':') + 1);
-}
-
-void KeyLister::add(std::string_view name, std::string value, std::string range) {
-  Key key = key_of_field(owner_, std::string(name));
-  key.name = prefix_ + key.name;
+void KeyLister::add(std::string_view name, std::string value, std::string range, std::string_view meaning) {
+  Key key = key_of(prefix_ + std::string(name), meaning);
   key.value = std::move(value);
   key.range = std::move(range);
   keys_.push_back(std::move(key));

@@ -8,22 +8,15 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <typeinfo>
 #include <utility>
 #include <vector>
 
 #include "scenarios/config/field_visitor.hpp"
 
-/// What a configuration's keys and a result's columns mean. The comment beside a struct's field says it,
-/// once; the build reads the comments (cmake/field_texts.awk), the visitors add names, values and ranges.
+/// What a configuration's keys and a result's columns mean: the text that visit_fields() gives after a
+/// field's name and bounds, in the form "meaning | source | unit". Source and unit may be absent: many
+/// meanings have no source, and most names end with their unit.
 namespace understory {
-
-/// A field of a struct and its comment.
-struct FieldText {
-  const char *owner, *type, *name, *meaning;
-};
-/// Of all headers.
-const std::vector<FieldText>& field_texts();
 
 /// A key of a configuration, or a column of results.
 struct Key {
@@ -39,20 +32,20 @@ struct Key {
   bool whole = false;               ///< whole numbers only
 };
 
-/// The key with unit, meaning and source of the field `name` of the struct `owner`, or of a struct within it.
-Key key_of_field(std::string owner, const std::string& name);
+/// A key or column with unit, meaning and source as `text` and the end of its name say.
+Key key_of(std::string_view name, std::string_view text);
 
 /// The visitor that lists a struct's keys.
 class KeyLister {
  public:
-  explicit KeyLister(const std::type_info& owner, std::string prefix = "");
+  explicit KeyLister(std::string prefix = "") : prefix_(std::move(prefix)) {}
 
   template <typename T>
-  void operator()(std::string_view name, T& field) {
+  void operator()(std::string_view name, T& field, std::string_view meaning = {}) {
     if constexpr (std::is_same_v<T, bool>) {
-      add(name, field ? "true" : "false", "true | false");
+      add(name, field ? "true" : "false", "true | false", meaning);
     } else if constexpr (std::is_same_v<T, std::string>) {
-      add(name, field, "a word");
+      add(name, field, "a word", meaning);
     } else if constexpr (requires { field.emplace_back(); }) {  // a list of structs
       typename T::value_type entry;
       list(std::string(name) + "[]", entry);
@@ -62,48 +55,49 @@ class KeyLister {
   }
 
   template <typename T, typename Least, typename Greatest>
-  void operator()(std::string_view name, T& field, Least minimum, Greatest maximum) {
+  requires std::is_arithmetic_v<Least>
+  void operator()(std::string_view name, T& field, Least minimum, Greatest maximum,
+                  std::string_view meaning = {}) {
     const std::string range = fmt::format("{} .. {}", minimum, maximum);
     if constexpr (std::is_arithmetic_v<T>) {
-      add(name, fmt::format("{}", field), range);
+      add(name, fmt::format("{}", field), range, meaning);
       if constexpr (!std::is_same_v<T, std::uint64_t>) add_number(field, minimum, maximum);
     } else if constexpr (requires { field.reset(); }) {  // std::optional
-      add(name, field ? fmt::format("{}", *field) : "~", range);
+      add(name, field ? fmt::format("{}", *field) : "~", range, meaning);
     } else {
       std::string values;
       for (const auto value : field) values += fmt::format("{}{}", values.empty() ? "" : ", ", value);
-      add(name, "[" + values + "]", range);
+      add(name, "[" + values + "]", range, meaning);
       for (const auto value : field) add_number(value, minimum, maximum);
     }
   }
 
   template <typename T, std::size_t N>
-  void operator()(std::string_view name, T& field,
-                  const std::array<std::pair<std::string_view, T>, N>& names) {
+  void operator()(std::string_view name, T& field, const std::array<std::pair<std::string_view, T>, N>& names,
+                  std::string_view meaning = {}) {
     std::string words, given;
     for (const auto& [word, value] : names) {
       words += (words.empty() ? "" : " | ") + std::string(word);
       if (field == value) given = word;
     }
-    add(name, given, words);
+    add(name, given, words, meaning);
   }
 
-  void operator()(std::string_view name, std::string& field, const std::vector<std::string>& words) {
-    add(name, field, fmt::format("{}", fmt::join(words, " | ")));
+  void operator()(std::string_view name, std::string& field, const std::vector<std::string>& words,
+                  std::string_view meaning = {}) {
+    add(name, field, fmt::format("{}", fmt::join(words, " | ")), meaning);
   }
-  /// Says what the newest key means, where no comment of ours does.
-  void explain(std::string_view meaning) { keys_.back().meaning = meaning; }
 
   const std::vector<Key>& keys() const { return keys_; }
 
  private:
   template <typename T>
   void list(const std::string& name, T& group) {
-    KeyLister within(typeid(T), prefix_ + name + ".");
+    KeyLister within(prefix_ + name + ".");
     visit_fields(within, group);
     keys_.insert(keys_.end(), within.keys_.begin(), within.keys_.end());
   }
-  void add(std::string_view name, std::string value, std::string range);
+  void add(std::string_view name, std::string value, std::string range, std::string_view meaning);
   void add_number(auto value, auto minimum, auto maximum) {
     Key& key = keys_.back();
     key.numbers.push_back(static_cast<double>(value));
@@ -112,7 +106,7 @@ class KeyLister {
     key.whole = std::is_integral_v<decltype(value)>;
   }
 
-  std::string owner_, prefix_;
+  std::string prefix_;
   std::vector<Key> keys_;
 };
 

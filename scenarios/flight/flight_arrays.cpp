@@ -232,24 +232,6 @@ std::optional<std::array<Eigen::Vector3d, 8>> corners_of(const Obstacle& obstacl
   return corners;
 }
 
-/// From the lowest branch to the top of each tree of woods, with the crown's radius; nothing where a measured
-/// forest's file is no longer there.
-std::vector<float> crowns_of(const Scenario& scenario) {
-  std::vector<float> crowns;
-  if (scenario.world.world.scenery == Scenery::plain) return crowns;
-  try {
-    const Wood wood = course_wood(scenario);
-    for (const Tree& tree : wood.trees) {
-      const Obstacle& foot = wood.obstacles[tree.first];
-      append(crowns, foot.from_world + Eigen::Vector3d(0, 0, tree.crown_base_m));
-      append(crowns, foot.from_world + Eigen::Vector3d(0, 0, tree.height_m));
-      crowns.push_back(static_cast<float>(tree.crown_radius_m));
-    }
-  } catch (const InputError&) {
-  }
-  return crowns;
-}
-
 void add_obstacles(const FlightLog& log, const FlightStory& story, const Detail& detail, PageArrays& arrays,
                    Json& facts, Json& decimation) {
   const std::vector<Obstacle>& obstacles = log.obstacles;
@@ -287,7 +269,13 @@ void add_obstacles(const FlightLog& log, const FlightStory& story, const Detail&
   arrays.add("obstacle_kinds", 1, kinds);
   arrays.add("box_corners", 24, corners);
   arrays.add("box_numbers", 1, boxes);
-  arrays.add("crowns", 7, crowns_of(log.scenario));
+  std::vector<float> crowns;
+  for (const Obstacle& crown : course_crowns(log.scenario)) {
+    append(crowns, crown.from_world);
+    append(crowns, crown.to_world);
+    crowns.push_back(static_cast<float>(crown.radius_m));
+  }
+  arrays.add("crowns", 7, crowns);
   facts["obstacle_kinds"] = obstacle_kind_names;
 }
 

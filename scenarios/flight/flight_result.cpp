@@ -102,7 +102,7 @@ std::string_view word_for(Outcome outcome) {
 
 std::string to_json(const FlightResult& result) {
   Json json;
-  const auto put = [&](std::string_view name, const auto& value) {
+  const auto put = [&](std::string_view name, const auto& value, std::string_view) {
     using Value = std::remove_cvref_t<decltype(value)>;
     Json& to = json[std::string(name)];
     if constexpr (std::is_same_v<Value, Outcome>)
@@ -116,6 +116,7 @@ std::string to_json(const FlightResult& result) {
   };
   visit_fields(put, result);
   for (const auto& [name, count] : result.points_on_obstacles) json["points_on_obstacles"][name] = count;
+  for (const auto& [name, count] : result.planner.own) json["planner_counts"][name] = count;
   for (const StageTiming& timing : result.timings) {
     json["timings"][timing.stage] = {
         {"count", timing.count},
@@ -130,7 +131,7 @@ std::string to_json(const FlightResult& result) {
 FlightResult result_from_json(const std::string& text, const std::string& name) try {
   const Json json = parse_json(text);
   FlightResult result;
-  const auto take = [&](std::string_view key, auto& value) {
+  const auto take = [&](std::string_view key, auto& value, std::string_view) {
     using Value = std::remove_cvref_t<decltype(value)>;
     const Json& from = json.at(std::string(key));
     if constexpr (std::is_same_v<Value, Outcome>) {
@@ -147,6 +148,9 @@ FlightResult result_from_json(const std::string& text, const std::string& name) 
   if (json.contains("points_on_obstacles"))
     for (const auto& [obstacle, count] : json["points_on_obstacles"].items())
       result.points_on_obstacles.emplace_back(obstacle, count.get<std::int64_t>());
+  if (json.contains("planner_counts"))
+    for (const auto& [count, number] : json["planner_counts"].items())
+      result.planner.own.emplace_back(count, number.get<std::int64_t>());
   return result;
 } catch (const Json::exception&) {
   throw ScenarioError(fmt::format("{}: not a flight's result of this version", name));
@@ -173,6 +177,8 @@ std::vector<std::pair<std::string, std::string>> result_lines(const FlightResult
                    planner.straight, planner.solved, planner.kept, planner.kept_ompl, planner.fallback));
   line("obstacle ahead", fmt::format("in {} replans, {} of them flown on OMPL's answer",
                                      planner.obstacle_ahead, planner.obstacle_ahead_ompl));
+  for (const auto& [name, number] : planner.own)
+    line(name, fmt::format("{}, counted by the planner", number));
   line("renderer", result.renderer.empty() ? "none: no images" : result.renderer);
   line("digest", result.digest);
   return lines;

@@ -56,63 +56,65 @@ struct StageTiming {
 
 /// What a result and a campaign's row say of a flight that was flown.
 struct FlightMeasures {
-  double distance_m = 0;      ///< true length of the flown path since release
-  double progress_m = 0;      ///< largest true x coordinate reached
-  double mean_speed_mps = 0;  ///< mean true speed over ground since release
-  /// Smallest true distance between aircraft and obstacles. Without obstacles it is infinite: empty in CSV,
-  /// null in JSON.
+  double distance_m = 0;
+  double progress_m = 0;
+  double mean_speed_mps = 0;
   double minimum_clearance_m = std::numeric_limits<double>::infinity();
-  double leaves_s = 0;               ///< time in which the wing overlapped leaves of the woods
-  double leaves_m = 0;               ///< length of the path on which the wing overlapped leaves of the woods
-  double position_error_mean_m = 0;  ///< mean distance between estimated and true position since release
-  double position_error_max_m = 0;   ///< largest distance between estimated and true position since release
-  std::int64_t detections = 0;       ///< number of detections in all frames
-  std::int64_t remembered_points = 0;  ///< number of points added to the map during the flight
-  /// Number of points added to the map within 0.5 m of the obstacle that has the fewest. Empty in CSV and
-  /// null in JSON on a course with no obstacle or more than eight.
+  double leaves_s = 0;
+  double leaves_m = 0;
+  double position_error_mean_m = 0;
+  double position_error_max_m = 0;
+  std::int64_t detections = 0;
+  std::int64_t remembered_points = 0;
   std::int64_t minimum_points_on_an_obstacle = -1;
   PlannerCounts planner;
-  double simulated_s = 0;  ///< simulated time from the start at rest to the end of the flight
-  std::string digest;      ///< hash of the flight's data; flights that agree bit for bit have equal digests
+  double simulated_s = 0;
+  std::string digest;
 };
 
 template <typename Visitor, typename Measures>
 requires std::same_as<std::remove_const_t<Measures>, FlightMeasures>
 void visit_fields(Visitor& visit, Measures& measures) {
-  visit("distance_m", measures.distance_m);
-  visit("progress_m", measures.progress_m);
-  visit("mean_speed_mps", measures.mean_speed_mps);
-  visit("minimum_clearance_m", measures.minimum_clearance_m);
-  visit("leaves_s", measures.leaves_s);
-  visit("leaves_m", measures.leaves_m);
-  visit("position_error_mean_m", measures.position_error_mean_m);
-  visit("position_error_max_m", measures.position_error_max_m);
-  visit("detections", measures.detections);
-  visit("remembered_points", measures.remembered_points);
-  visit("minimum_points_on_an_obstacle", measures.minimum_points_on_an_obstacle);
+  visit("distance_m", measures.distance_m, "true length of the flown path since release");
+  visit("progress_m", measures.progress_m, "largest true x coordinate reached");
+  visit("mean_speed_mps", measures.mean_speed_mps, "mean true speed over ground since release");
+  visit("minimum_clearance_m", measures.minimum_clearance_m,
+        "Smallest true distance between aircraft and obstacles. Without obstacles it is infinite: empty in "
+        "CSV, null in JSON.");
+  visit("leaves_s", measures.leaves_s, "time in which the wing overlapped leaves of the woods");
+  visit("leaves_m", measures.leaves_m, "length of the path on which the wing overlapped leaves of the woods");
+  visit("position_error_mean_m", measures.position_error_mean_m,
+        "mean distance between estimated and true position since release");
+  visit("position_error_max_m", measures.position_error_max_m,
+        "largest distance between estimated and true position since release");
+  visit("detections", measures.detections, "number of detections in all frames");
+  visit("remembered_points", measures.remembered_points,
+        "number of points added to the map during the flight");
+  visit("minimum_points_on_an_obstacle", measures.minimum_points_on_an_obstacle,
+        "Number of points added to the map within 0.5 m of the obstacle that has the fewest. Empty in CSV "
+        "and null in JSON on a course with no obstacle or more than eight.");
   visit_fields(visit, measures.planner);
-  visit("simulated_s", measures.simulated_s);
-  visit("digest", measures.digest);
+  visit("simulated_s", measures.simulated_s,
+        "simulated time from the start at rest to the end of the flight");
+  visit("digest", measures.digest,
+        "hash of the flight's data; flights that agree bit for bit have equal digests");
 }
 
 /// One flight in numbers: what result.json holds.
 struct FlightResult : FlightMeasures {
-  /// how the flight ended: goal, collision, ground (touched), out_of_bounds (sides or altitude limits) or
-  /// time (limit reached)
   Outcome outcome = Outcome::time;
-  std::string scenario;           ///< name of the scenario
-  std::uint64_t seed = 0;         ///< the scenario's seed, for course and wind
-  std::uint64_t sensor_seed = 0;  ///< seed of the sensors' noise
-  std::string detector;           ///< value of perception.detector
-  std::string state_source;       ///< value of estimation.source
-  /// name of the obstacle nearest to the aircraft at a collision; empty without a collision
+  std::string scenario;
+  std::uint64_t seed = 0;
+  std::uint64_t sensor_seed = 0;
+  std::string detector;
+  std::string state_source;
   std::string touched;
-  double position_error_end_m = 0;  ///< distance between estimated and true position at the end of the flight
-  double attitude_error_max_rad = 0;   ///< largest angle between estimated and true attitude since release
-  double velocity_error_mean_mps = 0;  ///< mean magnitude of the velocity error since release
-  std::int64_t frames = 0;             ///< number of stereo frames that the autopilot processed
-  double wall_s = 0;                   ///< wall time that the program took to simulate the flight
-  std::string renderer;  ///< name of the OpenGL renderer that drew the images; empty without images
+  double position_error_end_m = 0;
+  double attitude_error_max_rad = 0;
+  double velocity_error_mean_mps = 0;
+  std::int64_t frames = 0;
+  double wall_s = 0;
+  std::string renderer;
   /// Number of points added to the map within 0.5 m of each obstacle, by its name; only on courses of at most
   /// eight obstacles.
   std::vector<std::pair<std::string, std::int64_t>> points_on_obstacles;
@@ -120,25 +122,32 @@ struct FlightResult : FlightMeasures {
   std::vector<StageTiming> timings;
 };
 
-/// All but the two lists.
+/// All but the lists.
 template <typename Visitor, typename Result>
 requires std::same_as<std::remove_const_t<Result>, FlightResult>
 void visit_fields(Visitor& visit, Result& result) {
   using Measures = std::conditional_t<std::is_const_v<Result>, const FlightMeasures, FlightMeasures>;
-  visit("outcome", result.outcome);
-  visit("scenario", result.scenario);
-  visit("seed", result.seed);
-  visit("sensor_seed", result.sensor_seed);
-  visit("detector", result.detector);
-  visit("state_source", result.state_source);
-  visit("touched", result.touched);
+  visit("outcome", result.outcome,
+        "how the flight ended: goal, collision, ground (touched), out_of_bounds (sides or altitude limits) "
+        "or time (limit reached)");
+  visit("scenario", result.scenario, "name of the scenario");
+  visit("seed", result.seed, "the scenario's seed, for course and wind");
+  visit("sensor_seed", result.sensor_seed, "seed of the sensors' noise");
+  visit("detector", result.detector, "value of perception.detector");
+  visit("state_source", result.state_source, "value of estimation.source");
+  visit("touched", result.touched,
+        "name of the obstacle nearest to the aircraft at a collision; empty without a collision");
   visit_fields(visit, static_cast<Measures&>(result));
-  visit("position_error_end_m", result.position_error_end_m);
-  visit("attitude_error_max_rad", result.attitude_error_max_rad);
-  visit("velocity_error_mean_mps", result.velocity_error_mean_mps);
-  visit("frames", result.frames);
-  visit("wall_s", result.wall_s);
-  visit("renderer", result.renderer);
+  visit("position_error_end_m", result.position_error_end_m,
+        "distance between estimated and true position at the end of the flight");
+  visit("attitude_error_max_rad", result.attitude_error_max_rad,
+        "largest angle between estimated and true attitude since release");
+  visit("velocity_error_mean_mps", result.velocity_error_mean_mps,
+        "mean magnitude of the velocity error since release");
+  visit("frames", result.frames, "number of stereo frames that the autopilot processed");
+  visit("wall_s", result.wall_s, "wall time that the program took to simulate the flight");
+  visit("renderer", result.renderer,
+        "name of the OpenGL renderer that drew the images; empty without images");
 }
 
 /// The columns of trajectory.csv, a line.

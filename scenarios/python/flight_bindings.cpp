@@ -242,16 +242,22 @@ class HeldFlight {
 /// Fields of a result as Python's values.
 struct DictVisitor {
   py::dict values;
-  void operator()(const char* name, const Outcome& value) { values[name] = std::string(word_for(value)); }
-  void operator()(const char* name, const std::string& value) { values[name] = value; }
-  void operator()(const char* name, double value) { values[name] = value; }
-  void operator()(const char* name, std::int64_t value) { values[name] = value; }
-  void operator()(const char* name, std::uint64_t value) { values[name] = value; }
+  void operator()(const char* name, const Outcome& value, const char*) {
+    values[name] = std::string(word_for(value));
+  }
+  void operator()(const char* name, const std::string& value, const char*) { values[name] = value; }
+  void operator()(const char* name, double value, const char*) { values[name] = value; }
+  void operator()(const char* name, std::int64_t value, const char*) { values[name] = value; }
+  void operator()(const char* name, std::uint64_t value, const char*) { values[name] = value; }
 };
 
 py::dict result_of(const HeldFlight& held) {
   DictVisitor visit;
-  visit_fields(visit, held.finished_log().result);
+  const FlightResult& result = held.finished_log().result;
+  visit_fields(visit, result);
+  py::dict own;
+  for (const auto& [name, number] : result.planner.own) own[py::str(name)] = number;
+  visit.values["planner_counts"] = own;
   return visit.values;
 }
 

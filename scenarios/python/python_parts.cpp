@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <atomic>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -102,7 +103,9 @@ class PythonStateSource : public StateSource {
 class PythonPlanner : public Planner {
  public:
   explicit PythonPlanner(py::object object)
-      : object_(std::move(object)), has_concerns_(object_.has("concerns")) {}
+      : object_(std::move(object)),
+        has_concerns_(object_.has("concerns")),
+        has_counts_(object_.has("counts")) {}
   Plan plan(const PlanRequest& request) override {
     Plan plan = in_python([&] { return py::cast<Plan>((*object_).attr("plan")(request)); });
     counts_.replans += 1;
@@ -110,6 +113,11 @@ class PythonPlanner : public Planner {
     counts_.solved += plan.origin == PlanOrigin::solved;
     counts_.kept += plan.origin == PlanOrigin::kept;
     counts_.fallback += plan.origin == PlanOrigin::fallback;
+    if (has_counts_) {
+      const auto own =
+          in_python([&] { return py::cast<std::map<std::string, std::int64_t>>((*object_).attr("counts")); });
+      counts_.own.assign(own.begin(), own.end());
+    }
     return plan;
   }
   bool concerns(const ObstaclePoint& point, const Plan& plan) const override {
@@ -121,7 +129,7 @@ class PythonPlanner : public Planner {
 
  private:
   Held object_;
-  bool has_concerns_;
+  bool has_concerns_, has_counts_;
 };
 
 template <typename Made, typename Adapter>

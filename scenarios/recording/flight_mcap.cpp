@@ -11,6 +11,7 @@
 #include "scenarios/recording/foxglove_messages.hpp"
 #include "scenarios/recording/mcap_file.hpp"
 #include "scenarios/recording/understory.pb.h"
+#include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 namespace {
@@ -54,12 +55,16 @@ struct FlightMcap::Implementation {
   std::uint16_t hits = channel<foxglove::PointCloud>("/hits");
   std::uint16_t map = channel<foxglove::PointCloud>("/map");
   std::uint16_t obstacles = channel<foxglove::PointCloud>("/obstacles");
+  std::uint16_t crowns = channel<foxglove::PointCloud>("/crowns");
   std::uint16_t transforms = channel<foxglove::FrameTransform>("/tf");
   std::uint16_t plan = channel<foxglove::PosesInFrame>("/plan");
   std::uint16_t true_pose = channel<foxglove::PoseInFrame>("/pose/true");
   std::uint16_t estimated_pose = channel<foxglove::PoseInFrame>("/pose/estimated");
   std::uint16_t scalars = channel<FlightScalars>("/scalars");
   std::uint16_t texts = channel<foxglove::Log>("/log");
+
+  // A crown is large, and only a picture.
+  std::vector<Eigen::Vector3d> crown_points = surface_points(course_crowns(log.scenario), 0.8);
 
   // What has been written of the log.
   std::size_t frames = 0, plans = 0, moments = 0;
@@ -91,7 +96,8 @@ void FlightMcap::Implementation::begin(std::int64_t t_ns) {
         transform("aircraft", is_left ? "left_camera" : "right_camera", camera_pose(log.rig, is_left), t_ns));
   put(left_calibration, t_ns, calibration_of(log.rig, true, t_ns));
   put(right_calibration, t_ns, calibration_of(log.rig, false, t_ns));
-  put(obstacles, t_ns, cloud("world", surface_points(log.obstacles), t_ns));
+  put(obstacles, t_ns, cloud("world", surface_points(log.obstacles, 0.1), t_ns));
+  put(crowns, t_ns, cloud("world", crown_points, t_ns));
   if (moments == 0)
     say(t_ns, foxglove::Log::INFO, fmt::format("scenario {}, seed {}", log.scenario.name, log.scenario.seed));
 }

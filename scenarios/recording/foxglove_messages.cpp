@@ -127,8 +127,7 @@ void add_ball_points(const Obstacle& ball, double step_m, std::vector<Eigen::Vec
 
 }  // namespace
 
-std::vector<Eigen::Vector3d> surface_points(const std::vector<Obstacle>& obstacles) {
-  constexpr double step_m = 0.1;
+std::vector<Eigen::Vector3d> surface_points(const std::vector<Obstacle>& obstacles, double step_m) {
   std::vector<Eigen::Vector3d> points;
   for (const Obstacle& obstacle : obstacles) {
     if (obstacle.kind == ObstacleKind::wall) {

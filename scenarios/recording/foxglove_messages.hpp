@@ -32,8 +32,8 @@ foxglove::FrameTransform transform(const char* parent, const char* child, const 
 /// Points of three 32-bit floats each.
 foxglove::PointCloud cloud(const char* frame, const std::vector<Eigen::Vector3d>& points, std::int64_t t_ns);
 
-/// Points about every 0.1 m round the trunks, for viewers that draw no cylinders.
-std::vector<Eigen::Vector3d> surface_points(const std::vector<Obstacle>& obstacles);
+/// Points about every step_m round the obstacles, for viewers that draw no cylinders.
+std::vector<Eigen::Vector3d> surface_points(const std::vector<Obstacle>& obstacles, double step_m);
 
 foxglove::CameraCalibration calibration_of(const CalibratedRig& rig, bool is_left, std::int64_t t_ns);
 

@@ -57,9 +57,9 @@ struct VisitorWithout {
 /// Altitudes within which the flight must stay after it has climbed into them; leaving them ends it. A flight
 /// over the trees or along the ground would prove nothing.
 struct BandConfig {
-  double minimum_altitude_m = 1;   ///< a flight that has climbed to this altitude ends when it falls below it
-  double maximum_altitude_m = 6;   ///< altitude above which a flight ends
-  double cruise_altitude_m = 4.5;  ///< target altitude of the planner when no obstacle is in the way
+  double minimum_altitude_m = 1;
+  double maximum_altitude_m = 6;
+  double cruise_altitude_m = 4.5;
 };
 
 /// How the scene looks. Whether obstacles are seen or felt is the course's business: forest.invisible,
@@ -70,23 +70,15 @@ struct WorldSection {
 
 struct CameraSection {
   CameraConfig cameras;
-  int rate_hz = 120;  ///< stereo pairs per second; must divide 1200 (Barry & Tedrake 2015: 120 Hz)
-  /// Time from the end of the exposure until the stack receives the frame: a setting, never a measured time.
-  /// A frame's timestamp is the middle of its left exposure.
+  int rate_hz = 120;
   double latency_s = 0.008;
-  double drop_probability = 0;  ///< probability that a frame is lost, independently for each frame
-  /// Gives the stack raw (distorted, unrectified) images. It rectifies them with the calibration raw/NAME.xml
-  /// in the folder of the rig file NAME.yaml (models/rigs/raw).
+  double drop_probability = 0;
   bool raw = false;
-  /// unit of length in the calibration file that cameras.raw reads; 0.01 (cm) for rig paper
   double raw_unit_m = 1;
 };
 
 struct SensorSection {
-  std::uint64_t seed = 0;  ///< seed of the noise of all sensors and cameras; 0: the scenario's seed
-  /// Quality class that sets the defaults of all sensors keys. ideal: no errors; nominal: white noise,
-  /// constant biases, barometer drift; consumer: all errors of real parts; rough: three times those
-  /// (docs/sensors.md).
+  std::uint64_t seed = 0;
   SensorGrade grade = SensorGrade::nominal;
   SensorsConfig sensors;
 };
@@ -94,42 +86,40 @@ struct SensorSection {
 /// What a pair costs the aircraft's computer, in simulated time, never measured during a flight. Off: every
 /// frame is looked at without delay. docs/thesis.md has the source of the numbers.
 struct ComputeConfig {
-  /// simulates the time that the aircraft's computer needs for each stereo pair; false: detection takes no
-  /// time
   bool enabled = false;
-  /// Ratio of the time on the aircraft's computer to the time on one thread of the machine that measured the
-  /// other perception.compute keys. 8.3: the original detector takes 1.0 ms on that machine, and on a 1.7 GHz
-  /// quad ARM Cortex-A9 it filled the 8.3 ms of a frame at 120 Hz (Barry & Tedrake 2015). A larger factor is
-  /// a slower computer.
   double factor = 8.3;
-  /// pushbroom detector's time per pair at one depth, rectification included, before compute.factor
-  /// (docs/sources.md [17])
   double pushbroom_s = 0.0010;
-  /// pushbroom detector's time for each further depth, as a share of compute.pushbroom_s (docs/benchmarks.md)
   double more_depths = 0.4;
-  /// StereoBM's time per pair with 112 disparities on the paper's rig, before compute.factor (docs/thesis.md)
   double stereo_bm_s = 0.0090;
-  /// StereoSGBM's time per pair with 112 disparities and five paths, before compute.factor (docs/thesis.md)
   double stereo_sgbm_s = 0.0127;
 };
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, ComputeConfig& config) {
-  visit("enabled", config.enabled);
-  visit("factor", config.factor, 0.001, 1000.0);
-  visit("pushbroom_s", config.pushbroom_s, 0.0, 1.0);
-  visit("more_depths", config.more_depths, 0.0, 1.0);
-  visit("stereo_bm_s", config.stereo_bm_s, 0.0, 1.0);
-  visit("stereo_sgbm_s", config.stereo_sgbm_s, 0.0, 1.0);
+  visit("enabled", config.enabled,
+        "simulates the time that the aircraft's computer needs for each stereo pair; false: detection takes "
+        "no time");
+  visit("factor", config.factor, 0.001, 1000.0,
+        "Ratio of the time on the aircraft's computer to the time on one thread of the machine that measured "
+        "the other perception.compute keys. 8.3: the original detector takes 1.0 ms on that machine, and on "
+        "a 1.7 GHz quad ARM Cortex-A9 it filled the 8.3 ms of a frame at 120 Hz. A larger factor is a slower "
+        "computer. | Barry & Tedrake 2015");
+  visit("pushbroom_s", config.pushbroom_s, 0.0, 1.0,
+        "pushbroom detector's time per pair at one depth, rectification included, before compute.factor | "
+        "docs/sources.md [17]");
+  visit("more_depths", config.more_depths, 0.0, 1.0,
+        "pushbroom detector's time for each further depth, as a share of compute.pushbroom_s | "
+        "docs/benchmarks.md");
+  visit("stereo_bm_s", config.stereo_bm_s, 0.0, 1.0,
+        "StereoBM's time per pair with 112 disparities on the paper's rig, before compute.factor | "
+        "docs/thesis.md");
+  visit("stereo_sgbm_s", config.stereo_sgbm_s, 0.0, 1.0,
+        "StereoSGBM's time per pair with 112 disparities and five paths, before compute.factor | "
+        "docs/thesis.md");
 }
 
 struct PerceptionSection {
-  /// Obstacle detector. true_depth gets exact depths from the simulator, none detects nothing; neither looks
-  /// at images.
   std::string detector = "pushbroom";
-  /// Parameter set for perception.pushbroom and perception.depths_m; keys given there win. tuned: numbers and
-  /// depths tuned for the rig; woods: tuned in woods; robust: before tuning; original: the original
-  /// aircraft's.
   PushbroomPreset preset = PushbroomPreset::tuned;
   PushbroomConfig pushbroom = tuned_pushbroom("long");
   StereoBmConfig stereo_bm;
@@ -148,11 +138,7 @@ struct PerceptionSection {
 };
 
 struct EstimationSection {
-  /// Source of the aircraft's state for the flight stack. filter: the estimator; dead_reckoning: pitot and
-  /// gyro alone; truth: the simulator's exact state.
   std::string source = "filter";
-  /// Preset values of estimation.filter; keys that the scenario gives in estimation.filter override them.
-  /// tuned: the default; original: the original aircraft's filter; windy: estimates wind and gusts, too.
   FilterPreset preset = FilterPreset::tuned;
   FilterConfig filter;
   DeadReckoningConfig dead_reckoning;
@@ -160,17 +146,10 @@ struct EstimationSection {
 };
 
 struct AutopilotSection {
-  /// Preset values of the planning keys; keys that the scenario gives in autopilot override them. economical:
-  /// plans when a new obstacle comes near the plan, else seldom; thorough: plans continually.
   PlanningPreset preset = PlanningPreset::economical;
-  /// Planner. sst, rrt, est: OMPL grows a tree of manoeuvres with the method of this name; library: the best
-  /// of a list of manoeuvres; straight: straight on, through everything.
   std::string method = "sst";
-  /// File with the controls of a flight that somebody else flew (docs/python.md), which are flown again in
-  /// place of the planner's; empty: the planner flies. A relative path is looked for beside the scenario
-  /// file, then in the working directory.
   std::string actions;
-  int replan_rate_hz = 120;  ///< highest rate at which the autopilot starts plans; must divide 1200
+  int replan_rate_hz = 120;
   AutopilotConfig autopilot;
   ManoeuvreLibraryConfig library;
   PartConfigs plugged = parts().planners.configs();  ///< keys of the planners of plug-ins
@@ -181,31 +160,27 @@ AutopilotSection planning_of(PlanningPreset preset);
 
 /// A shared library with parts of one's own (docs/integrate.md).
 struct PluginConfig {
-  /// The shared library. A relative path is looked for beside the scenario file, then in the working
-  /// directory.
   std::string file;
-  /// Hash of the file's contents. Empty: any. A run writes it, so that another build of the plug-in is not
-  /// mistaken for the one that flew.
   std::string hash;
 };
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, PluginConfig& plugin) {
-  visit("file", plugin.file);
-  visit("hash", plugin.hash);
+  visit("file", plugin.file,
+        "The shared library. A relative path is looked for beside the scenario file, then in the working "
+        "directory.");
+  visit("hash", plugin.hash,
+        "Hash of the file's contents. Empty: any. A run writes it, so that another build of the plug-in is "
+        "not mistaken for the one that flew.");
 }
 
 struct Scenario {
-  /// name of the run, whose folder is runs/NAME-SEED; letters, digits, '-', '_' and '.'
   std::string name = "unnamed";
-  /// seed of course, wind and the planner's search; also of sensor noise if sensors.seed is 0
   std::uint64_t seed = 1000;
-  /// stereo rig: a name in models/rigs, or the path of a rig file relative to the scenario file
   std::string rig = "long";
-  std::string course = "forest";  ///< kind of course; the keys that begin with the same word describe it
+  std::string course = "forest";
   std::vector<PluginConfig> plugins;
-  double time_limit_s = 30;  ///< simulated time after which a flight ends
-  /// velocity of the mean wind, in world axes, at wind.reference_height_m
+  double time_limit_s = 30;
   Eigen::Vector3d wind_world_mps = Eigen::Vector3d::Zero();
   WindConfig wind;
   BandConfig band;
@@ -264,9 +239,11 @@ struct Scenario {
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, BandConfig& band) {
-  visit("minimum_altitude_m", band.minimum_altitude_m, -10.0, 100.0);
-  visit("maximum_altitude_m", band.maximum_altitude_m, 0.0, 500.0);
-  visit("cruise_altitude_m", band.cruise_altitude_m, 0.0, 500.0);
+  visit("minimum_altitude_m", band.minimum_altitude_m, -10.0, 100.0,
+        "a flight that has climbed to this altitude ends when it falls below it");
+  visit("maximum_altitude_m", band.maximum_altitude_m, 0.0, 500.0, "altitude above which a flight ends");
+  visit("cruise_altitude_m", band.cruise_altitude_m, 0.0, 500.0,
+        "target altitude of the planner when no obstacle is in the way");
 }
 
 template <typename Visitor>
@@ -278,25 +255,43 @@ void visit_fields(Visitor& visit, WorldSection& section) {
 template <typename Visitor>
 void visit_fields(Visitor& visit, CameraSection& section) {
   visit_fields(visit, section.cameras);
-  visit("rate_hz", section.rate_hz, 1, 1200);
-  visit("latency_s", section.latency_s, 0.0, 0.4);
-  visit("drop_probability", section.drop_probability, 0.0, 1.0);
-  visit("raw", section.raw);
-  visit("raw_unit_m", section.raw_unit_m, 0.0001, 1000.0);
+  visit("rate_hz", section.rate_hz, 1, 1200,
+        "stereo pairs per second; must divide 1200 (Barry & Tedrake 2015: 120 Hz) | Barry & Tedrake 2015");
+  visit("latency_s", section.latency_s, 0.0, 0.4,
+        "Time from the end of the exposure until the stack receives the frame: a setting, never a measured "
+        "time. A frame's timestamp is the middle of its left exposure.");
+  visit("drop_probability", section.drop_probability, 0.0, 1.0,
+        "probability that a frame is lost, independently for each frame");
+  visit("raw", section.raw,
+        "Gives the stack raw (distorted, unrectified) images. It rectifies them with the calibration "
+        "raw/NAME.xml in the folder of the rig file NAME.yaml (models/rigs/raw).");
+  visit("raw_unit_m", section.raw_unit_m, 0.0001, 1000.0,
+        "unit of length in the calibration file that cameras.raw reads; 0.01 (cm) for rig paper");
 }
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, SensorSection& section) {
-  visit("seed", section.seed, std::uint64_t{0}, std::uint64_t{1} << 32);
-  visit("grade", section.grade, sensor_grade_names);
+  visit("seed", section.seed, std::uint64_t{0}, std::uint64_t{1} << 32,
+        "seed of the noise of all sensors and cameras; 0: the scenario's seed");
+  visit("grade", section.grade, sensor_grade_names,
+        "Quality class that sets the defaults of all sensors keys. ideal: no errors; nominal: white noise, "
+        "constant biases, barometer drift; consumer: all errors of real parts; rough: three times those. | "
+        "docs/sensors.md");
   visit_fields(visit, section.sensors);
 }
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, PerceptionSection& section) {
-  visit("detector", section.detector, parts().detectors.names());
-  visit("preset", section.preset, pushbroom_preset_names);
-  visit("depths_m", section.pushbroom.depths_m, 0.1, 1000.0);  // to look at; empty: the rig's own
+  visit("detector", section.detector, parts().detectors.names(),
+        "Obstacle detector. true_depth gets exact depths from the simulator, none detects nothing; neither "
+        "looks at images.");
+  visit("preset", section.preset, pushbroom_preset_names,
+        "Parameter set for perception.pushbroom and perception.depths_m; keys given there win. tuned: "
+        "numbers and depths tuned for the rig; woods: tuned in woods; robust: before tuning; original: the "
+        "original aircraft's.");
+  visit("depths_m", section.pushbroom.depths_m, 0.1, 1000.0,
+        "Depths at which the pushbroom detector looks for obstacles; empty: only the detection depth in the "
+        "rig's file. The preset `tuned` sets two for the rig `paper`.");  // to look at; empty: the rig's own
   visit("pushbroom", section.pushbroom);
   visit("stereo_bm", section.stereo_bm);
   visit("stereo_sgbm", section.stereo_sgbm);
@@ -307,8 +302,13 @@ void visit_fields(Visitor& visit, PerceptionSection& section) {
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, EstimationSection& section) {
-  visit("source", section.source, parts().state_sources.names());
-  visit("preset", section.preset, filter_preset_names);
+  visit("source", section.source, parts().state_sources.names(),
+        "Source of the aircraft's state for the flight stack. filter: the estimator; dead_reckoning: pitot "
+        "and gyro alone; truth: the simulator's exact state.");
+  visit(
+      "preset", section.preset, filter_preset_names,
+      "Preset values of estimation.filter; keys that the scenario gives in estimation.filter override them. "
+      "tuned: the default; original: the original aircraft's filter; windy: estimates wind and gusts, too.");
   visit("filter", section.filter);
   visit("dead_reckoning", section.dead_reckoning);
   visit_parts(visit, section.plugged);
@@ -316,10 +316,19 @@ void visit_fields(Visitor& visit, EstimationSection& section) {
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, AutopilotSection& section) {
-  visit("preset", section.preset, planning_preset_names);
-  visit("method", section.method, parts().planners.names());
-  visit("actions", section.actions);
-  visit("replan_rate_hz", section.replan_rate_hz, 1, 1200);
+  visit(
+      "preset", section.preset, planning_preset_names,
+      "Preset values of the planning keys; keys that the scenario gives in autopilot override them. "
+      "economical: plans when a new obstacle comes near the plan, else seldom; thorough: plans continually.");
+  visit("method", section.method, parts().planners.names(),
+        "Planner. sst, rrt, est: OMPL grows a tree of manoeuvres with the method of this name; library: the "
+        "best of a list of manoeuvres; straight: straight on, through everything.");
+  visit("actions", section.actions,
+        "File with the controls of a flight that somebody else flew, which are flown again in place of the "
+        "planner's; empty: the planner flies. A relative path is looked for beside the scenario file, then "
+        "in the working directory. | docs/python.md");
+  visit("replan_rate_hz", section.replan_rate_hz, 1, 1200,
+        "highest rate at which the autopilot starts plans; must divide 1200");
   visit_fields(visit, section.autopilot);
   visit("library", section.library);
   visit_parts(visit, section.plugged);
@@ -327,13 +336,18 @@ void visit_fields(Visitor& visit, AutopilotSection& section) {
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, Scenario& scenario) {
-  visit("name", scenario.name);
-  visit("seed", scenario.seed, std::uint64_t{0}, std::uint64_t{1} << 32);
-  visit("rig", scenario.rig);
-  visit("course", scenario.course, parts().courses.names());
+  visit("name", scenario.name,
+        "name of the run, whose folder is runs/NAME-SEED; letters, digits, '-', '_' and '.'");
+  visit("seed", scenario.seed, std::uint64_t{0}, std::uint64_t{1} << 32,
+        "seed of course, wind and the planner's search; also of sensor noise if sensors.seed is 0");
+  visit("rig", scenario.rig,
+        "stereo rig: a name in models/rigs, or the path of a rig file relative to the scenario file");
+  visit("course", scenario.course, parts().courses.names(),
+        "kind of course; the keys that begin with the same word describe it");
   visit("plugins", scenario.plugins);
-  visit("time_limit_s", scenario.time_limit_s, 0.1, 600.0);
-  visit("wind_world_mps", scenario.wind_world_mps, -20.0, 20.0);
+  visit("time_limit_s", scenario.time_limit_s, 0.1, 600.0, "simulated time after which a flight ends");
+  visit("wind_world_mps", scenario.wind_world_mps, -20.0, 20.0,
+        "velocity of the mean wind, in world axes, at wind.reference_height_m");
   visit("wind", scenario.wind);
   visit("band", scenario.band);
   visit("forest", scenario.forest);

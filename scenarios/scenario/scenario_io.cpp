@@ -299,7 +299,7 @@ std::string found_trees_file(const std::string& trees_file, const std::string& o
 }
 
 std::vector<Key> keys_of(Scenario scenario) {
-  KeyLister lister(typeid(Scenario));
+  KeyLister lister;
   visit_fields(lister, scenario);
   return lister.keys();
 }
@@ -323,6 +323,24 @@ WoodsConfig woods_of(const Scenario& scenario) {
 }
 
 std::vector<Obstacle> course_obstacles(const Scenario& scenario) { return course_wood(scenario).obstacles; }
+
+std::vector<Obstacle> course_crowns(const Scenario& scenario) {
+  std::vector<Obstacle> crowns;
+  if (scenario.world.world.scenery == Scenery::plain) return crowns;
+  try {
+    const Wood wood = course_wood(scenario);
+    for (const Tree& tree : wood.trees) {
+      Obstacle crown;
+      crown.from_world = crown.to_world = wood.obstacles[tree.first].from_world;
+      crown.from_world.z() += tree.crown_base_m;
+      crown.to_world.z() += tree.height_m;
+      crown.radius_m = tree.crown_radius_m;
+      crowns.push_back(crown);
+    }
+  } catch (const InputError&) {
+  }
+  return crowns;
+}
 
 /// The groups of a scenario that the keys stand in.
 struct PerceptionKeys {

@@ -48,6 +48,9 @@ Wood course_wood(const Scenario& scenario);
 /// The look of a scenario's woods: what its keys leave open is drawn from its seed.
 WoodsConfig woods_of(const Scenario& scenario);
 std::vector<Obstacle> course_obstacles(const Scenario& scenario);
+/// For pictures: the crown of each tree of woods, from its lowest branch to its top, with the reach of its
+/// longest branch. Empty in plain scenery, and where the file of a measured forest is no longer there.
+std::vector<Obstacle> course_crowns(const Scenario& scenario);
 
 /// What a scenario says of seeing, for commands that look at recordings: the detectors' and the map's numbers
 /// under a scenario's own keys (perception.preset, perception.depths_m, perception.pushbroom.X, ...,

@@ -88,6 +88,16 @@ std::array<cv::Mat, 2> falloff_of(const StereoOptics& optics, const CameraConfig
   return {optics.falloff(0, config.vignetting_power), optics.falloff(1, config.vignetting_power)};
 }
 
+/// The same view with `samples` pixels for each along either axis.
+Eye finer(Eye eye, int samples) {
+  eye.focal_px *= samples;
+  eye.center_x_px = (eye.center_x_px + 0.5) * samples - 0.5;
+  eye.center_y_px = (eye.center_y_px + 0.5) * samples - 0.5;
+  eye.width_px *= samples;
+  eye.height_px *= samples;
+  return eye;
+}
+
 }  // namespace
 
 Eye chase_eye(const Eigen::Isometry3d& T_world_body, int width_px, int height_px) {
@@ -122,7 +132,8 @@ struct StereoCameras::Implementation {
         rig(rig_),
         config(config_),
         optics(rig, config, raw),
-        scene(model, config.view_distance_m, 2 * rig.width_px, rig.height_px, renderer, woods),
+        scene(model, config.view_distance_m, 2 * config.supersampling * rig.width_px,
+              config.supersampling * rig.height_px, renderer, woods),
         response(config, falloff_of(optics, config), seeds.shot),
         noise(config.noise_gray, seeds.noise),
         exposure_ns(config.exposure_ns()),
@@ -131,17 +142,27 @@ struct StereoCameras::Implementation {
 
   bool takes_time() const { return exposure_ns > 0 || right_delay_ns > 0; }
 
+  /// Both views at one moment, each pixel the mean of its samples.
+  std::array<cv::Mat, 2> rendered(std::array<Eye, 2> eyes) {
+    if (config.supersampling == 1) return scene.gray_pair(eyes);
+    for (Eye& eye : eyes) eye = finer(eye, config.supersampling);
+    std::array<cv::Mat, 2> views = scene.gray_pair(eyes);
+    const double scale = 1.0 / config.supersampling;
+    for (cv::Mat& view : views) cv::resize(view, view, {}, scale, scale, cv::INTER_AREA);
+    return views;
+  }
+
   /// Both images of an exposure that ends now: the mean of views spread evenly over the exposure.
   std::array<cv::Mat, 2> exposed(const Eigen::Isometry3d& now, std::int64_t t_ns) {
     std::array<cv::Mat, 2> views, sums;
     if (!takes_time()) {
-      views = scene.gray_pair(optics.eyes(now, now));
+      views = rendered(optics.eyes(now, now));
     } else {
       poses.observe(now, t_ns);
       const int count = exposure_ns > 0 ? config.exposure_views : 1;
       for (int i = 0; i < count; ++i) {
         const std::int64_t right_ns = t_ns - exposure_ns + (2 * i + 1) * exposure_ns / (2 * count);
-        views = scene.gray_pair(optics.eyes(poses.at(right_ns - right_delay_ns), poses.at(right_ns)));
+        views = rendered(optics.eyes(poses.at(right_ns - right_delay_ns), poses.at(right_ns)));
         for (std::size_t eye = 0; eye < 2; ++eye) {
           if (sums[eye].empty()) sums[eye] = cv::Mat::zeros(views[eye].size(), CV_32SC1);
           cv::add(sums[eye], views[eye], sums[eye], cv::noArray(), CV_32SC1);

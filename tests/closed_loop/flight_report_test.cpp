@@ -230,6 +230,7 @@ TEST(FlightLog, IsReadBackAsItWasWritten) {
   EXPECT_EQ(read.obstacles.back().kind, ObstacleKind::crossbar);
   EXPECT_EQ(read.result.digest, log.result.digest);
   EXPECT_EQ(read.result.points_on_obstacles, log.result.points_on_obstacles);
+  EXPECT_EQ(read.result.planner.own, log.result.planner.own);
   EXPECT_EQ(scenario_to_text(read.scenario), scenario_to_text(log.scenario));
   EXPECT_EQ(story_of(read).outcome, told.story.outcome);
   // Any damage is refused, or does no harm.

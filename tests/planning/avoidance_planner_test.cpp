@@ -150,6 +150,11 @@ TEST(LibraryPlanner, TakesTheWidestWayAndKeepsItWhileItIsSafe) {
   const FlightState state = follow_plan(level_start(), first, replan_ns);
   EXPECT_EQ(planner->plan({state, 2 * replan_ns, points}).origin, PlanOrigin::kept);
   EXPECT_EQ(planner->plan({level_start(), 3 * replan_ns, points_of(wall(6))}).origin, PlanOrigin::fallback);
+  ASSERT_EQ(planner->counts().own.size(), 1u);
+  const auto& [name, tried] = planner->counts().own[0];
+  EXPECT_EQ(name, "manoeuvres_tried");
+  EXPECT_GT(tried, 0);
+  EXPECT_EQ(tried % 2, 0) << "the whole library, twice";
 }
 
 TEST(StraightPlanner, FliesThroughEverythingAndSaysSo) {

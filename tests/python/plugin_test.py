@@ -1,6 +1,7 @@
 """Parts in Python take part in the program's commands, and the examples of docs/examples/python work."""
 
 import importlib.util
+import json
 import shutil
 import sys
 import unittest
@@ -32,7 +33,9 @@ class Planner:
     "SST, wrapped"
     def __init__(self, context):
         self.inner = context.make_planner("sst")
+        self.counts = {"asked": 0}
     def plan(self, request):
+        self.counts["asked"] += 1
         return self.inner.plan(request)
     def concerns(self, position_world, plan):
         return self.inner.concerns(position_world, plan)
@@ -73,6 +76,12 @@ class Plugins(InFolder):
         self.assertEqual(self.fly("perception.detector=wrapped", "perception.wrapped.gain=0.5"), ours)
         self.assertEqual(self.fly("autopilot.method=wrapped_sst"), ours)
         self.assertEqual(self.fly("estimation.source=wrapped_filter"), ours)
+
+    def test_a_planner_counts_by_name(self):
+        program("fly", "forest", "--seed", 1003, *SHORT, "--plugin", self.mine, "--set",
+                "autopilot.method=wrapped_sst", "--out", self.folder / "run", "--quiet")
+        result = json.loads((self.folder / "run" / "result.json").read_text())
+        self.assertEqual(result["planner_counts"], {"asked": result["replans"]})
 
     def test_a_course_is_flown(self):
         program("fly", "forest", *SHORT, "--plugin", self.mine, "--set", "course=two_trunks", "--out",

@@ -17,19 +17,18 @@ using understory::support::TemporaryFolder;
 using understory::support::understory;
 using Json = nlohmann::json;
 
-TEST(Keys, ACommentBesideAFieldIsItsMeaningWithUnitAndSource) {
-  const Key speed = understory::key_of_field("AirspeedConfig", "usable_mps");
-  EXPECT_EQ(speed.unit, "m/s");
-  EXPECT_EQ(speed.meaning,
-            "pitot readings below this airspeed are ignored as inaccurate, unless the estimated "
-            "airspeed exceeds 1.5 times this");  // "m/s, 0..20: " is for the header
-  const Key several_lines = understory::key_of_field("FilterConfig", "rate_walk_rthz");
-  EXPECT_EQ(several_lines.unit, "rad/s^2/sqrt(Hz)");
-  EXPECT_NE(several_lines.meaning.find("50 rad/s^2 for 0.1 s."), std::string::npos) << several_lines.meaning;
-  EXPECT_EQ(understory::key_of_field("WindConfig", "shelter_factor").source,
-            "Albini & Baughman 1979; Andrews 2012");
-  EXPECT_EQ(understory::key_of_field("GroundVelocityConfig", "sigma_mps").source, "docs/sources.md [15]");
-  EXPECT_EQ(understory::key_of_field("WindConfig", "none").meaning, "");
+TEST(Keys, ATextIsAMeaningThenItsSourceThenItsUnit) {
+  const Key plain = understory::key_of("usable_mps", "readings below this airspeed are ignored");
+  EXPECT_EQ(plain.unit, "m/s");  // as the name says
+  EXPECT_EQ(plain.meaning, "readings below this airspeed are ignored");
+  EXPECT_EQ(plain.source, "");
+  const Key cited = understory::key_of("sigma_mps", "One sigma. | docs/sources.md [15]");
+  EXPECT_EQ(cited.meaning, "One sigma.");
+  EXPECT_EQ(cited.source, "docs/sources.md [15]");
+  EXPECT_EQ(cited.unit, "m/s");
+  const Key walk = understory::key_of("rate_walk_rthz", "A walk. |  | rad/s^2/sqrt(Hz)");
+  EXPECT_EQ(walk.unit, "rad/s^2/sqrt(Hz)");
+  EXPECT_EQ(walk.source, "");
 }
 
 #ifdef UNDERSTORY_HAS_SIM

@@ -252,8 +252,8 @@ TEST(Aircraft, RefusesWhatCannotBe) {
 /// Every number of an airframe, by the visitor that knows them all.
 struct Numbers {
   std::vector<double> values;
-  void operator()(std::string_view, double& field, double, double) { values.push_back(field); }
-  void operator()(std::string_view, Vector3d& field, double, double) {
+  void operator()(std::string_view, double& field, double, double, const char*) { values.push_back(field); }
+  void operator()(std::string_view, Vector3d& field, double, double, const char*) {
     values.insert(values.end(), field.begin(), field.end());
   }
 };

@@ -32,6 +32,34 @@ TEST(CameraFaults, TheRightImageStandsLowerByTheMisalignment) {
   }
 }
 
+TEST(CameraFaults, APixelWithManySamplesIsTheMeanOfAFinerCamerasPixels) {
+  const World world = black_ball({5, -0.2, 0.1}, 0.4);
+  for (const int samples : {2, 3}) {
+    CameraConfig config = noiseless();
+    config.supersampling = samples;
+    const StereoFrame mean = still(world, config);
+    StereoRig fine = paper_rig();
+    fine.focal_px *= samples;
+    for (double* center : {&fine.center_left_x_px, &fine.center_right_x_px})
+      *center = (*center + 0.5) * samples - 0.5;
+    fine.center_y_px = (fine.center_y_px + 0.5) * samples - 0.5;
+    fine.width_px *= samples;
+    fine.height_px *= samples;
+    const StereoFrame finer =
+        StereoCameras(world, fine, noiseless(), {}).capture(body_at({0, 0, 0}, level), 0);
+    const std::array<std::pair<const cv::Mat*, const cv::Mat*>, 2> eyes{
+        {{&mean.left, &finer.left}, {&mean.right, &finer.right}}};
+    for (const auto& [image, many] : eyes) {
+      ASSERT_EQ(image->size() * samples, many->size());
+      for (int y = 0; y < image->rows; ++y)
+        for (int x = 0; x < image->cols; ++x) {
+          const double expected = cv::mean((*many)(cv::Rect(x * samples, y * samples, samples, samples)))[0];
+          ASSERT_NEAR(image->at<std::uint8_t>(y, x), expected, 0.5 + 1e-9) << x << ' ' << y;
+        }
+    }
+  }
+}
+
 TEST(CameraFaults, ABentBaselineMovesTheRightImageAsAPinholeOfThatPoseSeesIt) {
   // The ball stands on the right camera's axis: at x = baseline in the left camera's frame.
   const StereoRig rig = paper_rig();

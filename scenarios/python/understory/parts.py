@@ -71,7 +71,8 @@ def state_source(name: str, keys: Sequence[_understory.Key] = ()) -> Callable[[_
 def planner(name: str, keys: Sequence[_understory.Key] = ()) -> Callable[[_Factory], _Factory]:
     """Name a planner. Its context is the one way to make a Plan, so that a planner needs a name. What the factory makes has plan(request), which returns a Plan: context.fly(request, commands)
     makes one from commands (bank_rad, climb_mps, duration_s), with its clearance_m. It may have
-    concerns(position_world, plan): whether a new point of the map makes the plan outdated."""
+    concerns(position_world, plan): whether a new point of the map makes the plan outdated.
+    counts: a dict of whole numbers of its own, for planner_counts of result.json."""
 
     def register(factory: _Factory) -> _Factory:
         _understory.add_planner(name, _meaning(factory), _file(factory), list(keys), factory)

@@ -106,6 +106,8 @@ const hits = decoded('/hits').reduce((sum, cloud) => sum + points(cloud), 0);
 expect(hits === result.detections, `${hits} hits in the log, ${result.detections} in the result`);
 expect(decoded('/map').length === result.frames, 'a map for each frame');
 const [trunks] = decoded('/obstacles');
+const [crowns] = decoded('/crowns');
+expect(points(crowns) === 0, 'no crowns in plain scenery');
 expect(obstacles === 0 || points(trunks) >= 6 * obstacles, 'points on each obstacle');
 
 // The true pose at the moments that truth.tum has, too.
