@@ -48,9 +48,7 @@ struct Obstacle {
     return tree >= 0 || kind == ObstacleKind::capsule || kind == ObstacleKind::sphere;
   }
   /// Of a box, from its own axes at its middle.
-  Eigen::Isometry3d T_world_box() const {
-    return Eigen::Translation3d(0.5 * (from_world + to_world)) * turn_world;
-  }
+  Eigen::Isometry3d T_world_box() const;
 };
 
 }  // namespace understory
