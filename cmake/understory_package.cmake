@@ -38,7 +38,7 @@ aircraft, and the headers for plug-ins:
 find_package(understory COMPONENTS perception estimation plugin); and the
 whole testbed for programs of one's own: COMPONENTS simulation.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libeigen3-dev, libopencv-dev, libyaml-cpp-dev, libpugixml-dev, libfmt-dev, libtbb-dev, libhwy-dev")
+    "libeigen3-dev, libopencv-dev, libyaml-cpp-dev, libpugixml-dev, libfmt-dev, libpng-dev, libtbb-dev, libhwy-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libmujoco-dev, libompl-dev, libzstd-dev, nlohmann-json3-dev")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-understory)

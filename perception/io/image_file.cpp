@@ -10,6 +10,7 @@
 
 #include "perception/io/calibration_formats.hpp"
 #include "perception/io/picture_codecs.hpp"
+#include "perception/io/png_codec.hpp"
 #include "perception/io/text_file.hpp"
 
 namespace understory {
@@ -124,7 +125,8 @@ cv::Mat read_gray_image(const std::filesystem::path& file, int depth) {
                    " px: at most 8192x8192 are read");
   cv::Mat image;
   try {
-    image = picture_codecs().decode(bytes);
+    image = decode_png(bytes);
+    if (image.empty()) image = picture_codecs().decode(bytes);
   } catch (const MachineError&) {
     throw;
   } catch (const std::exception&) {  // not all its libraries throw cv::Exception

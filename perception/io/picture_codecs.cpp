@@ -11,9 +11,9 @@ cv::Mat decode(const std::string& bytes) {
   return cv::imdecode(row, cv::IMREAD_UNCHANGED);
 }
 
-std::vector<unsigned char> encode(const std::string& ending, const cv::Mat& picture) {
+std::vector<unsigned char> encode_jpeg(const cv::Mat& picture) {
   std::vector<unsigned char> bytes;
-  cv::imencode(ending, picture, bytes);
+  cv::imencode(".jpg", picture, bytes);
   return bytes;
 }
 
@@ -29,7 +29,7 @@ std::unique_ptr<cv::VideoWriter> write_film(const std::string& file, double fram
 }  // namespace
 
 const PictureCodecs& picture_codecs() {
-  static constexpr PictureCodecs codecs{decode, encode, read_film, write_film};
+  static constexpr PictureCodecs codecs{decode, encode_jpeg, read_film, write_film};
   return codecs;
 }
 

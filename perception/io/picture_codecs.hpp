@@ -10,13 +10,14 @@ namespace understory {
 
 /// All that this project asks of OpenCV's imgcodecs and videoio. The two bring two hundred shared libraries
 /// along, whose loading costs more than all other preparation of a flight: the program opens them only when
-/// it first meets a picture (scenarios/cli/late_picture_codecs.cpp, docs/decisions/014).
+/// it first meets a film or a picture that is no PNG (png_codec.hpp, scenarios/cli/late_picture_codecs.cpp,
+/// docs/decisions/014).
 struct PictureCodecs {
   /// The image that these bytes hold, as it was stored; empty where they hold none or a damaged one. Throws
   /// cv::Exception where OpenCV refuses them. May print to stderr, as the film functions do.
   cv::Mat (*decode)(const std::string& bytes);
-  /// The picture as a file of the kind that `ending` names (".png", ".jpg").
-  std::vector<unsigned char> (*encode)(const std::string& ending, const cv::Mat& picture);
+  /// The picture as a JPEG file.
+  std::vector<unsigned char> (*encode_jpeg)(const cv::Mat& picture);
   /// A film for FFmpeg to read; isOpened() tells whether it can.
   std::unique_ptr<cv::VideoCapture> (*read_film)(const std::string& file);
   /// A film in H.264, BGR 8-bit; isOpened() is false where FFmpeg has no encoder for it.

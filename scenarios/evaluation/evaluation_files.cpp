@@ -129,7 +129,7 @@ SheetSection write_worst_frames(const Evaluation& evaluation, const fs::path& fo
   int number = 0;
   for (const WorstPicture& worst : worst_pictures(evaluation)) {
     write_picture(folder / fmt::format("{:06}.png", number++), worst.picture);
-    const auto jpeg = picture_codecs().encode(".jpg", worst.picture);
+    const auto jpeg = picture_codecs().encode_jpeg(worst.picture);
     section.pictures.push_back({worst.caption, {jpeg.begin(), jpeg.end()}});
   }
   return section;

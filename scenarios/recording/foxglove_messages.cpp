@@ -5,7 +5,7 @@
 #include <numbers>
 #include <opencv2/core/matx.hpp>
 
-#include "perception/io/picture_codecs.hpp"
+#include "perception/io/png_codec.hpp"
 #include "scenarios/recording/foxglove.pb.h"
 
 namespace understory {
@@ -198,7 +198,7 @@ foxglove::CompressedImage image_message(const cv::Mat& image, bool is_left, std:
   set_time(message.mutable_timestamp(), t_ns);
   message.set_frame_id(is_left ? "left_camera" : "right_camera");
   message.set_format("png");
-  const std::vector<unsigned char> bytes = picture_codecs().encode(".png", image);
+  const std::vector<unsigned char> bytes = encode_png(image);
   message.set_data(bytes.data(), bytes.size());
   return message;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "perception/io/picture_codecs.hpp"
+#include "perception/io/png_codec.hpp"
 #include "scenarios/output/file_output.hpp"
 
 namespace understory {
@@ -40,7 +41,7 @@ void write_at_side(cv::Mat& picture, const std::string& text, bool at_right) {
 }  // namespace
 
 void write_picture(const fs::path& file, const cv::Mat& picture, Named named) {
-  const std::vector<unsigned char> bytes = picture_codecs().encode(file.extension().string(), picture);
+  const std::vector<unsigned char> bytes = encode_png(picture);
   write_whole_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, named);
 }
 

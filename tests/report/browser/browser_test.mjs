@@ -1,9 +1,9 @@
-// The page of a flight in a real browser that draws in software. Arguments: pages made by `understory`; they go
-// through the same checks as the made-up flight. Exit status 77 where the browser or a library is missing.
+// The page of a flight in a real browser that draws in software. Arguments: `contents` or `speeds`, then pages made by
+// `understory`; they go through the same checks as the made-up flight. Exit status 77 where the browser or a library is missing.
 import { readFileSync } from "node:fs";
 import { basename, dirname, resolve } from "node:path";
 import { check, close, end, failures, open, write } from "./browser.mjs";
-import { check_campaign, check_given_campaign, check_sheet } from "./campaign_checks.mjs";
+import { check_campaign, check_given_campaign, check_large_campaign, check_sheet } from "./campaign_checks.mjs";
 import { add_film, sample_flight } from "./sample.mjs";
 
 /// What a page holds, decoded here once more: the reference of the checks.
@@ -237,12 +237,19 @@ function variants() {
   return list;
 }
 
-try {
+/// What has a clock in it: these checks want the machine for themselves.
+async function check_speeds(given) {
+  const sample = sample_flight();
+  const dense = sample_flight({ trunks: 1000, end_s: 20 });
+  await check_speed(write("sample", sample.facts, sample.arrays), "sample");
+  await check_speed(write("dense", dense.facts, dense.arrays), "1000 trunks, 20 s");
+  await check_large_campaign();
+  for (const each of given) await check_speed(resolve(each), name_of(each));
+}
+
+async function check_contents(given) {
   const sample = sample_flight();
   const file = write("sample", sample.facts, sample.arrays);
-  const dense = sample_flight({ trunks: 1000, end_s: 20 });
-  await check_speed(file, "sample");
-  await check_speed(write("dense", dense.facts, dense.arrays), "1000 trunks, 20 s");
   await check_flight(file, "sample");
   await check_phone(file, "sample");
   await check_film(sample_flight());
@@ -266,17 +273,23 @@ try {
   await close(empty, "without data");
   await check_campaign();
   await check_sheet();
-  for (const given of process.argv.slice(2)) {
-    const { facts } = read_page(given);
-    const name = basename(dirname(resolve(given)));
+  for (const each of given) {
+    const { facts } = read_page(each);
     if (facts.kind === "campaign") {
-      await check_given_campaign(resolve(given), facts, name);
+      await check_given_campaign(resolve(each), facts, name_of(each));
       continue;
     }
-    await check_speed(resolve(given), name);
-    await check_flight(resolve(given), name);
-    await check_phone(resolve(given), name);
+    await check_flight(resolve(each), name_of(each));
+    await check_phone(resolve(each), name_of(each));
   }
+}
+
+const name_of = (file) => basename(dirname(resolve(file)));
+const [checks, ...given] = process.argv.slice(2);
+try {
+  if (checks === "speeds") await check_speeds(given);
+  else if (checks === "contents") await check_contents(given);
+  else throw new Error(`the first argument is speeds or contents, not ${checks}`);
 } finally {
   await end();
 }
