@@ -136,27 +136,28 @@ TEST_P(EitherModel, OfTheStep) {
   }
 }
 
-/// F P F' + Q written out in full, against the step that multiplies only what moves.
+/// F P F' + Q written out in full, against the step that multiplies only what moves. Matrices without a fixed
+/// size do for a reference, and compile in half the time.
 TEST_P(EitherModel, TheCovarianceStepIsTheFullProduct) {
   const FilterModel model = GetParam();
   State state = somewhere();
   const InertialStep step{Eigen::Vector3d(4, -0.8, 1.1), Eigen::Vector3d(2, -1, 18), 0.05};
   const StepDerivatives by = advance(state, step, 9.81, model);
-  const ErrorCovariance root = ErrorCovariance::Random();
-  const ErrorCovariance before = root * root.transpose();
+  const Eigen::MatrixXd root = ErrorCovariance::Random();
+  const Eigen::MatrixXd before = root * root.transpose();
   ProcessNoise noise{0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 0.7, 2.0};
   const double dt = step.dt_s, kept = std::exp(-dt / noise.gust_time_s);
 
-  ErrorCovariance F = ErrorCovariance::Identity();
+  Eigen::MatrixXd F = ErrorCovariance::Identity();
   F.topLeftCorner<motion_rows, moving_columns>() = by.state;
   F.block<2, 2>(gust_block, gust_block) *= kept;
-  ErrorCovariance expected = F * before * F.transpose();
-  const auto noisy = [&](const Eigen::Matrix<double, motion_rows, 3>& input, double density) {
-    expected.topLeftCorner<motion_rows, motion_rows>() += density * density * dt * input * input.transpose();
+  Eigen::MatrixXd expected = F * before * F.transpose();
+  const auto noisy = [&](const Eigen::MatrixXd& input, double density) {
+    expected.topLeftCorner(motion_rows, motion_rows) += density * density * dt * input * input.transpose();
   };
   if (model == FilterModel::gyro_bias) noisy(by.rotation, noise.gyro_radps_rthz);
   noisy(by.velocity_increment, noise.accelerometer_mps2_rthz);
-  Eigen::Matrix<double, error_states, 3> walk = Eigen::Matrix<double, error_states, 3>::Zero();
+  Eigen::MatrixXd walk = Eigen::MatrixXd::Zero(error_states, 3);
   walk.topRows<motion_rows>() = 0.5 * dt * rate_sign(model) * by.rotation;
   walk.middleRows<3>(rate_block).setIdentity();
   expected += noise.rate_block_rthz * noise.rate_block_rthz * dt * walk * walk.transpose();
@@ -173,10 +174,10 @@ TEST_P(EitherModel, TheCovarianceStepIsTheFullProduct) {
 
 /// The multiplied-out update against Joseph's form, with a gain that is withheld in part.
 TEST(Update, IsJosephsFormForWithheldGainsToo) {
-  const ErrorCovariance root = ErrorCovariance::Random();
+  const Eigen::MatrixXd root = ErrorCovariance::Random(), identity = ErrorCovariance::Identity();
   State state = somewhere();
-  state.covariance = root * root.transpose() + ErrorCovariance::Identity();
-  const ErrorCovariance before = state.covariance;
+  state.covariance = root * root.transpose() + identity;
+  const Eigen::MatrixXd before = state.covariance;
   Measurement<2> measurement;
   measurement.jacobian.setRandom();
   measurement.innovation << 0.3, -0.2;
@@ -185,13 +186,13 @@ TEST(Update, IsJosephsFormForWithheldGainsToo) {
   const State untouched = state;
   correct(state, measurement, FilterModel::gyro_bias, FrameGain::held);
 
-  const Eigen::Matrix2d spread =
-      measurement.jacobian * before * measurement.jacobian.transpose() + measurement.noise;
-  Eigen::Matrix<double, error_states, 2> gain = before * measurement.jacobian.transpose() * spread.inverse();
+  const Eigen::MatrixXd jacobian = measurement.jacobian;
+  const Eigen::Matrix2d spread = jacobian * before * jacobian.transpose() + measurement.noise;
+  Eigen::MatrixXd gain = before * jacobian.transpose() * spread.inverse();
   gain.middleRows<3>(position_block).setZero();
   gain.topRows<3>() = (Eigen::Matrix3d::Identity() - up_body * up_body.transpose()) * gain.topRows<3>();
-  const ErrorCovariance rest = ErrorCovariance::Identity() - gain * measurement.jacobian;
-  const ErrorCovariance expected =
+  const Eigen::MatrixXd rest = identity - gain * jacobian;
+  const Eigen::MatrixXd expected =
       rest * before * rest.transpose() + gain * measurement.noise * gain.transpose();
   EXPECT_LT((state.covariance - expected).cwiseAbs().maxCoeff(), 1e-9);
   EXPECT_EQ(state.T_world_body.translation(), untouched.T_world_body.translation());

@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include <filesystem>
 #include <opencv2/imgproc.hpp>
 #include <random>
 
-#include "perception/io/stereo_recording.hpp"
+#include "perception/io/png_codec.hpp"
+#include "perception/io/text_file.hpp"
 #include "perception/pushbroom/block_rule.hpp"
 #include "tests/perception/rigs.hpp"
 #include "tests/support/instruction_sets.hpp"
@@ -135,13 +137,13 @@ TEST(Recordings, GiveTheKernelTheMatchesOfThePlainRule) {
   const std::string name = "stereo/euroc-v1_01";
   const auto path = support::shared_data(name);
   if (!path) GTEST_SKIP() << support::missing_data(name);
-  StereoRecording recording({*path});
   std::size_t pairs = 0, found = 0;
-  for (StereoFrame frame; recording.read(frame); ++pairs) {
-    const int width = frame.left.cols, height = frame.left.rows;
-    Pair pair{width, height, {}, {}};
-    pair.left.assign(frame.left.datastart, frame.left.dataend);
-    pair.right.assign(frame.right.datastart, frame.right.dataend);
+  for (const auto& file : std::filesystem::directory_iterator(*path / "mav0/cam0/data")) {
+    const cv::Mat left = decode_png(read_file(file.path()));
+    const cv::Mat right = decode_png(read_file(*path / "mav0/cam1/data" / file.path().filename()));
+    const int width = left.cols, height = left.rows;
+    const Pair pair{width, height, {left.datastart, left.dataend}, {right.datastart, right.dataend}};
+    ++pairs;
     for (const int variant : {0, 1, 2}) {
       BlockRule rule = pushbroom_of(width, height, {22, 16});
       rule.horizontal_invariance = variant == 0;
