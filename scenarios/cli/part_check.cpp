@@ -16,6 +16,10 @@
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
 
+#ifdef __SANITIZE_ADDRESS__
+extern "C" std::size_t __sanitizer_get_current_allocated_bytes();  // GCC 12 has no header for it
+#endif
+
 namespace understory {
 namespace {
 
@@ -258,6 +262,9 @@ CallTimes times_of(const Trial& trial) {
 }
 
 double heap_bytes() {
+#ifdef __SANITIZE_ADDRESS__  // its heap is not glibc's
+  return static_cast<double>(__sanitizer_get_current_allocated_bytes());
+#endif
   const struct mallinfo2 heap = mallinfo2();
   return static_cast<double>(heap.uordblks) + static_cast<double>(heap.hblkhd);
 }
