@@ -4,7 +4,6 @@
 
 #include <csetjmp>
 #include <cstring>
-#include <memory>
 #include <stdexcept>
 
 namespace understory {
@@ -25,7 +24,7 @@ struct WriteStruct {
   ~WriteStruct() { png_destroy_write_struct(&png, &info); }
 };
 
-/// Damaged files are found damaged; nothing is printed of it.
+/// A damaged file is an empty image; libpng prints nothing.
 [[noreturn]] void leave(png_structp png, png_const_charp) { png_longjmp(png, 1); }
 void say_nothing(png_structp, png_const_charp) {}
 

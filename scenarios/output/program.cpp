@@ -45,7 +45,7 @@ std::string digest_of_text(std::string_view text) {
 }
 
 std::string digest_of_file(const std::filesystem::path& file) {
-  // Mapped where it can be: a campaign asks for every library of the process, some hundred megabytes.
+  // Files are mapped: a campaign asks for every library of the process, some hundred megabytes.
   std::error_code error;
   const std::uintmax_t size = std::filesystem::is_regular_file(file, error) ? file_size(file, error) : 0;
   const int descriptor = error || size == 0 ? -1 : open(file.c_str(), O_RDONLY | O_CLOEXEC);

@@ -237,7 +237,7 @@ function variants() {
   return list;
 }
 
-/// What has a clock in it: these checks want the machine for themselves.
+/// Checks that measure time want the machine for themselves.
 async function check_speeds(given) {
   const sample = sample_flight();
   const dense = sample_flight({ trunks: 1000, end_s: 20 });
