@@ -1,6 +1,7 @@
 #include "perception/io/png_codec.hpp"
 
 #include <png.h>
+#include <zlib.h>
 
 #include <csetjmp>
 #include <cstring>
@@ -8,9 +9,6 @@
 
 namespace understory {
 namespace {
-
-constexpr int fastest_zlib_level = 1;
-constexpr int zlib_run_lengths = 3;  // Z_RLE
 
 struct ReadStruct {
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
@@ -40,7 +38,7 @@ void add_bytes(png_structp png, png_bytep from, std::size_t count) {
   bytes.insert(bytes.end(), from, from + count);
 }
 
-std::vector<png_bytep> rows_of(cv::Mat& image) {
+std::vector<png_bytep> rows_of(cv::Mat image) {
   std::vector<png_bytep> rows;
   for (int row = 0; row < image.rows; ++row) rows.push_back(image.ptr(row));
   return rows;
@@ -67,8 +65,8 @@ bool read_rows(png_structp png, png_bytepp rows) {
 bool write_file(png_structp png, png_infop info, const cv::Mat& image, png_bytepp rows) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
-  png_set_compression_level(png, fastest_zlib_level);
-  png_set_compression_strategy(png, zlib_run_lengths);
+  png_set_compression_level(png, Z_BEST_SPEED);
+  png_set_compression_strategy(png, Z_RLE);
   png_set_IHDR(png, info, static_cast<png_uint_32>(image.cols), static_cast<png_uint_32>(image.rows),
                image.depth() == CV_16U ? 16 : 8,
                image.channels() == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
@@ -112,8 +110,7 @@ std::vector<unsigned char> encode_png(const cv::Mat& image) {
     throw std::invalid_argument("a PNG is made of an 8- or 16-bit gray or an 8-bit BGR image");
   const WriteStruct file;
   std::vector<unsigned char> bytes;
-  cv::Mat same = image;
-  std::vector<png_bytep> rows = rows_of(same);
+  std::vector<png_bytep> rows = rows_of(image);
   if (file.info != nullptr) {
     png_set_error_fn(file.png, nullptr, leave, say_nothing);
     png_set_write_fn(file.png, &bytes, add_bytes, nullptr);

@@ -264,9 +264,10 @@ CallTimes times_of(const Trial& trial) {
 double heap_bytes() {
 #ifdef __SANITIZE_ADDRESS__  // its heap is not glibc's
   return static_cast<double>(__sanitizer_get_current_allocated_bytes());
-#endif
+#else
   const struct mallinfo2 heap = mallinfo2();
   return static_cast<double>(heap.uordblks) + static_cast<double>(heap.hblkhd);
+#endif
 }
 
 std::string keeps_memory(const Trial& trial, int asked, std::string& note) {

@@ -1,5 +1,6 @@
 // The page of a flight in a real browser that draws in software. Arguments: `contents` or `speeds`, then pages made by
-// `understory`; they go through the same checks as the made-up flight. Exit status 77 where the browser or a library is missing.
+// `understory`; they go through the same checks as the made-up flight. Exit status 77 where the browser or a library
+// is missing.
 import { readFileSync } from "node:fs";
 import { basename, dirname, resolve } from "node:path";
 import { check, close, end, failures, open, write } from "./browser.mjs";
