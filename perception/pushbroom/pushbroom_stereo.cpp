@@ -149,7 +149,14 @@ PushbroomConfig tuned_pushbroom(std::string_view rig) {
 
 PushbroomConfig woods_pushbroom(std::string_view rig) {
   PushbroomConfig config = tuned_pushbroom(rig);
-  if (rig == "long" || rig == "paper") {
+  if (rig == "paper") {
+    config.minimum_edge_sum = 67;
+    config.score_limit = 0.185741;
+    config.uniqueness_ratio = 1.49557;
+    config.uniqueness_minimum_depth_m = 3.03517;
+    config.isolation_minimum_points = 8;
+    config.isolation_radius_m = 1.43383;
+  } else if (rig == "long") {
     config.minimum_edge_sum = 110;
     config.score_limit = 0.2;
     config.uniqueness_ratio = 1.6;

@@ -93,6 +93,7 @@ ClosedLoopRow closed_loop_row(const std::string& name, int processes, const std:
     for (const auto& [stage, seconds] : flight.stage_s) stage_s[stage] += seconds;
   }
   row.pairs_per_s = frames / elapsed_s;
+  row.render_ms = 1e3 * stage_s["render"] / frames;
   row.cpu_per_simulated_s /= simulated_s;
   row.simulated_per_s = simulated_s / elapsed_s;
   double other = 1;
@@ -145,12 +146,12 @@ std::string to_json(const std::vector<BenchRow>& rows) {
 }
 
 std::string to_table(const std::vector<ClosedLoopRow>& rows) {
-  Table table{{"", "flights", "pairs/s", "cpu", "x real time"}};
+  Table table{{"", "flights", "pairs/s", "ms a pair", "cpu", "x real time"}};
   table.head.insert(table.head.end(), told_stages.begin(), told_stages.end());
   table.head.insert(table.head.end(), {"other", "MB", "time against"});
   for (const ClosedLoopRow& row : rows) {
-    table.add(row.name, row.flights, number_text(row.pairs_per_s, 1), number_text(row.cpu_per_simulated_s, 3),
-              number_text(row.simulated_per_s, 2));
+    table.add(row.name, row.flights, number_text(row.pairs_per_s, 1), number_text(row.render_ms, 2),
+              number_text(row.cpu_per_simulated_s, 3), number_text(row.simulated_per_s, 2));
     std::vector<std::string>& cells = table.rows.back();
     for (const auto& [stage, share] : row.shares) cells.push_back(fmt::format("{:.1f} %", 100 * share));
     cells.push_back(number_text(row.peak_memory_mb, 0));
@@ -168,6 +169,7 @@ std::string to_json(const std::vector<ClosedLoopRow>& rows) {
                         {"processes", row.processes},
                         {"flights", row.flights},
                         {"pairs_per_s", row.pairs_per_s},
+                        {"render_ms", row.render_ms},
                         {"cpu_per_simulated_s", row.cpu_per_simulated_s},
                         {"simulated_per_s", row.simulated_per_s},
                         {"shares", shares},

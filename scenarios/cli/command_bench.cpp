@@ -34,7 +34,8 @@ void report(const std::vector<Row>& rows, const std::string& json) {
 
 int run_closed_loop_bench(const BenchArguments& arguments) {
   ClosedLoopBenchOptions options;
-  for (const char* name : {"forest", "dense", "paper"}) options.scenarios.push_back(scenario_file(name));
+  for (const char* name : {"forest", "dense", "paper", "woods", "woods_dense"})
+    options.scenarios.push_back(scenario_file(name));
   options.last_seed = options.first_seed + static_cast<std::uint64_t>(arguments.flights) - 1;
   for (const std::string& setting : arguments.settings)
     options.arguments.insert(options.arguments.end(), {"--set", setting});

@@ -87,7 +87,7 @@ constexpr Chapter chapters[]{
     {"world.", "World", "The appearance of the scene."},
     {"world.woods.", "World: woods",
      "The appearance of woods (docs/woods.md). A key that keeps its default is drawn from the scenario's "
-     "seed."},
+     "seed, except leaves_end_flight."},
     {"cameras.", "Cameras", "What the stereo cameras do to the images (docs/cameras.md)."},
     {"sensors.", "Sensors",
      "Errors and rates of the other sensors (docs/sensors.md). A grade sets them together. The standard "

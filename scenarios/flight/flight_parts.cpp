@@ -22,7 +22,8 @@ World world_of(const Scenario& scenario, const std::filesystem::path& models_fol
   try {
     WorldConfig config = scenario.world_config();
     config.woods = woods_of(scenario);
-    return build_world(models_folder, scenario.flown_airframe(), wood.obstacles, config, wood.trees);
+    return build_world(models_folder, scenario.flown_airframe(), wood.obstacles, config, wood.trees,
+                       scenario.course_rectangle());
   } catch (const SimulationError& error) {
     if (write_config(scenario.airframe) == write_config(Airframe())) throw MachineError(error.what());
     throw ScenarioError(fmt::format("{}: airframe: {}", scenario.name, error.what()));

@@ -1,7 +1,5 @@
 #include "scenarios/flight/referee.hpp"
 
-#include <cmath>
-
 namespace understory {
 
 std::optional<Outcome> Referee::outcome_at(const Truth& truth, Contact contact, bool released) {
@@ -14,9 +12,8 @@ std::optional<Outcome> Referee::outcome_at(const Truth& truth, Contact contact, 
   climbed_ = climbed_ || place.z() >= scenario_.band.minimum_altitude_m;
   const bool is_low = climbed_ && place.z() < scenario_.band.minimum_altitude_m;
   const bool is_high = place.z() > scenario_.band.maximum_altitude_m;
-  const bool is_aside = std::abs(place.y()) > scenario_.forest.half_width_m;
-  const bool is_back = place.x() < -scenario_.forest.half_width_m;
-  if (is_low || is_high || is_aside || is_back) return Outcome::out_of_bounds;
+  const bool is_aside = !scenario_.course_rectangle().contains(place.head<2>());
+  if (is_low || is_high || is_aside) return Outcome::out_of_bounds;
   return std::nullopt;
 }
 

@@ -15,7 +15,6 @@ namespace understory {
 namespace {
 
 constexpr std::chrono::seconds longest_call{20};
-constexpr std::size_t most_obstacles = 20'000;
 
 /// Ends the process when a call does not return. No simulated time passes meanwhile, so no flight is lost by
 /// it.
@@ -215,9 +214,9 @@ Planted checked(const CoursePart& part, const CourseContext& context) {
   if (part.plugin.empty()) return part.make(context);
   const Callee callee("course", part);
   Planted planted = callee.call("make()", [&] { return part.make(context); });
-  if (planted.obstacles.size() > most_obstacles)
+  if (planted.obstacles.size() > maximum_obstacles)
     callee.fail("make()", fmt::format("gave {} obstacles, at most {} are possible", planted.obstacles.size(),
-                                      most_obstacles));
+                                      maximum_obstacles));
   for (std::size_t i = 0; i < planted.obstacles.size(); ++i) {
     const Obstacle& one = planted.obstacles[i];
     const bool sound = one.from_world.allFinite() && one.to_world.allFinite() &&

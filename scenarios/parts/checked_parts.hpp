@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 
 #include "scenarios/parts/parts.hpp"
@@ -10,13 +11,17 @@
 /// the process with such a line and status 3. Our own parts are made as they are: their tests check them.
 namespace understory {
 
+/// So many obstacles a course may have: more take a minute to build.
+inline constexpr std::size_t maximum_obstacles = 20'000;
+
 /// Hits must be finite, lie within the rig's image and come from top to bottom.
 std::unique_ptr<ObstacleDetector> checked(const DetectorPart& part, const FlightContext& context);
 /// States must be finite, and their times must not go back.
 std::unique_ptr<StateSource> checked(const StateSourcePart& part, const FlightContext& context);
 /// A plan must take effect when it was asked to, and have finite points, the first at 0 s, in order of time.
 std::unique_ptr<Planner> checked(const PlannerPart& part, const PlannerPartContext& context);
-/// The course's obstacles, which must be finite, at most 20,000, each with a positive radius or box.
+/// The course's obstacles, which must be finite, at most maximum_obstacles, each with a positive radius or
+/// box.
 Planted checked(const CoursePart& part, const CourseContext& context);
 
 }  // namespace understory

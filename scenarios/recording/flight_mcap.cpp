@@ -65,6 +65,7 @@ struct FlightMcap::Implementation {
 
   // A crown is large, and only a picture.
   std::vector<Eigen::Vector3d> crown_points = surface_points(course_crowns(log.scenario), 0.8);
+  std::vector<Eigen::Vector3d> obstacle_points;  // from the first second on
 
   // What has been written of the log.
   std::size_t frames = 0, plans = 0, moments = 0;
@@ -96,7 +97,8 @@ void FlightMcap::Implementation::begin(std::int64_t t_ns) {
         transform("aircraft", is_left ? "left_camera" : "right_camera", camera_pose(log.rig, is_left), t_ns));
   put(left_calibration, t_ns, calibration_of(log.rig, true, t_ns));
   put(right_calibration, t_ns, calibration_of(log.rig, false, t_ns));
-  put(obstacles, t_ns, cloud("world", surface_points(log.obstacles, 0.1), t_ns));
+  if (obstacle_points.empty()) obstacle_points = surface_points(log.obstacles, 0.1);
+  put(obstacles, t_ns, cloud("world", obstacle_points, t_ns));
   put(crowns, t_ns, cloud("world", crown_points, t_ns));
   if (moments == 0)
     say(t_ns, foxglove::Log::INFO, fmt::format("scenario {}, seed {}", log.scenario.name, log.scenario.seed));

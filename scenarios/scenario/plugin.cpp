@@ -35,19 +35,20 @@ Function function_in(void* library, const char* name) {
   return reinterpret_cast<Function>(dlsym(library, name));
 }
 
+[[noreturn]] void refuse(const std::string& file, const std::string& asked_by, const std::string& why) {
+  throw ScenarioError(fmt::format("{}: {}: {}", asked_by, file, why));
+}
+
 /// Opens a library. Gives the function that adds its parts.
 std::function<void(Parts&)> opened_library(const std::string& file, const std::string& asked_by) {
   void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) throw ScenarioError(fmt::format("{}: cannot be loaded: {}", asked_by, dlerror()));
-  const auto fail = [&](const std::string& why) {
-    throw ScenarioError(fmt::format("{}: {}: {}", asked_by, file, why));
-  };
   const auto stamp = function_in<const char* (*)()>(library, "understory_plugin_stamp");
   const auto add = function_in<void (*)(Parts&)>(library, "understory_plugin_add");
   if (stamp == nullptr || add == nullptr)
-    fail("is not a plug-in: it has no UNDERSTORY_PLUGIN (docs/integrate.md)");
+    refuse(file, asked_by, "is not a plug-in: it has no UNDERSTORY_PLUGIN (docs/integrate.md)");
   if (const std::string difference = difference_of(plugin_stamp(), stamp()); !difference.empty())
-    fail(difference + "; build it again with this version's understory_add_plugin");
+    refuse(file, asked_by, difference + "; build it again with this version's understory_add_plugin");
   return add;
 }
 
@@ -69,16 +70,13 @@ std::function<void(Parts&)> opened_python(const std::string& file, const std::st
 
 /// Adds the parts of a plug-in, all or none.
 void add_parts(const std::function<void(Parts&)>& add, const std::string& file, const std::string& asked_by) {
-  const auto fail = [&](const std::string& why) {
-    throw ScenarioError(fmt::format("{}: {}: {}", asked_by, file, why));
-  };
   Parts more = parts();
   try {
     add(more);
   } catch (const MachineError&) {
     throw;
   } catch (const std::exception& error) {
-    fail(error.what());
+    refuse(file, asked_by, error.what());
   }
   const std::vector<Key> keys = keys_of(Scenario());
   const auto mark = [&](auto& list, const auto& before, const std::string& group) {
@@ -90,7 +88,7 @@ void add_parts(const std::function<void(Parts&)>& add, const std::string& file, 
       if (std::ranges::any_of(keys, [&](const Key& key) {
             return key.name.starts_with(name) && key.name.find_first_of(".[", name.size()) == name.size();
           }))
-        fail("the name '" + part.name + "' is taken by the keys " + name);
+        refuse(file, asked_by, "the name '" + part.name + "' is taken by the keys " + name);
     }
     return list.all().size() - before.all().size();
   };
@@ -98,7 +96,7 @@ void add_parts(const std::function<void(Parts&)>& add, const std::string& file, 
                             mark(more.state_sources, parts().state_sources, "estimation.") +
                             mark(more.planners, parts().planners, "autopilot.") +
                             mark(more.courses, parts().courses, "");
-  if (added == 0) fail("adds no part");
+  if (added == 0) refuse(file, asked_by, "adds no part");
   parts() = std::move(more);
 }
 

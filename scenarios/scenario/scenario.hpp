@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -226,6 +227,11 @@ struct Scenario {
     return config;
   }
   double goal_x_m() const { return forest.clear_m + forest.length_m; }
+  /// Where a flight goes on: beyond its sides and behind it a flight has left the course.
+  Eigen::AlignedBox2d course_rectangle() const {
+    return {Eigen::Vector2d(-forest.half_width_m, -forest.half_width_m),
+            Eigen::Vector2d(goal_x_m(), forest.half_width_m)};
+  }
   /// Frames looked at per second.
   double frame_rate_hz() const { return 1 / std::max(1.0 / cameras.rate_hz, perception.cost_s()); }
   /// Whether every frame reaches the stack. Then it is known beforehand which frames will be looked at.
@@ -291,7 +297,8 @@ void visit_fields(Visitor& visit, PerceptionSection& section) {
         "original aircraft's.");
   visit("depths_m", section.pushbroom.depths_m, 0.1, 1000.0,
         "Depths at which the pushbroom detector looks for obstacles; empty: only the detection depth in the "
-        "rig's file. The preset `tuned` sets two for the rig `paper`.");  // to look at; empty: the rig's own
+        "rig's file. The presets `tuned` and `woods` set two for the rig `paper`.");  // to look at; empty:
+                                                                                      // the rig's own
   visit("pushbroom", section.pushbroom);
   visit("stereo_bm", section.stereo_bm);
   visit("stereo_sgbm", section.stereo_sgbm);

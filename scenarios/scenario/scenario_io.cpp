@@ -33,9 +33,6 @@ bool is_plain_word(const std::string& name) {
          std::all_of(name.begin(), name.end(), is_plain);
 }
 
-/// More of them take a minute to build.
-constexpr int maximum_obstacles = 20'000;
-
 double palings_of(const FenceConfig& fence, double goal_x_m) {
   const double fences = std::max(0.0, std::ceil((goal_x_m - fence.first_across_m) / fence.across_apart_m));
   const double across_m = fences * 2 * (fence.reach_m - 0.5 * fence.opening_m);

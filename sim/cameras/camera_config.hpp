@@ -55,10 +55,10 @@ void visit_fields(Visitor& visit, CameraConfig& config) {
         "10,000 in a pixel of 6 um (our assumption). 0: no shot noise.");
   visit("vignetting_power", config.vignetting_power, 0.0, 16.0,
         "Exponent n of the vignetting, a falloff with cos^n of the angle to the optical axis: 4 for a plain "
-        "lens (the cosine-fourth law), 0 for none.");
+        "lens (the cosine-fourth law), 0 for none. The default with world.scenery woods is 4.");
   visit("psf_px", config.psf_px, 0.0, 5.0,
         "Standard deviation of the lens's point spread function, a Gaussian, in pixels of the camera's "
-        "image; 0 for none. The default with world.scenery woods is 0.6, and 4 for vignetting_power.");
+        "image; 0 for none. The default with world.scenery woods is 0.6.");
   visit(
       "supersampling", config.supersampling, 1, 4,
       "Number of samples of a pixel along either axis: images are rendered so many times as wide and as high "

@@ -39,6 +39,7 @@ enum : unsigned {
   gl_cull_face = 0x0B44,
   gl_blend = 0x0BE2,
   gl_scissor_test = 0x0C11,
+  gl_clip_plane0 = 0x3000,
   gl_lequal = 0x0203,
   gl_color_bit = 0x4000,
   gl_depth_bit = 0x0100,
@@ -327,6 +328,7 @@ struct WoodsPass::Implementation {
   void set_state(const Eye& eye, int left_px) const {
     gl.Viewport(left_px, 0, eye.width_px, eye.height_px);
     for (const unsigned off : {gl_cull_face, gl_blend, gl_scissor_test}) gl.Disable(off);
+    for (unsigned plane = 0; plane < 6; ++plane) gl.Disable(gl_clip_plane0 + plane);
     gl.Enable(gl_depth_test);
     gl.DepthFunc(gl_lequal);
     gl.DepthMask(1);

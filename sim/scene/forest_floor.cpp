@@ -14,6 +14,7 @@ constexpr double cell_m = 2.5;
 constexpr int cells_per_patch = 4;
 constexpr double patch_m = cells_per_patch * cell_m;
 constexpr double far_reach_m = 45;  ///< how far the wood goes on beyond the stand
+constexpr double far_lean_m = 1;    ///< most by which a far stem reaches sideways from its foot
 const Vector3d green(98, 126, 58);
 
 /// One patch of ground: its relief, and ferns, shrubs and grass, each where it likes to grow.
@@ -197,7 +198,7 @@ void add_thicket(MeshBuilder& builder, const Vector2d& place, const Vector3d& ti
 
 void add_forest_floor(MeshBuilder& builder, const std::vector<Obstacle>& obstacles,
                       const std::vector<Tree>& trees, const Eigen::AlignedBox2d& stand,
-                      const WoodsConfig& config) {
+                      const Eigen::AlignedBox2d& course, const WoodsConfig& config) {
   const WoodsNumbers numbers{trees.size()};
   FloorPainter floor(builder, config, numbers);
   const Vector2d low = (stand.min() - Vector2d::Constant(far_reach_m + 25)) / patch_m,
@@ -209,8 +210,7 @@ void add_forest_floor(MeshBuilder& builder, const std::vector<Obstacle>& obstacl
   const auto number = static_cast<std::uint16_t>(numbers.far_wood());
   const Eigen::AlignedBox2d reach(stand.min() - Vector2d::Constant(far_reach_m),
                                   stand.max() + Vector2d::Constant(far_reach_m));
-  // Not where the aircraft flies, and not in the clearing of the launch.
-  const Eigen::AlignedBox2d course(stand.min() - Vector2d(18, 1), stand.max() + Vector2d(4, 1));
+  const Eigen::AlignedBox2d around(stand.min() - Vector2d(18, 1), stand.max() + Vector2d(4, 1));
   const double density = std::clamp(static_cast<double>(trees.size()) / stand.volume(), 0.01, 0.04);
   const int count = static_cast<int>(0.7 * density * reach.volume());
   const Vector3d tint = config.season == Season::winter ? Vector3d(112, 100, 80) : green;
@@ -218,10 +218,12 @@ void add_forest_floor(MeshBuilder& builder, const std::vector<Obstacle>& obstacl
     const double x = builder.uniform(reach.min().x(), reach.max().x());
     const Vector2d place(x, builder.uniform(reach.min().y(), reach.max().y()));
     const auto pick = static_cast<std::size_t>(builder.uniform(0, 0.999) * static_cast<double>(trees.size()));
-    if (course.contains(place) || (place.x() < stand.min().x() && std::abs(place.y()) < 8)) continue;
+    // The clearing of the launch stays free.
+    if (around.contains(place) || (place.x() < stand.min().x() && std::abs(place.y()) < 8)) continue;
     add_far_tree(builder, trees[pick], obstacles[trees[pick].first].radius_m, place, config, number);
+    if (course.exteriorDistance(place) < far_lean_m) builder.mesh.parts.pop_back();
     // Thickets close the view under the crowns, where there would be a horizon.
-    if (course.exteriorDistance(place) > 4) add_thicket(builder, place, tint, number);
+    if (around.exteriorDistance(place) > 4) add_thicket(builder, place, tint, number);
   }
 }
 

@@ -53,7 +53,10 @@ class Grower {
     tree_.height_m = std::max(2.0 * std::pow(diameter_cm, 0.68) * std::exp(normal(0.24)), 4.0);
     if (known_.height_m > 0) tree_.height_m = std::max(known_.height_m, 2.0);
     tree_.crown_radius_m = habit_.crown_share * tree_.height_m;
-    tree_.crown_base_m = std::max(config_.lowest_branch_m, 0.4 * tree_.height_m * uniform(0.8, 1.2));
+    const double spread = uniform(0.8, 1.2);
+    tree_.crown_base_m = config_.has_low_crowns
+                             ? config_.lowest_branch_m * spread / 0.8
+                             : std::max(config_.lowest_branch_m, 0.4 * tree_.height_m * spread);
     grow_trunk();
     grow_stubs();
     grow_branches();
@@ -172,7 +175,8 @@ WoodsConfig drawn(WoodsConfig config, std::uint64_t seed) {
   const double litter = uniform(0, 1), leaf_tone = uniform(0, 1), overcast = uniform(0, 1);
   if (config.kinds == WoodsKinds::any)
     config.kinds = static_cast<WoodsKinds>(std::max(static_cast<int>(WoodsKinds::mixed), kinds));
-  if (config.lowest_branch_m == 0) config.lowest_branch_m = lowest_branch_m;
+  config.has_low_crowns = config.lowest_branch_m > 0;
+  if (!config.has_low_crowns) config.lowest_branch_m = lowest_branch_m;
   if (config.undergrowth < 0) config.undergrowth = undergrowth;
   if (config.season == Season::any) config.season = winter < 0.25 ? Season::winter : Season::summer;
   if (config.fallen_logs < 0) config.fallen_logs = fallen_logs;

@@ -59,8 +59,10 @@ struct WoodsMesh {
 void paint(WoodsMesh& mesh);
 
 /// Draws a wood that stands in a rectangle of the ground (corners in world axes, m) with a far wood around
-/// it, without textures. The same arguments give the same bytes.
+/// it that keeps out of the course, a rectangle too, without textures. The same arguments give the same
+/// bytes.
 WoodsMesh woods_mesh(const std::vector<Obstacle>& obstacles, const std::vector<Tree>& trees,
-                     const Eigen::AlignedBox2d& stand, const WoodsConfig& config, std::uint64_t seed);
+                     const Eigen::AlignedBox2d& stand, const Eigen::AlignedBox2d& course,
+                     const WoodsConfig& config, std::uint64_t seed);
 
 }  // namespace understory

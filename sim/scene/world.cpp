@@ -136,14 +136,14 @@ void set_inertia(mjModel& model, const Airframe& airframe) {
 
 /// The wood fills the rectangle that its trees stand in.
 std::shared_ptr<WoodsMesh> mesh_of(const std::vector<Obstacle>& obstacles, const std::vector<Tree>& trees,
-                                   const WorldConfig& config) {
+                                   const WorldConfig& config, const Eigen::AlignedBox2d& course) {
   if (config.scenery == Scenery::plain) return nullptr;
   Eigen::AlignedBox2d stand;
   for (const Tree& tree : trees) stand.extend(Eigen::Vector2d(obstacles[tree.first].from_world.head<2>()));
   if (trees.empty()) stand = Eigen::AlignedBox2d(Eigen::Vector2d(0, -25), Eigen::Vector2d(60, 25));
   stand.extend(stand.max() + Eigen::Vector2d(1, 1));  // one tree alone would fill no area
   const std::uint64_t seed = trees.empty() ? 1 : trees.front().seed;
-  auto mesh = std::make_shared<WoodsMesh>(woods_mesh(obstacles, trees, stand, config.woods, seed));
+  auto mesh = std::make_shared<WoodsMesh>(woods_mesh(obstacles, trees, stand, course, config.woods, seed));
   const auto first = mesh->parts.begin();
   if (!config.obstacles_visible)
     mesh->parts.erase(first, first + static_cast<std::ptrdiff_t>(mesh->obstacle_parts));
@@ -157,7 +157,7 @@ void DeleteData::operator()(mjData_* data) const { mj_deleteData(data); }
 
 World build_world(const fs::path& models_folder, const Airframe& airframe,
                   const std::vector<Obstacle>& obstacles, const WorldConfig& config,
-                  const std::vector<Tree>& trees) {
+                  const std::vector<Tree>& trees, const Eigen::AlignedBox2d& course) {
   mju_user_error = raise_error;
   mju_user_warning = raise_error;
 
@@ -177,7 +177,7 @@ World build_world(const fs::path& models_folder, const Airframe& airframe,
   set_inertia(*model, airframe);
   model->vis.quality.shadowsize = 0;  // unused by the cameras, and expensive
   model->vis.quality.offsamples = 0;
-  return {std::move(model), obstacles, config, mesh_of(obstacles, trees, config)};
+  return {std::move(model), obstacles, config, mesh_of(obstacles, trees, config, course)};
 }
 
 }  // namespace understory

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -50,9 +51,11 @@ inline constexpr int pooled_geoms = 64;
 
 /// Composes models/airframe/delta_wing.xml with the obstacles and compiles it. Throws std::runtime_error,
 /// naming the file, where MuJoCo refuses it. Mass and inertia come from `airframe`. With scenery `woods` the
-/// model has the pooled geoms "pool_<number>" and no scenery: sim/render/woods_pass draws it.
+/// model has the pooled geoms "pool_<number>" and no scenery: sim/render/woods_pass draws it. `course`
+/// (corners in world axes, m) is where the aircraft may fly: the far wood, which nothing can hit, keeps out
+/// of it.
 World build_world(const std::filesystem::path& models_folder, const Airframe& airframe,
                   const std::vector<Obstacle>& obstacles, const WorldConfig& config,
-                  const std::vector<Tree>& trees = {});
+                  const std::vector<Tree>& trees = {}, const Eigen::AlignedBox2d& course = {});
 
 }  // namespace understory

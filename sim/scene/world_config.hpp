@@ -28,11 +28,13 @@ inline constexpr std::array<std::pair<std::string_view, WoodsKinds>, 7> woods_ki
 inline constexpr std::array<std::pair<std::string_view, Season>, 3> season_names{
     {{"any", Season::any}, {"summer", Season::summer}, {"winter", Season::winter}}};
 
-/// The look of the woods. A key that keeps its default is drawn from the scenario's seed.
+/// The look of the woods. A key that keeps its default is drawn from the scenario's seed, except
+/// leaves_end_flight.
 struct WoodsConfig {
   WoodsKinds kinds = WoodsKinds::any;
   Season season = Season::any;
   double lowest_branch_m = 0;
+  bool has_low_crowns = false;  ///< no key: drawn() sets it where lowest_branch_m is given
   double undergrowth = -1;
   double fallen_logs = -1;
   double litter = -1;
@@ -50,7 +52,8 @@ void visit_fields(Visitor& visit, WoodsConfig& config) {
   visit("season", config.season, season_names,
         "winter: oaks, beeches and birches have no leaves; any: drawn from the seed, winter once in four");
   visit("lowest_branch_m", config.lowest_branch_m, 0.0, 40.0,
-        "height below which no living branch begins; 0: drawn from 6 to 8");
+        "Height of the lowest living branches; some trees have them up to half as much higher. 0: they begin "
+        "at 0.4 of the tree's height, but not below a height that is drawn from 6 to 8.");
   visit("undergrowth", config.undergrowth, -1.0, 1.0,
         "density of ferns and shrubs, 0 to 1; negative: drawn from 0.2 to 1");
   visit("fallen_logs", config.fallen_logs, -1.0, 1000.0,
@@ -60,9 +63,9 @@ void visit_fields(Visitor& visit, WoodsConfig& config) {
   visit("leaf_tone", config.leaf_tone, -1.0, 1.0,
         "colour of the leaves from fresh (0) to dark (1); negative: drawn");
   visit("overcast", config.overcast, -1.0, 1.0,
-        "share of the sun that clouds take, 1: no patches of sun; negative: drawn");
+        "share of the sunlight that clouds block, 1: no patches of sun; negative: drawn");
   visit("haze_m", config.haze_m, 0.0, 10000.0,
-        "distance at which haze hides two thirds; 0: drawn from 60 to 250");
+        "distance at which haze takes two thirds of the contrast; 0: drawn from 60 to 250");
   visit("sun_elevation_rad", config.sun_elevation_rad, 0.0, 1.5,
         "height of the sun over the horizon; 0: drawn from 0.15 to 1.2");
   visit("leaves_end_flight", config.leaves_end_flight,

@@ -134,6 +134,32 @@ TEST(Repeat, FullStereoOnABusyComputerIsTheSameToTheBit) {
   EXPECT_NEAR(one.result.at("frames").get<double>(), frames, 1.2);
 }
 
+TEST(Repeat, AFlightThroughWoodsIsTheSameToTheBit) {
+  const std::vector<std::string> short_woods{"forest.clear_m=8", "forest.length_m=8", "cameras.rate_hz=40"};
+  const Flown one = flown("woods_dense", 1000, short_woods);
+  const Flown other = flown("woods_dense", 1000, short_woods);
+  EXPECT_EQ(one.digest(), other.digest());
+  EXPECT_EQ(one.trajectory, other.trajectory);
+  EXPECT_GT(one.detections(), 0);
+}
+
+/// A blind flight through low crowns: the time among leaves is counted, and ends the flight where a key says.
+TEST(Leaves, AreCountedAndEndAFlightOnDemand) {
+  const std::vector<std::string> harmless{"perception.detector=none", "cameras.rate_hz=1",
+                                          "forest.square_metres_per_tree=16", "forest.intangible=true"};
+  const Flown through = flown("woods_low", 1000, harmless);
+  EXPECT_EQ(through.outcome(), "goal");
+  const double leaves_s = through.result.at("leaves_s"), leaves_m = through.result.at("leaves_m");
+  EXPECT_GT(leaves_s, 0.05);
+  EXPECT_NEAR(leaves_m / leaves_s, through.result.at("mean_speed_mps").get<double>(), 1.5);
+  const Flown ended = flown("woods_low", 1000, with(harmless, {"world.woods.leaves_end_flight=true"}));
+  EXPECT_EQ(ended.outcome(), "collision");
+  EXPECT_EQ(ended.result.at("touched"), "leaves");
+  EXPECT_LT(ended.result.at("leaves_s").get<double>(), 0.01);
+  EXPECT_EQ(flown("woods", 1000, with(harmless, {"world.woods.lowest_branch_m=12"})).result.at("leaves_s"),
+            0);
+}
+
 TEST(Repeat, TheOtherLibraryDrawsTheSameFlight) {
   if (void* library = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_LOCAL)) {
     dlclose(library);

@@ -59,6 +59,7 @@ TEST(ClosedLoopBench, ARowAddsUpItsFlights) {
   const ClosedLoopRow one = closed_loop_row("one", 1, alone, 5, nullptr);
   EXPECT_EQ(one.flights, 2);
   EXPECT_DOUBLE_EQ(one.pairs_per_s, 240);
+  EXPECT_DOUBLE_EQ(one.render_ms, 2.5);
   EXPECT_DOUBLE_EQ(one.simulated_per_s, 2);
   EXPECT_DOUBLE_EQ(one.peak_memory_mb, 210);
   EXPECT_DOUBLE_EQ(one.cpu_per_simulated_s, 0.45);

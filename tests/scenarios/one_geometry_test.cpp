@@ -237,7 +237,7 @@ TEST(OneGeometry, DrawnTreesAreWhatRaysMeet) {
                                               static_cast<int>(numbers.branch(0)));
   EXPECT_GT(compared.pixels, 1000);
   EXPECT_LE(compared.outline, compared.pixels / 500);
-  EXPECT_LT(compared.worst_m, 0.003);
+  EXPECT_LT(compared.worst_m, 0.002);
 }
 
 TEST(OneGeometry, DrawnListedShapesAreWhatRaysMeet) {
@@ -249,7 +249,7 @@ TEST(OneGeometry, DrawnListedShapesAreWhatRaysMeet) {
     const Compared compared = compare_with_rays(world, shapes, first, first + 2);
     EXPECT_GT(compared.pixels, 2000);
     EXPECT_LE(compared.outline, compared.pixels / 500);
-    EXPECT_LT(compared.worst_m, 0.003);
+    EXPECT_LT(compared.worst_m, 0.002);
   }
 }
 

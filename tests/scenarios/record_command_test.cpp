@@ -36,6 +36,28 @@ TEST(RecordCommand, RecordingChangesNoFlight) {
   expect_refusal("record" + flight + " --out " + kept, "holds results already: --force");
 }
 
+TEST(RecordCommand, TwoRecordingsOfAWoodHoldTheSameBytes) {
+  const TemporaryFolder folder;
+  const fs::path one = folder.path() / "one", other = folder.path() / "other";
+  for (const fs::path& kept : {one, other}) {
+    const auto outcome = understory(
+        "record woods --seed 1007 --path scenarios/paths/level.tum --set "
+        "cameras.rate_hz=2 --out " +
+        kept.string());
+    EXPECT_EQ(outcome.status, 0) << outcome.text;
+  }
+  int files = 0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(one / "mav0")) {
+    if (!entry.is_regular_file()) continue;
+    EXPECT_TRUE(content_of(entry.path()) == content_of(other / fs::relative(entry.path(), one))) << entry;
+    ++files;
+  }
+  EXPECT_GT(files, 40);
+  const std::string objects = content_of(one / "mav0" / "objects0" / "objects.csv");
+  for (const char* kind : {"trunk", "branch", "foliage", "undergrowth"})
+    EXPECT_NE(objects.find(kind), std::string::npos) << kind;
+}
+
 TEST(RecordCommand, WrongArgumentsAreBadInput) {
   const TemporaryFolder folder;
   const std::string out = " --out " + (folder.path() / "out").string();

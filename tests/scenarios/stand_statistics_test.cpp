@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <random>
 
 #include "scenarios/course/inventory.hpp"
 #include "scenarios/output/errors.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace understory {
 namespace {
@@ -142,12 +141,11 @@ TEST(Inventory, CoursesKeepTheDistancesBetweenStems) {
 
 /// The measured plot is not in the repository: where it is there, the drawn forests are like it.
 TEST(Inventory, DrawnForestsAreLikeTheMeasuredOne) {
-  const char* data = std::getenv("UNDERSTORY_DATA");
-  const std::filesystem::path file = std::filesystem::path(data != nullptr ? data : "") / "scbi-2008.csv";
-  if (data == nullptr || !std::filesystem::exists(file))
-    GTEST_SKIP() << "UNDERSTORY_DATA has no scbi-2008.csv";
+  const std::string name = "forests/scbi-2008.csv";
+  const auto file = support::shared_data(name);
+  if (!file) GTEST_SKIP() << support::missing_data(name);
   ForestConfig measured;
-  measured.trees_file = file.string();
+  measured.trees_file = file->string();
   measured.thinnest_stem_m = 0.03;
   ForestConfig random;
   random.stems = StemModel::inventory;

@@ -149,6 +149,32 @@ TEST(CameraFaults, CornersDarkenWithTheFourthPowerOfTheCosine) {
   EXPECT_LT(dark.left.at<std::uint8_t>(239, 0), 60);  // 50 degrees off the axis
 }
 
+/// A black wall before the sky: the slope across its edge has the lens's standard deviation.
+TEST(CameraFaults, ALensSpreadsAnEdgeAsItsGaussianSays) {
+  const World wall = bare_world("<geom type='box' size='.1 5 20' rgba='0 0 0 1' pos='10 5 0'/>");
+  CameraConfig config = noiseless();
+  const StereoFrame sharp = still(wall, config);
+  for (const double psf_px : {0.6, 1.5}) {
+    config.psf_px = psf_px;
+    const StereoFrame blurred = still(wall, config);
+    for (const auto& [before, after] : {std::pair(sharp.left, blurred.left), {sharp.right, blurred.right}}) {
+      const auto* ideal = before.ptr<std::uint8_t>(80);
+      const auto* seen = after.ptr<std::uint8_t>(80);
+      int edge = 8;  // first column of the sky
+      while (edge < before.cols - 8 && !(ideal[edge - 1] < 5 && ideal[edge] > 50)) ++edge;
+      ASSERT_LT(edge, before.cols - 8);
+      double weight = 0, mean_px = 0, square_px = 0;  // of the edge's slope
+      for (int at = edge - 7; at < edge + 7; ++at) {
+        const double slope = seen[at] - seen[at - 1], off_px = at - edge;
+        weight += slope, mean_px += slope * off_px, square_px += slope * off_px * off_px;
+      }
+      EXPECT_NEAR(weight, ideal[edge], 5);
+      EXPECT_NEAR(mean_px / weight, 0, 0.03);
+      EXPECT_NEAR(std::sqrt(square_px / weight), psf_px, 0.03 * psf_px);
+    }
+  }
+}
+
 /// Captures while the body moves along world y at a constant speed; the last capture's exposure ends at
 /// `end_ns`. Positions at t = 0 are the origin's.
 StereoFrame moving(const World& world, const CameraConfig& config, double speed_mps, std::int64_t end_ns) {

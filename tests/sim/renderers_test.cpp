@@ -23,12 +23,24 @@ void append(std::ofstream& file, const cv::Mat& image) {
              static_cast<std::streamsize>(image.total() * image.elemSize()));
 }
 
-/// Pairs, depths, objects and chase views of several poses, one after the other.
+/// The trees of forest_world(), grown.
+World woods_world() {
+  const World plain = forest_world();
+  WorldConfig config{.scenery = Scenery::woods,
+                     .woods = drawn({.kinds = WoodsKinds::mixed, .season = Season::summer}, 5)};
+  const Wood wood = grow(plain.obstacles, config.woods, 5);
+  return build_world(fs::path(UNDERSTORY_SOURCE_DIR) / "models", Airframe{}, wood.obstacles, config,
+                     wood.trees);
+}
+
+/// Pairs, depths, objects and chase views of several poses of a forest and of woods, one after the other.
 void draw(RendererKind renderer, const fs::path& to) {
-  const World world = forest_world();
-  StereoCameras cameras(world, paper_rig(), noiseless(), {1, 1}, std::nullopt, renderer);
   std::ofstream file(to, std::ios::binary);
+  const World forest = forest_world(), woods = woods_world();
+  StereoCameras bare(forest, paper_rig(), noiseless(), {1, 1}, std::nullopt, renderer);
+  StereoCameras grown(woods, paper_rig(), noiseless(), {1, 1}, std::nullopt, renderer);
   for (int i = 0; i < 6; ++i) {
+    StereoCameras& cameras = i < 4 ? bare : grown;
     const Eigen::Quaterniond attitude(Eigen::AngleAxisd(0.3 * i - 0.7, Eigen::Vector3d::UnitX()) *
                                       Eigen::AngleAxisd(0.1 * i - 0.2, Eigen::Vector3d::UnitZ()));
     const Eigen::Isometry3d body = body_at({1.7 * i, 0.4 * i - 1, 3}, attitude);

@@ -91,6 +91,54 @@ TEST(Trees, AKeyThatIsSaidChangesNoOther) {
   EXPECT_NE(open.haze_m, drawn({}, 10).haze_m);
 }
 
+TEST(Trees, BeginTheirCrownsWhereTheKeySays) {
+  for (const Tree& tree : wood_of(300, 3).trees) {
+    EXPECT_GE(tree.crown_base_m, 3);
+    EXPECT_LE(tree.crown_base_m, 4.5);
+  }
+  for (const Tree& tree : grow(upright_trunks(300), drawn({}, 5), 5).trees) EXPECT_GE(tree.crown_base_m, 6);
+}
+
+TEST(Trees, GrowAsTheyWereMeasured) {
+  const std::vector<KnownTree> known{{17, Eigen::Vector2d(0.05, -0.02), TreeKind::spruce}, {}};
+  const std::vector<Obstacle> trunks = upright_trunks(2);
+  const WoodsConfig look = drawn({.kinds = WoodsKinds::oak}, 5);
+  const Wood wood = grow(trunks, look, 5, known), unknown = grow(trunks, look, 5);
+  const Tree& tree = wood.trees[0];
+  EXPECT_EQ(tree.height_m, 17);
+  EXPECT_EQ(tree.kind, TreeKind::spruce);
+  const Vector3d top = wood.obstacles[tree.first + tree.trunk_pieces - 1].to_world - trunks[0].from_world;
+  EXPECT_NEAR(top.x(), 0.05 * top.z(), 0.02);  // a spruce hardly bends
+  EXPECT_NEAR(top.y(), -0.02 * top.z(), 0.02);
+  EXPECT_EQ(wood.trees[1].height_m, unknown.trees[1].height_m);
+  EXPECT_EQ(wood.trees[1].kind, TreeKind::oak);
+}
+
+/// A sparse wood: between its trees and the sides of the course nothing is drawn that cannot be hit.
+TEST(Woods, NoFarStemStandsWithinTheCourse) {
+  const Wood wood = wood_of(3);
+  WorldConfig config{.scenery = Scenery::woods, .woods = drawn({}, 5)};
+  const Eigen::AlignedBox2d course(Eigen::Vector2d(-25, -25), Eigen::Vector2d(75, 25));
+  const auto far_stems_within = [&](const World& world) {
+    int within = 0, all = 0;
+    for (const WoodsVertex& corner : [&] {
+           std::vector<WoodsVertex> used;
+           for (const WoodsPart& part : world.woods->parts)
+             for (std::uint32_t i = 0; i < part.solid[0].count; ++i)
+               used.push_back(world.woods->vertices[world.woods->indices[part.solid[0].first + i]]);
+           return used;
+         }()) {
+      if (corner.object[0] + 256 * corner.object[1] != static_cast<int>(WoodsNumbers{3}.far_wood())) continue;
+      ++all;
+      within += course.contains(Eigen::Vector2d(corner.position_world[0], corner.position_world[1]));
+    }
+    EXPECT_GT(all, 100);
+    return within;
+  };
+  EXPECT_GT(far_stems_within(build_world(models, Airframe{}, wood.obstacles, config, wood.trees)), 0);
+  EXPECT_EQ(far_stems_within(build_world(models, Airframe{}, wood.obstacles, config, wood.trees, course)), 0);
+}
+
 /// The pool against a model that holds every capsule.
 TEST(Woods, PooledCapsulesCollideAsAllOfThemWould) {
   const Wood wood = wood_of(40);
@@ -112,6 +160,23 @@ TEST(Woods, PooledCapsulesCollideAsAllOfThemWould) {
     touches += near.contact() == Contact::obstacle;
   }
   EXPECT_GT(touches, 300);
+}
+
+TEST(Woods, MorePiecesThanThePoolHoldsEndTheProgram) {
+  Wood wood = wood_of(1);
+  Obstacle twig = wood.obstacles.back();
+  twig.from_world = Vector3d(30, 0, 4.3), twig.to_world = Vector3d(30, 0.3, 4.3);  // above the wing
+  const auto placed_among = [&](int twigs) {
+    Wood thick = wood;
+    thick.obstacles.insert(thick.obstacles.end(), static_cast<std::size_t>(twigs), twig);
+    const World world = world_of(wood, Scenery::woods);
+    Aircraft aircraft(*world.model, Airframe{}, LaunchConfig{}, Wind(Vector3d::Zero()), {}, thick.obstacles);
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation() = Vector3d(30, 0, 4);
+    aircraft.place(pose, {12, 0, 0}, Vector3d::Zero(), {});
+  };
+  EXPECT_NO_THROW(placed_among(pooled_geoms));
+  EXPECT_THROW(placed_among(pooled_geoms + 1), SimulationError);
 }
 
 CameraConfig exact_camera() {
@@ -163,7 +228,6 @@ TEST(Woods, DrawnTrunksLieWhereTheirCapsulesAre) {
   EXPECT_GT(checked, 2000);
 }
 
-/// OpenGL's state is shared with MuJoCo: neither kind of scenery changes the other's pictures.
 TEST(Woods, InvisibleTreesAreInNoPictureAndTouchedAllTheSame) {
   const Wood wood = wood_of(60);
   WorldConfig config{.obstacles_visible = false, .scenery = Scenery::woods, .woods = drawn({}, 5)};
@@ -182,6 +246,7 @@ TEST(Woods, InvisibleTreesAreInNoPictureAndTouchedAllTheSame) {
   EXPECT_EQ(invisible.woods->leaf_cards.size(), visible.woods->leaf_cards.size());
 }
 
+/// OpenGL's state is shared with MuJoCo: neither kind of scenery changes the other's pictures.
 TEST(Woods, PlainAndWoodsInOneProcessEqualEachAlone) {
   const Wood wood = wood_of(30);
   const World plain = world_of(wood, Scenery::plain), woods = world_of(wood, Scenery::woods);
