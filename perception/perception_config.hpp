@@ -53,7 +53,8 @@ PushbroomConfig robust_pushbroom();
 /// Rigs that nobody has tuned for get robust_pushbroom().
 PushbroomConfig tuned_pushbroom(std::string_view rig);
 
-/// The tuned rule with the numbers found on recordings of woods, seen through a lens (docs/woods.md).
+/// The tuned rule with the numbers found on recordings of woods, seen through a lens (docs/woods.md), for the
+/// rigs `long` and `paper`. Other rigs get tuned_pushbroom().
 PushbroomConfig woods_pushbroom(std::string_view rig);
 
 /// which numbers a pushbroom detector starts from

@@ -46,7 +46,7 @@ struct ClosedLoopRow {
   double peak_memory_mb = 0;  ///< of the greediest flight
   std::string yardstick;      ///< name of the row it is measured against; empty for a yardstick itself
   double ratio = 0;           ///< elapsed time per simulated second over the yardstick's; 0 for a yardstick
-  double render_ms = 0;       ///< of a stereo pair
+  double render_ms = 0;       ///< mean wall time of rendering a stereo pair
 };
 
 /// `elapsed_s`: from the first flight's start to the last one's end. `yardstick`: nullptr, or the row to

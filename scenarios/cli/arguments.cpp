@@ -45,7 +45,7 @@ void add_with_option(Command& command, std::vector<std::string>& with) {
 void add_vision_options(Command& command, VisionConfigSources& sources) {
   command.choice("--preset", sources.preset, pushbroom_preset_names,
                  "parameter set of the pushbroom detector: tuned (found by search for this rig), woods "
-                 "(the same for woods), robust (before tuning) or original (Barry & Tedrake 2015)");
+                 "(found by search in woods), robust (before tuning) or original (Barry & Tedrake 2015)");
   add_with_option(command, sources.with);
   command.texts("--set", "KEY=VALUE", sources.settings,
                 "override a key of perception or autopilot.map, for example perception.depths_m=[10.1,7,5]; "

@@ -11,7 +11,7 @@
 /// the process with such a line and status 3. Our own parts are made as they are: their tests check them.
 namespace understory {
 
-/// So many obstacles a course may have: more take a minute to build.
+/// Most obstacles that a course may have: more take a minute to build.
 inline constexpr std::size_t maximum_obstacles = 20'000;
 
 /// Hits must be finite, lie within the rig's image and come from top to bottom.

@@ -65,7 +65,7 @@ struct FlightMcap::Implementation {
 
   // A crown is large, and only a picture.
   std::vector<Eigen::Vector3d> crown_points = surface_points(course_crowns(log.scenario), 0.8);
-  std::vector<Eigen::Vector3d> obstacle_points;  // from the first second on
+  std::vector<Eigen::Vector3d> obstacle_points;  // of log.obstacles, made once
 
   // What has been written of the log.
   std::size_t frames = 0, plans = 0, moments = 0;

@@ -297,8 +297,7 @@ void visit_fields(Visitor& visit, PerceptionSection& section) {
         "original aircraft's.");
   visit("depths_m", section.pushbroom.depths_m, 0.1, 1000.0,
         "Depths at which the pushbroom detector looks for obstacles; empty: only the detection depth in the "
-        "rig's file. The presets `tuned` and `woods` set two for the rig `paper`.");  // to look at; empty:
-                                                                                      // the rig's own
+        "rig's file. The presets `tuned` and `woods` set two for the rig `paper`.");
   visit("pushbroom", section.pushbroom);
   visit("stereo_bm", section.stereo_bm);
   visit("stereo_sgbm", section.stereo_sgbm);

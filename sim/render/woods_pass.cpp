@@ -328,6 +328,7 @@ struct WoodsPass::Implementation {
   void set_state(const Eye& eye, int left_px) const {
     gl.Viewport(left_px, 0, eye.width_px, eye.height_px);
     for (const unsigned off : {gl_cull_face, gl_blend, gl_scissor_test}) gl.Disable(off);
+    // MuJoCo's mirrors are drawn with clip planes.
     for (unsigned plane = 0; plane < 6; ++plane) gl.Disable(gl_clip_plane0 + plane);
     gl.Enable(gl_depth_test);
     gl.DepthFunc(gl_lequal);

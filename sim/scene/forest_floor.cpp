@@ -15,6 +15,7 @@ constexpr int cells_per_patch = 4;
 constexpr double patch_m = cells_per_patch * cell_m;
 constexpr double far_reach_m = 45;  ///< how far the wood goes on beyond the stand
 constexpr double far_lean_m = 1;    ///< most by which a far stem reaches sideways from its foot
+constexpr double thicket_half_m = 3.5;
 const Vector3d green(98, 126, 58);
 
 /// One patch of ground: its relief, and ferns, shrubs and grass, each where it likes to grow.
@@ -181,7 +182,7 @@ class FloorPainter {
 };
 
 void add_thicket(MeshBuilder& builder, const Vector2d& place, const Vector3d& tint, std::uint16_t number) {
-  const double half_m = builder.uniform(2, 3.5), height_m = builder.uniform(2.5, 4.5),
+  const double half_m = builder.uniform(2, thicket_half_m), height_m = builder.uniform(2.5, 4.5),
                turn = builder.uniform(0, std::numbers::pi);
   builder.begin_part(WoodsTexture::ground);
   const WoodsRange range = builder.range_of([&] {
@@ -210,6 +211,7 @@ void add_forest_floor(MeshBuilder& builder, const std::vector<Obstacle>& obstacl
   const auto number = static_cast<std::uint16_t>(numbers.far_wood());
   const Eigen::AlignedBox2d reach(stand.min() - Vector2d::Constant(far_reach_m),
                                   stand.max() + Vector2d::Constant(far_reach_m));
+  // Free of far trees: the stand, the place behind it from which the aircraft starts, and the goal's.
   const Eigen::AlignedBox2d around(stand.min() - Vector2d(18, 1), stand.max() + Vector2d(4, 1));
   const double density = std::clamp(static_cast<double>(trees.size()) / stand.volume(), 0.01, 0.04);
   const int count = static_cast<int>(0.7 * density * reach.volume());
@@ -221,9 +223,12 @@ void add_forest_floor(MeshBuilder& builder, const std::vector<Obstacle>& obstacl
     // The clearing of the launch stays free.
     if (around.contains(place) || (place.x() < stand.min().x() && std::abs(place.y()) < 8)) continue;
     add_far_tree(builder, trees[pick], obstacles[trees[pick].first].radius_m, place, config, number);
-    if (course.exteriorDistance(place) < far_lean_m) builder.mesh.parts.pop_back();
+    const double beside_m = course.isEmpty() ? far_reach_m : course.exteriorDistance(place);
+    if (beside_m < far_lean_m) builder.mesh.parts.pop_back();
     // Thickets close the view under the crowns, where there would be a horizon.
-    if (around.exteriorDistance(place) > 4) add_thicket(builder, place, tint, number);
+    if (around.exteriorDistance(place) <= 4) continue;
+    add_thicket(builder, place, tint, number);
+    if (beside_m < thicket_half_m) builder.mesh.parts.pop_back();
   }
 }
 

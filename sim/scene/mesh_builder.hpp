@@ -76,7 +76,8 @@ void add_far_tree(MeshBuilder& builder, const Tree& tree, double radius_m, const
                   const WoodsConfig& config, std::uint16_t number);
 
 /// Patches of ground with their plants and fallen logs, out to where trees hide the rim, and the far wood
-/// with thickets between its trees, which are like those of the stand. No far tree stands within the course.
+/// with thickets between its trees, which are like those of the stand. No far tree and no
+/// thicket stands within the course (an empty box: anywhere).
 void add_forest_floor(MeshBuilder& builder, const std::vector<Obstacle>& obstacles,
                       const std::vector<Tree>& trees, const Eigen::AlignedBox2d& stand,
                       const Eigen::AlignedBox2d& course, const WoodsConfig& config);

@@ -57,6 +57,8 @@ class Grower {
     tree_.crown_base_m = config_.has_low_crowns
                              ? config_.lowest_branch_m * spread / 0.8
                              : std::max(config_.lowest_branch_m, 0.4 * tree_.height_m * spread);
+    // A tree lower than that has its crown in its upper half.
+    if (tree_.crown_base_m > 0.9 * tree_.height_m) tree_.crown_base_m = 0.5 * tree_.height_m;
     grow_trunk();
     grow_stubs();
     grow_branches();

@@ -55,7 +55,8 @@ struct WoodsNumbers {
   std::size_t alone(std::size_t number) const { return trunk(trees) + 3 + number; }
 };
 
-/// The look, with what its keys leave open drawn from the seed: nothing is left open afterwards.
+/// The look, with what its keys leave open drawn from the seed: nothing is left open afterwards. `config` is
+/// as the keys say, not drawn before.
 WoodsConfig drawn(WoodsConfig config, std::uint64_t seed);
 
 /// Grows a tree where each trunk stands (`config` from drawn(); `known` is empty or as long as `trunks`): a

@@ -43,7 +43,7 @@ LeafPicture crown_picture(TreeKind kind, bool bare, int number) {
 /// As many sides as keep a tube's surface within 1.2 mm of the round one: rays then agree within 2 mm.
 int sides_of(double radius_m) {
   const int sides = static_cast<int>(std::ceil(std::numbers::pi * std::sqrt(radius_m / 0.0048)));
-  return std::clamp(sides, 6, 36);
+  return std::clamp(sides, 6, 41);
 }
 
 /// Draws one tree, near and far.

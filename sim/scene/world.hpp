@@ -52,8 +52,8 @@ inline constexpr int pooled_geoms = 64;
 /// Composes models/airframe/delta_wing.xml with the obstacles and compiles it. Throws std::runtime_error,
 /// naming the file, where MuJoCo refuses it. Mass and inertia come from `airframe`. With scenery `woods` the
 /// model has the pooled geoms "pool_<number>" and no scenery: sim/render/woods_pass draws it. `course`
-/// (corners in world axes, m) is where the aircraft may fly: the far wood, which nothing can hit, keeps out
-/// of it.
+/// (corners in world axes, m) is where the aircraft may fly: stems and thickets of the far wood, which
+/// nothing can hit, keep out of it. Where it is empty they stand anywhere but among the trees.
 World build_world(const std::filesystem::path& models_folder, const Airframe& airframe,
                   const std::vector<Obstacle>& obstacles, const WorldConfig& config,
                   const std::vector<Tree>& trees = {}, const Eigen::AlignedBox2d& course = {});

@@ -53,7 +53,7 @@ void visit_fields(Visitor& visit, WoodsConfig& config) {
         "winter: oaks, beeches and birches have no leaves; any: drawn from the seed, winter once in four");
   visit("lowest_branch_m", config.lowest_branch_m, 0.0, 40.0,
         "Height of the lowest living branches; some trees have them up to half as much higher. 0: they begin "
-        "at 0.4 of the tree's height, but not below a height that is drawn from 6 to 8.");
+        "at 0.32 to 0.48 of the tree's height, but not below a height that is drawn from 6 to 8 m.");
   visit("undergrowth", config.undergrowth, -1.0, 1.0,
         "density of ferns and shrubs, 0 to 1; negative: drawn from 0.2 to 1");
   visit("fallen_logs", config.fallen_logs, -1.0, 1000.0,

@@ -270,8 +270,8 @@ TEST(Cli, BenchTimesWholeFlights) {
   const std::string json = (folder.path / "rows.json").string();
   const Outcome bench = understory("bench --closed-loop --flights 1 --set time_limit_s=0.5 --json " + json);
   EXPECT_EQ(bench.status, 0) << bench.text;
-  for (const char* part :
-       {"forest, one at a time", "dense, two side by side", "paper", "woods_dense", "ten times the trees"})
+  for (const char* part : {"forest, one at a time", "dense, two side by side", "paper", "woods_dense",
+                           "ms a pair", "ten times the trees"})
     EXPECT_NE(bench.text.find(part), std::string::npos) << part << " not in\n" << bench.text;
   EXPECT_GT(fs::file_size(json), 1000u);
   expect_refusal("bench --closed-loop somewhere", "INPUT");

@@ -79,7 +79,7 @@ TEST(Scenario, TwoOfTheLibraryDifferOnlyInWhatTheirCommentsSay) {
       {"woods_dense", "world.scenery", "woods of woods.yaml"},
       {"woods_dense", "cameras.", "woods of woods.yaml"},
       {"woods_dense", "perception.", "woods of woods.yaml"},
-      {"woods_low", "world.", "begin at a height of 3 m"},
+      {"woods_low", "world.", "begin at a height of 4 to 6 m"},
       {"woods_low", "cameras.", "woods of woods.yaml"},
       {"woods_low", "perception.", "woods of woods.yaml"},
       {"woods_dusk", "world.", "at dusk"},
