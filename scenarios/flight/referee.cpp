@@ -12,8 +12,8 @@ std::optional<Outcome> Referee::outcome_at(const Truth& truth, Contact contact, 
   climbed_ = climbed_ || place.z() >= scenario_.band.minimum_altitude_m;
   const bool is_low = climbed_ && place.z() < scenario_.band.minimum_altitude_m;
   const bool is_high = place.z() > scenario_.band.maximum_altitude_m;
-  const bool is_aside = !scenario_.course_rectangle().contains(place.head<2>());
-  if (is_low || is_high || is_aside) return Outcome::out_of_bounds;
+  const bool is_outside = !scenario_.course_rectangle().contains(place.head<2>());
+  if (is_low || is_high || is_outside) return Outcome::out_of_bounds;
   return std::nullopt;
 }
 

@@ -75,15 +75,15 @@ TEST(Evaluation, APlaneAtTheDetectionDepthHasPrecisionOne) {
 TEST(Evaluation, TrunkPrecisionLeavesOutTrueHitsOnOtherSurfaces) {
   Plane plane("long.yaml", 0);
   const auto hits = true_depth_hits(plane.frame.truth, plane.grid, plane.rig);
-  const auto judged_with = [&](int left_object, double right_depth_m) {
+  const auto judged_with = [&](int left_object) {
     const cv::Rect left(0, 0, plane.rig.width_px / 2, plane.rig.height_px);
-    plane.frame.truth = plane_truth(plane.rig, right_depth_m);
+    plane.frame.truth = plane_truth(plane.rig, 20);
     const TrueImages near = plane_truth(plane.rig, plane.grid.depths[0].depth_m, left_object);
     near.depth_mm(left).copyTo(plane.frame.truth.depth_mm(left));
     near.objects(left).copyTo(plane.frame.truth.objects(left));
     return plane.judged(hits).at_one_pixel();
   };
-  const Rates on_ground = judged_with(1, 20), on_trunks = judged_with(trunk, 20);
+  const Rates on_ground = judged_with(1), on_trunks = judged_with(trunk);
   EXPECT_EQ(on_ground.precision.of, static_cast<std::int64_t>(hits.size()));
   EXPECT_NEAR(on_ground.precision.value(), 0.5, 0.1);
   EXPECT_EQ(on_ground.trunk_precision.with, 0);
