@@ -48,7 +48,8 @@ void visit_fields(Visitor& visit, Airframe& airframe) {
   visit("gravity_mps2", airframe.gravity_mps2, 1.0, 20.0, "acceleration of gravity");
   visit("air_density_kgpm3", airframe.air_density_kgpm3, 0.1, 2.0,
         "density of the air: sea level, 20 degrees C");
-  visit("span_m", airframe.span_m, 0.1, 5.0, "distance between the wing tips");
+  visit("span_m", airframe.span_m, 0.1, 5.0,
+        "distance between the wing tips; only the default has a body that collides");
   visit("chord_m", airframe.chord_m, 0.02, 2.0, "mean chord: wing area divided by span");
   visit("wing_area_m2", airframe.wing_area_m2, 0.01, 5.0, "area of the wing");
   visit("wing_lift_factor", airframe.wing_lift_factor, 0.1, 10.0,

@@ -170,9 +170,9 @@ Campaign read_campaign(const CampaignFolder& folder) {
     campaign.timeout_s = json.at(key = "timeout_s");
     if (campaign.timeout_s < 1 || campaign.timeout_s > 86400)
       refuse_manifest(folder, key, "must be from 1 to 86400");
-    const auto is_renderer = [&](const auto& entry) { return entry.first == campaign.renderer; };
-    if (std::ranges::none_of(renderer_names, is_renderer))
-      refuse_manifest(folder, "renderer", "must be osmesa, egl or auto");
+    if (campaign.renderer != word_for(RendererKind::osmesa) &&
+        campaign.renderer != word_for(RendererKind::egl))
+      refuse_manifest(folder, "renderer", "must be osmesa or egl");
     for (const char* list : {"seeds", "conditions"})
       if (!json.at(key = list).is_array() || json[key].empty())
         refuse_manifest(folder, key, "must be a list with at least one entry");

@@ -36,9 +36,9 @@ struct Campaign {
   std::string name;
   std::vector<Condition> conditions;
   std::vector<std::uint64_t> seeds;
-  std::string renderer = "osmesa";  ///< renderer_kind.hpp's word: the machine's, given with the command
-  double timeout_s = 300;           ///< of wall time: a flight that takes longer hangs
-  Identity identity;                ///< of its flights (identity_of)
+  std::string renderer = "osmesa";           ///< osmesa or egl; the identity has the renderer's full name
+  double timeout_s = 300;                    ///< of wall time: a flight that takes longer hangs
+  Identity identity;                         ///< of its flights (identity_of)
   std::vector<std::filesystem::path> files;  ///< that its description was read from
 };
 

@@ -38,6 +38,7 @@ void visit_columns(Row& row, Visit&& visit) {
   visit("outcome", row.outcome,
         "how the flight ended: goal, collision, ground (touched), out_of_bounds (sides "
         "or altitude limits) or time (limit reached); empty unless status is flown");
+  visit("renderer", row.renderer, "name of the OpenGL renderer that drew the images; empty without images");
   visit("cruise_speed_mps", row.cruise_speed_mps, "commanded cruise airspeed");
   visit("square_metres_per_tree", row.square_metres_per_tree, "mean ground area per tree of the forest");
   visit("goal_m", row.goal_m, "x coordinate of the goal plane");
@@ -104,7 +105,7 @@ bool take_row(FlightRow& row, TextOf&& text_of) {
   visit_columns(row, [&](std::string_view name, auto& value, std::string_view) {
     is_measured = is_measured || name == "outcome";
     const std::string text = text_of(name);
-    constexpr std::array<std::string_view, 4> optional{"reason", "minimum_clearance_m",
+    constexpr std::array<std::string_view, 5> optional{"reason", "renderer", "minimum_clearance_m",
                                                        "minimum_points_on_an_obstacle", "digest"};
     const bool may_be_empty =
         (is_measured && !row.flown()) || std::ranges::find(optional, name) != optional.end();
@@ -140,6 +141,7 @@ FlightRow flown_row(const std::string& condition, const Scenario& scenario, cons
   row.seed = result.seed;
   row.status = RunStatus::flown;
   row.outcome = word_for(result.outcome);
+  row.renderer = result.renderer;
   static_cast<FlightMeasures&>(row) = result;
   return row;
 }

@@ -33,6 +33,7 @@ struct FlightRow : FlightMeasures {
   RunStatus status = RunStatus::refused;
   std::string reason;
   std::string outcome;
+  std::string renderer;
   double cruise_speed_mps = 0;
   double square_metres_per_tree = 0;
   double goal_m = 0;

@@ -189,6 +189,10 @@ Comparison compare_campaigns(const std::vector<FlightRow>& baseline,
       if (const FlightRow* partner = row_of(new_rows, *row)) pairs.push_back({*row, *partner});
     if (pairs.empty()) continue;
     if (!std::ranges::all_of(pairs, asked_alike)) comparison.altered.push_back(condition);
+    for (const auto& [old_row, new_row] : pairs)
+      if (old_row.flown() && new_row.flown() && old_row.renderer != new_row.renderer)
+        comparison.drawn_differently =
+            fmt::format("{} in the baseline, {} in the candidate", old_row.renderer, new_row.renderer);
     all.insert(all.end(), pairs.begin(), pairs.end());
     comparison.conditions.push_back(compare_pairs(condition, std::move(pairs)));
   }
@@ -242,6 +246,9 @@ std::string to_report(const Comparison& comparison, const GateVerdict& verdict, 
   for (const std::string& condition : comparison.altered)
     text +=
         fmt::format("note: {}: asked for another speed, density or goal than in the baseline\n", condition);
+  if (!comparison.drawn_differently.empty())
+    text += fmt::format("note: other renderers give other images, and so other flights: {}\n",
+                        comparison.drawn_differently);
   if (!comparison.added.empty())
     text += fmt::format("note: {} of the candidate not in the baseline: {}\n",
                         flights(comparison.added.size()), ids_of(comparison.added));

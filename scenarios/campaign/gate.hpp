@@ -50,6 +50,8 @@ struct Comparison {
   /// Conditions of one name that were asked another speed, density or goal: their difference is not the
   /// program's alone.
   std::vector<std::string> altered;
+  /// "A in the baseline, B in the candidate", where flights of a pair were drawn by different renderers.
+  std::string drawn_differently;
 };
 
 /// Throws ScenarioError where a set has a seed of a condition twice.

@@ -128,7 +128,6 @@ int run_campaign(const CampaignArguments& arguments) {
                     });
   campaign.files.insert(campaign.files.end(), arguments.with.begin(), arguments.with.end());
   line.clear();
-  campaign.renderer = word_for(arguments.renderer);
   const std::vector<Scenario> scenarios = scenarios_of(campaign, arguments.file);
   const CampaignFolder folder{arguments.out.empty() ? fs::path("results") / campaign.name
                                                     : fs::path(arguments.out)};
@@ -140,7 +139,9 @@ int run_campaign(const CampaignArguments& arguments) {
   require_writable(arguments.junit);
   FolderClaim claim(folder.path, "campaign", folder.path);
   claim_campaign_folder(claim, folder, campaign, arguments.force);
-  campaign.identity = identity_of(scenarios, data_root() / "models", arguments.renderer);
+  const OpenedRenderer renderer = opened_renderer(arguments.renderer);
+  campaign.renderer = word_for(renderer.kind);
+  campaign.identity = identity_of(scenarios, data_root() / "models", renderer);
   remove_parts(folder);
   prepare_campaign_folder(folder, campaign, arguments.resume);
   if (arguments.print_tasks) return print_tasks(folder, campaign);
@@ -186,8 +187,9 @@ int run_shard(const ShardArguments& arguments) {
   for (const Condition& condition : campaign.conditions)
     scenarios.push_back(
         scenario_from_text(condition.scenario_text, folder.condition_file(condition).string()));
-  require_identity(folder, campaign,
-                   identity_of(scenarios, data_root() / "models", renderer_named(campaign.renderer)));
+  require_identity(
+      folder, campaign,
+      identity_of(scenarios, data_root() / "models", opened_renderer(renderer_named(campaign.renderer))));
   const StopSignals stop_signals;
   LocalEngineConfig config;
   config.jobs = arguments.jobs;

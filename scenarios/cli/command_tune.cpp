@@ -41,7 +41,7 @@ Judges judges_of(const TuneFile& file, const TuneArguments& arguments, const fs:
     return {vision_judge(file.training_folders, file.every, jobs),
             vision_judge(file.validation_folders, file.every, jobs)};
   rig_of(file.scenario, data_root() / "models");  // before anything is flown: every flight would fail
-  const std::string renderer(word_for(arguments.renderer));
+  const std::string renderer(word_for(opened_renderer(arguments.renderer).kind));
   const auto judge = [&](const char* part, const std::vector<std::uint64_t>& seeds) {
     return flight_judge({folder / "flown" / part, seeds, renderer, file.timeout_s, jobs});
   };
@@ -51,7 +51,7 @@ Judges judges_of(const TuneFile& file, const TuneArguments& arguments, const fs:
 /// What decides the trials: flights' identity, or the recordings and what looks at them.
 Identity identity_of(const TuneFile& file, RendererKind renderer) {
   if (file.over == TuningData::flights)
-    return understory::identity_of({file.scenario}, data_root() / "models", renderer);
+    return understory::identity_of({file.scenario}, data_root() / "models", opened_renderer(renderer));
   Identity identity{{"program", program_digest()}, {"libraries", mapped_libraries_digest()}};
   for (const auto* folders : {&file.training_folders, &file.validation_folders})
     for (const fs::path& folder : *folders)
@@ -88,7 +88,7 @@ int run_tune(const TuneArguments& arguments) {
       throw ScenarioError(fmt::format("{}: {}", file.scenario_file.string(), error.what()));
     }
   }();
-  prepare_tune_folder(folder, file, std::string(word_for(arguments.renderer)), arguments.resume, identity);
+  prepare_tune_folder(folder, file, arguments.resume, identity);
   if (file.over == TuningData::flights) judges = judges_of(file, arguments, folder);
   const StopSignals stop_signals;
   ProgressLine line;

@@ -164,7 +164,7 @@ std::vector<fs::path> record_suite(const fs::path& file, const fs::path& folder,
     } catch (const ScenarioError& error) {
       throw ScenarioError(fmt::format("{}: {}: {}", file.string(), recording.name, error.what()));
     }
-  const Identity identity = identity_of(scenarios, models, RendererKind::osmesa);
+  const Identity identity = identity_of(scenarios, models, opened_renderer(RendererKind::osmesa));
   std::vector<std::string> identities;
   for (std::size_t i = 0; i < suite.size(); ++i)
     identities.push_back(identity_text(suite[i], scenarios[i], identity));

@@ -32,16 +32,21 @@ std::string digest_of_models(const fs::path& folder) {
 
 }  // namespace
 
-Identity identity_of(const std::vector<Scenario>& scenarios, const fs::path& models_folder,
-                     RendererKind renderer) {
+OpenedRenderer opened_renderer(RendererKind asked) {
   try {
-    OffscreenContext context({renderer});
+    OffscreenContext context({asked});
     context.make_current(16, 16);  // now everything that draws is mapped
+    return {context.kind(), context.renderer()};
   } catch (const std::runtime_error& error) {
     throw MachineError(error.what());
   }
+}
+
+Identity identity_of(const std::vector<Scenario>& scenarios, const fs::path& models_folder,
+                     const OpenedRenderer& renderer) {
   Identity identity{{"program", program_digest()},
                     {"libraries", mapped_libraries_digest()},
+                    {"renderer", renderer.name},
                     {"models", digest_of_models(models_folder)}};
   std::set<std::string> rigs;
   for (const Scenario& scenario : scenarios) {

@@ -10,11 +10,20 @@
 
 namespace understory {
 
+/// What draws in this process.
+struct OpenedRenderer {
+  RendererKind kind;  ///< osmesa or egl, never automatic
+  std::string name;   ///< as OffscreenContext::renderer()
+};
+
+/// Opens a renderer: from now on this process draws with it. Throws MachineError where it cannot be opened.
+OpenedRenderer opened_renderer(RendererKind asked);
+
 /// Of flights that this program, as it is loaded, would fly: its file, the libraries it has mapped (the
-/// renderer's too, which is opened here), all of the models folder but its rigs, and each scenario's rig.
-/// Throws ScenarioError where a rig is missing, MachineError where nothing can be drawn.
+/// renderer's too), the renderer's name, all of the models folder but its rigs, and each scenario's rig.
+/// Throws ScenarioError where a rig is missing.
 Identity identity_of(const std::vector<Scenario>& scenarios, const std::filesystem::path& models_folder,
-                     RendererKind renderer);
+                     const OpenedRenderer& renderer);
 
 /// The name of a scenario's rig there.
 std::string rig_name_in_identity(const Scenario& scenario);

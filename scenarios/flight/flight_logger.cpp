@@ -1,5 +1,7 @@
 #include "scenarios/flight/flight_logger.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -177,6 +179,11 @@ void FlightLogger::on_end(const Flight& flight) {
   else if (result.outcome == Outcome::collision)
     if (const auto touched = nearest_obstacle(end.T_world_body, scenario.airframe, log_.obstacles))
       result.touched = log_.obstacles[*touched].name;
+  if (result.minimum_clearance_m < 0 && log_.touch.with == Contact::none && !scenario.forest.intangible)
+    result.contradiction = fmt::format(
+        "the clearance fell to {:.2f} m, and nothing was touched: the body that collides is smaller than the "
+        "airframe's span_m, chord_m and positions say",
+        result.minimum_clearance_m);
   count_points_on_obstacles();
   result.planner = flight.planner_counts();
   if (flight.cameras() != nullptr) result.renderer = flight.cameras()->renderer();

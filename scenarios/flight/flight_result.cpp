@@ -162,6 +162,7 @@ std::vector<std::pair<std::string, std::string>> result_lines(const FlightResult
     lines.emplace_back(name, std::move(value));
   };
   line("outcome", std::string(word_for(result.outcome)));
+  if (!result.contradiction.empty()) line("contradiction", result.contradiction);
   if (!result.touched.empty()) line("touched", result.touched);
   line("flown", fmt::format("{:.1f} m in {:.2f} s, {:.1f} m/s on average", result.distance_m,
                             result.simulated_s, result.mean_speed_mps));

@@ -115,6 +115,7 @@ struct FlightResult : FlightMeasures {
   std::int64_t frames = 0;
   double wall_s = 0;
   std::string renderer;
+  std::string contradiction;
   /// Number of points added to the map within 0.5 m of each obstacle, by its name; only on courses of at most
   /// eight obstacles.
   std::vector<std::pair<std::string, std::int64_t>> points_on_obstacles;
@@ -148,6 +149,8 @@ void visit_fields(Visitor& visit, Result& result) {
   visit("wall_s", result.wall_s, "wall time that the program took to simulate the flight");
   visit("renderer", result.renderer,
         "name of the OpenGL renderer that drew the images; empty without images");
+  visit("contradiction", result.contradiction,
+        "what in the result cannot be true, for example a clearance below zero without a contact; else empty");
 }
 
 /// The columns of trajectory.csv, a line.

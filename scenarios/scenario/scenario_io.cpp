@@ -90,6 +90,10 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
   expect(scenario.band.cruise_altitude_m > scenario.band.minimum_altitude_m &&
              scenario.band.cruise_altitude_m < scenario.band.maximum_altitude_m,
          "band.cruise_altitude_m: must be between band.minimum_altitude_m and band.maximum_altitude_m");
+  expect(scenario.airframe.span_m == Airframe().span_m,
+         fmt::format("airframe.span_m: must be {}: the body that collides has this span "
+                     "(models/airframe/delta_wing.xml)",
+                     Airframe().span_m));
   check_counts(scenario, expect);
   expect(scenario.goalposts.pass_minimum_m <= scenario.goalposts.pass_maximum_m,
          "goalposts.pass_minimum_m: must be at most goalposts.pass_maximum_m");
@@ -147,7 +151,6 @@ void take_airframe(const Airframe& airframe, Scenario& scenario) {
   filter.angle_of_attack.pitch_damping_nmspr = airframe.rate_damping_nmspr.y();
   filter.sideslip.winglets_area_m2 = 2 * airframe.winglet_area_m2;
   filter.sideslip.winglets_body_m = {airframe.winglet_x_m, 0, airframe.winglet_z_m};
-  scenario.autopilot.autopilot.planner.field.half_span_m = 0.5 * airframe.span_m;
 }
 
 /// Where a key's file is: beside the file that gives it, from the working directory, or in a further folder.

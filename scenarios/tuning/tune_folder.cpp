@@ -59,12 +59,11 @@ bool take_trial(const std::string& line, const std::vector<std::string>& paramet
 }
 
 /// Under each name what must not change between two runs that go on with each other.
-Json manifest_of(const TuneFile& file, const std::string& renderer, const Identity& identity) {
+Json manifest_of(const TuneFile& file, const Identity& identity) {
   Json json{{"format", results_format},
             {"understory", understory_version},
             {"file", file.text},
-            {"scenario", scenario_to_text(file.scenario)},
-            {"renderer", renderer}};
+            {"scenario", scenario_to_text(file.scenario)}};
   for (const auto& [name, digest] : identity) json[name] = digest;
   return json;
 }
@@ -134,10 +133,10 @@ void TrialLog::append(const Trial& trial) {
   if (!is_written) refuse_output(file_, reason);
 }
 
-void prepare_tune_folder(const fs::path& folder, const TuneFile& file, const std::string& renderer,
-                         bool resume, const Identity& identity) {
+void prepare_tune_folder(const fs::path& folder, const TuneFile& file, bool resume,
+                         const Identity& identity) {
   const fs::path manifest_file = folder / "tune.json";
-  const Json manifest = manifest_of(file, renderer, identity);
+  const Json manifest = manifest_of(file, identity);
   if (fs::exists(manifest_file)) {
     if (!resume)
       throw ScenarioError(

@@ -59,8 +59,8 @@ extern const std::vector<std::string> tune_patterns;
 /// Makes the folder, or, with `resume`, makes sure that it holds this very tuning, begun by this program.
 /// Throws ScenarioError in one line where not, as prepare_campaign_folder does.
 /// `identity`: of what the trials are judged with and on.
-void prepare_tune_folder(const std::filesystem::path& folder, const TuneFile& file,
-                         const std::string& renderer, bool resume, const Identity& identity = {});
+void prepare_tune_folder(const std::filesystem::path& folder, const TuneFile& file, bool resume,
+                         const Identity& identity = {});
 
 /// One parameter alone varied over its range, everything else as the best has it; on training data.
 struct Sensitivity {

@@ -56,36 +56,22 @@ class EglLibrary {
   void* library_;
 };
 
-/// An initialised display and its configuration for pictures without a window: 8 bits each of red, green,
-/// blue and alpha, 24 of depth, for pbuffers and OpenGL.
+/// An initialised display and a configuration for OpenGL.
 struct EglDisplay {
   EglLibrary library;
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLConfig config = nullptr;
+  bool is_surfaceless = false;  ///< a context can be current without a surface
 };
 
-/// EGL gives deeper colours first: takes what was asked for, not more.
-EGLConfig config_of(const EglLibrary& egl, EGLDisplay display) {
-  constexpr std::pair<EGLint, EGLint> exactly[] = {{EGL_RED_SIZE, 8},    {EGL_GREEN_SIZE, 8},
-                                                   {EGL_BLUE_SIZE, 8},   {EGL_ALPHA_SIZE, 8},
-                                                   {EGL_DEPTH_SIZE, 24}, {EGL_SAMPLES, 0}};
-  std::vector<EGLint> asked{EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT};
-  for (const auto& [attribute, value] : exactly) asked.insert(asked.end(), {attribute, value});
-  asked.push_back(EGL_NONE);
-  std::array<EGLConfig, 256> configs{};
+/// Pictures are framebuffer objects: a surface is needed only where a context cannot be current without one.
+EGLConfig config_of(const EglDisplay& egl) {
+  const std::array<EGLint, 5> asked{EGL_SURFACE_TYPE, egl.is_surfaceless ? 0 : EGL_PBUFFER_BIT,
+                                    EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+  EGLConfig config = nullptr;
   EGLint count = 0;
-  if (!egl.core<PFNEGLCHOOSECONFIGPROC>("eglChooseConfig")(display, asked.data(), configs.data(),
-                                                           static_cast<EGLint>(configs.size()), &count))
-    return nullptr;
-  const auto get = egl.core<PFNEGLGETCONFIGATTRIBPROC>("eglGetConfigAttrib");
-  const auto fits = [&](EGLConfig config) {
-    return std::ranges::all_of(exactly, [&](const auto& wanted) {
-      EGLint value = 0;
-      return get(display, config, wanted.first, &value) && value == wanted.second;
-    });
-  };
-  const auto found = std::find_if(configs.begin(), configs.begin() + count, fits);
-  return found == configs.begin() + count ? nullptr : *found;
+  const auto choose = egl.library.core<PFNEGLCHOOSECONFIGPROC>("eglChooseConfig");
+  return choose(egl.display, asked.data(), &config, 1, &count) && count == 1 ? config : nullptr;
 }
 
 std::vector<EGLDeviceEXT> gpus(const EglLibrary& egl) {
@@ -112,7 +98,9 @@ bool take(EglDisplay& egl, EGLDisplay display) {
       !egl.library.core<PFNEGLBINDAPIPROC>("eglBindAPI")(EGL_OPENGL_API))
     return false;
   egl.display = display;
-  egl.config = config_of(egl.library, display);
+  const char* has = egl.library.core<PFNEGLQUERYSTRINGPROC>("eglQueryString")(display, EGL_EXTENSIONS);
+  egl.is_surfaceless = has != nullptr && std::strstr(has, "EGL_KHR_surfaceless_context") != nullptr;
+  egl.config = config_of(egl);
   return egl.config != nullptr;
 }
 
@@ -141,46 +129,61 @@ const EglDisplay& display_of_process(EglDevice device) {
   return *chosen;
 }
 
-/// Draws into pbuffers.
+// From the OpenGL specification.
+constexpr unsigned gl_renderbuffer = 0x8D41;
+constexpr unsigned gl_rgba8 = 0x8058;
+constexpr unsigned gl_depth24 = 0x81A6;
+constexpr unsigned gl_color_attachment = 0x8CE0;
+constexpr unsigned gl_depth_attachment = 0x8D00;
+constexpr unsigned gl_framebuffer_complete = 0x8CD5;
+constexpr unsigned gl_framebuffer_flip_y_mesa = 0x8BBB;
+constexpr unsigned gl_extensions = 0x1F03;
+
+/// Draws into framebuffer objects, of which it keeps one of each size: films alternate between two. No
+/// surface is bound, for MuJoCo takes a pbuffer for a window and asks for buffers that it does not have.
 class EglBackend : public OffscreenBackend {
  public:
   explicit EglBackend(EglDevice device)
       : egl_(display_of_process(device)),
         get_function_(core<PFNEGLGETPROCADDRESSPROC>("eglGetProcAddress")),
         current_context_(core<PFNEGLGETCURRENTCONTEXTPROC>("eglGetCurrentContext")),
-        current_surface_(core<PFNEGLGETCURRENTSURFACEPROC>("eglGetCurrentSurface")),
         make_current_(core<PFNEGLMAKECURRENTPROC>("eglMakeCurrent")),
         context_(core<PFNEGLCREATECONTEXTPROC>("eglCreateContext")(egl_.display, egl_.config, EGL_NO_CONTEXT,
                                                                    nullptr)) {
     if (context_ == EGL_NO_CONTEXT)
       throw std::runtime_error("EGL gave no OpenGL context: reinstall Debian's libgl1-mesa-dri");
+    if (!egl_.is_surfaceless) surface_ = small_pbuffer();
   }
   ~EglBackend() override {
     if (current_context_() == context_)
       make_current_(egl_.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-    for (const auto& [size, surface] : surfaces_)
-      core<PFNEGLDESTROYSURFACEPROC>("eglDestroySurface")(egl_.display, surface);
+    if (surface_ != EGL_NO_SURFACE)
+      core<PFNEGLDESTROYSURFACEPROC>("eglDestroySurface")(egl_.display, surface_);
     core<PFNEGLDESTROYCONTEXTPROC>("eglDestroyContext")(egl_.display, context_);
   }
 
   RendererKind kind() const override { return RendererKind::egl; }
 
   void make_current(int width_px, int height_px) override {
-    EGLSurface surface = surface_of(width_px, height_px);
-    if (current_context_() == context_ && current_surface_(EGL_DRAW) == surface) return;
+    const bool is_current = current_context_() == context_;
+    if (is_current && width_px == width_px_ && height_px == height_px_) return;
+    if (!is_current && !make_current_(egl_.display, surface_, surface_, context_))
+      refuse(width_px, height_px);
+    framebuffer_ = framebuffer_of(width_px, height_px);
+    gl<void (*)(unsigned, unsigned)>("glBindFramebuffer")(gl_framebuffer, framebuffer_);
     width_px_ = width_px;
     height_px_ = height_px;
     pixels_.resize(static_cast<std::size_t>(width_px) * height_px * 4);
-    if (!make_current_(egl_.display, surface, surface, context_)) refuse(width_px, height_px);
   }
 
   const std::uint8_t* finished_pixels() override {
     using ReadPixels =
         void (*)(int x, int y, int width, int height, unsigned format, unsigned type, void* pixels);
-    as_function<ReadPixels>(function("glReadPixels"))(0, 0, width_px_, height_px_, gl_rgba, gl_unsigned_byte,
-                                                      pixels_.data());
+    gl<ReadPixels>("glReadPixels")(0, 0, width_px_, height_px_, gl_rgba, gl_unsigned_byte, pixels_.data());
     return pixels_.data();
   }
+
+  unsigned framebuffer() const override { return framebuffer_; }
 
   void* function(const char* name) const override { return reinterpret_cast<void*>(get_function_(name)); }
 
@@ -189,16 +192,42 @@ class EglBackend : public OffscreenBackend {
   Function core(const char* name) const {
     return egl_.library.core<Function>(name);
   }
+  template <typename Function>
+  Function gl(const char* name) const {
+    return as_function<Function>(function(name));
+  }
 
-  /// A surface of each size is kept: films alternate between two.
-  EGLSurface surface_of(int width_px, int height_px) {
-    EGLSurface& surface = surfaces_[{width_px, height_px}];
-    if (surface != EGL_NO_SURFACE) return surface;
-    const std::array<EGLint, 5> size{EGL_WIDTH, width_px, EGL_HEIGHT, height_px, EGL_NONE};
-    surface = core<PFNEGLCREATEPBUFFERSURFACEPROC>("eglCreatePbufferSurface")(egl_.display, egl_.config,
-                                                                              size.data());
-    if (surface == EGL_NO_SURFACE) refuse(width_px, height_px);
-    return surface;
+  /// Of no other use than to be bound where EGL asks for a surface.
+  EGLSurface small_pbuffer() const {
+    const std::array<EGLint, 5> size{EGL_WIDTH, 16, EGL_HEIGHT, 16, EGL_NONE};
+    return core<PFNEGLCREATEPBUFFERSURFACEPROC>("eglCreatePbufferSurface")(egl_.display, egl_.config,
+                                                                           size.data());
+  }
+
+  /// The context deletes them with itself.
+  unsigned framebuffer_of(int width_px, int height_px) {
+    unsigned& framebuffer = framebuffers_[{width_px, height_px}];
+    if (framebuffer != 0) return framebuffer;
+    gl<void (*)(int, unsigned*)>("glGenFramebuffers")(1, &framebuffer);
+    gl<void (*)(unsigned, unsigned)>("glBindFramebuffer")(gl_framebuffer, framebuffer);
+    for (const auto& [attachment, format] :
+         {std::pair(gl_color_attachment, gl_rgba8), std::pair(gl_depth_attachment, gl_depth24)}) {
+      unsigned buffer = 0;
+      gl<void (*)(int, unsigned*)>("glGenRenderbuffers")(1, &buffer);
+      gl<void (*)(unsigned, unsigned)>("glBindRenderbuffer")(gl_renderbuffer, buffer);
+      gl<void (*)(unsigned, unsigned, int, int)>("glRenderbufferStorage")(gl_renderbuffer, format, width_px,
+                                                                          height_px);
+      gl<void (*)(unsigned, unsigned, unsigned, unsigned)>("glFramebufferRenderbuffer")(
+          gl_framebuffer, attachment, gl_renderbuffer, buffer);
+    }
+    // Mesa keeps a window's rows from the top, and rounds at edges accordingly: OSMesa's bits.
+    const char* has = gl<const char* (*)(unsigned)>("glGetString")(gl_extensions);
+    if (has != nullptr && std::strstr(has, "GL_MESA_framebuffer_flip_y") != nullptr)
+      gl<void (*)(unsigned, unsigned, int)>("glFramebufferParameteri")(gl_framebuffer,
+                                                                       gl_framebuffer_flip_y_mesa, 1);
+    if (gl<unsigned (*)(unsigned)>("glCheckFramebufferStatus")(gl_framebuffer) != gl_framebuffer_complete)
+      refuse(width_px, height_px);
+    return framebuffer;
   }
 
   [[noreturn]] static void refuse(int width_px, int height_px) {
@@ -209,10 +238,11 @@ class EglBackend : public OffscreenBackend {
   const EglDisplay& egl_;
   PFNEGLGETPROCADDRESSPROC get_function_;
   PFNEGLGETCURRENTCONTEXTPROC current_context_;
-  PFNEGLGETCURRENTSURFACEPROC current_surface_;
   PFNEGLMAKECURRENTPROC make_current_;
   EGLContext context_;
-  std::map<std::pair<int, int>, EGLSurface> surfaces_;
+  EGLSurface surface_ = EGL_NO_SURFACE;
+  std::map<std::pair<int, int>, unsigned> framebuffers_;
+  unsigned framebuffer_ = 0;
   int width_px_ = 0;
   int height_px_ = 0;
   std::vector<std::uint8_t> pixels_;

@@ -15,13 +15,14 @@ class OffscreenBackend {
 
   /// Which of the two libraries: osmesa or egl.
   virtual RendererKind kind() const = 0;
-  /// Makes the context current on this thread unless it is already. Its default framebuffer is then a picture
-  /// of this size: RGBA, 8 bits each, and 24 bits of depth. Throws std::runtime_error where the library
-  /// refuses.
+  /// Makes the context current on this thread unless it is already, and binds framebuffer(): a picture of
+  /// this size, RGBA, 8 bits each, and 24 bits of depth. Throws std::runtime_error where the library refuses.
   virtual void make_current(int width_px, int height_px) = 0;
   /// The finished picture: RGBA, rows from the bottom up, of the size last made current. Valid until the next
   /// call of either function.
   virtual const std::uint8_t* finished_pixels() = 0;
+  /// OpenGL's name of the framebuffer that make_current() bound; 0: the context's own.
+  virtual unsigned framebuffer() const { return 0; }
   /// The OpenGL function of this name; the context must be current.
   virtual void* function(const char* name) const = 0;
 };
@@ -35,6 +36,7 @@ Function as_function(void* address) {
 // From the OpenGL specification: the headers are not needed for so few.
 constexpr unsigned gl_rgba = 0x1908;
 constexpr unsigned gl_unsigned_byte = 0x1401;
+constexpr unsigned gl_framebuffer = 0x8D40;
 
 /// A context of OSMesa: software that draws into memory of ours. Opens the library with dlopen; the
 /// environment's UNDERSTORY_OSMESA names another file. Throws std::runtime_error in one line where library or
@@ -46,8 +48,8 @@ enum class EglDevice {
   any_one  ///< hardware where there is some, otherwise Mesa's software
 };
 
-/// A context of EGL, drawing into pbuffers. Throws std::runtime_error in one line, naming the Debian
-/// packages, where library, device or context cannot be had. The process keeps to its first device.
+/// A context of EGL, drawing into framebuffer objects. Throws std::runtime_error in one line, naming the
+/// Debian packages, where library, device or context cannot be had. The process keeps to its first device.
 std::unique_ptr<OffscreenBackend> egl_backend(EglDevice device);
 
 /// False where no EGL could find a GPU that this user may open: asked of the kernel's device files, so that

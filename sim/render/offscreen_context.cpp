@@ -1,5 +1,7 @@
 #include "sim/render/offscreen_context.hpp"
 
+#include <array>
+#include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -16,6 +18,16 @@ constexpr unsigned gl_rgb = 0x1907;
 constexpr unsigned gl_unpack_alignment = 0x0CF5;
 constexpr unsigned gl_renderer = 0x1F01;
 constexpr unsigned gl_version = 0x1F02;
+
+/// Mesa's, and glibc's choice among its versions of a function.
+constexpr std::array variables_that_change_bits{"GALLIVM_PERF",
+                                                "GALLIVM_DEBUG",
+                                                "LP_PERF",
+                                                "LP_DEBUG",
+                                                "LP_NATIVE_VECTOR_WIDTH",
+                                                "MESA_EXTENSION_OVERRIDE",
+                                                "MESA_GL_VERSION_OVERRIDE",
+                                                "GLIBC_TUNABLES"};
 
 using BindTexture = void (*)(unsigned target, unsigned texture);
 using Backend = std::unique_ptr<OffscreenBackend>;
@@ -65,6 +77,7 @@ Backend backend_of(RendererKind kind) {
 
 OffscreenContext::OffscreenContext(const OffscreenOptions& options) {
   setenv("LP_NUM_THREADS", std::to_string(options.raster_threads).c_str(), 0);
+  setenv("GALLIUM_DRIVER", "llvmpipe", 1);  // Mesa's others crash without their device, or draw other bits
   backend_ = backend_of(options.renderer);
 }
 
@@ -93,7 +106,23 @@ std::string OffscreenContext::renderer() const {
     const unsigned char* value = get_string(name);
     return value == nullptr ? std::string("?") : std::string(reinterpret_cast<const char*>(value));
   };
-  return text(gl_renderer) + ", " + text(gl_version);
+  std::string name = text(gl_renderer) + ", " + text(gl_version);
+  for (const char* variable : variables_that_change_bits)
+    if (const char* value = std::getenv(variable)) name += std::string(", ") + variable + "=" + value;
+  return name;
+}
+
+std::string OffscreenContext::take_errors() const {
+  const auto next = as_function<unsigned (*)()>(backend_->function("glGetError"));
+  std::string errors;
+  for (int i = 0; i < 100; ++i) {  // without a context some libraries give errors for ever
+    const unsigned error = next();
+    if (error == 0) break;
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%sOpenGL error 0x%x", i == 0 ? "" : ", ", error);
+    if (i < 5) errors += text.data();
+  }
+  return errors;
 }
 
 }  // namespace understory

@@ -39,7 +39,14 @@ class OffscreenContext {
   void use_nearest_mipmap(unsigned texture) const;
   /// The OpenGL function of this name; the context must be current.
   void* function(const char* name) const { return backend_->function(name); }
-  /// The OpenGL implementation's own name and version.
+  /// OpenGL's name of the framebuffer drawn into; 0: the context's own.
+  unsigned framebuffer() const { return backend_->framebuffer(); }
+  /// Clears what calls of OpenGL left behind: "OpenGL error 0x502", or empty.
+  std::string take_errors() const;
+  /// Which library draws: osmesa or egl.
+  RendererKind kind() const { return backend_->kind(); }
+  /// The OpenGL implementation's own name and version, a GPU's with its driver's; behind them the variables
+  /// of the environment that are set and change what is drawn or computed.
   std::string renderer() const;
 
  private:

@@ -4,11 +4,16 @@
 
 #include <algorithm>
 #include <bit>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <utility>
 #include <vector>
 
+#include "sim/render/offscreen_context.hpp"
 #include "sim/scene/textures.hpp"
 
 namespace understory {
@@ -102,32 +107,72 @@ struct SceneryGeom {
 }  // namespace
 
 struct SceneRenderer::Scene {
+  OffscreenContext gl;
   mjrContext context{};
   mjvScene shown{};
   std::vector<SceneryGeom> scenery;
+  std::unique_ptr<WoodsPass> woods;
+  unsigned mujocos_framebuffer = 0;  ///< the one that MuJoCo made, where it draws into ours
+  std::string stale_errors;
+  std::thread::id thread = std::this_thread::get_id();
+
+  explicit Scene(RendererKind renderer) : gl({.renderer = renderer}) {
+    mjr_defaultContext(&context);
+    mjv_defaultScene(&shown);
+  }
+  ~Scene() {
+    gl.make_current(64, 64);  // both delete their GL objects in the current context
+    woods.reset();
+    mjv_freeScene(&shown);
+    if (mujocos_framebuffer != 0) context.offFBO = mujocos_framebuffer;
+    mjr_freeContext(&context);
+  }
+
+  /// Scenes whose renderers ended on another thread. A context that is current on two threads ends a process.
+  struct Waiting {
+    std::mutex mutex;
+    std::vector<std::unique_ptr<Scene>> scenes;
+  };
+  static Waiting& waiting() {
+    static auto* never_ends = new Waiting;  // a thread may end after main()
+    return *never_ends;
+  }
+  static void free_waiting() {
+    const std::lock_guard lock(waiting().mutex);
+    std::erase_if(waiting().scenes,
+                  [](const auto& one) { return one->thread == std::this_thread::get_id(); });
+  }
 };
 
 SceneRenderer::SceneRenderer(const mjModel& model, double view_distance_m, int width_px, int height_px,
                              RendererKind renderer, const WoodsMesh* woods)
-    : model_(model),
-      view_distance_m_(view_distance_m),
-      gl_({.renderer = renderer}),
-      scene_(std::make_unique<Scene>()) {
-  gl_.make_current(width_px, height_px);
+    : model_(model), view_distance_m_(view_distance_m) {
+  Scene::free_waiting();
+  scene_ = std::make_unique<Scene>(renderer);
+  begin_picture(width_px, height_px);
   make_context();
-  mjr_setBuffer(mjFB_WINDOW, &scene_->context);
-  mjv_defaultScene(&scene_->shown);
+  begin_picture(width_px, height_px);
+  mjr_setBuffer(scene_->gl.framebuffer() != 0 ? mjFB_OFFSCREEN : mjFB_WINDOW, &scene_->context);
   mjv_makeScene(&model_, &scene_->shown, model_.ngeom + 100);
   plain_rendering(scene_->shown);
   gather_scenery();
-  if (woods != nullptr) woods_ = std::make_unique<WoodsPass>(*woods, gl_);
+  if (woods != nullptr) scene_->woods = std::make_unique<WoodsPass>(*woods, scene_->gl);
 }
 
 SceneRenderer::~SceneRenderer() {
-  gl_.make_current(64, 64);  // both delete their GL objects in the current context
-  woods_.reset();
-  mjv_freeScene(&scene_->shown);
-  mjr_freeContext(&scene_->context);
+  if (scene_->thread == std::this_thread::get_id()) return;
+  const std::lock_guard lock(Scene::waiting().mutex);
+  Scene::waiting().scenes.push_back(std::move(scene_));
+}
+
+std::string SceneRenderer::name() const {
+  return scene_->gl.renderer() + (scene_->stale_errors.empty() ? "" : ", began with " + scene_->stale_errors);
+}
+
+/// Another renderer may have drawn since.
+void SceneRenderer::begin_picture(int width_px, int height_px) {
+  scene_->gl.make_current(width_px, height_px);
+  if (scene_->mujocos_framebuffer != 0) scene_->context.offFBO = scene_->gl.framebuffer();
 }
 
 /// MuJoCo would let OpenGL compute the textures' mipmaps, which takes most of its start. So MuJoCo gets
@@ -145,19 +190,24 @@ void SceneRenderer::make_context() {
   mjModel shown = model_;
   shown.tex_width = widths_px.data();
   shown.tex_height = heights_px.data();
-  mjr_defaultContext(&scene_->context);
-  mjr_makeContext(&shown, &scene_->context, mjFONTSCALE_100);
+  scene_->stale_errors = scene_->gl.take_errors();  // MuJoCo would take them for its own
+  try {
+    mjr_makeContext(&shown, &scene_->context, mjFONTSCALE_100);
+  } catch (const SimulationError& error) {
+    throw std::runtime_error(std::string(error.what()) + " (drawn by " + scene_->gl.renderer() + ")");
+  }
+  if (scene_->gl.framebuffer() != 0) scene_->mujocos_framebuffer = scene_->context.offFBO;
   for (int i = 0; i < model_.ntex; ++i) {
     const unsigned texture = scene_->context.texture[i];
     if (filled_here(i)) {
       const int width_px = model_.tex_width[i], height_px = model_.tex_height[i];
       const std::uint8_t* rgb = model_.tex_rgb + model_.tex_adr[i];
-      gl_.upload_level(texture, 0, width_px, height_px, rgb);
+      scene_->gl.upload_level(texture, 0, width_px, height_px, rgb);
       int level = 0;
       for (const TextureLevel& copy : smaller_copies(width_px, height_px, rgb))
-        gl_.upload_level(texture, ++level, copy.width_px, copy.height_px, copy.rgb.data());
+        scene_->gl.upload_level(texture, ++level, copy.width_px, copy.height_px, copy.rgb.data());
     }
-    if (scene_->context.textureType[i] == mjTEXTURE_2D) gl_.use_nearest_mipmap(texture);
+    if (scene_->context.textureType[i] == mjTEXTURE_2D) scene_->gl.use_nearest_mipmap(texture);
   }
 }
 
@@ -208,16 +258,15 @@ void SceneRenderer::fill_scene(const std::array<Eye, 2>& eyes) {
 }
 
 const std::uint8_t* SceneRenderer::render(const std::array<Eye, 2>& eyes, WoodsDrawing drawing) {
-  // Another renderer may have drawn since.
-  gl_.make_current(2 * eyes[0].width_px, eyes[0].height_px);
-  if (woods_ != nullptr) {
-    woods_->draw(eyes, 2, drawing, {}, true);
-    return gl_.finished_pixels();
+  begin_picture(2 * eyes[0].width_px, eyes[0].height_px);
+  if (scene_->woods != nullptr) {
+    scene_->woods->draw(eyes, 2, drawing, {}, true);
+    return scene_->gl.finished_pixels();
   }
   fill_scene(eyes);
   scene_->shown.stereo = mjSTEREO_SIDEBYSIDE;
   mjr_render({0, 0, 2 * eyes[0].width_px, eyes[0].height_px}, &scene_->shown, &scene_->context);
-  return gl_.finished_pixels();
+  return scene_->gl.finished_pixels();
 }
 
 std::array<cv::Mat, 2> SceneRenderer::gray_pair(const std::array<Eye, 2>& eyes) {
@@ -257,10 +306,11 @@ cv::Mat SceneRenderer::colour_with_aircraft(const mjData& data, const Eye& eye) 
   update_scene(data, true);
   scene_->shown.camera[0] = scene_->shown.camera[1] = to_gl(eye);
   scene_->shown.stereo = mjSTEREO_NONE;
-  gl_.make_current(eye.width_px, eye.height_px);
+  begin_picture(eye.width_px, eye.height_px);
   mjr_render({0, 0, eye.width_px, eye.height_px}, &scene_->shown, &scene_->context);
-  if (woods_ != nullptr) woods_->draw({eye, eye}, 1, WoodsDrawing::shaded, {.near_m = 60}, false);
-  return colour_with_sky(gl_.finished_pixels(), eye);
+  if (scene_->woods != nullptr)
+    scene_->woods->draw({eye, eye}, 1, WoodsDrawing::shaded, {.near_m = 60}, false);
+  return colour_with_sky(scene_->gl.finished_pixels(), eye);
 }
 
 }  // namespace understory

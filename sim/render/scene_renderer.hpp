@@ -6,13 +6,14 @@
 #include <string>
 
 #include "sim/render/eye.hpp"
-#include "sim/render/offscreen_context.hpp"
+#include "sim/render/renderer_kind.hpp"
 #include "sim/render/woods_pass.hpp"
 #include "sim/scene/world.hpp"
 
 namespace understory {
 
 /// Draws the model's scenery through pinhole eyes, offscreen. Not thread safe; create and use on one thread.
+/// Where it is destroyed on another one, its OpenGL context waits for the next renderer of its own thread.
 class SceneRenderer {
  public:
   /// Keeps a reference to the model. The size is that of the first picture; others may follow. Throws
@@ -35,26 +36,24 @@ class SceneRenderer {
   /// For comparison: from now on all scenery is drawn, however far away and wherever it is.
   void stop_culling() { culls_ = false; }
   /// The renderer's own name and version.
-  std::string name() const { return gl_.renderer(); }
+  std::string name() const;
 
  private:
-  struct Scene;  ///< MuJoCo's own structures
+  struct Scene;  ///< MuJoCo's own structures and the OpenGL context that they belong to
+  void begin_picture(int width_px, int height_px);
   void make_context();
   void gather_scenery();
   void update_scene(const mjData_& data, bool with_aircraft);
   void fill_scene(const std::array<Eye, 2>& eyes);
   /// RGBA of both eyes side by side, as OffscreenContext::finished_pixels.
   const std::uint8_t* render(const std::array<Eye, 2>& eyes, WoodsDrawing drawing = WoodsDrawing::shaded);
-  /// Of the left eye's view as last rendered.
-  /// Of the eye whose picture begins at this column.
+  /// Of the eye whose picture begins at this column, as last rendered.
   cv::Mat read_depth(const Eye& eye, int from_px = 0);
 
   const mjModel_& model_;
   double view_distance_m_;
   bool culls_ = true;
-  OffscreenContext gl_;
   std::unique_ptr<Scene> scene_;
-  std::unique_ptr<WoodsPass> woods_;
 };
 
 }  // namespace understory

@@ -167,7 +167,7 @@ TEST(Scenario, EveryDefaultIsWritten) {
 
 TEST(Scenario, FilterAndPlannerTakeTheWingFromTheAirframe) {
   const Scenario heavy =
-      scenario_from_text("airframe: {mass_kg: 0.8, wing_area_m2: 0.2, winglet_area_m2: 0.03, span_m: 1.0}\n",
+      scenario_from_text("airframe: {mass_kg: 0.8, wing_area_m2: 0.2, winglet_area_m2: 0.03}\n",
                          "a.yaml", {"airframe.air_density_kgpm3=1.1", "airframe.gravity_mps2=9.7"});
   const FilterConfig& filter = heavy.estimation.filter;
   EXPECT_EQ(filter.gravity_mps2, 9.7);
@@ -177,7 +177,8 @@ TEST(Scenario, FilterAndPlannerTakeTheWingFromTheAirframe) {
   EXPECT_EQ(filter.angle_of_attack.mass_kg, 0.8);
   EXPECT_EQ(filter.angle_of_attack.air_density_kgpm3, 1.1);
   EXPECT_EQ(filter.angle_of_attack.wing_area_m2, 0.2);
-  EXPECT_EQ(heavy.autopilot.autopilot.planner.field.half_span_m, 0.5);
+  expect_part(support::refusal_of([] { scenario_from_text("airframe:\n  span_m: 1.5\n", "a.yaml"); }),
+              "a.yaml:2: airframe.span_m: must be 0.8636: the body that collides has this span");
 
   const Scenario doubting =
       scenario_from_text("airframe: {mass_kg: 0.8}\n", "a.yaml", {"estimation.filter.sideslip.mass_kg=0.5"});

@@ -159,11 +159,12 @@ TEST_F(TuningTest, RefusesAnotherTuningsLog) {
 TEST_F(TuningTest, AFolderGoesOnOnlyWithItsOwnTuning) {
   const TuneFile file = load(tuning_text());
   const fs::path where = folder.path() / "r";
-  prepare_tune_folder(where, file, "osmesa", false);
-  EXPECT_THROW(prepare_tune_folder(where, file, "osmesa", false), ScenarioError);
-  EXPECT_NO_THROW(prepare_tune_folder(where, file, "osmesa", true));
-  EXPECT_THROW(prepare_tune_folder(where, file, "egl", true), ScenarioError);
-  EXPECT_THROW(prepare_tune_folder(where, load(tuning_text() + "timeout_s: 9\n"), "osmesa", true),
+  const Identity llvmpipe{{"renderer", "llvmpipe"}};
+  prepare_tune_folder(where, file, false, llvmpipe);
+  EXPECT_THROW(prepare_tune_folder(where, file, false, llvmpipe), ScenarioError);
+  EXPECT_NO_THROW(prepare_tune_folder(where, file, true, llvmpipe));
+  EXPECT_THROW(prepare_tune_folder(where, file, true, {{"renderer", "a GPU"}}), ScenarioError);
+  EXPECT_THROW(prepare_tune_folder(where, load(tuning_text() + "timeout_s: 9\n"), true, llvmpipe),
                ScenarioError);
 }
 

@@ -6,7 +6,10 @@
 #include <cstdio>
 #include <fstream>
 #include <map>
+#include <memory>
+#include <opencv2/core.hpp>
 #include <string>
+#include <thread>
 
 #include "sim/render/offscreen_backend.hpp"
 #include "tests/sim/camera_scenes.hpp"
@@ -34,7 +37,8 @@ World woods_world() {
 }
 
 /// Pairs, depths, objects and chase views of several poses of a forest and of woods, one after the other.
-void draw(RendererKind renderer, const fs::path& to) {
+/// Returns what drew them.
+std::string draw(RendererKind renderer, const fs::path& to) {
   std::ofstream file(to, std::ios::binary);
   const World forest = forest_world(), woods = woods_world();
   StereoCameras bare(forest, paper_rig(), noiseless(), {1, 1}, std::nullopt, renderer);
@@ -51,21 +55,23 @@ void draw(RendererKind renderer, const fs::path& to) {
     append(file, cameras.true_view(Eigen::Translation3d(1.7 * i, 0.4 * i - 1, 3) * attitude).objects);
     append(file, cameras.chase_view({.T_world_body = body}, 320, 200));
   }
+  return bare.renderer();
 }
 
 struct Drawn {
   std::string pictures;  ///< empty where nothing could be drawn
   std::string complaint;
+  std::string name;  ///< of the renderer
 };
 
 /// What draw() leaves in a process of its own, whose environment has these variables set.
 Drawn drawn(RendererKind renderer, const std::map<std::string, std::string>& variables = {}) {
   const fs::path pictures = fs::path(testing::TempDir()) / ("renderers_" + std::to_string(getpid()));
-  const fs::path complaint = pictures.string() + ".txt";
+  const fs::path complaint = pictures.string() + ".txt", drawn_by = pictures.string() + ".name";
   if (const pid_t child = fork(); child == 0) {
     for (const auto& [name, value] : variables) setenv(name.c_str(), value.c_str(), 1);
     try {
-      draw(renderer, pictures);
+      std::ofstream(drawn_by) << draw(renderer, pictures);
     } catch (const std::runtime_error& error) {
       std::ofstream(complaint) << error.what();
     }
@@ -73,9 +79,9 @@ Drawn drawn(RendererKind renderer, const std::map<std::string, std::string>& var
   } else {
     waitpid(child, nullptr, 0);
   }
-  const Drawn result{support::content_of(pictures), support::content_of(complaint)};
-  fs::remove(pictures);
-  fs::remove(complaint);
+  const Drawn result{support::content_of(pictures), support::content_of(complaint),
+                     support::content_of(drawn_by)};
+  for (const fs::path& file : {pictures, complaint, drawn_by}) fs::remove(file);
   return result;
 }
 
@@ -127,7 +133,70 @@ TEST(Renderers, EglDrawsOnTheGpuThatTheDriverNames) {
   EXPECT_TRUE(fallen_back.pictures == osmesa.pictures);
   fs::remove(log);
 }
+
+// MuJoCo takes a pbuffer for a window, and on NVIDIA's driver then fails: pictures are framebuffer objects,
+// and a pbuffer is bound only where EGL asks for one. Two cameras are two contexts.
+TEST(Renderers, APbufferIsMadeOnlyWhereAContextNeedsASurface) {
+  const Drawn osmesa = drawn(RendererKind::osmesa);
+  const fs::path log = fs::path(testing::TempDir()) / ("egl_surfaces_" + std::to_string(getpid()));
+  const Drawn with = drawn(RendererKind::egl, {{"UNDERSTORY_EGL", UNDERSTORY_EGL_WITH_GPU},
+                                               {"EGL_WITH_GPU_LOG", log.string()},
+                                               {"EGL_WITH_GPU_NEEDS_SURFACE", "1"}});
+  EXPECT_EQ(with.complaint, "");
+  EXPECT_EQ(support::content_of(log), "gpu\npbuffer\npbuffer\n");
+  EXPECT_TRUE(with.pictures == osmesa.pictures);
+  fs::remove(log);
+}
+
+TEST(Renderers, AnErrorThatIsOlderThanMuJoCosContextIsClearedAndNamed) {
+  const Drawn osmesa = drawn(RendererKind::osmesa);
+  const Drawn stale =
+      drawn(RendererKind::egl, {{"UNDERSTORY_EGL", UNDERSTORY_EGL_WITH_GPU}, {"EGL_WITH_GPU_ERROR", "1"}});
+  EXPECT_EQ(stale.complaint, "");
+  EXPECT_NE(stale.name.find(", began with OpenGL error 0x500"), std::string::npos) << stale.name;
+  EXPECT_TRUE(stale.pictures == osmesa.pictures);
+}
 #endif
+
+// The usual setting under WSL, Vulkan's, and none at all: Mesa ends the process, or draws other bits.
+TEST(Renderers, TheEnvironmentDoesNotChooseTheDriver) {
+  const Drawn osmesa = drawn(RendererKind::osmesa);
+  for (const char* driver : {"d3d12", "zink", "softpipe", "nonsense"})
+    for (const RendererKind kind : {RendererKind::osmesa, RendererKind::egl}) {
+      if (kind == RendererKind::egl && has_gpu_device_file()) continue;
+      const Drawn other = drawn(kind, {{"GALLIUM_DRIVER", driver}});
+      EXPECT_EQ(other.complaint, "");
+      EXPECT_TRUE(other.pictures == osmesa.pictures) << driver;
+    }
+}
+
+TEST(Renderers, TheNameSaysWhichVariablesChangeBits) {
+  const Drawn plain = drawn(RendererKind::osmesa);
+  const Drawn changed =
+      drawn(RendererKind::osmesa, {{"LP_PERF", "no_mip_linear"}, {"GLIBC_TUNABLES", "a.b=c"}});
+  EXPECT_NE(plain.name.find("llvmpipe"), std::string::npos) << plain.name;
+  EXPECT_EQ(changed.name, plain.name + ", LP_PERF=no_mip_linear, GLIBC_TUNABLES=a.b=c");
+}
+
+// What Python's garbage collector does: a context that is current on two threads ended the process.
+TEST(Renderers, ACameraMayEndOnAnotherThread) {
+  const World world = forest_world();
+  if (const pid_t child = fork(); child == 0) {
+    cv::Mat before;
+    for (int i = 0; i < 4; ++i) {
+      auto cameras = std::make_unique<StereoCameras>(world, paper_rig(), noiseless(), CameraSeeds{1, 1});
+      const cv::Mat now = cameras->capture(body_at({0, 0, 3}, Eigen::Quaterniond::Identity()), 0).left;
+      if (i > 0 && cv::norm(before, now) != 0) _exit(1);
+      before = now.clone();
+      std::thread([&] { cameras.reset(); }).join();
+    }
+    _exit(7);
+  } else {
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 7);
+  }
+}
 
 TEST(Renderers, AProcessKeepsToItsFirstLibrary) {
   const World world = bare_world("");
