@@ -147,9 +147,10 @@ class EglBackend : public OffscreenBackend {
       : egl_(display_of_process(device)),
         get_function_(core<PFNEGLGETPROCADDRESSPROC>("eglGetProcAddress")),
         current_context_(core<PFNEGLGETCURRENTCONTEXTPROC>("eglGetCurrentContext")),
-        make_current_(core<PFNEGLMAKECURRENTPROC>("eglMakeCurrent")),
-        context_(core<PFNEGLCREATECONTEXTPROC>("eglCreateContext")(egl_.display, egl_.config, EGL_NO_CONTEXT,
-                                                                   nullptr)) {
+        make_current_(core<PFNEGLMAKECURRENTPROC>("eglMakeCurrent")) {
+    take_opengl();
+    context_ =
+        core<PFNEGLCREATECONTEXTPROC>("eglCreateContext")(egl_.display, egl_.config, EGL_NO_CONTEXT, nullptr);
     if (context_ == EGL_NO_CONTEXT)
       throw std::runtime_error("EGL gave no OpenGL context: reinstall Debian's libgl1-mesa-dri");
     if (!egl_.is_surfaceless) surface_ = small_pbuffer();
@@ -197,6 +198,19 @@ class EglBackend : public OffscreenBackend {
     return as_function<Function>(function(name));
   }
 
+  /// EGL's choice of OpenGL holds for one thread. A thread that ends lets go of its context: another may have
+  /// to delete it.
+  void take_opengl() const {
+    core<PFNEGLBINDAPIPROC>("eglBindAPI")(EGL_OPENGL_API);
+    thread_local struct AtEnd {
+      PFNEGLRELEASETHREADPROC release = nullptr;
+      ~AtEnd() {
+        if (release != nullptr) release();
+      }
+    } at_end;
+    at_end.release = core<PFNEGLRELEASETHREADPROC>("eglReleaseThread");
+  }
+
   /// Of no other use than to be bound where EGL asks for a surface.
   EGLSurface small_pbuffer() const {
     const std::array<EGLint, 5> size{EGL_WIDTH, 16, EGL_HEIGHT, 16, EGL_NONE};
@@ -239,7 +253,7 @@ class EglBackend : public OffscreenBackend {
   PFNEGLGETPROCADDRESSPROC get_function_;
   PFNEGLGETCURRENTCONTEXTPROC current_context_;
   PFNEGLMAKECURRENTPROC make_current_;
-  EGLContext context_;
+  EGLContext context_ = EGL_NO_CONTEXT;
   EGLSurface surface_ = EGL_NO_SURFACE;
   std::map<std::pair<int, int>, unsigned> framebuffers_;
   unsigned framebuffer_ = 0;

@@ -3,6 +3,7 @@
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <numbers>
 #include <opencv2/core.hpp>
@@ -65,6 +66,12 @@ inline const Eigen::Quaterniond straight_down(Eigen::AngleAxisd(std::numbers::pi
                                                                 Eigen::Vector3d::UnitY()));
 inline CameraConfig noiseless() { return {.noise_gray = 0}; }
 
+/// The source tree's; that of UNDERSTORY_ROOT where a test was carried to another machine (tests/gpu/run).
+inline std::filesystem::path models_folder() {
+  const char* root = std::getenv("UNDERSTORY_ROOT");
+  return std::filesystem::path(root != nullptr ? root : UNDERSTORY_SOURCE_DIR) / "models";
+}
+
 inline World forest_world(bool visible = true) {
   std::vector<Obstacle> obstacles;
   for (int i = 0; i < 12; ++i) {
@@ -76,7 +83,7 @@ inline World forest_world(bool visible = true) {
   }
   WorldConfig config;
   config.obstacles_visible = visible;
-  return build_world(std::filesystem::path(UNDERSTORY_SOURCE_DIR) / "models", Airframe{}, obstacles, config);
+  return build_world(models_folder(), Airframe{}, obstacles, config);
 }
 
 inline bool equal(const cv::Mat& a, const cv::Mat& b) { return cv::norm(a, b, cv::NORM_INF) == 0; }

@@ -3,8 +3,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <memory>
 #include <opencv2/core.hpp>
@@ -32,8 +36,7 @@ World woods_world() {
   WorldConfig config{.scenery = Scenery::woods,
                      .woods = drawn({.kinds = WoodsKinds::mixed, .season = Season::summer}, 5)};
   const Wood wood = grow(plain.obstacles, config.woods, 5);
-  return build_world(fs::path(UNDERSTORY_SOURCE_DIR) / "models", Airframe{}, wood.obstacles, config,
-                     wood.trees);
+  return build_world(models_folder(), Airframe{}, wood.obstacles, config, wood.trees);
 }
 
 /// Pairs, depths, objects and chase views of several poses of a forest and of woods, one after the other.
@@ -178,24 +181,112 @@ TEST(Renderers, TheNameSaysWhichVariablesChangeBits) {
   EXPECT_EQ(changed.name, plain.name + ", LP_PERF=no_mip_linear, GLIBC_TUNABLES=a.b=c");
 }
 
-// What Python's garbage collector does: a context that is current on two threads ended the process.
-TEST(Renderers, ACameraMayEndOnAnotherThread) {
-  const World world = forest_world();
+/// Runs in a process of its own, which ends with the number of failures.
+int failures_in_child(const std::function<void()>& checks) {
   if (const pid_t child = fork(); child == 0) {
-    cv::Mat before;
-    for (int i = 0; i < 4; ++i) {
-      auto cameras = std::make_unique<StereoCameras>(world, paper_rig(), noiseless(), CameraSeeds{1, 1});
-      const cv::Mat now = cameras->capture(body_at({0, 0, 3}, Eigen::Quaterniond::Identity()), 0).left;
-      if (i > 0 && cv::norm(before, now) != 0) _exit(1);
-      before = now.clone();
-      std::thread([&] { cameras.reset(); }).join();
-    }
-    _exit(7);
+    checks();
+    _exit(testing::Test::HasFailure() ? 1 : 0);
   } else {
     int status = 0;
     waitpid(child, &status, 0);
-    EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 7);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
+}
+
+constexpr std::array both_renderers{RendererKind::osmesa, RendererKind::egl};
+
+/// Of the ground below an empty forest, and of what stands 3 m straight ahead, by pencil.
+void expect_closed_forms(RendererKind kind) {
+  const StereoRig rig = paper_rig();
+  const World empty = forest_world(false), trunks = forest_world(), woods = woods_world();
+  const double height_m = 2, pitch_rad = 0.3;  // nose down
+  const Eigen::Quaterniond attitude(Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()));
+  StereoCameras above(empty, rig, noiseless(), {1, 1}, std::nullopt, kind);
+  const cv::Mat depth = above.depth(body_at({10, 0, height_m}, attitude));
+  for (int row = 130; row < 240; row += 10)
+    for (int column = 3; column < 376; column += 31) {
+      const Eigen::Vector3d ray_camera((column - rig.center_left_x_px) / rig.focal_px,
+                                       (row - rig.center_y_px) / rig.focal_px, 1);
+      const double falls = -(attitude * rig.T_body_camera.linear() * ray_camera).z();
+      EXPECT_NEAR(depth.at<float>(row, column), height_m / falls, 0.001) << row << ", " << column;
+    }
+  for (const World* world : {&trunks, &woods}) {
+    StereoCameras before(*world, rig, noiseless(), {1, 1}, std::nullopt, kind);
+    const TrueView view = before.true_view(body_at({5, 0, 1.3}, level));
+    const int row = static_cast<int>(rig.center_y_px), column = static_cast<int>(rig.center_left_x_px);
+    const int number = view.objects.at<std::uint16_t>(row, column) - object_first_obstacle;
+    ASSERT_GE(number, 0);
+    const Obstacle& seen = world->obstacles.at(static_cast<std::size_t>(number));
+    const double ahead_m = view.depth_m.at<float>(row, column);
+    const Eigen::Vector3d place(5 + ahead_m, -(column - rig.center_left_x_px) / rig.focal_px * ahead_m,
+                                1.3 - (row - rig.center_y_px) / rig.focal_px * ahead_m);
+    const Eigen::Vector3d along = seen.to_world - seen.from_world;
+    const double share = std::clamp((place - seen.from_world).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    EXPECT_NEAR((place - seen.from_world - share * along).norm(), seen.radius_m, 0.03);
+    const double trunk_m = world == &trunks ? 8 - 5 - seen.radius_m : ahead_m;
+    EXPECT_NEAR(ahead_m, trunk_m, 0.005);  // the third trunk of forest_world()
+  }
+}
+
+TEST(Renderers, DepthAndNumbersAgreeWithClosedForms) {
+  for (const RendererKind kind : both_renderers)
+    EXPECT_EQ(failures_in_child([&] { expect_closed_forms(kind); }), 0) << word_for(kind);
+}
+
+// A GPU rounds as it likes; what it draws is the same picture.
+TEST(Renderers, AGpuDrawsNearlyWhatOsmesaDraws) {
+  if (!has_gpu_device_file()) GTEST_SKIP() << "no GPU is here";
+  const Drawn osmesa = drawn(RendererKind::osmesa), gpu = drawn(RendererKind::egl);
+  ASSERT_EQ(gpu.complaint, "");
+  ASSERT_EQ(gpu.pictures.size(), osmesa.pictures.size());
+  constexpr std::size_t pair_px = std::size_t{2} * 376 * 240,
+                        one = pair_px + 376 * 240 * (4 + 2) + 320 * 200 * 3;
+  double sum = 0, far = 0;
+  for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t px = i * one; px < i * one + pair_px; ++px) {
+      const int difference = std::abs(static_cast<std::uint8_t>(osmesa.pictures[px]) -
+                                      static_cast<std::uint8_t>(gpu.pictures[px]));
+      sum += difference, far += difference > 8;
+    }
+  std::printf("%s: %.2f gray levels from OSMesa's on average, %.1f %% of pixels by more than 8\n",
+              gpu.name.c_str(), sum / (6 * pair_px), 100 * far / (6 * pair_px));
+  EXPECT_LT(sum / (6 * pair_px), 1.5);
+  EXPECT_LT(far / (6 * pair_px), 0.05);
+  EXPECT_EQ(gpu.name.find("llvmpipe"), std::string::npos) << "a GPU is here, and software drew";
+}
+
+void expect_pictures_whatever_thread_ends_cameras(RendererKind kind) {
+  const World world = forest_world();
+  const auto cameras_now = [&] {
+    return std::make_unique<StereoCameras>(world, paper_rig(), noiseless(), CameraSeeds{1, 1}, std::nullopt,
+                                           kind);
+  };
+  const auto picture = [&](StereoCameras& cameras) {
+    return cameras.capture(body_at({0, 0, 3}, level), 0).left.clone();
+  };
+  const cv::Mat expected = picture(*cameras_now());
+  for (int i = 0; i < 3; ++i) {
+    auto cameras = cameras_now();
+    EXPECT_EQ(cv::norm(picture(*cameras), expected), 0);
+    std::thread([&] { cameras.reset(); }).join();
+  }
+  for (int i = 0; i < 3; ++i) {  // made by a thread that has ended
+    std::unique_ptr<StereoCameras> cameras;
+    std::thread([&] {
+      cameras = cameras_now();
+      EXPECT_EQ(cv::norm(picture(*cameras), expected), 0);
+    }).join();
+    if (i > 0) cameras.reset();
+    if (i == 0) std::thread([&] { cameras.reset(); }).join();
+  }
+  EXPECT_EQ(cv::norm(picture(*cameras_now()), expected), 0);
+}
+
+// What Python's garbage collector does: a context that is current on two threads ended the process.
+TEST(Renderers, ACameraMayEndOnAnotherThread) {
+  for (const RendererKind kind : both_renderers)
+    EXPECT_EQ(failures_in_child([&] { expect_pictures_whatever_thread_ends_cameras(kind); }), 0)
+        << word_for(kind);
 }
 
 TEST(Renderers, AProcessKeepsToItsFirstLibrary) {
