@@ -86,6 +86,51 @@ CalibratedRig from_cameras(StereoCalibration calibration, const fs::path& path,
   return read;
 }
 
+/// Says which form a calibration has that people have and that is not read: a file, or one in the folder.
+void refuse_other_forms(const fs::path& path) {
+  using Marks = std::vector<const char*>;
+  const std::vector<std::pair<const char*, Marks>> forms{
+      {"OpenCV's JSON", {"{", "\"opencv-matrix\"", "\"rows\":"}},
+      {"OpenCV's base64 (WRITE_BASE64)", {"opencv-matrix", "!!binary"}},
+      {"OpenCV's base64 (WRITE_BASE64)", {"opencv-matrix", "\"binary\""}},
+      {"Kalibr's camchain", {"camera_model:", "distortion_coeffs:"}},
+      {"ROS's camera_info", {"camera_matrix:", "projection_matrix:"}},
+      {"KITTI's", {"P0:", "P1:"}},
+      {"KITTI's", {"P_rect_00:", "P_rect_01:"}},
+      {"Middlebury's", {"cam0=[", "cam1=["}},
+      {"one camera's sensor.yaml of a EuRoC folder", {"T_BS:", "distortion_coefficients:"}}};
+  std::error_code ignored;
+  std::vector<fs::path> files{path};
+  for (const auto& entry : fs::directory_iterator(path, ignored)) files.push_back(entry.path());
+  for (const fs::path& file : files) {
+    if (!fs::is_regular_file(file, ignored) || fs::file_size(file, ignored) > maximum_keyed_bytes) continue;
+    const std::string text = read_file(file);
+    for (const auto& [form, marks] : forms)
+      if (std::ranges::all_of(marks, [&](const char* mark) { return text.find(mark) != std::string::npos; }))
+        refuse_input(file.string(), "",
+                     fmt::format("this calibration is {}, which is not read; read are a rig file, OpenCV's XML or YAML with "
+                                 "M1 D1 M2 D2 and R T or R1 R2 P1 P2, and a EuRoC folder (docs/detect.md)",
+                                 form));
+  }
+}
+
+CalibratedRig read_any_form(const fs::path& path, const CalibrationOptions& options) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) {
+    if (const auto folder = euroc_folder(path)) {
+      const EurocCalibration euroc = read_euroc_calibration(*folder, options);
+      CalibratedRig read = from_cameras(euroc.calibration, path, options, euroc.detection_depth_m);
+      if (is_rectified(read.calibration->left) && is_rectified(read.calibration->right))
+        read.calibration.reset();
+      return read;
+    }
+    return from_cameras(read_opencv_calibration(path, options), path, options);
+  }
+  if (looks_like_opencv(read_file(path)))
+    return from_cameras(read_opencv_calibration(path, options), path, options);
+  return from_rig_file(path, options);
+}
+
 }  // namespace
 
 ImageSize agreed_image_size(const std::string& file, std::optional<ImageSize> of_file,
@@ -172,20 +217,12 @@ StereoRig read_rig(const std::filesystem::path& file) {
 CalibratedRig read_calibrated_rig(const fs::path& path, const CalibrationOptions& options) {
   if (!(options.meters_per_unit > 0 && options.meters_per_unit <= 1000))
     refuse_input(path.string(), "unit", "must be above 0 and at most 1000 m");
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) {
-    if (const auto folder = euroc_folder(path)) {
-      const EurocCalibration euroc = read_euroc_calibration(*folder, options);
-      CalibratedRig read = from_cameras(euroc.calibration, path, options, euroc.detection_depth_m);
-      if (is_rectified(read.calibration->left) && is_rectified(read.calibration->right))
-        read.calibration.reset();
-      return read;
-    }
-    return from_cameras(read_opencv_calibration(path, options), path, options);
+  try {
+    return read_any_form(path, options);
+  } catch (const InputError&) {
+    refuse_other_forms(path);
+    throw;
   }
-  if (looks_like_opencv(read_file(path)))
-    return from_cameras(read_opencv_calibration(path, options), path, options);
-  return from_rig_file(path, options);
 }
 
 }  // namespace understory

@@ -1,6 +1,8 @@
 #include "perception/io/image_sequence.hpp"
 
 #include <algorithm>
+#include <array>
+#include <set>
 #include <string>
 
 #include "perception/io/calibration_file.hpp"
@@ -99,9 +101,48 @@ bool have_none_in_common(const std::vector<std::string>& first, const std::vecto
          last_number(second.back()) < last_number(first.front());
 }
 
-bool belong_together(const std::string& a, const std::string& b) {
-  const auto number = last_number(a);
-  return a == b || (number && number == last_number(b));
+/// A name's texts and numbers in turn, numbers by their value: "img_07" as "img_" and "7".
+std::vector<std::string> pieces_of(std::string_view name) {
+  std::vector<std::string> pieces;
+  while (!name.empty()) {
+    const std::size_t text = std::min(name.find_first_of(digits), name.size());
+    const std::string_view number = leading_digits(name.substr(text));
+    pieces.emplace_back(name.substr(0, text));
+    pieces.emplace_back(number.substr(std::min(number.find_first_not_of('0'), number.size())));
+    name.remove_prefix(text + number.size());
+  }
+  return pieces;
+}
+
+using Keys = std::vector<std::string>;
+
+/// For every name of both folders what pairs it: the pieces in which names of one folder differ, as far as
+/// the other folder has any of them. Neither a camera's number nor an image's size does. The names themselves
+/// where they are not all built alike, or where two of a folder would have one key.
+std::array<Keys, 2> keys_of(const std::array<Keys, 2>& names) {
+  std::array<std::vector<Keys>, 2> pieces;
+  std::array<Keys, 2> keys;
+  for (const std::size_t folder : {0U, 1U})
+    for (const std::string& name : names[folder]) pieces[folder].push_back(pieces_of(name));
+  for (const std::size_t folder : {0U, 1U})
+    for (const Keys& one : pieces[folder])
+      if (one.size() != pieces[0].front().size()) return names;
+  for (std::size_t i = 0; i < pieces[0].front().size(); ++i) {
+    std::array<std::set<std::string>, 2> values;
+    for (const std::size_t folder : {0U, 1U})
+      for (const Keys& one : pieces[folder]) values[folder].insert(one[i]);
+    const bool differs = values[0].size() > 1 || values[1].size() > 1;
+    const bool is_common =
+        std::ranges::any_of(values[0], [&](const auto& one) { return values[1].contains(one); });
+    for (const std::size_t folder : {0U, 1U}) {
+      keys[folder].resize(names[folder].size());
+      for (std::size_t k = 0; k < keys[folder].size(); ++k)
+        if (differs && is_common) keys[folder][k] += pieces[folder][k][i] + ' ';
+    }
+  }
+  for (const Keys& folder : keys)
+    if (std::set(folder.begin(), folder.end()).size() != folder.size()) return names;
+  return keys;
 }
 
 }  // namespace
@@ -139,20 +180,20 @@ std::optional<LoneName> first_unpaired(const std::vector<std::string>& first,
   const bool same_count = first.size() == second.size();
   if (same_count && counts_on(first) && counts_on(second) && have_none_in_common(first, second))
     return std::nullopt;
-  for (std::size_t i = 0; i < common; ++i) {
-    if (belong_together(first[i], second[i])) continue;
-    // Of the two that meet here, the one that comes first in order has no partner further on.
-    const auto number = last_number(first[i]), other = last_number(second[i]);
-    const bool by_number = number && other && *number != *other;
-    return LoneName{by_number ? *number < *other : comes_before(first[i], second[i]), i};
-  }
+  if (common == 0) return same_count ? std::nullopt : std::optional(LoneName{second.empty(), 0});
+  const auto keys = keys_of({first, second});
+  for (std::size_t i = 0; i < common;
+       ++i)  // of two that do not belong together, the first has no partner further on
+    if (keys[0][i] != keys[1][i]) return LoneName{comes_before(keys[0][i], keys[1][i]), i};
   if (same_count) return std::nullopt;
   return LoneName{first.size() > second.size(), common};
 }
 
 std::vector<EurocImage> parse_euroc_images(std::string_view text, const std::string& name) {
   std::vector<EurocImage> images;
-  for (const TableLine& line : table_lines(text, CellsParted::by_commas, name)) {
+  constexpr std::array columns{Column{"timestamp|time|t|t_ns", "ns"},
+                               Column{"filename|file name|file|name|image"}};
+  for (const TableLine& line : named_table(text, CellsParted::by_commas, name, columns).lines) {
     const auto t_ns = nanoseconds_in(line.cells[0]);
     const bool is_named =
         line.cells.size() == 2 && !line.cells[1].empty() && line.cells[1].find('/') == std::string_view::npos;

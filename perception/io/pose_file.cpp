@@ -15,6 +15,15 @@ constexpr std::int64_t ends_reach_ns = 1000;
 constexpr double maximum_m = 1e8;        // beyond any projected map coordinates
 constexpr double norm_tolerance = 0.01;  // published files round quaternions to a few digits
 
+/// Seconds; nanoseconds where they have 16 digits or more, as ORB-SLAM3 writes them.
+std::optional<std::int64_t> seconds_or_ns_in(std::string_view cell) {
+  constexpr std::size_t digits_of_ns = 16;
+  const std::string_view whole = cell.substr(0, cell.find('.'));
+  return whole.size() < digits_of_ns ? seconds_in(cell)
+         : number_in(cell)           ? nanoseconds_in(whole)
+                                     : std::nullopt;
+}
+
 /// One way of writing a pose into a line: cell 0 is the time, 1 to 3 the position, 4 to 7 the quaternion.
 struct Form {
   std::optional<std::int64_t> (*time)(std::string_view cell);
@@ -23,9 +32,26 @@ struct Form {
   const char* expected;
 };
 
-constexpr Form tum{seconds_in, {7, 4, 5, 6}, false, "expected 't tx ty tz qx qy qz qw', t in seconds from 0"};
+constexpr Form tum{
+    seconds_or_ns_in, {7, 4, 5, 6}, false, "expected 't tx ty tz qx qy qz qw', t in seconds from 0"};
 constexpr Form euroc{
     nanoseconds_in, {4, 5, 6, 7}, true, "expected 't,px,py,pz,qw,qx,qy,qz', t in nanoseconds from 0"};
+
+constexpr Column time_column{"timestamp|time|t|stamp|t_s|t_ns|time_s|time_ns|timestamp_s|timestamp_ns",
+                             "s|ns|sec|nsec"};
+constexpr Column px{"p_rs_r_x|p_x|px|tx|t_x|x|x_m|pos_x", "m"}, py{"p_rs_r_y|p_y|py|ty|t_y|y|y_m|pos_y", "m"},
+    pz{"p_rs_r_z|p_z|pz|tz|t_z|z|z_m|pos_z", "m"}, qw{"q_rs_w|q_w|qw|quat_w"}, qx{"q_rs_x|q_x|qx|quat_x"},
+    qy{"q_rs_y|q_y|qy|quat_y"}, qz{"q_rs_z|q_z|qz|quat_z"};
+constexpr std::array tum_columns{time_column, px, py, pz, qx, qy, qz, qw},
+    euroc_columns{time_column, px, py, pz, qw, qx, qy, qz};
+
+/// The form with the time in the unit that the table's own name of it states.
+Form with_named_time(Form form, const std::string& name) {
+  if (name.ends_with("_ns") || name.find("[ns") != std::string::npos) form.time = nanoseconds_in;
+  if (name.ends_with("_s") || name.find("[s") != std::string::npos) form.time = seconds_in;
+  form.expected = "expected numbers under the names of the columns, the time from 0";
+  return form;
+}
 
 TimedPose pose_in(const TableLine& line, const Form& form, const std::string& name) {
   if (line.cells.size() < 8 || (line.cells.size() > 8 && !form.more_may_follow))
@@ -46,24 +72,30 @@ TimedPose pose_in(const TableLine& line, const Form& form, const std::string& na
     fail_at_line(name, line.number, "the quaternion must have length 1");
   TimedPose pose;
   pose.t_ns = *t_ns;
+  pose.line = line.number;
   pose.T_world_body = Eigen::Translation3d(position_world) * q_world_body.normalized();
   return pose;
 }
 
 }  // namespace
 
-std::vector<TimedPose> read_poses(const std::filesystem::path& file) {
-  return parse_poses(read_file(file, maximum_table_bytes), file.string());
+std::vector<TimedPose> read_poses(const std::filesystem::path& file, Repeats repeats) {
+  return parse_poses(read_file(file, maximum_table_bytes), file.string(), repeats);
 }
 
-std::vector<TimedPose> parse_poses(std::string_view text, const std::string& name) {
-  std::vector<TableLine> lines = table_lines(text, CellsParted::by_commas, name);
-  const bool is_tum = lines.empty() || lines.front().cells.size() == 1;
-  if (is_tum) lines = table_lines(text, CellsParted::by_blanks, name);
+std::vector<TimedPose> parse_poses(std::string_view text, const std::string& name, Repeats repeats) {
+  const std::vector<TableLine> by_commas = table_lines(text, CellsParted::by_commas, name);
+  const bool is_tum = by_commas.empty() || by_commas.front().cells.size() == 1;
+  const NamedTable table = is_tum ? named_table(text, CellsParted::by_blanks, name, tum_columns)
+                                  : named_table(text, CellsParted::by_commas, name, euroc_columns);
+  const Form unnamed = is_tum ? tum : euroc,
+             form = table.names.empty() ? unnamed : with_named_time(unnamed, table.names.front());
   std::vector<TimedPose> poses;
-  poses.reserve(lines.size());
-  for (const TableLine& line : lines) {
-    const TimedPose pose = pose_in(line, is_tum ? tum : euroc, name);
+  poses.reserve(table.lines.size());
+  for (const TableLine& line : table.lines) {
+    const TimedPose pose = pose_in(line, form, name);
+    const bool is_repeat = !poses.empty() && pose.t_ns == poses.back().t_ns;
+    if (is_repeat && repeats == Repeats::skipped) continue;
     if (!poses.empty() && pose.t_ns <= poses.back().t_ns)
       fail_at_line(name, line.number, "times must increase from line to line");
     poses.push_back(pose);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -21,9 +22,32 @@ struct TableLine {
 /// How a table parts its cells: at every comma, or at runs of blanks.
 enum class CellsParted { by_commas, by_blanks };
 
-/// The lines that hold anything; those that start with '#' are comments. Takes line ends of any system.
-/// Throws InputError, with `name` for the file, at more than 16 million cells.
-std::vector<TableLine> table_lines(std::string_view text, CellsParted parted, const std::string& name);
+/// The lines that hold anything; those that start with '#' are comments. Takes line ends of any system, and
+/// cells in quotation marks, with commas and line ends within (RFC 4180); two marks within stay two.
+/// `comments`: takes those before the first line, whole. Throws InputError, with `name` for the file, at more
+/// than 16 million cells, and at a quotation mark out of place.
+std::vector<TableLine> table_lines(std::string_view text, CellsParted parted, const std::string& name,
+                                   std::vector<TableLine>* comments = nullptr);
+
+/// A column that a table must have: the names that it may bear and the units that these may state, in lower
+/// case, parted by '|'. "timestamp|t" and "ns|s".
+struct Column {
+  std::string_view names, units = "";
+};
+
+/// The lines of a table that may name its columns, in its first line or in a comment above the first line of
+/// values: each with the cells of `columns` alone, in their order. Without names that order is the table's
+/// own, and lines are as table_lines() gives them.
+struct NamedTable {
+  std::vector<std::string>
+      names;  ///< of `columns`, as the table has them: "t_s", "timestamp[ns]"; empty: none
+  std::vector<TableLine> lines;
+};
+
+/// Throws InputError "name:line: ..." where the names lack one of `columns`, have it twice or in another
+/// unit, and where a line has another number of cells than there are names.
+NamedTable named_table(std::string_view text, CellsParted parted, const std::string& name,
+                       std::span<const Column> columns);
 
 /// The whole of `text` as a number, a plus before it or not; nothing where it is none, does not fit, or is
 /// not finite. Whatever the locale.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <opencv2/core.hpp>
@@ -63,7 +64,11 @@ std::vector<RecordedObject> parse_recorded_objects(const std::string& text, cons
   std::vector<RecordedObject> objects;
   std::map<int, std::pair<std::string, std::string>> names;
   std::set<std::vector<std::string>> pieces;
-  for (const TableLine& line : table_lines(text, CellsParted::by_commas, name)) {
+  constexpr std::array columns{Column{"number"},      Column{"name"},        Column{"kind"},
+                               Column{"from_x", "m"}, Column{"from_y", "m"}, Column{"from_z", "m"},
+                               Column{"to_x", "m"},   Column{"to_y", "m"},   Column{"to_z", "m"},
+                               Column{"radius", "m"}};
+  for (const TableLine& line : named_table(text, CellsParted::by_commas, name, columns).lines) {
     if (line.cells.size() != 10) fail_at_line(name, line.number, expected);
     const auto number = [&](std::size_t cell) {
       const auto value = number_in(line.cells[cell]);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -25,8 +26,10 @@ std::string actions_text(const std::vector<Action>& actions) {
 std::vector<Action> parse_actions(const std::string& text, const std::string& name) {
   const std::string expected = std::string("expected '") + header + "'";
   std::vector<Action> actions;
-  for (const TableLine& line : table_lines(text, CellsParted::by_commas, name)) {
-    if (line.number == 1 && !line.cells.empty() && line.cells[0] == "t_ns") continue;
+  constexpr std::array columns{Column{"t_ns|timestamp", "ns"}, Column{"left_elevon_rad|left_elevon", "rad"},
+                               Column{"right_elevon_rad|right_elevon", "rad"},
+                               Column{"thrust_n|thrust", "n"}};
+  for (const TableLine& line : named_table(text, CellsParted::by_commas, name, columns).lines) {
     if (line.cells.size() != 4) fail_at_line(name, line.number, expected);
     const std::optional<std::int64_t> t_ns = nanoseconds_in(line.cells[0]);
     const auto left = number_in(line.cells[1]), right = number_in(line.cells[2]),
@@ -36,6 +39,7 @@ std::vector<Action> parse_actions(const std::string& text, const std::string& na
       fail_at_line(name, line.number, "each action must be later than the one before it");
     actions.push_back({*t_ns, {*left, *right, *thrust}});
   }
+  if (actions.empty()) fail_at_line(name, 1, expected + " and at least one action");
   return actions;
 }
 

@@ -3,16 +3,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <numbers>
 #include <random>
 
 #include "perception/assertion.hpp"
 #include "perception/io/text_file.hpp"
-#include "perception/io/text_table.hpp"
 #include "scenarios/config/bad_input.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/named_seed.hpp"
@@ -25,38 +22,6 @@ constexpr double fastest_mps = 100;
 constexpr int longest_s = 3600;  // 430,000 frames, some 100 GB
 constexpr double widest_turn_rad = std::numbers::pi / 2;
 constexpr std::int64_t closest_ns = 50'000'000;
-
-bool is_trajectory(const std::vector<TableLine>& lines) {
-  return !lines.empty() && !lines.front().cells.empty() && lines.front().cells.front() == "t_s";
-}
-
-constexpr std::array trajectory_head{"t_s", "x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"};
-
-/// As lines of TUM's form with the file's line numbers, for messages.
-std::string as_tum(const std::vector<TableLine>& lines, const std::string& name) {
-  std::string text;
-  int number = 1;
-  const auto& head = lines.front().cells;
-  const std::string columns = "must have the columns t_s,x_m,y_m,z_m,qw,qx,qy,qz first";
-  if (head.size() < trajectory_head.size() ||
-      !std::equal(trajectory_head.begin(), trajectory_head.end(), head.begin()))
-    fail_at_line(name, lines.front().number, columns);
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    const auto& cell = lines[i].cells;
-    if (cell.size() < 8) fail_at_line(name, lines[i].number, columns);
-    for (; number < lines[i].number; ++number) text += '\n';
-    fmt::format_to(std::back_inserter(text), "{} {} {} {} {} {} {} {}", cell[0], cell[1], cell[2], cell[3],
-                   cell[5], cell[6], cell[7], cell[4]);
-  }
-  return text;
-}
-
-std::vector<TimedPose> poses_in(const std::filesystem::path& file) {
-  const std::string text = read_file(file, maximum_table_bytes);
-  const std::vector<TableLine> lines = table_lines(text, CellsParted::by_commas, file.string());
-  return is_trajectory(lines) ? parse_poses(as_tum(lines, file.string()), file.string())
-                              : parse_poses(text, file.string());
-}
 
 constexpr double shoulder_room_m = 0.5;  // between the lane and the next trunk
 constexpr double pi = 3.14159265358979323846;
@@ -85,17 +50,11 @@ Eigen::Isometry3d pose_at(const WalkPath& path, double t_s) {
          Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitX());
 }
 
-int line_of_pose(const std::filesystem::path& file, std::size_t pose) {
-  const std::vector<TableLine> lines =
-      table_lines(read_file(file, maximum_table_bytes), CellsParted::by_commas, file.string());
-  const std::size_t line = pose + (is_trajectory(lines) ? 1 : 0);
-  return line < lines.size() ? lines[line].number : 1;
-}
-
 }  // namespace
 
 std::vector<TimedPose> read_path(const std::filesystem::path& file) {
-  const std::vector<TimedPose> poses = bad_input_if_refused([&] { return poses_in(file); });
+  const std::vector<TimedPose> poses =
+      bad_input_if_refused([&] { return read_poses(file, Repeats::skipped); });
   if (poses.size() < 2)
     throw ScenarioError(fmt::format("{}: a path needs at least two poses, here is one", file.string()));
   const double span_s = static_cast<double>(poses.back().t_ns - poses.front().t_ns) * 1e-9;
@@ -108,7 +67,7 @@ std::vector<TimedPose> read_path(const std::filesystem::path& file) {
     const double step_s = static_cast<double>(poses[i].t_ns - poses[i - 1].t_ns) * 1e-9;
     const auto fail_unless = [&](bool holds, const char* what) {
       if (!holds)
-        refuse_input(place_in(file.string(), line_of_pose(file, i)), "",
+        refuse_input(place_in(file.string(), poses[i].line), "",
                      fmt::format("must be {} from the pose before", what));
     };
     fail_unless(step.translation().norm() <= fastest_mps * step_s, "at most 100 m/s");
