@@ -123,12 +123,14 @@ void visit_fields(Visitor& visit, PushbroomConfig& config) {
         "all.");
   visit("depths_score_limit", config.depths_score_limit, 0.0, 10.0,
         "One score_limit for each depth, in the order of depths_m; empty: score_limit holds for all.");
-  visit("disparities_px", config.disparities_px, -8192, 8192,
-        "Whole-pixel disparities to search, as the original's configuration files state them; empty: those "
-        "nearest to depths_m. | docs/sources.md [2]");
+  visit(
+      "disparities_px", config.disparities_px, -8192, 8192,
+      "Whole-pixel disparities u_right - u_left to search, as the original's configuration files state them "
+      "(-105 for the paper's rig); empty: those nearest to depths_m. | docs/sources.md [2]");
   visit("infinity_px", config.infinity_px, -8192, 8192,
-        "Whole-pixel disparity of an infinitely distant point in the invariance and uniqueness tests; ~: the "
-        "calibration's, rounded.");
+        "Whole-pixel disparity u_right - u_left of an infinitely distant point in the invariance and "
+        "uniqueness "
+        "tests (-95 for the paper's rig); ~: the calibration's, rounded.");
   visit("subpixel", config.subpixel,
         "Refines a disparity to the vertex of the parabola through the SADs at the match and one pixel to "
         "either side. It moves by half a pixel at most, and only if the match's SAD is the smallest.");

@@ -107,10 +107,12 @@ void refuse_other_forms(const fs::path& path) {
     const std::string text = read_file(file);
     for (const auto& [form, marks] : forms)
       if (std::ranges::all_of(marks, [&](const char* mark) { return text.find(mark) != std::string::npos; }))
-        refuse_input(file.string(), "",
-                     fmt::format("this calibration is {}, which is not read; read are a rig file, OpenCV's XML or YAML with "
-                                 "M1 D1 M2 D2 and R T or R1 R2 P1 P2, and a EuRoC folder (docs/detect.md)",
-                                 form));
+        refuse_input(
+            file.string(), "",
+            fmt::format(
+                "this calibration is {}, which is not read; read are a rig file, OpenCV's XML or YAML with "
+                "M1 D1 M2 D2 and R T or R1 R2 P1 P2, and a EuRoC folder (docs/detect.md)",
+                form));
   }
 }
 

@@ -9,8 +9,8 @@ namespace {
 
 std::string ply_header(const char* comment, std::size_t count, const char* last_properties) {
   return fmt::format(
-      "ply\nformat ascii 1.0\ncomment {}\nelement vertex {}\nproperty float x\nproperty float y\n"
-      "property float z\nproperty double t_s\nproperty float score\nproperty {}\nend_header\n",
+      "ply\nformat ascii 1.0\ncomment {}\nelement vertex {}\nproperty double x\nproperty double y\n"
+      "property double z\nproperty double t_s\nproperty float score\nproperty {}\nend_header\n",
       comment, count, last_properties);
 }
 

@@ -166,8 +166,8 @@ void rectify(StrictMap& keys, StereoCalibration& calibration, double meters_per_
     keys.fail("R", "cv::stereoRectify cannot bring the two cameras side by side");
 }
 
-/// The lens must be the one that D1 and D2 are read as: a fisheye's numbers look the same. What programs write for
-/// the record beside the matrices changes nothing; all else might.
+/// The lens must be the one that D1 and D2 are read as: a fisheye's numbers look the same. What programs
+/// write for the record beside the matrices changes nothing; all else might.
 void check_other_keys(StrictMap& keys) {
   using Words = std::vector<std::string>;
   const std::array<std::pair<const char*, Words>, 3> lenses{
@@ -177,11 +177,36 @@ void check_other_keys(StrictMap& keys) {
   for (const auto& [key, read] : lenses)
     if (keys.has(key))
       if (const std::string found = keys.text(key); std::ranges::find(read, found) == read.end())
-        keys.fail(key, fmt::format("must be {}, is '{}': other lenses are not read", fmt::join(read, " or "), found));
-  keys.pass_over({"R", "T", "E", "F", "Q", "image_width", "image_height", "calibration_time", "date", "time", "name",
-                  "comment", "nframes", "board_width", "board_height", "square_size", "marker_size", "flags",
-                  "avg_reprojection_error", "per_view_reprojection_errors", "rms", "rms_error", "epipolar_error",
-                  "extrinsic_parameters", "image_points", "grid_points", "validRoi1", "validRoi2"});
+        keys.fail(key, fmt::format("must be {}, is '{}': other lenses are not read", fmt::join(read, " or "),
+                                   found));
+  keys.pass_over({"R",
+                  "T",
+                  "E",
+                  "F",
+                  "Q",
+                  "image_width",
+                  "image_height",
+                  "calibration_time",
+                  "date",
+                  "time",
+                  "name",
+                  "comment",
+                  "nframes",
+                  "board_width",
+                  "board_height",
+                  "square_size",
+                  "marker_size",
+                  "flags",
+                  "avg_reprojection_error",
+                  "per_view_reprojection_errors",
+                  "rms",
+                  "rms_error",
+                  "epipolar_error",
+                  "extrinsic_parameters",
+                  "image_points",
+                  "grid_points",
+                  "validRoi1",
+                  "validRoi2"});
   keys.refuse_others();
 }
 

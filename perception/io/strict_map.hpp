@@ -30,7 +30,9 @@ class StrictMap {
   /// To be called once every known key was asked for.
   void refuse_others() const;
   /// Counts these keys as known, whether they are read or not.
-  void pass_over(const std::vector<std::string>& keys) { known_.insert(known_.end(), keys.begin(), keys.end()); }
+  void pass_over(const std::vector<std::string>& keys) {
+    known_.insert(known_.end(), keys.begin(), keys.end());
+  }
 
   [[noreturn]] void fail(const std::string& key, const std::string& expected) const;
 

@@ -23,9 +23,11 @@ double vertex_px(const BlockMatch& match) {
   return bend > 0 ? 0.5 * (match.sad_below - match.sad_above) / bend : 0;
 }
 
-/// The whole disparities that the rule looks at.
+/// The whole disparities u_left - u_right that the rule looks at. The original's files state u_right -
+/// u_left.
 std::vector<int> disparities_of(const PushbroomConfig& config, const StereoRig& rig) {
-  std::vector<int> disparities_px = config.disparities_px;
+  std::vector<int> disparities_px;
+  for (const int stated_px : config.disparities_px) disparities_px.push_back(-stated_px);
   for (const double depth_m : config.depths_m) disparities_px.push_back(whole(rig.disparity_px(depth_m)));
   if (disparities_px.empty()) disparities_px.push_back(whole(rig.disparity_px(rig.detection_depth_m)));
   return disparities_px;
@@ -83,7 +85,7 @@ void without_isolated(const std::vector<StereoHit>& hits, int minimum_points, do
 
 std::vector<double> stated_depths_m(const PushbroomConfig& config, const StereoRig& rig) {
   std::vector<double> depths_m = config.depths_m;
-  for (const int px : config.disparities_px) depths_m.push_back(rig.depth_m(px));
+  for (const int stated_px : config.disparities_px) depths_m.push_back(rig.depth_m(-stated_px));
   return depths_m;
 }
 
@@ -105,7 +107,8 @@ std::string fault_of(const PushbroomConfig& config, const StereoRig& rig) {
   for (std::size_t i = 0; i < disparities_px.size(); ++i) {
     if (rig.can_look_at(disparities_px[i])) continue;
     if (!config.disparities_px.empty())
-      return text_of("disparities_px: the rig ", rig.name, " cannot look at ", disparities_px[i], " px");
+      return text_of("disparities_px: the rig ", rig.name, " cannot look at ", config.disparities_px[i],
+                     " px (u_right - u_left)");
     return text_of("depths_m: the rig ", rig.name, " cannot look at ",
                    config.depths_m.empty() ? rig.detection_depth_m : config.depths_m[i], " m");
   }
@@ -170,7 +173,7 @@ PushbroomConfig woods_pushbroom(std::string_view rig) {
 PushbroomStereo::PushbroomStereo(const StereoRig& rig, const PushbroomConfig& config)
     : rig_(rig),
       config_(config),
-      infinity_px_(config.infinity_px.value_or(whole(rig.infinity_disparity_px()))) {
+      infinity_px_(config.infinity_px ? -*config.infinity_px : whole(rig.infinity_disparity_px())) {
   if (const std::string fault = fault_of(config, rig); !fault.empty())
     throw std::invalid_argument("PushbroomStereo: " + fault);
   for (const int px : disparities_of(config, rig))

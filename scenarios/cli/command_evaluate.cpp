@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "perception/perception_config.hpp"
@@ -41,6 +42,18 @@ void require_detectors(const std::vector<std::string>& names) {
   }
 }
 
+/// Two of one name would stand in every table as one.
+void require_different_names(const EvaluationSettings& settings) {
+  EvaluationSum sum;
+  sum.make_room(settings);
+  for (auto name = sum.algorithms.begin(); name != sum.algorithms.end(); ++name)
+    if (std::find(sum.algorithms.begin(), name, *name) != name)
+      throw ScenarioError(
+          fmt::format("{}: two algorithms have this name: each --detector and the NAME of each "
+                      "--disparities must differ from the others and from {}",
+                      *name, fmt::join(algorithm_names, ", ")));
+}
+
 int run_evaluate(EvaluateArguments arguments) {
   EvaluationOptions options;
   arguments.vision.one_depth = true;  // full stereo is cropped to one depth's interval, to be compared
@@ -51,6 +64,8 @@ int run_evaluate(EvaluateArguments arguments) {
   require_detectors(arguments.detectors);
   for (const std::string& given : arguments.disparities)
     options.settings.disparities.push_back(disparity_folder_of(given));
+  options.settings.detectors = arguments.detectors;
+  require_different_names(options.settings);
   options.jobs = jobs_or_cores(arguments.jobs);
   fs::path out = arguments.out;
   std::error_code ignored;
@@ -72,7 +87,6 @@ int run_evaluate(EvaluateArguments arguments) {
   static_cast<VisionConfig&>(options.settings) =
       read_vision_config(arguments.vision, rig_named_in(options.folders.front()));
   options.settings.every = arguments.every;
-  options.settings.detectors = arguments.detectors;
   ProgressLine line;
   options.on_progress = [&](std::int64_t frames, std::int64_t expected) {
     line.show(fmt::format("{} of {} frames", frames, expected), static_cast<std::size_t>(frames),

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -27,7 +28,18 @@ constexpr std::size_t largest_file_bytes = std::size_t{256} << 20;
 class StemTable {
  public:
   StemTable(const TableLine& header, const std::string& name) : name_(name) {
+    constexpr std::array ours{"x_m", "y_m", "diameter_m", "height_m", "lean_rad", "lean_toward_rad", "kind"};
     for (std::size_t i = 0; i < header.cells.size(); ++i) {
+      // A column of another unit or spelling would be passed over.
+      std::string lower(header.cells[i]);
+      std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+      for (const std::string_view known : ours)
+        if (const auto stem = known.substr(0, known.rfind('_'));
+            lower.starts_with(stem) && stem.size() > 1 &&
+            std::ranges::find(ours, header.cells[i]) == ours.end())
+          fail_at_line(name, header.number,
+                       fmt::format("{}: not a column that is read; these are: {}", header.cells[i],
+                                   fmt::join(ours, ", ")));
       if (!columns_.emplace(header.cells[i], i).second)
         fail_at_line(name, header.number, fmt::format("{}: this column stands there twice", header.cells[i]));
     }

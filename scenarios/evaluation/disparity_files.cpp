@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <sstream>
 
 #include "perception/io/image_file.hpp"
@@ -79,8 +80,11 @@ cv::Mat read_disparity(const fs::path& folder, std::int64_t t_ns, const StereoRi
   try {
     if (is_pfm)
       disparity = parse_pfm(read_file(file, maximum_pfm_bytes), file.string());
-    else
-      read_gray_image(file, CV_16U).convertTo(disparity, CV_32FC1, 1 / steps_per_px);
+    else {
+      const cv::Mat steps = read_gray_image(file, CV_16U);
+      steps.convertTo(disparity, CV_32FC1, 1 / steps_per_px);
+      disparity.setTo(std::numeric_limits<float>::quiet_NaN(), steps == 0);
+    }
   } catch (const MachineError&) {
     throw;
   } catch (const std::runtime_error& error) {
@@ -91,12 +95,11 @@ cv::Mat read_disparity(const fs::path& folder, std::int64_t t_ns, const StereoRi
                                     rig.width_px, rig.height_px, disparity.cols, disparity.rows));
   for (int row = 0; row < disparity.rows; ++row)
     for (int column = 0; column < disparity.cols; ++column) {
-      auto& value = disparity.at<float>(row, column);
-      if (value < 0)
-        throw ScenarioError(
-            fmt::format("{}: column {}, row {}: a disparity is u_left - u_right, at least 0, got {:g}",
-                        file.string(), column, row, value));
-      if (!std::isfinite(value)) value = 0;
+      const float value = disparity.at<float>(row, column);
+      if (std::isfinite(value) && value < 0 && rig.infinity_disparity_px() >= 0)
+        throw ScenarioError(fmt::format(
+            "{}: column {}, row {}: a disparity is u_left - u_right, on this rig at least 0, got {:g}",
+            file.string(), column, row, value));
     }
   return disparity;
 }
@@ -106,7 +109,7 @@ cv::Mat depth_of_disparity(const cv::Mat& disparity_px, const StereoRig& rig) {
   for (int row = 0; row < disparity_px.rows; ++row)
     for (int column = 0; column < disparity_px.cols; ++column) {
       const double parallax_px = disparity_px.at<float>(row, column) - rig.infinity_disparity_px();
-      if (disparity_px.at<float>(row, column) > 0 && parallax_px > 0)
+      if (std::isfinite(parallax_px) && parallax_px > 0)
         depth_m.at<float>(row, column) = static_cast<float>(rig.focal_px * rig.baseline_m / parallax_px);
     }
   return depth_m;

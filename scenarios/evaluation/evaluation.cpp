@@ -7,8 +7,10 @@
 #include <exception>
 #include <mutex>
 #include <opencv2/core/utility.hpp>
+#include <set>
 #include <thread>
 
+#include "perception/io/calibration_file.hpp"
 #include "scenarios/config/bad_input.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/evaluation/evaluation_recording.hpp"
@@ -16,13 +18,28 @@
 namespace understory {
 namespace {
 
+namespace fs = std::filesystem;
+
 /// Opens each once before the work begins, so that a fault of the last shows at once. Returns the frames to
 /// come.
 std::int64_t check(const EvaluationOptions& options) {
   std::int64_t frames = 0;
   StereoRig first;
+  std::set<fs::path> folders;
+  std::set<std::string> disparities;
   for (const auto& folder : options.folders) {
     const EvaluationRecording recording(folder);
+    if (!folders.insert(fs::canonical(*euroc_folder(folder))).second)
+      throw ScenarioError(fmt::format("{}: is given twice", folder.string()));
+    for (const DisparityFolder& given : options.settings.disparities) {
+      const fs::path own = given.folder / recording_name(folder);
+      if (options.folders.size() > 1 &&
+          (!fs::is_directory(own) || !disparities.insert(given.name + "=" + own.string()).second))
+        throw ScenarioError(fmt::format(
+            "--disparities {}={}: of several recordings each needs a folder of its own there, named as "
+            "the recording's: {} is missing, or two recordings have this name",
+            given.name, given.folder.string(), own.string()));
+    }
     if (frames == 0) first = recording.rig();
     if (!is_same_rig(recording.rig(), first))
       throw ScenarioError(fmt::format("{}: has another rig than {}: evaluate them apart", folder.string(),

@@ -96,6 +96,9 @@ struct RecordingEvaluation {
   std::vector<WorstFrame> worst;  ///< the first is the worst
 };
 
+/// What a recording is called: its folder, "rec" of "/data/rec/".
+std::string recording_name(const std::filesystem::path& folder);
+
 /// Throws ScenarioError as EvaluationRecording does, or where the rule does not fit the rig. `on_frame` is
 /// called after each.
 RecordingEvaluation evaluate_recording(const std::filesystem::path& folder,
@@ -124,7 +127,9 @@ struct Evaluation {
 /// nothing begins after it.
 void in_parallel(std::size_t count, int threads, const std::function<void(std::size_t)>& work);
 
-/// Throws ScenarioError, one line, where a folder cannot be read or recordings are of different rigs.
+/// Throws ScenarioError, one line, where a folder cannot be read, is given twice, or recordings are of
+/// different rigs; where two algorithms have one name; where disparities of several recordings do not lie in
+/// a folder for each.
 Evaluation evaluate(const EvaluationOptions& options);
 
 }  // namespace understory

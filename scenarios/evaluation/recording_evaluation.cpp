@@ -26,13 +26,9 @@ namespace fs = std::filesystem;
 constexpr std::int64_t compared_every = 8;  // the paper's evaluations: 15 frames a second
 constexpr std::size_t worst_kept = 8;
 
-std::string name_of(const fs::path& folder) {
-  return folder.has_filename() ? folder.filename().string() : folder.parent_path().filename().string();
-}
-
 /// "level-1203" is of the scene "level": what stands behind the last hyphen is a seed, where it is a number.
 std::string scene_of(const fs::path& folder) {
-  const std::string name = name_of(folder);
+  const std::string name = recording_name(folder);
   const std::size_t hyphen = name.find_last_of('-');
   const bool numbered = hyphen != std::string::npos && hyphen > 0 && hyphen + 1 < name.size() &&
                         name.find_first_not_of("0123456789", hyphen + 1) == std::string::npos;
@@ -177,7 +173,7 @@ class Evaluator {
       costs_s[next++] = brought_.back()->cost_s();
     }
     for (const DisparityFolder& given : settings.disparities) {
-      auto detector = std::make_unique<GivenDisparities>(given, name_of(folder), rig, crop);
+      auto detector = std::make_unique<GivenDisparities>(given, recording_name(folder), rig, crop);
       dense_.emplace_back(next, &detector->depth_m());
       detectors_[next++] = std::move(detector);
     }
@@ -322,6 +318,10 @@ class Evaluator {
 };
 
 }  // namespace
+
+std::string recording_name(const fs::path& folder) {
+  return folder.has_filename() ? folder.filename().string() : folder.parent_path().filename().string();
+}
 
 RecordingEvaluation evaluate_recording(const fs::path& folder, const EvaluationSettings& settings,
                                        const std::function<void()>& on_frame) {

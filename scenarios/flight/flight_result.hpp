@@ -149,8 +149,9 @@ void visit_fields(Visitor& visit, Result& result) {
   visit("wall_s", result.wall_s, "wall time that the program took to simulate the flight");
   visit("renderer", result.renderer,
         "name of the OpenGL renderer that drew the images; empty without images");
-  visit("contradiction", result.contradiction,
-        "what in the result cannot be true, for example a clearance below zero without a contact; else empty");
+  visit(
+      "contradiction", result.contradiction,
+      "what in the result cannot be true, for example a clearance below zero without a contact; else empty");
 }
 
 /// The columns of trajectory.csv, a line.

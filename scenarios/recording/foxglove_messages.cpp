@@ -53,21 +53,19 @@ foxglove::PointCloud cloud(const char* frame, const std::vector<Eigen::Vector3d>
   set_time(message.mutable_timestamp(), t_ns);
   message.set_frame_id(frame);
   set_pose(message.mutable_pose(), Eigen::Isometry3d::Identity());
-  message.set_point_stride(3 * sizeof(float));
+  message.set_point_stride(3 * sizeof(double));
   std::uint32_t offset = 0;
   for (const char* const name : {"x", "y", "z"}) {
     foxglove::PackedElementField* field = message.add_fields();
     field->set_name(name);
     field->set_offset(offset);
-    field->set_type(foxglove::PackedElementField::FLOAT32);
-    offset += sizeof(float);
+    field->set_type(foxglove::PackedElementField::FLOAT64);
+    offset += sizeof(double);
   }
   std::string& data = *message.mutable_data();
   for (const Eigen::Vector3d& point : points)
-    for (const double coordinate : point) {
-      const auto value = static_cast<float>(coordinate);
-      data.append(reinterpret_cast<const char*>(&value), sizeof value);
-    }
+    for (const double coordinate : point)
+      data.append(reinterpret_cast<const char*>(&coordinate), sizeof coordinate);
   return message;
 }
 

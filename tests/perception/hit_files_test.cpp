@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <iterator>
 #include <sstream>
@@ -26,11 +27,13 @@ std::vector<std::vector<double>> vertices(const std::string& ply, std::size_t pr
   std::istringstream text(ply);
   std::string line;
   std::size_t count = 0, declared = 0;
+  std::vector<bool> is_float;
   std::getline(text, line);
   EXPECT_EQ(line, "ply");
   while (std::getline(text, line) && line != "end_header") {
     std::sscanf(line.c_str(), "element vertex %zu", &count);
     declared += line.starts_with("property ") ? 1 : 0;
+    if (line.starts_with("property ")) is_float.push_back(line.starts_with("property float "));
   }
   EXPECT_EQ(declared, properties);
   std::vector<std::vector<double>> rows;
@@ -38,6 +41,8 @@ std::vector<std::vector<double>> vertices(const std::string& ply, std::size_t pr
     std::istringstream cells(line);
     rows.emplace_back(std::istream_iterator<double>(cells), std::istream_iterator<double>());
     EXPECT_EQ(rows.back().size(), properties) << line;
+    for (std::size_t i = 0; i < std::min(is_float.size(), rows.back().size()); ++i)
+      if (is_float[i]) rows.back()[i] = static_cast<float>(rows.back()[i]);
   }
   EXPECT_EQ(rows.size(), count);
   return rows;
@@ -49,6 +54,14 @@ TEST(HitFiles, TheCsvHasALinePerHit) {
             "0,1403715273262142976,-0.6635,1.2500,3.0012,45,266,16.00,0.125000,1062,2.8137,3.2154\n"
             "0,1403715273262142976,-0.6635,1.2500,3.0012,45,266,16.00,0.125000,1062,2.8137,3.2154\n"
             "7,1403715273312142976,-0.6635,1.2500,3.0012,45,266,16.00,0.125000,1062,2.8137,3.2154\n");
+}
+
+// Maps of poses in UTM: 5,300,006.456 m north is no float.
+TEST(HitFiles, ThePlyKeepsCoordinatesOfALargeWorld) {
+  const auto rows = vertices(points_to_ply({{.position_world = {499998.383, 5300006.456, 6.38}}}), 6);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_NEAR(rows[0][0], 499998.383, 1e-3);
+  EXPECT_NEAR(rows[0][1], 5300006.456, 1e-3);
 }
 
 TEST(HitFiles, ThePlyCountsItsVertices) {

@@ -93,6 +93,35 @@ TEST(PoseFile, SecondsKeepTheirNanoseconds) {
     EXPECT_FALSE(seconds_in(none)) << none;
 }
 
+TEST(PoseFile, ColumnsGoByTheirNames) {
+  const auto attitude = [](const std::string& text) -> Eigen::Vector4d {
+    return Eigen::Quaterniond(parse_poses(text, "p").front().T_world_body.linear()).coeffs();  // x y z w
+  };
+  const Eigen::Vector4d turned(0, 0, 0.6, 0.8);
+  for (const char* text :
+       {"#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_x [],q_RS_y [],q_RS_z [],q_RS_w []\n"
+        "5,1,2,3,0,0,.6,.8\n",
+        "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z [], "
+        "v_RS_R_x [m s^-1]\n5,1,2,3,.8,0,0,.6,9\n",
+        "# timestamp tx ty tz qw qx qy qz\n5 1 2 3 .8 0 0 .6\n",
+        "# timestamp [s], tx [m], ty [m], tz [m], qw, qx, qy, qz\n5 1 2 3 .8 0 0 .6\n",
+        "\"t_s\",\"x_m\",\"y_m\",\"z_m\",\"qx\",\"qy\",\"qz\",\"qw\"\n5,1,2,3,0,0,.6,.8\n",
+        "# poses made by my own tool in 2021\n5 1 2 3 0 0 .6 .8\n"})
+    EXPECT_TRUE(attitude(text).isApprox(turned, 1e-12)) << text;
+  EXPECT_EQ(parse_poses("#timestamp [s],x,y,z,qw,qx,qy,qz\n5.5,1,2,3,1,0,0,0\n", "p")[0].t_ns, 5'500'000'000);
+  for (const char* text : {"#a,b,c,d,e,f,g,h\n5,1,2,3,1,0,0,0\n", "#t,x,y,z,qx,qy,qz,qz\n5,1,2,3,0,0,0,1\n",
+                           "#t,x [mm],y [mm],z [mm],qw,qx,qy,qz\n5,1,2,3,1,0,0,0\n"})
+    EXPECT_EQ(refusal_of([&] { parse_poses(text, "p"); }).find("p:1: "), 0u) << text;
+}
+
+TEST(PoseFile, ReadsWhatOthersWrite) {
+  // ORB-SLAM3's SaveTrajectoryEuRoC; fr2_desk of TUM's data sets, whose times repeat.
+  EXPECT_EQ(parse_poses("1000000000100000000.000000 1 2 3 0 0 0 1\n", "p")[0].t_ns, 1000000000100000000);
+  const std::string twice = "0 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n";
+  EXPECT_EQ(parse_poses(twice, "p", Repeats::skipped).size(), 2u);
+  EXPECT_EQ(refusal_of([&] { parse_poses(twice, "p"); }), "p:2: times must increase from line to line");
+}
+
 TEST(PoseFile, NamesTheLineOfEveryFault) {
   const auto complaint = [](const std::string& text) { return refusal_of([&] { parse_poses(text, "p"); }); };
   const std::string good = "0 0 0 0 0 0 0 1\n";

@@ -108,10 +108,11 @@ void PrintTo(const Case& test, std::ostream* out) {
 class ExactRule : public testing::TestWithParam<Case> {
  protected:
   StereoRig rig = support::house_rig(GetParam().rig_file);
-  int disparity = GetParam().disparity_px.value_or(static_cast<int>(std::lround(
-      rig.focal_px * rig.baseline_m / rig.detection_depth_m + rig.center_left_x_px - rig.center_right_x_px)));
-  int infinity = GetParam().infinity_px.value_or(
-      static_cast<int>(std::lround(rig.center_left_x_px - rig.center_right_x_px)));
+  // u_left - u_right; the files state u_right - u_left.
+  int disparity =
+      -GetParam().disparity_px.value_or(-static_cast<int>(std::lround(rig.disparity_px(rig.detection_depth_m))));
+  int infinity = -GetParam().infinity_px.value_or(
+      static_cast<int>(std::lround(rig.center_right_x_px - rig.center_left_x_px)));
 
   PushbroomConfig stated(PushbroomConfig config) const {
     if (GetParam().disparity_px) config.disparities_px = {*GetParam().disparity_px};
@@ -171,8 +172,8 @@ TEST_P(ExactRule, UniquenessEqualsTheReference) {
 // 106 leaves the left image columns for whole blocks only, of which the original leaves out the last.
 INSTANTIATE_TEST_SUITE_P(Rigs, ExactRule,
                          testing::Values(Case{"paper.yaml", {}, {}}, Case{"long.yaml", {}, {}},
-                                         Case{"paper.yaml", 105, 95}, Case{"paper.yaml", 106, 95},
-                                         Case{"long.yaml", 31, 21}));
+                                         Case{"paper.yaml", -105, -95}, Case{"paper.yaml", -106, -95},
+                                         Case{"long.yaml", -31, -21}));
 
 }  // namespace
 }  // namespace understory

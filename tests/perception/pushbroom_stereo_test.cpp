@@ -326,14 +326,42 @@ TEST(PushbroomStereo, RefusesRulesThatCannotBeMeant) {
   });
   expect_fault("depths_m: must be from 0.1 to 1000, is -1",
                [](PushbroomConfig& config) { config.depths_m = {-1}; });
-  expect_fault("disparities_px: the rig long cannot look at 20 px", [](PushbroomConfig& config) {
-    config.disparities_px = {30, 20};
+  expect_fault("disparities_px: the rig long cannot look at -20 px", [](PushbroomConfig& config) {
+    config.disparities_px = {-30, -20};
   });
   expect_fault("disparities_px and depths_m exclude each other: name one of them",
                [](PushbroomConfig& config) {
                  config.depths_m = {10};
-                 config.disparities_px = {30};
+                 config.disparities_px = {-30};
                });
+}
+
+// The two pairs of numbers in the original's files (FACTS of docs/sources.md [2]): of the paper's rig, and of a later one
+// whose infinity lies on the other side.
+TEST(PushbroomStereo, TakesTheOriginalsNumbersAsItsFilesStateThem) {
+  StereoRig later = house_rig("paper.yaml");
+  later.focal_px = 320;
+  later.baseline_m = 0.33;
+  later.center_left_x_px = 174;
+  later.center_right_x_px = 190.5;
+  const StereoRig paper = house_rig("paper.yaml");
+  const struct {
+    StereoRig rig;
+    int disparity_px, infinity_px;
+    double depth_m;
+  } cases[] = {
+      // focal length times baseline over the parallax: 180.4 * 0.353 / (105 - 91.8), 320 * 0.33 / (-6 + 16.5)
+      {paper, -105, -95, paper.focal_px * paper.baseline_m / (105 - (paper.center_left_x_px - paper.center_right_x_px))},
+      {later, 6, 16, 10.06}};
+  for (const auto& one : cases) {
+    PushbroomConfig config = original_pushbroom();
+    config.disparities_px = {one.disparity_px};
+    config.infinity_px = one.infinity_px;
+    const PushbroomStereo detector(one.rig, config);
+    EXPECT_EQ(detector.detection_disparity_px(), -one.disparity_px);
+    EXPECT_EQ(detector.infinity_disparity_px(), -one.infinity_px);
+    EXPECT_NEAR(one.rig.depth_m(detector.detection_disparity_px()), one.depth_m, 0.01);
+  }
 }
 
 TEST(PushbroomStereo, RefusesImagesOfAnotherSizeOrKind) {

@@ -133,14 +133,15 @@ TEST(PathFile, WhatNobodyCanBeCarriedAlongIsRefused) {
   };
   expect_complaint("", "holds no pose");
   expect_complaint("0 0 0 4 0 0 0 1\n", "needs at least two poses");
-  expect_complaint("0 0 0 4 0 0 0 1\n0 1 0 4 0 0 0 1\n", "path:2: times must increase");
+  expect_complaint("0 0 0 4 0 0 0 1\n0 1 0 4 0 0 0 1\n", "needs at least two poses");  // one moment, twice
+  expect_complaint("1 0 0 4 0 0 0 1\n0 1 0 4 0 0 0 1\n", "path:2: times must increase");
   expect_complaint("0 0 0 4 0 0 0 1\n1 101 0 4 0 0 0 1\n", "path:2: must be at most 100 m/s");
   expect_complaint("0 0 0 4 0 0 0 1\n1 1 0 4 1 0 0 0\n", "must be at most a quarter turn");
   expect_complaint("t_s,x_m,y_m,z_m,qw,qx,qy,qz\n", "holds no pose");
   expect_complaint("t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,4,1,0,0,0\n\n1,2,3\n",
-                   "path:4: must have the columns t_s,x_m");
+                   "path:4: expected 8 cells, as line 1 has names, found 3");
   expect_complaint("t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,4,1,0,0,0\n\n1,2,3,a,1,0,0,0\n",
-                   "path:4: expected 't tx");
+                   "path:4: expected numbers under the names");
 }
 
 TEST(PathFile, ThinningKeepsBothEndsAndADistance) {
