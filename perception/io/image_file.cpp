@@ -101,6 +101,20 @@ bool ends_as_one_of(const std::filesystem::path& file, std::initializer_list<std
   return std::find(endings.begin(), endings.end(), ending) != endings.end();
 }
 
+/// A PNG without its texts and colour profiles, which may unpack to gigabytes in any decoder.
+std::string without_texts(const std::string& png) {
+  constexpr std::size_t signature = 8, around_data = 12;  // length, kind and check sum
+  std::string kept = png.substr(0, signature);
+  for (std::size_t at = signature; at < png.size();) {
+    const std::size_t length = around_data + whole_at(png, at, 4, true);
+    const std::string_view chunk = std::string_view(png).substr(at, length);
+    const std::string_view kind = chunk.substr(std::min<std::size_t>(4, chunk.size()), 4);
+    if (kind != "tEXt" && kind != "zTXt" && kind != "iTXt" && kind != "iCCP") kept += chunk;
+    at += chunk.size();
+  }
+  return kept;
+}
+
 }  // namespace
 
 bool is_image_name(const std::filesystem::path& file) {
@@ -116,9 +130,10 @@ cv::Mat read_gray_image(const std::filesystem::path& file, int depth) {
   const auto expected = [&](const std::string& found) {
     return InputError(file.string() + ": expected " + kind + ", found " + found);
   };
-  const std::string bytes = read_file(file, maximum_image_bytes);
+  std::string bytes = read_file(file, maximum_image_bytes);
   if (bytes.empty()) throw expected("an empty file");
   if (!begins_as_image(bytes)) throw expected("no image, or a damaged one");
+  if (bytes[0] == '\x89') bytes = without_texts(bytes);
   const ClaimedSize size = claimed_size(bytes);
   if (std::max(size.width_px, size.height_px) > rig_limits::maximum_size_px)
     throw expected(std::to_string(size.width_px) + "x" + std::to_string(size.height_px) +

@@ -31,6 +31,8 @@ std::vector<fs::path> images_in(const fs::path& folder) {
     const bool is_hidden = entry->path().filename().string().starts_with('.');
     if (is_image_name(entry->path()) && !is_hidden) files.push_back(entry->path());
   }
+  if (const std::string lacking = lacking_resource(error.value()); !lacking.empty())
+    throw MachineError(folder.string() + ": " + lacking);
   expect(!error, folder.string() + ": cannot read this folder: " + error.message());
   expect(!files.empty(), folder.string() + ": there are no images in this folder");
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {

@@ -15,7 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t maximum_seed = std::uint64_t{1} << 32;
 constexpr std::size_t maximum_flights = 200'000, maximum_conditions = 2'000;
 
 const std::string seeds_decide = "no seed here: each flight has one of the campaign's seeds";
@@ -45,6 +44,7 @@ std::string plain(std::string text) {
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 &&
         std::string_view("._=-").find(c) == std::string::npos)
       c = '_';
+  if (text.starts_with('=') || text.starts_with('-')) text[0] = '_';  // a formula to spreadsheets
   return text;
 }
 

@@ -97,7 +97,10 @@ bool is_plain_name(const std::string& name) {
     return std::isalnum(c) != 0 ||
            std::string_view("._=-").find(static_cast<char>(c)) != std::string_view::npos;
   };
-  return !name.empty() && name.size() <= 200 && name.front() != '.' && std::ranges::all_of(name, is_plain);
+  // A cell of a table that begins with = or - is a formula to spreadsheets.
+  return !name.empty() && name.size() <= 200 &&
+         std::string_view(".=-").find(name.front()) == std::string_view::npos &&
+         std::ranges::all_of(name, is_plain);
 }
 
 void require_identity(const CampaignFolder& folder, const Campaign& held, const Identity& identity) {
@@ -177,7 +180,7 @@ Campaign read_campaign(const CampaignFolder& folder) {
       if (!json.at(key = list).is_array() || json[key].empty())
         refuse_manifest(folder, key, "must be a list with at least one entry");
     for (const Json& seed : json.at(key = "seeds")) {
-      if (!seed.is_number_unsigned() || seed > std::uint64_t{1} << 32)
+      if (!seed.is_number_unsigned() || seed > maximum_seed)
         refuse_manifest(folder, key, "must be whole numbers from 0 to 2^32");
       campaign.seeds.push_back(seed);
     }

@@ -116,7 +116,21 @@ Finish fly_on_slurm(const CampaignFolder& folder, const Campaign& campaign,
   return finished ? Finish::all_over : Finish::stopped;
 }
 
+/// An option of the other engine would do nothing.
+void require_engine(const CampaignArguments& arguments) {
+  const bool on_slurm = arguments.engine == Engine::slurm;
+  const auto refuse = [](bool is_given, const char* option, const char* engine) {
+    if (is_given) throw ScenarioError(fmt::format("{}: needs --engine {}", option, engine));
+  };
+  refuse(!on_slurm && !arguments.slurm.options.empty(), "--sbatch", "slurm");
+  refuse(!on_slurm && arguments.no_wait, "--no-wait", "slurm");
+  refuse(!on_slurm && arguments.slurm.shards != SlurmConfig().shards, "--shards", "slurm");
+  refuse(on_slurm && arguments.jobs != 0, "--jobs", "local");
+  refuse(on_slurm && arguments.keeps_runs, "--keep-runs", "local");
+}
+
 int run_campaign(const CampaignArguments& arguments) {
+  require_engine(arguments);
   std::vector<ConfigNode> over;
   for (const std::string& file : arguments.with) over.push_back(parse_config_file(file));
   for (const std::string& setting : arguments.settings) over.push_back(parse_assignment(setting));

@@ -151,7 +151,6 @@ PlacedStems place_stems(const std::vector<Stem>& stems, const ForestConfig& conf
       return plot.contains(placed.launch_m + turned(placed.heading_rad) * corner);
     });
   };
-  const bool all_given = config.file_x_m && config.file_y_m && config.file_heading_rad;
   bool found = false;
   for (int tries = 0; tries < 100'000 && !found; ++tries) {
     const double x = unit(generator), y = unit(generator), turn = unit(generator);
@@ -161,13 +160,16 @@ PlacedStems place_stems(const std::vector<Stem>& stems, const ForestConfig& conf
     const Vector2d launch =
         middle - turned(placed.heading_rad) * Vector2d(config.clear_m + 0.5 * config.length_m, 0);
     placed.launch_m = {config.file_x_m.value_or(launch.x()), config.file_y_m.value_or(launch.y())};
-    found = all_given || fits();
+    found = fits();
   }
   if (!found)
     throw ScenarioError(fmt::format(
         "{}: the course ({} m by {} m, forest.length_m and half_width_m) does not "
-        "fit between the stems, which cover {:.0f} m by {:.0f} m",
-        config.trees_file, config.length_m, 2 * config.half_width_m, plot.sizes().x(), plot.sizes().y()));
+        "fit between the stems, which cover {:.0f} m by {:.0f} m{}",
+        config.trees_file, config.length_m, 2 * config.half_width_m, plot.sizes().x(), plot.sizes().y(),
+        config.file_x_m || config.file_y_m || config.file_heading_rad
+            ? ", from where forest.file_x_m, file_y_m and file_heading_rad put it"
+            : ""));
   const auto back = turned(-placed.heading_rad);
   std::vector<std::pair<Vector2d, const Stem*>> standing;
   for (const Stem& stem : stems) {
@@ -176,6 +178,10 @@ PlacedStems place_stems(const std::vector<Stem>& stems, const ForestConfig& conf
                         std::abs(place.y()) <= config.half_width_m;
     if (inside) standing.emplace_back(place, &stem);
   }
+  if (standing.empty())
+    throw ScenarioError(fmt::format(
+        "{}: no stem stands on the course that begins at ({:.1f}, {:.1f}) with a heading of {:.3f} rad",
+        config.trees_file, placed.launch_m.x(), placed.launch_m.y(), placed.heading_rad));
   std::ranges::stable_sort(standing, {}, [](const auto& stem) { return stem.first.x(); });
   for (const auto& [place, stem] : standing) {
     Obstacle trunk;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "scenarios/output/errors.hpp"
+#include "scenarios/output/file_output.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
 #include "sim/render/offscreen_context.hpp"
 
@@ -16,9 +17,11 @@ namespace fs = std::filesystem;
 
 std::vector<fs::path> files_below(const fs::path& folder) {
   std::vector<fs::path> files;
-  for (const auto& entry :
-       fs::recursive_directory_iterator(folder, fs::directory_options::follow_directory_symlink))
-    if (entry.is_regular_file()) files.push_back(entry.path().lexically_relative(folder));
+  std::error_code error;
+  fs::recursive_directory_iterator entry(folder, fs::directory_options::follow_directory_symlink, error);
+  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error))
+    if (entry->is_regular_file()) files.push_back(entry->path().lexically_relative(folder));
+  if (error) refuse_output(folder, error.value());
   std::ranges::sort(files);
   return files;
 }

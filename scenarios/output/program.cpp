@@ -49,6 +49,8 @@ std::string digest_of_file(const std::filesystem::path& file) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::is_regular_file(file, error) ? file_size(file, error) : 0;
   const int descriptor = error || size == 0 ? -1 : open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (const std::string lacking = size > 0 && descriptor < 0 ? lacking_resource(errno) : ""; !lacking.empty())
+    throw MachineError(file.string() + ": " + lacking);
   if (descriptor >= 0) {
     void* bytes = mmap(nullptr, size, PROT_READ, MAP_PRIVATE | MAP_POPULATE, descriptor, 0);
     close(descriptor);

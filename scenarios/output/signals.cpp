@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/output/folder_claim.hpp"
 #include "scenarios/output/progress_line.hpp"
 
 namespace understory {
@@ -57,6 +58,16 @@ const char* name_of(int signal) {
   return signal == SIGTERM ? "SIGTERM" : "SIGHUP";
 }
 
+/// The list of a folder goes last: until then it says whose the rest is, where that could not be removed.
+void remove_unfinished(const fs::path& path) {
+  std::error_code error;
+  for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
+    if (entry->path().filename() != claim_name &&
+        fs::remove_all(entry->path(), error) == static_cast<std::uintmax_t>(-1))
+      return;
+  if (!error || error == std::errc::not_a_directory) fs::remove_all(path, error);
+}
+
 /// At once; what cannot be said is not.
 void say(int descriptor, std::string_view text) {
   if (write(descriptor, text.data(), text.size()) < 0) return;
@@ -72,7 +83,7 @@ void say(int descriptor, std::string_view text) {
   for (const fs::path& path : unfinished) {
     std::error_code error;  // the work may be clearing away, too, where it finds its folder gone
     for (int tries = 0; tries < 100 && fs::exists(fs::symlink_status(path, error)); ++tries)
-      fs::remove_all(path, error);
+      remove_unfinished(path);
   }
   for (auto call = calls.rbegin(); call != calls.rend(); ++call) call->second();
   ProgressLine::clear_any();
@@ -137,8 +148,7 @@ Unfinished::Unfinished(fs::path path) : path_(std::move(path)) {
 Unfinished::~Unfinished() {
   const auto lock = hold_outputs();
   unfinished.erase(path_);
-  std::error_code ignored;
-  if (!is_kept_) fs::remove_all(path_, ignored);
+  if (!is_kept_) remove_unfinished(path_);
 }
 
 void Unfinished::become(const fs::path& name) {

@@ -219,11 +219,18 @@ Planted checked(const CoursePart& part, const CourseContext& context) {
                                       maximum_obstacles));
   for (std::size_t i = 0; i < planted.obstacles.size(); ++i) {
     const Obstacle& one = planted.obstacles[i];
-    const bool sound = one.from_world.allFinite() && one.to_world.allFinite() &&
-                       std::isfinite(one.radius_m) &&
-                       (one.radius_m > 0 || one.kind == ObstacleKind::wall || one.kind == ObstacleKind::box);
-    if (!sound)
-      callee.fail("make()", fmt::format("gave obstacle {}, which is not finite or has no size", i + 1));
+    const bool has_radius = one.kind != ObstacleKind::wall && one.kind != ObstacleKind::box;
+    const bool has_length = one.kind == ObstacleKind::sphere || one.to_world != one.from_world;
+    constexpr double farthest_m = 10'000, widest_m = 400;  // false for what is not a number
+    const bool is_near = one.from_world.cwiseAbs().maxCoeff() <= farthest_m &&
+                         one.to_world.cwiseAbs().maxCoeff() <= farthest_m;
+    const bool is_small =
+        one.radius_m >= 0 && one.radius_m <= widest_m && one.half_size_m.cwiseAbs().maxCoeff() <= widest_m;
+    if (!is_near || !is_small || !has_length || (has_radius && one.radius_m <= 0))
+      callee.fail("make()",
+                  fmt::format("gave obstacle {}, which has no size, is larger than {} m or lies farther "
+                              "than {} m from the launch",
+                              i + 1, widest_m, farthest_m));
   }
   return planted;
 }

@@ -304,9 +304,14 @@ void bind_scenario(py::module_& module) {
       .def_property_readonly("rig",
                              [](const Scenario& self) { return rig_of(self, data_root() / "models").rig; })
       .def("with_seed",
-           [](const Scenario& self, std::uint64_t seed) {
+           [](const Scenario& self, const py::int_& seed) {
+             const std::string text = py::str(seed);
+             const auto number = number_in<std::uint64_t>(text);
+             if (!number || *number > maximum_seed)
+               throw ScenarioError(
+                   fmt::format("seed: expected a whole number from 0 to {}, got {}", maximum_seed, text));
              Scenario other = self;
-             other.seed = seed;
+             other.seed = *number;
              return other;
            })
       .def("with_actions",

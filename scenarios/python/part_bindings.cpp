@@ -206,14 +206,15 @@ void add_course(const std::string& name, const std::string& meaning, const std::
 }
 
 /// Runs a plug-in's file through the package, which knows how modules are loaded.
-void load_python_file(const std::string& file, Parts& into) {
+std::vector<std::string> load_python_file(const std::string& file, const std::string& text, Parts& into) {
   open_parts() = &into;
   struct Closing {
     ~Closing() { open_parts() = nullptr; }
   } closing;
   const py::gil_scoped_acquire lock;
   try {
-    py::module_::import("understory").attr("_run_plugin")(file);
+    return py::cast<std::vector<std::string>>(
+        py::module_::import("understory").attr("_run_plugin")(file, py::bytes(text)));
   } catch (py::error_already_set& error) {
     throw ScenarioError(told(error));
   }

@@ -27,12 +27,6 @@ std::string text_of(const char* header, const std::map<std::int64_t, std::string
   return text;
 }
 
-/// Noisy images hardly compress, so the uncompressed size estimates the size of the PNGs.
-std::uintmax_t expected_bytes(const Scenario& scenario, const StereoRig& rig, double expected_s) {
-  const double per_frame = 8.0 * rig.width_px * rig.height_px;
-  return static_cast<std::uintmax_t>(per_frame * scenario.cameras.rate_hz * expected_s);
-}
-
 }  // namespace
 
 cv::Mat depth_in_millimetres(const cv::Mat& depth_m) {
@@ -60,7 +54,8 @@ EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario,
                                double expected_s)
     : folder_(folder / "mav0"),
       rig_(rig.rig),
-      truth_every_steps_(physics_rate_hz / scenario.sensors.sensors.imu_rate_hz) {
+      truth_every_steps_(physics_rate_hz / scenario.sensors.sensors.imu_rate_hz),
+      expected_frames_(expected_s * scenario.cameras.rate_hz) {
   const Wood wood = course_wood(scenario);
   const std::size_t last_number = wood.scenery == Scenery::plain
                                       ? object_first_obstacle + wood.obstacles.size()
@@ -68,7 +63,6 @@ EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario,
   if (last_number > 65'534)
     throw ScenarioError(
         fmt::format("{}: more obstacles than images of objects can number (65534)", scenario.name));
-  require_free_space(folder_, expected_bytes(scenario, rig.rig, expected_s));
   for (const char* sensor : {"cam0/data", "cam1/data", "depth0/data", "depth1/data", "objects0/data", "imu0",
                              "state_groundtruth_estimate0"})
     prepare_output_folder(folder_ / sensor);
@@ -179,7 +173,23 @@ void EurocRecording::add(const StereoFrame& frame, const StereoCameras& cameras)
   write_picture(folder_ / "depth1/data" / name, depth_in_millimetres(view.right_depth_m));
   write_picture(folder_ / "objects0/data" / name, view.objects);
   image_lines_ += fmt::format("{},{}\n", recorded_ns(frame.t_ns), name);
-  ++frames_;
+  for (const char* folder : {"cam0", "cam1", "depth0", "depth1", "objects0"})
+    bytes_ +=
+        (fs::file_size(folder_ / folder / "data" / name) + 4095) / 4096 * 4096;  // a disk counts in blocks
+  if (++frames_ == 10 || frames_ % 120 == 0) require_room();
+}
+
+/// That the disk holds what is still to come, by what the frames so far took there.
+void EurocRecording::require_room() const {
+  const double frame_bytes = static_cast<double>(bytes_) / static_cast<double>(frames_);
+  const double needed = frame_bytes * (expected_frames_ - static_cast<double>(frames_));
+  std::error_code error;
+  const auto available = static_cast<double>(fs::space(folder_, error).available);
+  if (!error && available < needed)
+    throw MachineError(
+        fmt::format("the recording needs up to {:.3g} GB more ({:.0f} frames, {:.0f} kB each so far), {:.3g} "
+                    "GB are free there",
+                    needed * 1e-9, expected_frames_, frame_bytes * 1e-3, available * 1e-9));
 }
 
 void EurocRecording::finish() {

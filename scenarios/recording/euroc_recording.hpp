@@ -50,6 +50,7 @@ class EurocRecording : public FlightObserver {
 
  private:
   void add_sensors(const Flight& flight);
+  void require_room() const;
   Truth truth_at(std::int64_t t_ns) const;
   void add_true_state(const Truth& truth);
   void add_estimate(const State& state);
@@ -61,6 +62,8 @@ class EurocRecording : public FlightObserver {
   std::deque<Truth> recent_;
   std::int64_t steps_ = 0;
   std::int64_t frames_ = 0;
+  double expected_frames_;
+  std::uintmax_t bytes_ = 0;  ///< of the images so far, on the disk
   std::string image_lines_, imu_lines_;
   std::map<std::string, std::string> sensor_lines_;              ///< of a flight's further tables, by folder
   std::map<std::string, std::int64_t> newest_ns_;                ///< of their samples

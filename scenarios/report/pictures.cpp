@@ -52,6 +52,7 @@ VideoFile::~VideoFile() = default;
 void VideoFile::add(const cv::Mat& picture) {
   if (!writer_) {
     auto writer = picture_codecs().write_film(file_.path().string(), rate_hz_, picture.size());
+    if (!writer->isOpened()) require_writable(file_.path());  // a full disk: said as for other files
     if (!writer->isOpened())
       throw MachineError(fmt::format("{}: OpenCV's FFmpeg offers no H.264 encoder", file_.path().string()));
     writer_ = std::move(writer);

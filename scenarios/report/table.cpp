@@ -20,8 +20,8 @@ std::size_t width_of(const std::string& text) {
 std::string text_line(const std::vector<std::string>& cells, const std::vector<std::size_t>& widths) {
   std::string line;
   for (std::size_t column = 0; column < cells.size(); ++column) {
-    const std::string room(widths[column] - width_of(cells[column]), ' ');
-    line += column == 0 ? cells[column] + room : "  " + room + cells[column];
+    const std::string room(widths[column] - width_of(cells[column]), ' '), cell = one_line(cells[column]);
+    line += column == 0 ? cell + room : "  " + room + cell;
   }
   line.erase(line.find_last_not_of(' ') + 1);
   return line + "\n";
@@ -31,7 +31,7 @@ std::string markdown_line(const std::vector<std::string>& cells) {
   std::string line = "|";
   for (const std::string& cell : cells) {
     line += ' ';
-    for (const char c : cell) line += c == '|' ? std::string("\\|") : std::string(1, c);
+    for (const char c : one_line(cell)) line += c == '|' ? std::string("\\|") : std::string(1, c);
     line += " |";
   }
   return line + "\n";
@@ -71,6 +71,12 @@ std::optional<std::string> take_cell(const std::string& text, std::size_t& at) {
 }
 
 }  // namespace
+
+std::string one_line(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
+  return text;
+}
 
 std::string number_text(double value, int decimals) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";

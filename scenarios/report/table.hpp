@@ -27,6 +27,8 @@ std::string to_text(const Table& table);
 
 /// The same as Markdown, words to the left; a | in a cell is escaped.
 std::string to_markdown(const Table& table);
+/// Blanks in place of line breaks and other control characters.
+std::string one_line(std::string text);
 
 /// CSV as RFC 4180 has it, lines ended by \n alone: a cell with a comma, a quotation mark or a line break is
 /// quoted.

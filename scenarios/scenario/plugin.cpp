@@ -9,6 +9,7 @@
 #include <functional>
 #include <sstream>
 
+#include "perception/io/text_file.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/keys.hpp"
 #include "scenarios/output/program.hpp"
@@ -54,7 +55,8 @@ std::function<void(Parts&)> opened_library(const std::string& file, const std::s
 
 /// Opens Python, where that has not been done. libpython's names are made global, which numpy's libraries
 /// need.
-std::function<void(Parts&)> opened_python(const std::string& file, const std::string& asked_by) {
+std::function<void(Parts&)> opened_python(const std::string& file, const std::string& text,
+                                          const std::string& asked_by, std::vector<FileConfig>& imported) {
   if (python_loader() == nullptr) {
     void* module = dlopen("understory_python.so", RTLD_NOW | RTLD_GLOBAL);
     const char* error = module == nullptr ? dlerror() : nullptr;
@@ -65,7 +67,10 @@ std::function<void(Parts&)> opened_python(const std::string& file, const std::st
                                      asked_by, file, error != nullptr ? error : "its module is broken"));
     start();
   }
-  return [file](Parts& parts) { python_loader()(file, parts); };
+  return [&](Parts& parts) {
+    for (const std::string& module : python_loader()(file, text, parts))
+      imported.push_back({module, digest_of_file(module)});
+  };
 }
 
 /// Adds the parts of a plug-in, all or none.
@@ -100,6 +105,14 @@ void add_parts(const std::function<void(Parts&)>& add, const std::string& file, 
   parts() = std::move(more);
 }
 
+constexpr std::size_t maximum_python_bytes = std::size_t{16} << 20;
+
+void require_unchanged(const std::string& file, const std::string& hash, const std::string& asked_by) {
+  if (digest_of_file(file) != hash)
+    refuse(file, asked_by,
+           "has changed since this process loaded it, and cannot be loaded again: start anew");
+}
+
 }  // namespace
 
 PythonLoader& python_loader() {
@@ -118,16 +131,25 @@ const Plugin& load_plugin(const fs::path& file, const std::string& asked_by) {
   const fs::path found = fs::canonical(file, error);
   if (error)
     throw ScenarioError(fmt::format("{}: {}: {}", asked_by, fs::absolute(file).string(), error.message()));
-  for (const Plugin& one : loaded)
-    if (one.file == found) return one;
+  for (const Plugin& one : loaded) {
+    if (one.file != found) continue;
+    require_unchanged(one.file, one.hash, asked_by);
+    for (const FileConfig& module : one.imported) require_unchanged(module.file, module.hash, asked_by);
+    return one;
+  }
   if (!fs::is_regular_file(found))
     throw ScenarioError(
         fmt::format("{}: {}: must be a shared library or a Python file", asked_by, found.string()));
-  const std::string hash = digest_of_file(found);
-  const auto add = found.extension() == ".py" ? opened_python(found.string(), asked_by)
-                                              : opened_library(found.string(), asked_by);
-  add_parts(add, found.string(), asked_by);
-  loaded.push_back({found.string(), hash});
+  Plugin plugin{found.string(), "", {}};
+  if (found.extension() == ".py") {
+    const std::string text = read_file(found, maximum_python_bytes);
+    plugin.hash = digest_of_text(text);
+    add_parts(opened_python(plugin.file, text, asked_by, plugin.imported), plugin.file, asked_by);
+  } else {
+    plugin.hash = digest_of_file(found);
+    add_parts(opened_library(plugin.file, asked_by), plugin.file, asked_by);
+  }
+  loaded.push_back(std::move(plugin));
   return loaded.back();
 }
 

@@ -48,19 +48,21 @@ inline std::string plugin_stamp() {
 
 /// A plug-in that has been loaded. It stays loaded until the process ends.
 struct Plugin {
-  std::string file;  ///< absolute
-  std::string hash;  ///< of its contents
+  std::string file;                  ///< absolute
+  std::string hash;                  ///< of its contents
+  std::vector<FileConfig> imported;  ///< modules beside or below a Python file that it imported
 };
 
 /// Loads the plug-in and adds its parts to parts(); one that has been loaded is not loaded again. `asked_by`
 /// begins the message: "a.yaml:3: plugins". Throws ScenarioError, one line that names the file: it is not
 /// there, is not a shared library, lacks a symbol, is not a plug-in, was built for something else (what, and
-/// what is needed), or adds a part whose name is taken.
+/// what is needed), adds a part whose name is taken, or has changed since this process loaded it.
 const Plugin& load_plugin(const std::filesystem::path& file, const std::string& asked_by);
 
-/// Runs a Python file, whose decorators add parts to `parts`. Throws ScenarioError, one line that names file
-/// and line.
-using PythonLoader = void (*)(const std::string& file, Parts& parts);
+/// Runs the text of a Python file, whose decorators add parts to `parts`. Gives the files of the modules
+/// beside or below it that it imported. Throws ScenarioError, one line that names file and line.
+using PythonLoader = std::vector<std::string> (*)(const std::string& file, const std::string& text,
+                                                  Parts& parts);
 /// Set by the Python module. Null: Python is not there yet; the first plug-in that ends in .py opens it.
 PythonLoader& python_loader();
 

@@ -159,7 +159,9 @@ struct AutopilotSection {
 /// The numbers that a preset stands for (docs/decisions/015, 024).
 AutopilotSection planning_of(PlanningPreset preset);
 
-/// A shared library with parts of one's own (docs/integrate.md).
+inline constexpr std::uint64_t maximum_seed = std::uint64_t{1} << 32;
+
+/// A file with parts of one's own (docs/integrate.md).
 struct PluginConfig {
   std::string file;
   std::string hash;
@@ -168,11 +170,28 @@ struct PluginConfig {
 template <typename Visitor>
 void visit_fields(Visitor& visit, PluginConfig& plugin) {
   visit("file", plugin.file,
-        "The shared library. A relative path is looked for beside the scenario file, then in the working "
+        "The shared library, or the Python file. A relative path is looked for beside the scenario file, "
+        "then in the working "
         "directory.");
   visit("hash", plugin.hash,
         "Hash of the file's contents. Empty: any. A run writes it, so that another build of the plug-in is "
         "not mistaken for the one that flew.");
+}
+
+/// A file that a flight reads beside its scenario, since a key names it or a plug-in imports it.
+struct FileConfig {
+  std::string file;
+  std::string hash;
+};
+
+template <typename Visitor>
+void visit_fields(Visitor& visit, FileConfig& read) {
+  visit("file", read.file,
+        "A file that the flight reads: another key names it, or a plug-in in Python imports it.");
+  visit(
+      "hash", read.hash,
+      "Hash of the file's contents. A run writes it, so that a changed file is not mistaken for the one that "
+      "flew.");
 }
 
 struct Scenario {
@@ -181,6 +200,7 @@ struct Scenario {
   std::string rig = "long";
   std::string course = "forest";
   std::vector<PluginConfig> plugins;
+  std::vector<FileConfig> files;
   double time_limit_s = 30;
   Eigen::Vector3d wind_world_mps = Eigen::Vector3d::Zero();
   WindConfig wind;
@@ -277,7 +297,7 @@ void visit_fields(Visitor& visit, CameraSection& section) {
 
 template <typename Visitor>
 void visit_fields(Visitor& visit, SensorSection& section) {
-  visit("seed", section.seed, std::uint64_t{0}, std::uint64_t{1} << 32,
+  visit("seed", section.seed, std::uint64_t{0}, maximum_seed,
         "seed of the noise of all sensors and cameras; 0: the scenario's seed");
   visit("grade", section.grade, sensor_grade_names,
         "Quality class that sets the defaults of all sensors keys. ideal: no errors; nominal: white noise, "
@@ -344,13 +364,14 @@ template <typename Visitor>
 void visit_fields(Visitor& visit, Scenario& scenario) {
   visit("name", scenario.name,
         "name of the run, whose folder is runs/NAME-SEED; letters, digits, '-', '_' and '.'");
-  visit("seed", scenario.seed, std::uint64_t{0}, std::uint64_t{1} << 32,
+  visit("seed", scenario.seed, std::uint64_t{0}, maximum_seed,
         "seed of course, wind and the planner's search; also of sensor noise if sensors.seed is 0");
   visit("rig", scenario.rig,
         "stereo rig: a name in models/rigs, or the path of a rig file relative to the scenario file");
   visit("course", scenario.course, parts().courses.names(),
         "kind of course; the keys that begin with the same word describe it");
   visit("plugins", scenario.plugins);
+  visit("files", scenario.files);
   visit("time_limit_s", scenario.time_limit_s, 0.1, 600.0, "simulated time after which a flight ends");
   visit("wind_world_mps", scenario.wind_world_mps, -20.0, 20.0,
         "velocity of the mean wind, in world axes, at wind.reference_height_m");

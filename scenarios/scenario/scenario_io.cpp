@@ -13,9 +13,11 @@
 #include "scenarios/config/config_writer.hpp"
 #include "scenarios/config/keys.hpp"
 #include "scenarios/config/named_seed.hpp"
+#include "scenarios/output/program.hpp"
 #include "scenarios/parts/checked_parts.hpp"
 #include "scenarios/scenario/filter_for_sensors.hpp"
 #include "scenarios/scenario/plugin.hpp"
+#include "scenarios/scenario/scenario_rig.hpp"
 #include "sim/aircraft/aerodynamics.hpp"
 #include "sim/scene/world_config.hpp"
 
@@ -53,8 +55,11 @@ void check_obstacles(const std::vector<ListedObstacle>& obstacles, Expect&& expe
            key + "name: must differ from the names of the other obstacles");
     expect(listed.shape != ListedShape::sphere || (size.x() == size.y() && size.y() == size.z()),
            key + "size_m: a sphere requires three equal numbers");
-    expect(listed.shape != ListedShape::capsule || (size.x() == size.y() && size.z() >= size.x()),
-           key + "size_m: a capsule requires x and y to be equal and z to be at least as large");
+    expect(listed.shape != ListedShape::capsule || (size.x() == size.y() && size.z() > size.x()),
+           key +
+               "size_m: a capsule requires x and y to be equal and z to be larger; with three equal numbers "
+               "it is a "
+               "sphere");
   }
   expect(obstacles.size() <= 1000, "obstacles: must have at most 1000 entries");
 }
@@ -153,6 +158,19 @@ void take_airframe(const Airframe& airframe, Scenario& scenario) {
   filter.sideslip.winglets_body_m = {airframe.winglet_x_m, 0, airframe.winglet_z_m};
 }
 
+using Files = std::vector<FileConfig>;
+
+/// Adds what a flight is going to read.
+void add_file(const std::filesystem::path& file, const std::string& origin, Files& files) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return;  // whoever reads it says so
+  if (!std::filesystem::is_regular_file(file, ignored))
+    throw ScenarioError(fmt::format("{}{}{}: must be a regular file, which can be read again", origin,
+                                    origin.empty() ? "" : ": ", file.string()));
+  if (std::ranges::find(files, file.string(), &FileConfig::file) == files.end())
+    files.push_back({file.string(), digest_of_file(file)});
+}
+
 /// Where a key's file is: beside the file that gives it, from the working directory, or in a further folder.
 /// What is found is absolute, so that a run's scenario flies again from anywhere; else the name as it is.
 std::string found_file(const std::string& name, const std::string& origin,
@@ -168,10 +186,37 @@ std::string found_file(const std::string& name, const std::string& origin,
 }
 
 /// A plain word is a name in models/rigs.
-std::string rig_file(const std::string& rig, const std::string& origin) {
-  const std::filesystem::path path(rig);
-  if (path.is_absolute() || !(path.has_extension() || path.has_parent_path())) return rig;
-  return found_file(rig, origin);
+bool is_rig_file(const std::filesystem::path& rig) { return rig.has_extension() || rig.has_parent_path(); }
+
+/// Each with its hash, by the one list of all that names files: scenario, campaign, tuning and recording are
+/// the same only where these are.
+Files files_of(const Scenario& scenario, const Sources& sources) {
+  Files files;
+  const auto add = [&](const std::string& file, const char* key) {
+    if (!file.empty()) add_file(file, origin_of(sources, key), files);
+  };
+  if (is_rig_file(scenario.rig))
+    for (const std::filesystem::path& file : files_of_rig(scenario.rig, scenario.cameras.raw))
+      add(file.string(), "rig");
+  add(scenario.forest.trees_file, "forest.trees_file");
+  add(scenario.autopilot.actions, "autopilot.actions");
+  for (const PluginConfig& plugin : scenario.plugins)
+    for (const FileConfig& imported : load_plugin(plugin.file, "plugins").imported) files.push_back(imported);
+  return files;
+}
+
+/// A run's scenario flies again only with the files that it flew with.
+template <typename Listed>
+void require_hashes(const char* list, const std::vector<Listed>& asked, const std::vector<Listed>& there,
+                    const Sources& sources) {
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    const std::string key = fmt::format("{}[{}].", list, i),
+                      file = found_file(asked[i].file, origin_of(sources, key + "file"));
+    const auto is = std::ranges::find(there, file, &Listed::file);
+    if (is != there.end() && !asked[i].hash.empty() && asked[i].hash != is->hash)
+      throw ScenarioError(fmt::format("{}: {}hash: must be {}, the hash of {}, got {}",
+                                      origin_of(sources, key + "hash"), key, is->hash, file, asked[i].hash));
+  }
 }
 
 /// The aircraft's place on the catapult. It is known before the flight, so the filter may start from it.
@@ -236,21 +281,16 @@ Scenario compose(const Sources& sources, const std::string& name) {
       first.launch.climb_angle_rad + release_angle_of_attack_rad(first.airframe, first.launch.speed_mps);
   take_airframe(first.airframe, scenario);
   read_all(sources, scenario);
-  for (std::size_t i = 0; i < scenario.plugins.size(); ++i) {
-    const PluginConfig& asked = scenario.plugins[i];
-    const std::string key = fmt::format("plugins[{}].", i),
-                      file = found_file(asked.file, origin_of(sources, key + "file"));
-    const auto is = std::ranges::find(plugins, file, &PluginConfig::file);
-    if (is != plugins.end() && !asked.hash.empty() && asked.hash != is->hash)
-      throw ScenarioError(fmt::format("{}: {}hash: must be {}, the hash of {}, got {}",
-                                      origin_of(sources, key + "hash"), key, is->hash, file, asked.hash));
-  }
+  require_hashes("plugins", scenario.plugins, plugins, sources);
   scenario.plugins = plugins;
-  scenario.rig = rig_file(scenario.rig, origin_of(sources, "rig"));
+  if (is_rig_file(scenario.rig)) scenario.rig = found_file(scenario.rig, origin_of(sources, "rig"));
   scenario.forest.trees_file =
       found_trees_file(scenario.forest.trees_file, origin_of(sources, "forest.trees_file"));
   scenario.autopilot.actions =
       found_file(scenario.autopilot.actions, origin_of(sources, "autopilot.actions"));
+  const Files files = files_of(scenario, sources);
+  require_hashes("files", scenario.files, files, sources);
+  scenario.files = files;
   check(scenario, sources, name);
   return scenario;
 }

@@ -58,8 +58,11 @@ std::vector<fs::path> rig_files_of(const Scenario& scenario, const fs::path& mod
                                     named.parent_path().string(), scenario.rig));
   }
   const fs::path file = is_named ? named : fs::path(scenario.rig);
-  if (scenario.cameras.raw) return {file, raw_file_of(file)};
-  return {file};
+  return files_of_rig(file, scenario.cameras.raw);
+}
+
+std::vector<fs::path> files_of_rig(const fs::path& file, bool raw) {
+  return raw ? std::vector{file, raw_file_of(file)} : std::vector{file};
 }
 
 CalibratedRig rig_of(const Scenario& scenario, const fs::path& models_folder) {

@@ -10,6 +10,7 @@ Where Gymnasium is installed: `gymnasium.make("understory/Forest-v0")` after `im
 
 from __future__ import annotations
 
+import functools
 import os
 from typing import Any, Mapping, Optional, Sequence
 
@@ -75,6 +76,16 @@ class FlightEnv(_Base):
     controls (0.03 s). An action takes effect at the next control step. An observation holds only what has reached the
     autopilot, so images are one latency old.
     """
+
+    def __new__(cls, *arguments: Any, **named: Any) -> FlightEnv:
+        env = super().__new__(cls)
+        env._made_with = (arguments, named)
+        return env
+
+    def __reduce__(self) -> Any:
+        """Copied and pickled as Gymnasium's environments: made anew with the same arguments, not reset."""
+        arguments, named = self._made_with
+        return functools.partial(type(self), *arguments, **named), ()
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 120}
 

@@ -13,8 +13,10 @@ A part is a class (or any callable) that makes it from a context, under a name t
 
 from __future__ import annotations
 
+import importlib.machinery
 import os
 import sys
+import types
 from typing import TYPE_CHECKING, Any, Callable, Sequence
 
 import _understory
@@ -145,20 +147,33 @@ def parts() -> dict[str, list[str]]:
     return _understory.parts()
 
 
-def _run_plugin(file: str) -> None:
-    """Run a plug-in's file as a module of its own name; its decorators add the parts. Called by load_plugin."""
-    import importlib.util
+class _FromSource(importlib.machinery.SourceFileLoader):
+    """Compiles what it reads: compiled files beside a module may be of an older text of the same second."""
 
+    def path_stats(self, path: str) -> dict[str, Any]:
+        raise OSError
+
+
+def _run_plugin(file: str, text: bytes) -> list[str]:
+    """Run a plug-in's text as a module of its own name; its decorators add the parts. Called by load_plugin. Returns the files
+    of the modules beside or below it that it imported.
+    """
     name = "understory_plugin_" + os.path.splitext(os.path.basename(file))[0]  # no name of another module
     folder = os.path.dirname(file)
     if folder not in sys.path:
         sys.path.append(folder)  # for modules beside it
-    spec = importlib.util.spec_from_file_location(name, file)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
+    sys.path_importer_cache[folder] = importlib.machinery.FileFinder(
+        folder,
+        (importlib.machinery.ExtensionFileLoader, importlib.machinery.EXTENSION_SUFFIXES),
+        (_FromSource, importlib.machinery.SOURCE_SUFFIXES),
+    )
+    module = types.ModuleType(name)
+    module.__file__ = file
     sys.modules[name] = module
     try:
-        spec.loader.exec_module(module)
+        exec(compile(text, file, "exec"), module.__dict__)
     except BaseException:
         del sys.modules[name]
         raise
+    files = {getattr(one, "__file__", None) or "" for one in list(sys.modules.values())}
+    return sorted(one for one in files if one.startswith(folder + os.sep) and one != file)

@@ -8,6 +8,7 @@ import mmap
 import multiprocessing
 import os
 import signal
+import sys
 import traceback
 from multiprocessing import reduction
 from typing import Any, Iterator, Mapping, Optional, Sequence
@@ -26,6 +27,20 @@ except ImportError:
         NEXT_STEP = "NextStep"
         SAME_STEP = "SameStep"
         DISABLED = "Disabled"
+
+
+@contextlib.contextmanager
+def _without_script_on_stdin() -> Iterator[None]:
+    """A script on standard input is no file that a worker could import, and it needs nothing of it."""
+    main, file = sys.modules["__main__"], getattr(sys.modules["__main__"], "__file__", None)
+    hides = file is not None and not os.path.exists(file)
+    if hides:
+        del main.__file__
+    try:
+        yield
+    finally:
+        if hides:
+            main.__file__ = file
 
 
 _ALIGNED = 64
@@ -151,7 +166,8 @@ class VectorEnv:
         # A file descriptor can be handed over only while a process is spawned.
         arguments = (theirs, _Descriptor(self._file), self._size, self._layout, index, self._settings)
         process = self._spawn.Process(target=_work, args=arguments, daemon=True)
-        process.start()
+        with _without_script_on_stdin():
+            process.start()
         theirs.close()
         return process, ours
 
