@@ -71,3 +71,11 @@ if(understory_has_python)
           PATTERN __pycache__ EXCLUDE)
   install(FILES scenarios/python/_understory.pyi DESTINATION ${python_packages})
 endif()
+
+# All that is installed: what `./run build` and `./run fly` build.
+add_custom_target(product)
+foreach(part understory program_pages python_module understory_python)
+  if(TARGET ${part})
+    add_dependencies(product ${part})
+  endif()
+endforeach()

@@ -87,7 +87,7 @@ std::optional<Plan> AvoidancePlanner::search(const FlightTask& task, const Fligh
   }
   if (may_keep) kept = improved(left, limits.minimum_kept_clearance_m);
   if (may_keep && kept.cost <= config_.change_cost_ratio * found.cost) {
-    ++count("searched_and_kept");
+    ++count("search_found_no_better");
     replans_kept_ = 0;
     searched_t_ns_ = t_ns;
     return keep(t_ns, kept.manoeuvre, flown_through(task, start, kept.manoeuvre));

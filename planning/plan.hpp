@@ -42,7 +42,7 @@ struct PlanPoint {
 /// How a plan came about.
 enum class PlanOrigin {
   straight,  ///< nothing in the way: towards the goal, holding altitude
-  solved,    ///< OMPL found it in this replan
+  solved,    ///< the planner's search found it in this replan
   kept,      ///< an earlier plan, still valid and good
   fallback   ///< nothing free of collision found: the primitive with the maximum clearance
 };
@@ -84,11 +84,10 @@ void visit_fields(Visitor& visit, Counts& counts) {
   visit("replans", counts.replans, "number of plans made");
   visit("straight", counts.straight,
         "number of plans that fly straight on, because no obstacle comes within comfortable clearance");
-  visit("solved", counts.solved, "number of plans that use a manoeuvre found by OMPL in the same replan");
+  visit("solved", counts.solved, "number of plans that use a manoeuvre that the planner's search found in the same replan");
   visit("kept", counts.kept, "number of plans that continue the plan in force, because it is still good");
   visit("kept_ompl", counts.kept_ompl,
-        "number of plans counted in kept that continue a manoeuvre found by OMPL; the other kept plans fly "
-        "straight on");
+        "number of plans counted in kept that continue a manoeuvre; the other kept plans fly straight on");
   visit("fallback", counts.fallback,
         "number of plans that use the predefined manoeuvre with the largest clearance, because no free "
         "manoeuvre was found");
@@ -96,11 +95,11 @@ void visit_fields(Visitor& visit, Counts& counts) {
         "number of plans made where straight flight would violate the minimum clearance to obstacles or "
         "altitude limits");
   visit("obstacle_ahead_ompl", counts.obstacle_ahead_ompl,
-        "number of plans counted in obstacle_ahead that use a manoeuvre found by OMPL, in this replan or an "
-        "earlier one");
+        "number of plans counted in obstacle_ahead that use a manoeuvre that the planner's search found, in "
+        "this replan or an earlier one");
   visit("searches", counts.searches,
-        "number of OMPL searches, including those that compare a kept plan with a new one");
-  visit("found", counts.found, "number of OMPL searches that found a free manoeuvre");
+        "number of searches, including those that compare a kept plan with a new one");
+  visit("found", counts.found, "number of searches that found a free manoeuvre");
 }
 
 }  // namespace understory

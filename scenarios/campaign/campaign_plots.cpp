@@ -29,11 +29,11 @@ struct PlotAxis {
 
 double speed_of(const FlightRow& row) { return row.cruise_speed_mps; }
 double density_of(const FlightRow& row) {
-  return row.square_metres_per_tree > 0 ? 100 / row.square_metres_per_tree : 0;
+  return row.square_metres_per_tree > 0 ? 10'000 / row.square_metres_per_tree : 0;
 }
 constexpr PlotAxis speed_axis{speed_of, "autopilot.flight_model.cruise_speed_mps", "speed",
                               "cruise speed asked (m/s)"};
-constexpr PlotAxis density_axis{density_of, "forest.square_metres_per_tree", "density", "trees per 100 m²"};
+constexpr PlotAxis density_axis{density_of, "forest.square_metres_per_tree", "density", "trees per hectare"};
 
 constexpr AxisRange percent_range{-2, 102};  // dots at 0 and at 100 are whole
 

@@ -46,7 +46,7 @@ Table summary_table(const std::vector<ConditionSummary>& summaries);
 /// Points are set a little apart sideways where series share a speed.
 LinePlot success_over_speed(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions);
 
-/// The same over trees per 100 m^2.
+/// The same over trees per hectare.
 LinePlot success_over_density(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions);
 
 /// The same side by side: a place per condition, which bears its name.

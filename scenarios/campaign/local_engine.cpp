@@ -191,10 +191,13 @@ bool fly_locally(const CampaignFolder& folder, const Campaign& campaign,
   for (const CampaignTask& task : tasks) {
     if (stop_signals.asked()) return false;
     const auto file = read_flight(folder, task);
-    if (file && file->row.flown())
+    if (file && file->row.flown()) {
+      std::error_code ignored;
+      fs::remove(folder.log_file(task), ignored);  // a kill came between row and log
       count(file->row, progress);
-    else
+    } else {
       left.push_back(&task);
+    }
   }
   progress.before = progress.over;
   Flights flights(folder, campaign, config, stop_signals);

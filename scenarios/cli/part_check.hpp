@@ -18,7 +18,7 @@ struct PartCheck {
 struct PartCheckOptions {
   std::filesystem::path models_folder;
   std::string plugin;  ///< parts that came from this file; empty: ours
-  int calls = 10'000;  ///< of the check for memory; fewer where they would take longer than 5 s
+  int calls = 10'000;  ///< of the check for memory; fewer of slow parts
   std::function<void(const std::string&)> on_progress = [](const std::string&) {};
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 namespace understory {
 namespace {
@@ -13,7 +14,7 @@ constexpr std::int64_t slow_end_ns = 500'000'000;
 constexpr double film_rate_hz = 30;
 
 /// Of the moment of an exposure, under the plan in force when the frame arrived.
-std::string caption_of(const FlightLog& log, std::int64_t t_ns) {
+std::array<std::string, 2> captions_of(const FlightLog& log, std::int64_t t_ns) {
   const LogMoment& moment = moment_at(log, t_ns);
   const LogPlan* plan = log.plans.empty() ? nullptr : &log.plans.back();
   const std::string planned =
@@ -21,8 +22,9 @@ std::string caption_of(const FlightLog& log, std::int64_t t_ns) {
       : std::isfinite(plan->clearance_m)
           ? fmt::format("{}, {:.2f} m clear", word_for(plan->origin), plan->clearance_m)
           : fmt::format("{}, nothing near", word_for(plan->origin));
-  return fmt::format("{:.3f} s   {:.1f} m/s   {:.1f} m high   plan: {}", seconds(t_ns),
-                     moment.velocity_world_mps.norm(), moment.T_world_body.translation().z(), planned);
+  return {fmt::format("{:.2f} s   {:.1f} m/s   {:.1f} m high", seconds(t_ns),
+                      moment.velocity_world_mps.norm(), moment.T_world_body.translation().z()),
+          "plan: " + planned};
 }
 
 void mark(cv::Mat picture, const Eye& eye, const Eigen::Vector3d& place_world, int scale) {
@@ -32,7 +34,7 @@ void mark(cv::Mat picture, const Eye& eye, const Eigen::Vector3d& place_world, i
              scale * (eye.focal_px * seen.y() / seen.z() + eye.center_y_px));
 }
 
-constexpr int scale = 2;
+constexpr int scale = 2, caption_px = 32;
 
 }  // namespace
 
@@ -54,7 +56,7 @@ FlightFilm::Moment FlightFilm::moment_of(const Flight& flight) {
                         seen.velocity_body_mps.x(),
                         seen.T_world_body.translation().z(),
                         {}};
-  return {frames_++, frame, std::move(overlay), truth, caption_of(log_, frame.t_ns)};
+  return {frames_++, frame, std::move(overlay), truth, captions_of(log_, frame.t_ns)};
 }
 
 cv::Mat FlightFilm::draw(const Flight& flight, Moment& moment) {
@@ -62,9 +64,15 @@ cv::Mat FlightFilm::draw(const Flight& flight, Moment& moment) {
   if (rig.calibration && !rectifier_) rectifier_.emplace(*rig.calibration, Interpolation::nearest);
   moment.overlay.left = rectifier_ ? rectifier_->rectify(moment.frame).left : moment.frame.left;
   const cv::Mat eye = draw_overlay(moment.overlay, rig.rig, scale);
-  cv::Mat picture;
-  cv::hconcat(eye, flight.cameras()->chase_view(moment.truth, eye.cols, eye.rows), picture);
-  write_caption(picture, moment.caption);
+  // At half its size the view from behind is drawn in a quarter of the time, and takes half of a film's bytes.
+  cv::Mat chase, pictures, picture;
+  cv::resize(flight.cameras()->chase_view(moment.truth, eye.cols / 2, eye.rows / 2), chase, eye.size());
+  cv::hconcat(eye, chase, pictures);
+  cv::copyMakeBorder(pictures, picture, 0, caption_px, 0, 0, cv::BORDER_CONSTANT);
+  for (const int side : {0, 1}) {
+    cv::Mat half = picture.colRange(side * eye.cols, (side + 1) * eye.cols);
+    write_caption(half, moment.captions[static_cast<std::size_t>(side)]);
+  }
   return picture;
 }
 
@@ -93,14 +101,14 @@ void FlightFilm::finish(const Flight& flight) {
   if (is_lost && !recent_.empty()) {
     Moment& end = recent_.back();
     end.truth = flight.truth();  // a little after the last frame
-    end.caption = fmt::format("{:.3f} s   {}", flight.clock().t_s(), word_for(*flight.outcome()));
+    end.captions = {fmt::format("{:.2f} s", flight.clock().t_s()), std::string(word_for(*flight.outcome()))};
     last_ = draw(flight, end);
     const Touch touch = flight.touch();
     if (touch.with != Contact::none) {
-      const int width_px = last_.cols / 2;
+      const int width_px = last_.cols / 2, height_px = last_.rows - caption_px;
       const Eye left = eyes_of(flight.rig().rig, end.truth.T_world_body)[0];
       mark(last_.colRange(0, width_px), left, touch.position_world, scale);
-      mark(last_.colRange(width_px, last_.cols), chase_eye(end.truth.T_world_body, width_px, last_.rows),
+      mark(last_.colRange(width_px, last_.cols), chase_eye(end.truth.T_world_body, width_px, height_px),
            touch.position_world, 1);
     }
     for (int i = 0; i < film_rate_hz; ++i) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
@@ -15,8 +16,8 @@
 
 namespace understory {
 
-/// flight.mp4: the left camera's image with the paper's overlay and the plan beside a chase view, in real
-/// time, 30 pictures a second. The last half second of a lost flight shows every frame, four times slower,
+/// flight.mp4: the left camera's image with the paper's overlay and the plan beside a chase view of half the
+/// sharpness, words in a strip below, in real time, 30 pictures a second. The last half second of a lost flight shows every frame, four times slower,
 /// and the last picture stands for a second, the impact marked. still.png: the picture with the most
 /// detections.
 class FlightFilm : public FlightObserver {
@@ -40,7 +41,7 @@ class FlightFilm : public FlightObserver {
     StereoFrame frame;
     OverlayMoment overlay;
     Truth truth;
-    std::string caption;
+    std::array<std::string, 2> captions;  ///< below the left picture and the right one
   };
   Moment moment_of(const Flight& flight);
   cv::Mat draw(const Flight& flight, Moment& moment);

@@ -174,12 +174,16 @@ std::vector<std::pair<std::string, std::string>> result_lines(const FlightResult
                                  result.remembered_points));
   const PlannerCounts& planner = result.planner;
   line("replans",
-       fmt::format("{}: {} straight, {} solved by OMPL, {} kept ({} of OMPL's), {} fallback", planner.replans,
+       fmt::format("{}: {} straight on, {} new manoeuvres, {} kept from the plan before ({} of them manoeuvres), {} "
+                   "emergency manoeuvres", planner.replans,
                    planner.straight, planner.solved, planner.kept, planner.kept_ompl, planner.fallback));
-  line("obstacle ahead", fmt::format("in {} replans, {} of them flown on OMPL's answer",
+  line("obstacle ahead", fmt::format("in {} replans; in {} of them a manoeuvre of the search was flown",
                                      planner.obstacle_ahead, planner.obstacle_ahead_ompl));
-  for (const auto& [name, number] : planner.own)
-    line(name, fmt::format("{}, counted by the planner", number));
+  for (const auto& [name, number] : planner.own) {
+    std::string words = name;
+    std::ranges::replace(words, '_', ' ');
+    line(words, fmt::format("{} (a count of the planner's own)", number));
+  }
   line("renderer", result.renderer.empty() ? "none: no images" : result.renderer);
   line("digest", result.digest);
   return lines;

@@ -161,7 +161,7 @@ ObstacleStory story_of_obstacle(const FlightLog& log, std::size_t index) {
   return story;
 }
 
-/// "0.21 m to the left, 0.31 m before and 0.40 m below", of what is worth saying.
+/// "0.21 m left of, 0.31 m in front of and 0.40 m below", of what is worth saying.
 std::string words_of_offset(const Eigen::Vector3d& off_world) {
   constexpr double worth_m = 0.005;
   std::vector<std::string> words;
@@ -169,14 +169,13 @@ std::string words_of_offset(const Eigen::Vector3d& off_world) {
     if (std::abs(by_m) >= worth_m)
       words.push_back(fmt::format("{:.2f} m {}", std::abs(by_m), by_m > 0 ? more : less));
   };
-  add(off_world.y(), "to the left", "to the right");
-  add(off_world.x(), "behind", "before");
+  add(off_world.y(), "left of", "right of");
+  add(off_world.x(), "behind", "in front of");
   add(off_world.z(), "above", "below");
   if (words.empty()) return "less than a centimetre from";
-  if (words.size() == 1) return words[0] + (std::abs(off_world.y()) >= worth_m ? " of" : "");
   const std::string last = words.back();
   words.pop_back();
-  return fmt::format("{} and {}", fmt::join(words, ", "), last);
+  return words.empty() ? last : fmt::format("{} and {}", fmt::join(words, ", "), last);
 }
 
 void tell_of_obstacle(const FlightLog& log, const ObstacleStory& told, FlightStory& story) {
@@ -206,7 +205,7 @@ void tell_of_obstacle(const FlightLog& log, const ObstacleStory& told, FlightSto
   if (told.points > 0) {
     story.before.push_back(fmt::format(
         "At the end the map held {} points within {:.0f} m of it, the nearest {:.2f} m from its "
-        "surface; their middle lay {} its {}.",
+        "surface. On average they lay {} its {}.",
         told.points, 2 * belongs_within_m, std::max(0.0, told.nearest_point_m),
         words_of_offset(told.points_off_world), obstacle.kind == ObstacleKind::wall ? "face" : "axis"));
     return;
@@ -282,27 +281,29 @@ void tell_of_motion(const FlightLog& log, FlightStory& story) {
                                        believed_m > 0 ? "higher" : "lower"));
 }
 
+constexpr std::string_view words_for(PlanOrigin origin) {
+  constexpr std::string_view words[] = {"straight on", "on a new manoeuvre", "on a plan made before",
+                                        "on an emergency manoeuvre, since it had found no free way"};
+  return words[static_cast<std::size_t>(origin)];
+}
+
 void tell_of_plans(const FlightLog& log, FlightStory& story) {
   bool falls_back = false;
   for (const LogPlan& plan : log.plans) {
     const bool now = plan.origin == PlanOrigin::fallback;
     if (now && !falls_back)
-      story.events.push_back({seconds(plan.t_ns), "fallback", "the planner found no free way and fell back"});
+      story.events.push_back({seconds(plan.t_ns), "fallback", "the planner found no free way and chose an emergency manoeuvre"});
     falls_back = now;
   }
   if (log.plans.empty()) return;
   const LogPlan& last = log.plans.back();
+  const std::string way = fmt::format("At the end it flew {}.", words_for(last.origin));
   if (!std::isfinite(last.clearance_m))
-    story.before.push_back(
-        fmt::format("The plan in force ({}) knew of no obstacle near it.", word_for(last.origin)));
+    story.before.push_back(way + " The map held nothing near its way.");
   else if (last.clearance_m > 0)
-    story.before.push_back(
-        fmt::format("The plan in force ({}) kept {:.2f} m away from all obstacles as the map had them.",
-                    word_for(last.origin), last.clearance_m));
+    story.before.push_back(fmt::format("{} It was to keep {:.2f} m clear of all that the map held.", way, last.clearance_m));
   else
-    story.before.push_back(
-        fmt::format("The plan in force ({}) touched obstacles as the map had them{}.", word_for(last.origin),
-                    last.origin == PlanOrigin::fallback ? ": the planner had found no free way" : ""));
+    story.before.push_back(way + " It led through what the map held.");
 }
 
 /// Columns and rows of the left image within which the obstacle lies, at most; empty where it lies elsewhere.

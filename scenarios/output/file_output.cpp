@@ -120,6 +120,12 @@ std::string host_name() {
   return host;
 }
 
+/// Also of a process that has ended and that nobody waits for (a zombie): it has no program.
+bool is_gone(int process) {
+  char program = 0;
+  return readlink(fmt::format("/proc/{}/exe", process).c_str(), &program, 1) < 0 && errno == ENOENT;
+}
+
 bool lies_in_unfinished_folder(const fs::path& file) {
   return std::ranges::any_of(file.parent_path(), is_unfinished_name);
 }
@@ -152,8 +158,7 @@ bool is_at_work_on(const fs::path& unfinished) {
   int process = 0;
   if (!name.starts_with(ours)) return false;
   const auto parsed = std::from_chars(name.data() + ours.size(), name.data() + name.size(), process);
-  return parsed.ec == std::errc() && *parsed.ptr == '-' && process != getpid() &&
-         (kill(process, 0) == 0 || errno == EPERM);
+  return parsed.ec == std::errc() && *parsed.ptr == '-' && process != getpid() && !is_gone(process);
 }
 
 void refuse_output(const fs::path& file, int error) {
@@ -255,6 +260,7 @@ void prepare_output_folder(const fs::path& folder) {
   const std::vector<fs::path> made = make_folders(folder, folder);
   std::error_code ignored;
   if (FolderClaim* claim = claim_of(fs::weakly_canonical(folder, ignored))) claim->made_folders(made);
+  clear_unfinished(folder);
   probe(folder, folder);
 }
 

@@ -136,7 +136,7 @@ void clear_unfinished(const fs::path& folder) {
   fs::directory_iterator entry(folder, ignored);
   for (; !ignored && entry != fs::directory_iterator(); entry.increment(ignored))
     if (is_unfinished_name(entry->path()) && is_left_over(entry->path())) left.push_back(entry->path());
-  for (const fs::path& path : left) fs::remove_all(path, ignored);
+  for (const fs::path& path : left) remove_unfinished(path);
 }
 
 FolderClaim* claim_of(const fs::path& file) {
@@ -204,8 +204,8 @@ void FolderClaim::read_list() {
   char piece[65536];
   for (ssize_t count; (count = pread(file_, piece, sizeof piece, static_cast<off_t>(text.size()))) > 0;)
     text.append(piece, static_cast<std::size_t>(count));
-  if (text.empty()) {
-    append(std::string(header));
+  if (header.starts_with(text)) {  // new, or torn by a power cut
+    append(std::string(header.substr(text.size())));
     return;
   }
   if (!text.starts_with(header)) {
@@ -258,7 +258,7 @@ bool FolderClaim::holds_other_files() const {
   fs::recursive_directory_iterator entry(folder_, error);
   for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
     const std::string file = entry->path().lexically_relative(folder_).string();
-    const bool is_ours = file == claim_name || owns(entry->path());
+    const bool is_ours = file == claim_name || owns(entry->path()) || is_unfinished_file_name(entry->path());
     if (!is_ours && !fs::is_directory(entry->symlink_status(ignored))) return true;
   }
   return static_cast<bool>(error);  // what cannot be looked at is somebody's

@@ -58,16 +58,6 @@ const char* name_of(int signal) {
   return signal == SIGTERM ? "SIGTERM" : "SIGHUP";
 }
 
-/// The list of a folder goes last: until then it says whose the rest is, where that could not be removed.
-void remove_unfinished(const fs::path& path) {
-  std::error_code error;
-  for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
-    if (entry->path().filename() != claim_name &&
-        fs::remove_all(entry->path(), error) == static_cast<std::uintmax_t>(-1))
-      return;
-  if (!error || error == std::errc::not_a_directory) fs::remove_all(path, error);
-}
-
 /// At once; what cannot be said is not.
 void say(int descriptor, std::string_view text) {
   if (write(descriptor, text.data(), text.size()) < 0) return;
@@ -139,6 +129,15 @@ StopSignals::~StopSignals() {
 }
 
 int StopSignals::number() const { return remembered; }
+
+void remove_unfinished(const fs::path& path) {
+  std::error_code error;
+  for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
+    if (entry->path().filename() != claim_name &&
+        fs::remove_all(entry->path(), error) == static_cast<std::uintmax_t>(-1))
+      return;
+  if (!error || error == std::errc::not_a_directory) fs::remove_all(path, error);
+}
 
 Unfinished::Unfinished(fs::path path) : path_(std::move(path)) {
   const auto lock = hold_outputs();

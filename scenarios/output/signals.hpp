@@ -36,6 +36,10 @@ class StopSignals {
   int number() const;  ///< the signal that came; 0: none
 };
 
+/// Removes what is unfinished. The list of a folder goes last: until then it says whose the rest is, where
+/// that could not be removed.
+void remove_unfinished(const std::filesystem::path& path);
+
 /// A file or folder that bears another name until it is whole, and is removed where the work ends before: by
 /// an exception, by a signal.
 class Unfinished {

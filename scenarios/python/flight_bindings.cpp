@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "perception/io/text_table.hpp"
 #include "planning/path_follower.hpp"
 #include "scenarios/config/keys.hpp"
 #include "scenarios/flight/actions.hpp"
@@ -305,7 +306,7 @@ void bind_scenario(py::module_& module) {
                              [](const Scenario& self) { return rig_of(self, data_root() / "models").rig; })
       .def("with_seed",
            [](const Scenario& self, const py::int_& seed) {
-             const std::string text = py::str(seed);
+             const auto text = std::string(py::str(py::handle(seed)));
              const auto number = number_in<std::uint64_t>(text);
              if (!number || *number > maximum_seed)
                throw ScenarioError(

@@ -25,8 +25,8 @@ constexpr double feet_per_m = 3.2808398950131;
 constexpr double nearest_drawn_m = 0.5;
 
 void write_text(cv::Mat& picture, const std::string& text, cv::Point place, double size) {
-  constexpr int font = cv::FONT_HERSHEY_SIMPLEX;
-  const int thickness = size < 0.8 ? 1 : 2;
+  constexpr int font = cv::FONT_HERSHEY_DUPLEX;
+  const int thickness = size <= 0.8 ? 1 : 2;
   cv::putText(picture, text, place, font, size, cv::Scalar(0, 0, 0), thickness + 3, cv::LINE_AA);
   cv::putText(picture, text, place, font, size, cv::Scalar(255, 255, 255), thickness, cv::LINE_AA);
 }
@@ -34,7 +34,7 @@ void write_text(cv::Mat& picture, const std::string& text, cv::Point place, doub
 void write_at_side(cv::Mat& picture, const std::string& text, bool at_right) {
   constexpr double size = 0.7;
   int baseline = 0;
-  const cv::Size extent = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, size, 2, &baseline);
+  const cv::Size extent = cv::getTextSize(text, cv::FONT_HERSHEY_DUPLEX, size, 2, &baseline);
   write_text(picture, text, {at_right ? picture.cols - extent.width - 12 : 12, picture.rows / 2}, size);
 }
 
@@ -75,11 +75,11 @@ void VideoFile::finish() {
 }
 
 void write_caption(cv::Mat& picture, const std::string& text) {
-  constexpr double largest = 1.2;
+  constexpr double largest = 0.8;
   int baseline = 0;
-  const cv::Size extent = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, 1, 2, &baseline);
+  const cv::Size extent = cv::getTextSize(text, cv::FONT_HERSHEY_DUPLEX, 1, 2, &baseline);
   const double size = std::min(largest, static_cast<double>(picture.cols - 24) / std::max(1, extent.width));
-  write_text(picture, text, {12, picture.rows - 14}, size);
+  write_text(picture, text, {12, picture.rows - 9}, size);
 }
 
 void mark_place(cv::Mat& picture, double u_px, double v_px) {

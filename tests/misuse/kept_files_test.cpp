@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <random>
 #include <string>
@@ -91,7 +93,7 @@ int run(const std::string& command, const fs::path& folder, const Fixtures& fixt
     setenv("F", fixtures.folder().c_str(), 1);
     if (ending.disk_bytes >= 0) {
       setenv("LD_PRELOAD", UNDERSTORY_FAILING_DISK, 1);
-      setenv("FAILING_DISK_FOLDER", folder.c_str(), 1);
+      setenv("FAILING_DISK_FOLDER", (folder / "").c_str(), 1);
       setenv("FAILING_DISK_BYTES", std::to_string(ending.disk_bytes).c_str(), 1);
     }
     const std::string script =
@@ -206,6 +208,86 @@ TEST(KeptFiles, WhatACommandSaysItWroteHasReachedTheDisk) {
     }
   }
 }
+
+/// What goes on when the same command is given again; one job, so that names are made in the same order.
+const std::map<std::string, std::string> that_go_on{
+    {"campaign", "$U campaign c.yaml --out out --jobs 1 --keep-runs --resume"},
+    {"tune", "$U tune t.yaml --out out --jobs 1 --resume"},
+    {"evaluate", "$U evaluate e.yaml --out out --jobs 1"},
+    {"record", "$U record clear --path path.tum --set cameras.rate_hz=20 --quiet --out out --force"},
+    {"fly", "$U fly s.yaml --quiet --mcap --report --out out"},
+    {"collect", "$U collect out"}};
+
+/// Runs it, killed at that moment (0: never). Gives how many moments there were.
+std::int64_t moments_of(const std::string& command, const fs::path& folder, const Fixtures& fixtures,
+                        std::int64_t killed_at, int& status) {
+  const std::string calls = folder.string() + ".calls";
+  std::ofstream(calls, std::ios::binary) << std::string(16, '\0');
+  setenv("FAILING_DISK_CALLS", calls.c_str(), 1);
+  setenv("FAILING_DISK_KILL", std::to_string(killed_at).c_str(), 1);
+  status = run(command, folder, fixtures, {"", true, 0, 1'000'000'000'000}, {});
+  unsetenv("FAILING_DISK_CALLS");
+  std::int64_t count = 0;
+  std::ifstream(calls, std::ios::binary).read(reinterpret_cast<char*>(&count), sizeof count);
+  return count;
+}
+
+void begin(const std::string& name, const TemporaryFolder& folder, const Fixtures& fixtures) {
+  fs::remove_all(folder.path() / "work");
+  folder.write("work/s.yaml",
+               "course: clear\ntime_limit_s: 0.5\nforest: {length_m: 1}\nperception: {detector: none}\n");
+  folder.write("work/c.yaml", "scenario: s.yaml\nseeds: 1\n");
+  folder.write("work/path.tum", "0 0 0 3 0 0 0 1\n0.06 0.6 0 3 0 0 0 1\n");
+  folder.write(
+      "work/e.yaml",
+      "recordings: [{name: a, scenario: clear, seeds: 1, path: path.tum, set: {cameras.rate_hz: 20}}]\n");
+  folder.write("work/t.yaml",
+               "scenario: s.yaml\nparameters: {autopilot.flight_model.cruise_speed_mps: {from: 9, to: 12}}\n"
+               "objective: {maximize: progress}\nsearch: {method: random, trials: 1, sensitivity: 2}\n"
+               "over: flights\ntraining: 1\nvalidation: 2\n");
+  if (name == "collect")
+    fs::copy(fixtures.folder() / "campaign", folder.path() / "work/out", fs::copy_options::recursive);
+}
+
+class GoesOn : public testing::TestWithParam<std::string> {};
+
+/// Killed before and behind every call that makes, changes or removes a name, it goes on, and leaves the
+/// names and rows of one that nobody disturbed.
+TEST_P(GoesOn, WhereverItWasKilled) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "fixtures");
+  Fixtures fixtures(folder.path() / "fixtures");
+  if (GetParam() == "collect") fixtures.make_those_in("$F/campaign");
+  const fs::path work = folder.path() / "work";
+  const std::string& command = that_go_on.at(GetParam());
+  const int expected_status = GetParam() == "fly" ? 1 : 0;  // it runs out of time
+  int status = 0;
+  begin(GetParam(), folder, fixtures);
+  const std::int64_t moments = moments_of(command, work, fixtures, 0, status);
+  ASSERT_EQ(status, expected_status) << content_of(work.string() + ".err");
+  ASSERT_GT(moments, 10);
+  const auto expected = tree_of(work);
+  for (std::int64_t moment = 1; moment <= moments; ++moment) {
+    begin(GetParam(), folder, fixtures);
+    moments_of(command, work, fixtures, moment, status);
+    EXPECT_EQ(status, 128 + SIGKILL) << moment;
+    moments_of(command, work, fixtures, 0, status);
+    ASSERT_EQ(status, expected_status) << moment << ": " << content_of(work.string() + ".err");
+    const auto after = tree_of(work);
+    for (const auto& [path, content] : after)
+      EXPECT_TRUE(expected.contains(path)) << moment << ": " << path << " was left";
+    for (const auto& [path, content] : expected) {
+      ASSERT_TRUE(after.contains(path)) << moment << ": " << path << " is missing";
+      const bool is_rows =
+          path.ends_with("flights.csv") || path.ends_with("s.jsonl") || path.ends_with(".png");
+      if (is_rows) EXPECT_EQ(after.at(path), content) << moment << ": " << path;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Commands, GoesOn,
+                         testing::Values("campaign", "tune", "evaluate", "record", "fly", "collect"),
+                         [](const auto& command) { return command.param; });
 
 }  // namespace
 }  // namespace understory::support

@@ -33,15 +33,20 @@ std::vector<std::string> words_in(const std::string& text) {
   return words;
 }
 
+/// stopped SIGNAL FILES COMMAND...: runs it, and sends the signal when there are files that match.
+constexpr const char* stopped =
+    "stopped() { local s=$1 e=$2; shift 2; \"$@\" & local p=$!; until compgen -G \"$e\" >/dev/null || "
+    "! kill -0 $p 2>/dev/null; do sleep 0.02; done; kill -$s $p; wait $p; }\n";
+
 /// In `folder`, what it prints beside it.
 int shell(const std::string& text, const fs::path& folder, const fs::path& fixtures) {
   const std::string script = "export U='" UNDERSTORY_BINARY "' F='" + fixtures.string() +
-                             "' SOURCE='" UNDERSTORY_SOURCE_DIR "'\ncd '" + folder.string() +
+                             "' SOURCE='" UNDERSTORY_SOURCE_DIR "'\n" + stopped + "cd '" + folder.string() +
                              "' || exit 99\n{ " + text + "\n} >'" + folder.string() + ".out' 2>'" +
                              folder.string() + ".err'\n";
   const fs::path file = folder.string() + ".sh";
   std::ofstream(file) << script;
-  const int status = std::system(("exec timeout 60 bash '" + file.string() + "'").c_str());
+  const int status = std::system(("exec timeout 3600 bash '" + file.string() + "'").c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 

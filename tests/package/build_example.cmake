@@ -10,6 +10,19 @@ function(must)
   set(output "${output}" PARENT_SCOPE)
 endfunction()
 
+# `./run build` builds all that is installed.
+must(ninja -C ${BUILD} -t inputs product)
+file(GLOB_RECURSE scripts ${BUILD}/cmake_install.cmake)
+foreach(script IN LISTS scripts)
+  file(STRINGS ${script} lines REGEX "\"${BUILD}/[^\"]*[.](so|a|gz)\"")
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE ".*\"${BUILD}/([^\"]*)\".*" "\\1" file "${line}")
+    if(NOT output MATCHES "(^|\n)${file}(\n|$)")
+      message(FATAL_ERROR "./run build does not build ${file}, which is installed")
+    endif()
+  endforeach()
+endforeach()
+
 must(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 must(${CMAKE_COMMAND} -S ${EXAMPLE} -B ${WORK}/build -G Ninja -D CMAKE_PREFIX_PATH=${WORK}/prefix
      -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_BUILD_TYPE=Release -D "CMAKE_CXX_FLAGS=-Wall -Wextra -Werror")

@@ -166,7 +166,7 @@ TEST_F(CalibrationFaults, Euroc) {
 }
 
 TEST_F(CalibrationFaults, FilesAndFolders) {
-  expect_line(complaint("/nonexistent", {}), "/nonexistent: ", "cannot read this file");
+  expect_line(complaint("/proc/nowhere", {}), "/proc/nowhere: ", "cannot read this file");
   expect_line(complaint(folder.path(), {}), folder.path().string() + ": M1: ", "M1.xml, M1.yml or M1.yaml");
   expect_line(complaint("/dev/zero", {}), "/dev/zero: ", "this is a device");
   expect_line(complaint(folder.write("empty.xml", ""), {}), folder.path().string(),

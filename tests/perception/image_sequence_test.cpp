@@ -139,8 +139,8 @@ TEST_F(Euroc, RefusesWhatIsMissing) {
 TEST(EurocImages, ColumnsGoByTheirNames) {
   const auto turned = parse_euroc_images("#filename,timestamp [ns]\na.png,1\n", "d");
   EXPECT_EQ(turned.at(0).t_ns, 1);
-  EXPECT_EQ(turned.at(0).file, "a.png");
-  EXPECT_EQ(parse_euroc_images("\"timestamp\",\"filename\"\n1,\"a,b.png\"\n", "d").at(0).file, "a,b.png");
+  EXPECT_EQ(turned.at(0).file_name, "a.png");
+  EXPECT_EQ(parse_euroc_images("\"timestamp\",\"filename\"\n1,\"a,b.png\"\n", "d").at(0).file_name, "a,b.png");
   for (const char* text : {"#timestamp [s],filename\n1,a.png\n", "#timestamp,picture of\n1,a.png\n"})
     EXPECT_EQ(refusal_of([&] { parse_euroc_images(text, "d"); }).find("d:1: "), 0u) << text;
 }

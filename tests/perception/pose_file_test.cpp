@@ -138,8 +138,8 @@ TEST(PoseFile, NamesTheLineOfEveryFault) {
   EXPECT_EQ(complaint("5,0,0,0,1,0,0\n").find("p:1: expected 't,px"), 0u);
   EXPECT_EQ(complaint("5.5,0,0,0,1,0,0,0\n").find("p:1: expected 't,px"), 0u);
   EXPECT_EQ(complaint("5,0,0,0,1,0,0,0\n4,0,0,0,1,0,0,0\n"), "p:2: times must increase from line to line");
-  EXPECT_EQ(refusal_of([] { read_poses("/nonexistent"); }),
-            "/nonexistent: cannot read this file: No such file or directory");
+  EXPECT_EQ(refusal_of([] { read_poses("/proc/nowhere"); }),
+            "/proc/nowhere: cannot read this file: No such file or directory");
   EXPECT_EQ(refusal_of([] { read_poses("/dev/zero"); }),
             "/dev/zero: cannot read this file, this is a device");
   EXPECT_EQ(refusal_of([] { read_poses("/tmp"); }), "/tmp: cannot read this file, this is a folder");

@@ -163,10 +163,12 @@ class Threads(unittest.TestCase):
 
         thread = threading.Thread(target=count)
         thread.start()
+        before = counted[0]
         flight.step("end")
+        during = counted[0]
         done.set()
         thread.join()
-        self.assertGreater(counted[0], 1000)
+        self.assertGreater(during, before)
 
     def test_the_keyboard_interrupts_a_flight(self):
         code = (
@@ -176,7 +178,7 @@ class Threads(unittest.TestCase):
             "    while True: understory.Flight('forest', seed=1003).run()\n"
             "except KeyboardInterrupt: print('interrupted')\n"
         )
-        ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+        ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
         self.assertEqual(ended.stdout, "interrupted\n", ended.stderr)
 
 

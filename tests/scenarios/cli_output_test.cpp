@@ -99,24 +99,25 @@ TEST(CliOutput, ARunOfAnotherConfigurationIsKeptUnlessForced) {
 TEST(CliOutput, TwoFlightsDoNotMixInOneFolder) {
   const TemporaryFolder folder;
   const std::string out = "--out " + (folder.path() / "run").string();
-  // The second starts when the first has begun to write.
+  // The second starts when the first has begun to write, and the first goes on when the second has ended.
   const std::string first = std::string(UNDERSTORY_BINARY) + " " + short_flight +
-                            "--set forest.length_m=20 " + out + " & " + "for i in $(seq 500); do test -e " +
+                            "--set forest.length_m=200 --set forest.intangible=true " + out +
+                            " & p=$!; until test -e " +
                             (folder.path() / ".understory-run.unfinished/scenario.yaml").string() +
-                            " && break; sleep 0.01; done;";
-  const Outcome second = understory(short_flight + "--seed 7 " + out + " 2>&1; echo status $?; wait", first);
+                            "; do sleep 0.01; done; kill -STOP $p;";
+  const Outcome second =
+      understory(short_flight + "--seed 7 " + out + " 2>&1; echo status $?; kill -CONT $p; wait", first);
   EXPECT_NE(second.text.find("another understory writes there"), std::string::npos) << second.text;
   EXPECT_NE(second.text.find("status 2"), std::string::npos) << second.text;
   EXPECT_NE(content_of(folder.path() / "run/scenario.yaml").find("seed: 1000"), std::string::npos);
   EXPECT_NE(content_of(folder.path() / "run/result.json").find("\"seed\": 1000"), std::string::npos);
 }
 
-/// The program under `signal` after a second: one line, its status, nothing left but `left`.
-void expect_stopped(const std::string& arguments, const fs::path& folder,
+/// Stopped when `event` has come: one line, its status, nothing left but `left`.
+void expect_stopped(const std::string& arguments, const std::string& event, const fs::path& folder,
                     const std::vector<std::string>& left = {}) {
   for (const auto& [signal, status] : {std::pair("INT", 130), std::pair("TERM", 143)}) {
-    const std::string under = "cd " + folder.string() + " && timeout --preserve-status -s " + signal + " 1";
-    const Outcome stopped = understory(arguments, under);
+    const Outcome stopped = understory::support::stopped(arguments, folder, signal, event);
     EXPECT_EQ(stopped.status, status) << arguments << "\n" << stopped.text;
     EXPECT_EQ(std::count(stopped.text.begin(), stopped.text.end(), '\n'), 1) << stopped.text;
     EXPECT_NE(stopped.text.find("stopped"), std::string::npos) << stopped.text;
@@ -148,12 +149,17 @@ TEST(CliOutput, NoCommandWritesIntoAFolderThatAnotherWritesInto) {
 TEST(CliOutput, ASignalEndsEveryCommandInOneLineAndLeavesNothing) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "runs");
-  expect_stopped(long_flight + "--video", folder.path(), {"runs"});
-  expect_stopped(long_flight + "--video --out runs/x --row row.json", folder.path(), {"runs"});
+  expect_stopped(long_flight + "--video", "ls runs/.understory-*.unfinished/scenario.yaml", folder.path(),
+                 {"runs"});
+  expect_stopped(long_flight + "--video --out runs/x --row row.json",
+                 "ls runs/.understory-x.unfinished/scenario.yaml", folder.path(), {"runs"});
   fs::remove(folder.path() / "runs");
-  expect_stopped("record forest --out recording --set forest.length_m=400", folder.path());
-  expect_stopped("bench --rounds 100000 --json rows.json", folder.path());
-  expect_stopped("bench --closed-loop --flights 50 --json rows.json", folder.path());
+  expect_stopped("record forest --out recording --set forest.length_m=400",
+                 "ls -d .understory-recording.unfinished/mav0", folder.path());
+  const std::string listens =
+      "grep -q 'SigCgt:.*[2367abef]$' /proc/$p/status";  // handles SIGINT; no file tells
+  expect_stopped("bench --rounds 100000 --json rows.json", listens, folder.path());
+  expect_stopped("bench --closed-loop --flights 50 --json rows.json", listens, folder.path());
 }
 
 TEST(CliOutput, ASignalStopsACampaignThatGoesOnLater) {
@@ -163,8 +169,8 @@ TEST(CliOutput, ASignalStopsACampaignThatGoesOnLater) {
                                       "scenario: forest\nseeds: 1..3\noverrides: [{name: long, set: "
                                       "{forest.length_m: 400, forest.intangible: true}}]\n")
                                .string();
-  const Outcome stopped = understory("campaign " + file + " --out " + (folder.path() / "results").string(),
-                                     "timeout --preserve-status -s TERM 5");
+  const Outcome stopped = understory::support::stopped("campaign " + file + " --out results", folder.path(),
+                                                       "TERM", "ls results/logs/*.txt");
   EXPECT_EQ(stopped.status, 143);
   EXPECT_NE(stopped.text.find("stopped with 0 of 3 flights over; --resume goes on\n"), std::string::npos)
       << stopped.text;
@@ -177,7 +183,9 @@ TEST(CliOutput, ASignalStopsTheRecordersOfAnEvaluation) {
   folder.write(
       "suite.yaml",
       "recordings:\n  - {name: forest, scenario: forest, seeds: 1..2, set: {forest.length_m: 400}}\n");
-  expect_stopped("evaluate suite.yaml --jobs 2 --out results", folder.path(), {"suite.yaml"});
+  expect_stopped("evaluate suite.yaml --jobs 2 --out results",
+                 "ls -d results/recordings/.understory-forest-*.unfinished/mav0", folder.path(),
+                 {"suite.yaml"});
 }
 
 /// Runs `arguments` with `folder` a disk of that size, in a mount namespace of its own.

@@ -262,7 +262,7 @@ TEST(Cli, ARendererIsOneOfThree) {
   expect_refusal("fly clear --renderer crayon", "osmesa, egl, auto");
   const Folder folder;
   expect_refusal("fly clear --renderer egl --out " + folder.path.string(), "libegl1", 3,
-                 "UNDERSTORY_EGL=/nonexistent/libEGL.so");
+                 "UNDERSTORY_EGL=/proc/nowhere/libEGL.so");
 }
 
 TEST(Cli, BenchTimesWholeFlights) {
@@ -283,8 +283,8 @@ TEST(Cli, BenchTimesWholeFlights) {
 TEST(Cli, AMissingLibraryOrModelIsTheMachines) {
   const Folder folder;
   const std::string out = " --out " + (folder.path / "run").string();
-  expect_refusal("fly clear" + out, "libosmesa6", 3, "UNDERSTORY_OSMESA=/nonexistent");
-  expect_refusal("fly clear" + out, "UNDERSTORY_ROOT=/nonexistent", 2, "UNDERSTORY_ROOT=/nonexistent");
+  expect_refusal("fly clear" + out, "libosmesa6", 3, "UNDERSTORY_OSMESA=/proc/nowhere");
+  expect_refusal("fly clear" + out, "UNDERSTORY_ROOT=/proc/nowhere", 2, "UNDERSTORY_ROOT=/proc/nowhere");
   const fs::path models = folder.path / "root" / "models";
   fs::create_directories(folder.path / "root" / "scenarios");
   fs::create_directories(models / "airframe");

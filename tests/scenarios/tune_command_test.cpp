@@ -66,7 +66,7 @@ TEST(TuneCommand, WithGoesOverTheScenarioAndItsErrorsNameItsLines) {
   EXPECT_EQ(flown.forest.half_width_m, 13);
 }
 
-TEST(TuneCommand, KilledAndResumedItEndsWithTheSameLogs) {
+TEST(TuneCommand, StoppedAndResumedItEndsWithTheSameLogs) {
   const support::TemporaryFolder folder;
   folder.write("short.yaml", short_flight);
   const std::string file =
@@ -74,8 +74,8 @@ TEST(TuneCommand, KilledAndResumedItEndsWithTheSameLogs) {
           .string();
   const std::string tune = "tune " + file + " --jobs 2 --out " + folder.path().string() + "/";
   expect_success(tune + "undisturbed");
-  for (const char* kill : {"timeout -s KILL 1", "timeout -s INT 2", "timeout -s KILL 3"})
-    support::understory(tune + "stopped --resume", kill);
+  for (const char* event : {"ls stopped/flown/training/logs/*.txt", "grep trial stopped/trials.jsonl"})
+    support::stopped(tune + "stopped --resume", folder.path().string(), "INT", event);
   expect_success(tune + "stopped --resume");
   for (const char* log :
        {"trials.jsonl", "validation.jsonl", "sensitivity.jsonl", "summary.md", "tune.svg", "pareto.csv"})

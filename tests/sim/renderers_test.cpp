@@ -109,7 +109,7 @@ TEST(Renderers, AutomaticIsSoftwareWhereThereIsNoGpu) {
 }
 
 TEST(Renderers, AMissingLibraryIsOneLineThatNamesThePackage) {
-  const Drawn egl = drawn(RendererKind::egl, {{"UNDERSTORY_EGL", "/nonexistent/libEGL.so"}});
+  const Drawn egl = drawn(RendererKind::egl, {{"UNDERSTORY_EGL", "/proc/nowhere/libEGL.so"}});
   EXPECT_NE(egl.complaint.find("libegl1"), std::string::npos) << egl.complaint;
   EXPECT_EQ(egl.complaint.find('\n'), std::string::npos);
   const Drawn none = drawn(RendererKind::egl, {{"UNDERSTORY_EGL", "libz.so.1"}});

@@ -142,7 +142,7 @@ TEST(StereoCameras, TwoPairsTakeTurnsOnOneThread) {
 
 TEST(StereoCameras, MissingLibraryIsOneLineThatNamesThePackage) {
   const World world = bare_world("");
-  setenv("UNDERSTORY_OSMESA", "/nonexistent/libOSMesa.so", 1);
+  setenv("UNDERSTORY_OSMESA", "/proc/nowhere/libOSMesa.so", 1);
   std::string message;
   try {
     StereoCameras cameras(world, paper_rig(), noiseless(), {1, 1});

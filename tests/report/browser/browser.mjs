@@ -14,7 +14,7 @@ if (!existsSync(browser_file) || !existsSync(libraries)) {
 const { launch } = (await import("puppeteer-core")).default;
 const folder = mkdtempSync(join(tmpdir(), "understory_page_"));
 const flags = ["--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
-const browser = await launch({ executablePath: browser_file, args: flags });
+const browser = await launch({ executablePath: browser_file, args: flags, timeout: 0, protocolTimeout: 0 });
 let failed = 0;
 
 export function check(name, good, details = "") {
@@ -25,6 +25,7 @@ export function check(name, good, details = "") {
 /// Opens a file, and notes all that a page must not do: ask for anything outside itself, write to the console.
 export async function open(file, { width = 1280, height = 720, theme = "dark", before = undefined } = {}) {
   const page = await browser.newPage();
+  page.setDefaultTimeout(0); // a test that hangs is ended by ctest
   const said = [];
   await page.setViewport({ width, height });
   await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: theme }]);
@@ -40,7 +41,7 @@ export async function open(file, { width = 1280, height = 720, theme = "dark", b
   if (before) await page.evaluateOnNewDocument(before);
   const begin_ms = Date.now();
   await page.goto(`file://${file}`);
-  await page.waitForFunction("window.understory?.ready || document.querySelector('.alone')", { timeout: 20000 });
+  await page.waitForFunction("window.understory?.ready || document.querySelector('.alone')");
   const open_s = (Date.now() - begin_ms) / 1000;
   const settle = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
   await settle();

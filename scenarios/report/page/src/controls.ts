@@ -16,7 +16,7 @@ const layers: Layer[] = ["estimate", "map", "hits", "plan", "frusta"];
 const keys: Record<string, string> = {
   " ": "play", ArrowLeft: "back", ArrowRight: "forward", "shift ArrowLeft": "far_back", "shift ArrowRight": "far_forward",
   Home: "begin", End: "end", "+": "faster", "=": "faster", "-": "slower", "1": "follow", "2": "orbit", "3": "onboard",
-  "4": "top", "0": "fit", e: "estimate", m: "map", h: "hits", p: "plan", f: "frusta", t: "theme", "?": "help",
+  "4": "top", "0": "fit", e: "estimate", m: "map", h: "hits", p: "plan", f: "frusta", t: "theme", v: "large", "?": "help",
 };
 
 const help: [string, string][] = [
@@ -30,6 +30,7 @@ const help: [string, string][] = [
   ["e m h p f", "estimate, map, detections, plan, cameras' common view"],
   ["map, plan", "Drawn as the aircraft believes they lie relative to itself: what it remembers of a trunk lies at that trunk, unless it was detected wrongly."],
   ["t", "dark or light"],
+  ["v", "the video large or small"],
   ["Escape", "close this help, or the replay of a campaign"],
   ["?", "this help"],
   ["mouse", "drag: turn; right or shift drag: move; wheel: zoom; on a chart: seek"],
@@ -88,6 +89,9 @@ function page_actions(root: HTMLElement, facts: FlightFacts, clock: Clock, repla
     whole: span("whole"), last2: span("last2"), last05: span("last05"),
     copy: () => copy_text(find(root, '[data-action="copy"]'), facts.command ?? "", find(root, '[data-show="command"]')),
     download: () => download("scenario.yaml", facts.scenario ?? ""),
+    large: () => {
+      find(root, ".film").classList.toggle("large");
+    },
     theme: () => {
       change_theme();
       replay?.set_theme();
