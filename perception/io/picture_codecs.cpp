@@ -13,7 +13,7 @@ cv::Mat decode(const std::string& bytes) {
 
 std::vector<unsigned char> encode_jpeg(const cv::Mat& picture) {
   std::vector<unsigned char> bytes;
-  cv::imencode(".jpg", picture, bytes);
+  cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, 85});
   return bytes;
 }
 

@@ -74,7 +74,7 @@ TEST(FlightStory, NamesTrunkPartAndPlaceOfACollision) {
   EXPECT_EQ(told.event("detected"), nullptr);  // it was blind
 }
 
-/// The number before a word of a sentence: "0.21 m to the left" gives 0.21 for "m to the left"; 0 without it.
+/// The number before a word of a sentence: "0.21 m left of" gives 0.21 for "m left of"; 0 without it.
 double number_before(const std::string& text, const std::string& words) {
   const std::size_t at = text.find(" " + words);
   if (at == std::string::npos) return 0;
@@ -132,10 +132,10 @@ TEST(FlightStory, SaysWhereTheObstacleWasRemembered) {
   });
   ASSERT_NE(sentence, told.story.before.end());
   EXPECT_EQ(number_before(*sentence, "points within"), points);
-  EXPECT_NEAR(number_before(*sentence, "m to the left") - number_before(*sentence, "m to the right"),
+  EXPECT_NEAR(number_before(*sentence, "m left of") - number_before(*sentence, "m right of"),
               sum.y() / points, 0.006);
-  EXPECT_NEAR(number_before(*sentence, "m behind") - number_before(*sentence, "m before"), sum.x() / points,
-              0.006);
+  EXPECT_NEAR(number_before(*sentence, "m behind") - number_before(*sentence, "m in front of"),
+              sum.x() / points, 0.006);
 }
 
 /// A log that holds one obstacle, hit at the end, and points remembered for it.
@@ -169,10 +169,9 @@ TEST(FlightStory, MeasuresFromTheNearestPlaceOfAnyShape) {
     obstacle.kind = one.kind;
     const FlightStory story = story_of(log_of(obstacle, {one.remembered}));
     const std::string& text = story.before.at(1);
-    EXPECT_NEAR(number_before(text, "m to the left") - number_before(text, "m to the right"), one.left_m,
-                0.006)
+    EXPECT_NEAR(number_before(text, "m left of") - number_before(text, "m right of"), one.left_m, 0.006)
         << text;
-    EXPECT_NEAR(number_before(text, "m behind") - number_before(text, "m before"), one.behind_m, 0.006)
+    EXPECT_NEAR(number_before(text, "m behind") - number_before(text, "m in front of"), one.behind_m, 0.006)
         << text;
     EXPECT_NEAR(number_before(text, "m above") - number_before(text, "m below"), one.above_m, 0.006) << text;
   }

@@ -280,7 +280,9 @@ TEST_P(GoesOn, WhereverItWasKilled) {
       ASSERT_TRUE(after.contains(path)) << moment << ": " << path << " is missing";
       const bool is_rows =
           path.ends_with("flights.csv") || path.ends_with("s.jsonl") || path.ends_with(".png");
-      if (is_rows) EXPECT_EQ(after.at(path), content) << moment << ": " << path;
+      if (is_rows) {
+        EXPECT_EQ(after.at(path), content) << moment << ": " << path;
+      }
     }
   }
 }
