@@ -206,8 +206,8 @@ void check_other_keys(StrictMap& keys) {
                   "image_points",
                   "grid_points",
                   "validRoi1",
-                  "validRoi2"});
-  keys.refuse_others();
+                  "validRoi2",
+                  "views"});
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ ImageSequence sequence_of(const std::vector<fs::path>& inputs) {
   if (inputs.size() == 1 && fs::is_directory(inputs[0], ignored)) return euroc_sequence(inputs[0]);
   if (inputs.size() != 2)
     throw InputError((inputs.empty() ? "" : inputs[0].string() + ": ") + std::string(what_serves));
-  if (fs::equivalent(inputs[0], inputs[1], ignored))
+  if (fs::is_directory(inputs[0], ignored) && fs::equivalent(inputs[0], inputs[1], ignored))
     throw InputError(inputs[1].string() + ": is given twice, as the left images and as the right ones");
   const bool left_is_folder = fs::is_directory(inputs[0], ignored);
   if (left_is_folder != fs::is_directory(inputs[1], ignored))

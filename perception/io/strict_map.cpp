@@ -57,6 +57,15 @@ void StrictMap::refuse_others() const {
       fail(child.key, fmt::format("unknown key; known here: {}", fmt::join(known_, ", ")));
 }
 
+void StrictMap::refuse_others(const std::vector<std::string>& harmless) const {
+  const auto has = [](const std::vector<std::string>& keys, const std::string& key) {
+    return std::find(keys.begin(), keys.end(), key) != keys.end();
+  };
+  for (const TextNode& child : map_.children)
+    if (!has(known_, child.key) && !has(harmless, child.key))
+      fail(child.key, "unknown key: it may change what the other numbers mean, and it is not read");
+}
+
 void StrictMap::fail(const std::string& key, const std::string& expected) const {
   const TextNode* node = find_child(map_, key);
   refuse_input(node != nullptr ? node->origin : map_.origin, prefix_ + key, expected);

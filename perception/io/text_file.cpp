@@ -1,6 +1,7 @@
 #include "perception/io/text_file.hpp"
 
 #include <fcntl.h>
+#include <pthread.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -82,6 +83,19 @@ void require_address_space(std::size_t bytes, const std::string& work) {
   if (maps(bytes)) return;
   throw MachineError(lacking_resource(ENOMEM) + "; " + work + " takes " + std::to_string(bytes >> 20) +
                      " MiB more");
+}
+
+void require_stack() {
+  constexpr std::size_t least = 500'000;  // drawing takes 200'000
+  pthread_attr_t attributes;
+  if (pthread_getattr_np(pthread_self(), &attributes) != 0) return;
+  void* lowest = nullptr;
+  std::size_t bytes = least;
+  pthread_attr_getstack(&attributes, &lowest, &bytes);
+  pthread_attr_destroy(&attributes);
+  if (bytes < least)
+    throw MachineError("this thread's stack has " + std::to_string(bytes / 1000) + " kB, " +
+                       std::to_string(least / 1000) + " are needed (ulimit -s)");
 }
 
 std::string place_in(const std::string& file, int line) { return file + ":" + std::to_string(line); }

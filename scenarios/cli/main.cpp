@@ -111,6 +111,7 @@ int main(int argc, char** argv) {
   repair_surroundings();
   std::signal(SIGABRT, [](int) { std::_Exit(exit_machine_failed); });  // an assertion has already said why
   try {
+    require_stack();
     end_on_signals();
     const int status = run(argc, argv);
     require_printed();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <span>
 
 #include "planning/path_follower.hpp"
@@ -186,7 +187,10 @@ void FlightLogger::on_end(const Flight& flight) {
         result.minimum_clearance_m);
   count_points_on_obstacles();
   result.planner = flight.planner_counts();
-  if (flight.cameras() != nullptr) result.renderer = flight.cameras()->renderer();
+  if (flight.cameras() != nullptr)
+    result.renderer = flight.cameras()->renderer();
+  else if (const char* tunables = std::getenv("GLIBC_TUNABLES"))
+    result.renderer = std::string("no images, GLIBC_TUNABLES=") + tunables;
   result.timings = flight.stopwatch().timings();
   result.wall_s = flight.stopwatch().elapsed_s();
   result.digest = digest_.hex();

@@ -18,6 +18,7 @@
 
 namespace understory {
 World world_of(const Scenario& scenario, const std::filesystem::path& models_folder) {
+  require_stack();
   const Wood wood = course_wood(scenario);
   try {
     WorldConfig config = scenario.world_config();

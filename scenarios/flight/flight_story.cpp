@@ -151,7 +151,8 @@ ObstacleStory story_of_obstacle(const FlightLog& log, std::size_t index) {
   const Obstacle& obstacle = log.obstacles[index];
   ObstacleStory story;
   story.obstacle = index;
-  story.has_camera = !log.result.renderer.empty() && !log.scenario.forest.invisible;
+  story.has_camera = !log.result.renderer.empty() && !log.result.renderer.starts_with("no images") &&
+                     !log.scenario.forest.invisible;
   if (story.has_camera) story.in_view_s = first_in_view_s(log, index);
   if (story.in_view_s) story.in_view_m = away_m(log, *story.in_view_s, obstacle);
   find_hits(log, obstacle, story);
@@ -292,7 +293,8 @@ void tell_of_plans(const FlightLog& log, FlightStory& story) {
   for (const LogPlan& plan : log.plans) {
     const bool now = plan.origin == PlanOrigin::fallback;
     if (now && !falls_back)
-      story.events.push_back({seconds(plan.t_ns), "fallback", "the planner found no free way and chose an emergency manoeuvre"});
+      story.events.push_back(
+          {seconds(plan.t_ns), "fallback", "the planner found no free way and chose an emergency manoeuvre"});
     falls_back = now;
   }
   if (log.plans.empty()) return;
@@ -301,7 +303,8 @@ void tell_of_plans(const FlightLog& log, FlightStory& story) {
   if (!std::isfinite(last.clearance_m))
     story.before.push_back(way + " The map held nothing near its way.");
   else if (last.clearance_m > 0)
-    story.before.push_back(fmt::format("{} It was to keep {:.2f} m clear of all that the map held.", way, last.clearance_m));
+    story.before.push_back(
+        fmt::format("{} It was to keep {:.2f} m clear of all that the map held.", way, last.clearance_m));
   else
     story.before.push_back(way + " It led through what the map held.");
 }

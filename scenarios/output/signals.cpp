@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <pthread.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -94,6 +95,12 @@ void end_on_signals() {
         say(wake_pipe[1], {reinterpret_cast<char*>(&signal), sizeof signal});
       },
       former);
+  // A fork's signals are its own, and not ours to answer.
+  pthread_atfork(nullptr, nullptr, [] {
+    for (const int signal : signals)
+      if (struct sigaction now {}; sigaction(signal, nullptr, &now) == 0 && now.sa_handler != SIG_IGN)
+        std::signal(signal, SIG_DFL);
+  });
   std::thread(wait_and_end).detach();
 }
 

@@ -1,55 +1,84 @@
 #include "scenarios/parts/checked_parts.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <list>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "perception/io/text_file.hpp"
 
 namespace understory {
 namespace {
 
-constexpr std::chrono::seconds longest_call{20};
+constexpr std::chrono::milliseconds between_looks{500};
+constexpr int longest_call_looks = 40;  // 20 s
+constexpr double largest = 1e7;         ///< of any coordinate, speed or angle in SI units
+constexpr const char* not_sound = "which is not finite, or beyond 1e7";
 
-/// Ends the process when a call does not return. No simulated time passes meanwhile, so no flight is lost by
-/// it.
+/// What a plug-in does to the process cannot be undone: one line, and the status of a failed machine.
+[[noreturn]] void end_process(const std::string& line) {
+  fmt::print(stderr, "understory: {}\n", line);
+  std::fflush(nullptr);
+  std::_Exit(3);
+}
+
+thread_local const std::string* called = nullptr;  ///< the part's function that this thread is in; innermost
+
+void refuse_to_end() {
+  if (called != nullptr) end_process(*called + ": ended the process");
+}
+
+/// Ends the process when a call does not return, on whichever thread it is and whatever calls it makes
+/// itself. Time is counted in looks, not by a clock: a process that is stopped looks at nothing. No simulated
+/// time passes meanwhile, so no flight is lost by it.
 class Watchdog {
  public:
+  struct Call {
+    std::string what;
+    int looks = 0;
+  };
+  /// One for a process: a fork has no thread of its parent's.
   static Watchdog& instance() {
-    static Watchdog* watchdog = new Watchdog;  // its thread outlives all statics
+    static std::atomic<Watchdog*> watchdog = nullptr;
+    if (watchdog == nullptr || watchdog.load()->process_ != getpid())
+      watchdog = new Watchdog;  // its thread outlives all statics
     return *watchdog;
   }
-  void begin(const std::string& call) {
+  std::list<Call>::iterator begin(std::string what) {
     const std::lock_guard lock(mutex_);
-    call_ = call;
-    began_ = std::chrono::steady_clock::now();
+    return calls_.insert(calls_.end(), Call{std::move(what)});
   }
-  void end() {
+  void end(std::list<Call>::iterator call) {
     const std::lock_guard lock(mutex_);
-    call_.clear();
+    calls_.erase(call);
   }
 
  private:
   Watchdog() {
+    std::atexit(refuse_to_end);
+    std::at_quick_exit(refuse_to_end);
     std::thread([this] {
       for (;;) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+        std::this_thread::sleep_for(between_looks);
         const std::lock_guard lock(mutex_);
-        if (call_.empty() || std::chrono::steady_clock::now() - began_ < longest_call) continue;
-        fmt::print(stderr, "understory: {}: has not returned for {} s\n", call_, longest_call.count());
-        std::fflush(nullptr);
-        std::_Exit(3);
+        for (Call& call : calls_)
+          if (++call.looks > longest_call_looks)
+            end_process(fmt::format("{}: has not returned for {} s", call.what,
+                                    longest_call_looks * between_looks.count() / 1000));
       }
     }).detach();
   }
+  const pid_t process_ = getpid();
   std::mutex mutex_;
-  std::string call_;  // empty: none
-  std::chrono::steady_clock::time_point began_;
+  std::list<Call> calls_;
 };
 
 /// Who is called, for messages: "/a/mine.so: detector 'mine': ".
@@ -64,11 +93,20 @@ struct Callee {
     throw MachineError(name + call + " " + why);
   }
   template <typename Function>
-  decltype(auto) call(const char* called, Function&& function) const {
+  decltype(auto) call(const char* function_name, Function&& function) const {
     struct Watched {
-      explicit Watched(const std::string& what) { Watchdog::instance().begin(what); }
-      ~Watched() { Watchdog::instance().end(); }
-    } watched(name + called);
+      explicit Watched(std::string what)
+          : dog(Watchdog::instance()),
+            call(dog.begin(std::move(what))),
+            outer(std::exchange(called, &call->what)) {}
+      ~Watched() {
+        called = outer;
+        dog.end(call);
+      }
+      Watchdog& dog;
+      std::list<Watchdog::Call>::iterator call;
+      const std::string* outer;
+    } watched(name + function_name);
     try {
       return function();
     } catch (const InputError&) {
@@ -76,12 +114,23 @@ struct Callee {
     } catch (const MachineError&) {
       throw;
     } catch (const std::exception& error) {
-      fail(called, fmt::format("threw: {}", error.what()));
+      fail(function_name, fmt::format("threw: {}", error.what()));
     } catch (...) {
-      fail(called, "threw what is no std::exception");
+      fail(function_name, "threw what is no std::exception");
     }
   }
 };
+
+/// Finite, and of a size that can be reckoned with.
+bool is_sound(const auto& numbers) { return (numbers.array().abs() <= largest).all(); }
+bool is_sound(double number) { return std::abs(number) <= largest; }
+
+bool is_pose(const Eigen::Isometry3d& pose) {
+  constexpr double off = 1e-3;
+  const Eigen::Matrix3d turn = pose.linear();
+  return ((turn.transpose() * turn - Eigen::Matrix3d::Identity()).array().abs() < off).all() &&
+         turn.determinant() > 0 && pose.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1);
+}
 
 class CheckedDetector : public ObstacleDetector {
  public:
@@ -91,13 +140,15 @@ class CheckedDetector : public ObstacleDetector {
   const std::vector<StereoHit>& detect(const StereoFrame& frame) override {
     const std::vector<StereoHit>& hits =
         callee_.call("detect()", [&]() -> const std::vector<StereoHit>& { return detector_->detect(frame); });
+    if (hits.size() > static_cast<std::size_t>(rig_.width_px) * rig_.height_px)
+      callee_.fail("detect()", fmt::format("gave {} hits, more than the image has pixels", hits.size()));
     int row_px = 0;
     for (std::size_t i = 0; i < hits.size(); ++i) {
       const StereoHit& hit = hits[i];
       const auto fail = [&](const std::string& why) {
         callee_.fail("detect()", fmt::format("gave hit {} of {}, {}", i + 1, hits.size(), why));
       };
-      if (!hit.position_camera.allFinite() || !std::isfinite(hit.disparity_px)) fail("which is not finite");
+      if (!is_sound(hit.position_camera) || !is_sound(hit.disparity_px)) fail(not_sound);
       if (hit.position_camera.z() <= 0) fail("which lies behind the camera");
       if (hit.column_px < 0 || hit.column_px >= rig_.width_px || hit.row_px < 0 ||
           hit.row_px >= rig_.height_px)
@@ -138,18 +189,22 @@ class CheckedStateSource : public StateSource {
 
  private:
   void check(const char* call, const State& state) const {
-    if (!state.T_world_body.matrix().allFinite() || !state.velocity_body_mps.allFinite() ||
-        !state.angular_rate_body_radps.allFinite() || !std::isfinite(state.altitude_m) ||
-        !std::isfinite(state.distance_flown_m))
-      callee_.fail(call, "gave a state that is not finite");
+    if (!is_sound(state.T_world_body.translation()) || !is_sound(state.velocity_body_mps) ||
+        !is_sound(state.angular_rate_body_radps) || !is_sound(state.specific_force_body_mps2) ||
+        !is_sound(state.wind_world_mps) || !is_sound(state.gust_world_mps) || !is_sound(state.altitude_m) ||
+        !is_sound(state.distance_flown_m))
+      callee_.fail(call, fmt::format("gave a state {}", not_sound));
+    if (!is_pose(state.T_world_body))
+      callee_.fail(call,
+                   "gave a T_world_body that is no pose: a rotation matrix, the position, and 0 0 0 1 below");
   }
   std::unique_ptr<StateSource> source_;
   Callee callee_;
   std::int64_t newest_ns_ = 0;
 };
 
-bool is_finite(const PlanPoint& point) {
-  return point.position_world.allFinite() &&
+bool is_sound(const PlanPoint& point) {
+  return is_sound(point.position_world) &&
          std::isfinite(point.t_s + point.speed_mps + point.heading_rad + point.climb_angle_rad +
                        point.bank_rad + point.angle_of_attack_rad + point.bank_command_rad +
                        point.climb_command_mps);
@@ -168,8 +223,8 @@ class CheckedPlanner : public Planner {
                                          request.t_ns));
     if (plan.points.size() < 2) callee_.fail("plan()", "gave a plan with fewer than two points");
     for (std::size_t i = 0; i < plan.points.size(); ++i) {
-      if (!is_finite(plan.points[i]))
-        callee_.fail("plan()", fmt::format("gave point {} of a plan, which is not finite", i + 1));
+      if (!is_sound(plan.points[i]))
+        callee_.fail("plan()", fmt::format("gave point {} of a plan, {}", i + 1, not_sound));
       if (i == 0 ? plan.points[i].t_s != 0 : plan.points[i].t_s <= plan.points[i - 1].t_s)
         callee_.fail("plan()",
                      fmt::format("gave point {} of a plan at {:g} s; times must begin at 0 and grow", i + 1,
@@ -185,6 +240,19 @@ class CheckedPlanner : public Planner {
   std::unique_ptr<Planner> planner_;
   Callee callee_;
 };
+
+constexpr double farthest_m = 10'000, widest_m = 400;
+
+bool is_sound(const Obstacle& one) {
+  const auto within = [](const auto& numbers, double limit) {
+    return (numbers.array().abs() <= limit).all();
+  };
+  const bool has_radius = one.kind != ObstacleKind::wall && one.kind != ObstacleKind::box;
+  const bool has_length = one.kind == ObstacleKind::sphere || one.to_world != one.from_world;
+  return within(one.from_world, farthest_m) && within(one.to_world, farthest_m) && has_length &&
+         within(one.half_size_m, widest_m) && one.radius_m <= widest_m && one.radius_m >= 0 &&
+         (one.radius_m > 0 || !has_radius);
+}
 
 template <typename Checked, typename One, typename Context, typename... More>
 auto checked_by(const char* kind, const One& part, const Context& context, const More&... more)
@@ -218,19 +286,13 @@ Planted checked(const CoursePart& part, const CourseContext& context) {
     callee.fail("make()", fmt::format("gave {} obstacles, at most {} are possible", planted.obstacles.size(),
                                       maximum_obstacles));
   for (std::size_t i = 0; i < planted.obstacles.size(); ++i) {
-    const Obstacle& one = planted.obstacles[i];
-    const bool has_radius = one.kind != ObstacleKind::wall && one.kind != ObstacleKind::box;
-    const bool has_length = one.kind == ObstacleKind::sphere || one.to_world != one.from_world;
-    constexpr double farthest_m = 10'000, widest_m = 400;  // false for what is not a number
-    const bool is_near = one.from_world.cwiseAbs().maxCoeff() <= farthest_m &&
-                         one.to_world.cwiseAbs().maxCoeff() <= farthest_m;
-    const bool is_small =
-        one.radius_m >= 0 && one.radius_m <= widest_m && one.half_size_m.cwiseAbs().maxCoeff() <= widest_m;
-    if (!is_near || !is_small || !has_length || (has_radius && one.radius_m <= 0))
-      callee.fail("make()",
-                  fmt::format("gave obstacle {}, which has no size, is larger than {} m or lies farther "
-                              "than {} m from the launch",
-                              i + 1, widest_m, farthest_m));
+    if (!is_sound(planted.obstacles[i]))
+      callee.fail(
+          "make()",
+          fmt::format(
+              "gave obstacle {}, which is not finite, has no size, is larger than {} m or lies farther "
+              "than {} m from the launch",
+              i + 1, widest_m, farthest_m));
   }
   return planted;
 }

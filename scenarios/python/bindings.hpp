@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cxxabi.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <unistd.h>
 
 #include <memory>
 #include <opencv2/core/mat.hpp>
@@ -41,11 +43,15 @@ py::array_t<PointRecord> array_of(const std::vector<ObstaclePoint>& points);
 /// An image as a read-only array that keeps it alive: no copy is made.
 py::array array_of(const cv::Mat& image);
 
+/// Lives as long as the part that was made from an object does: what its factory made of ours refers to its
+/// flight.
+using Life = std::shared_ptr<const char>;
+
 /// Objects of Python as parts. They call Python with its lock held. Throw std::runtime_error, one line, where
 /// an object lacks a method, raises, or gives what cannot be understood; a traceback goes to standard error.
-std::unique_ptr<ObstacleDetector> detector_from(const py::object& object);
-std::unique_ptr<StateSource> state_source_from(const py::object& object);
-std::unique_ptr<Planner> planner_from(const py::object& object);
+std::unique_ptr<ObstacleDetector> detector_from(const py::object& object, Life life = nullptr);
+std::unique_ptr<StateSource> state_source_from(const py::object& object, Life life = nullptr);
+std::unique_ptr<Planner> planner_from(const py::object& object, Life life = nullptr);
 /// The same behind the checks that a plug-in's parts get (checked_parts.hpp), for objects handed to a flight.
 std::unique_ptr<ObstacleDetector> checked_detector_from(const py::object& object, const CalibratedRig& rig);
 std::unique_ptr<StateSource> checked_state_source_from(const py::object& object);
@@ -56,21 +62,45 @@ std::string told(py::error_already_set& error);
 /// Prints the traceback; throws the line as std::runtime_error.
 [[noreturn]] void throw_as_ours(py::error_already_set& error);
 
-/// Calls Python with its lock held; its exceptions become std::runtime_error.
+/// Python ends a thread that wants its lock while the interpreter ends, by unwinding its frames. What ours
+/// hold would want the lock, too: such a thread waits here until the process has ended.
 template <typename Function>
-auto in_python(Function&& function) {
-  const py::gil_scoped_acquire lock;
+auto or_wait_for_the_end(Function&& function) {
   try {
     return function();
-  } catch (py::error_already_set& error) {
-    throw_as_ours(error);
-  } catch (const py::cast_error& error) {
-    throw std::runtime_error(std::string("gave what cannot be understood: ") + error.what());
+  } catch (const abi::__forced_unwind&) {
+    for (;;) pause();
   }
 }
 
-/// Whether a part in Python was interrupted from the keyboard since the last call. The flight then ended with
-/// an error that is none of the part's.
+/// Calls Python with its lock held; its exceptions become std::runtime_error.
+template <typename Function>
+auto in_python(Function&& function) {
+  return or_wait_for_the_end([&] {
+    const py::gil_scoped_acquire lock;
+    return or_wait_for_the_end([&] {
+      try {
+        return function();
+      } catch (py::error_already_set& error) {
+        throw_as_ours(error);
+      }
+    });
+  });
+}
+
+/// What Python gave, as `Value`. Throws TypeError in one line where it is none: "plan(): must be a Plan, got
+/// NoneType".
+template <typename Value>
+Value taken(const py::handle& given, const char* name, const char* what) {
+  try {
+    return py::cast<Value>(given);
+  } catch (const py::builtin_exception&) {  // cast_error, and another at None
+    throw py::type_error(std::string(name) + ": must be " + what + ", got " + Py_TYPE(given.ptr())->tp_name);
+  }
+}
+
+/// Whether the newest exception of Python that was told on this thread came from the keyboard; forgets it.
+/// The flight then ended with an error that is none of the part's.
 bool was_interrupted();
 
 // What the module holds, a file each.

@@ -40,7 +40,7 @@ void start() {
                        (status.err_msg != nullptr ? status.err_msg : "no reason given"));
   try {
     py::module_::import("sys").attr("path").attr("insert")(0, package_folder());
-    py::module_::import("understory");
+    py::module_::import("understory").attr("_outlive_parts")();
   } catch (py::error_already_set& error) {
     throw MachineError(std::string("plug-ins in Python: ") + error.what());
   }

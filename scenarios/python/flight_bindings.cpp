@@ -3,7 +3,10 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <exception>
 #include <optional>
 #include <string_view>
 #include <thread>
@@ -17,6 +20,7 @@
 #include "scenarios/flight/flight_logger.hpp"
 #include "scenarios/flight/flight_page.hpp"
 #include "scenarios/flight/run_files.hpp"
+#include "scenarios/output/errors.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/output_folder.hpp"
 #include "scenarios/python/bindings.hpp"
@@ -93,6 +97,36 @@ Until until_of(std::string_view word) {
   throw py::value_error(fmt::format("step: must be physics, control, camera or end, got '{}'", word));
 }
 
+std::atomic<int> at_work = 0;           ///< threads that fly without Python's lock
+std::atomic<bool> python_ends = false;  ///< threads but the one that ends it stop
+thread_local bool ends_python = false;
+thread_local int flights_within = 0;  ///< that this thread flies, one within the other
+
+/// Runs what needs no lock of Python's: other threads go on. Once Python has ended, it does not come back.
+template <typename Function>
+void without_lock(Function&& function) {
+  PyThreadState* const state = PyEval_SaveThread();
+  if (flights_within++ == 0) ++at_work;
+  std::exception_ptr fault;
+  try {
+    function();
+  } catch (const std::exception&) {
+    fault = std::current_exception();
+  }
+  if (--flights_within == 0) --at_work;
+  or_wait_for_the_end([&] { PyEval_RestoreThread(state); });
+  if (fault) std::rethrow_exception(fault);
+}
+
+/// Threads that fly stop between two steps, and stay there while the process ends around them.
+void stop_flights() {
+  python_ends = ends_python = true;
+  const py::gil_scoped_release released;
+  constexpr int longest_ms = 2000;
+  for (int waited_ms = 0; at_work > 0 && waited_ms < longest_ms; ++waited_ms)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
 /// A flight as Python holds it: its own thread alone may use it, and an error ends it.
 class HeldFlight {
  public:
@@ -117,8 +151,9 @@ class HeldFlight {
     std::vector<FlightObserver*> observers;
     if (record) observers.push_back(&logger_);
     observers.push_back(&watcher_);
-    const py::gil_scoped_release released;
-    flight_ = std::make_unique<Flight>(scenario, machine, std::move(observers), std::move(given));
+    without_lock([&] {
+      flight_ = std::make_unique<Flight>(scenario, machine, std::move(observers), std::move(given));
+    });
   }
 
   const Flight& flight() const {
@@ -132,30 +167,31 @@ class HeldFlight {
   bool advance(Until until) {
     flight();
     if (!fault_.empty()) throw MachineError(fault_);
-    bool stopped = false;
-    {
-      const py::gil_scoped_release released;
+    if (is_stepped_)
+      throw std::runtime_error("a part cannot step the flight that it is a part of: this is within a step");
+    const Stepping stepping(is_stepped_);
+    bool goes_on = true;
+    without_lock([&] {
       try {
-        stopped = !fly_until(until);
+        goes_on = fly_until(until);
       } catch (const std::exception& error) {
         fault_ = error.what();
-        if (!was_interrupted()) throw;
-        stopped = true;
+        throw;
       }
-    }
-    if (stopped) {
-      if (!fault_.empty()) PyErr_SetNone(PyExc_KeyboardInterrupt);
-      throw py::error_already_set();
-    }
+    });
+    if (!goes_on) throw py::error_already_set();
     return !flight_->outcome();
   }
 
-  void tell(double left_elevon_rad, double right_elevon_rad, double thrust_n) {
+  void tell(const py::object& left_elevon_rad, const py::object& right_elevon_rad,
+            const py::object& thrust_n) {
+    const Controls controls{number(left_elevon_rad, "left_elevon_rad"),
+                            number(right_elevon_rad, "right_elevon_rad"), number(thrust_n, "thrust_n")};
     told_pilot().command.reset();
-    told_pilot().direct = {left_elevon_rad, right_elevon_rad, thrust_n};
+    told_pilot().direct = controls;
   }
-  void command(double bank_rad, double climb_mps) {
-    told_pilot().command = FlightCommand{bank_rad, climb_mps};
+  void command(const py::object& bank_rad, const py::object& climb_mps) {
+    told_pilot().command = FlightCommand{number(bank_rad, "bank_rad"), number(climb_mps, "climb_mps")};
   }
   std::string flown_actions() { return actions_text(told_pilot().flown); }
 
@@ -196,6 +232,13 @@ class HeldFlight {
     return py::make_tuple(imu, air, gravity);
   }
 
+  cv::Mat chase_view(const py::object& width_px, const py::object& height_px) const {
+    const int width = side(width_px, "width_px"), height = side(height_px, "height_px");
+    if (flight().cameras() == nullptr)
+      throw std::runtime_error("this flight has no images: make it with images=True");
+    return flight_->cameras()->chase_view(flight_->truth(), width, height);
+  }
+
   TrueView true_view() const {
     if (flight().cameras() == nullptr)
       throw std::runtime_error("this flight has no images: make it with images=True");
@@ -206,6 +249,26 @@ class HeldFlight {
   void draw_images(bool draws) { watcher_.draws = draws; }
 
  private:
+  struct Stepping {
+    explicit Stepping(bool& flag) : now(flag) { now = true; }
+    ~Stepping() { now = false; }
+    bool& now;
+  };
+
+  static double number(const py::object& given, const char* name) {
+    const double value = taken<double>(given, name, "a number");
+    if (std::isnan(value)) throw py::value_error(std::string(name) + ": must be a number, got nan");
+    return value;
+  }
+  /// Of a picture.
+  static int side(const py::object& given, const char* name) {
+    constexpr int most = 8192;
+    const auto pixels = taken<std::int64_t>(given, name, "a whole number");
+    if (pixels < 1 || pixels > most)
+      throw py::value_error(fmt::format("{}: must be from 1 to {}, got {}", name, most, pixels));
+    return static_cast<int>(pixels);
+  }
+
   ToldPilot& told_pilot() {
     flight();
     if (pilot_ == nullptr)
@@ -218,11 +281,13 @@ class HeldFlight {
     constexpr int steps_between_looks = 600;
     const std::int64_t frames_before = watcher_.frames;
     while (!flight_->outcome()) {
-      flight_->step();
-      if (++steps_ % steps_between_looks == 0) {
-        const py::gil_scoped_acquire lock;
-        if (PyErr_CheckSignals() != 0) return false;
+      if (python_ends && !ends_python) {
+        --at_work;
+        for (;;) pause();
       }
+      flight_->step();
+      if (++steps_ % steps_between_looks == 0 && !in_python([] { return PyErr_CheckSignals() == 0; }))
+        return false;
       if (until == Until::physics || (until == Until::control && flight_->clock().imu()) ||
           (until == Until::camera && watcher_.frames > frames_before))
         break;
@@ -238,6 +303,7 @@ class HeldFlight {
   std::unique_ptr<Flight> flight_;
   std::string fault_;  ///< what ended it, and not as a flight ends
   std::int64_t steps_ = 0;
+  bool is_stepped_ = false;
 };
 
 /// Fields of a result as Python's values.
@@ -278,8 +344,25 @@ py::array_t<double> trajectory_of(const HeldFlight& held) {
   return rows;
 }
 
+/// Throws where a file with the scenario's text would not fly again: a part of it was made by this program
+/// alone.
+void require_files(const Scenario& scenario) {
+  const std::pair<const char*, std::string> brought_by[] = {
+      {"perception.detector", scenario.perception.part().plugin},
+      {"estimation.source", parts().state_sources.find(scenario.estimation.source)->plugin},
+      {"autopilot.method", parts().planners.find(scenario.autopilot.method)->plugin},
+      {"course", parts().courses.find(scenario.course)->plugin}};
+  for (const auto& [key, file] : brought_by)
+    if (!file.empty() &&
+        std::ranges::find(scenario.plugins, file, &PluginConfig::file) == scenario.plugins.end())
+      throw std::runtime_error(fmt::format(
+          "{}: no file can name a part of this program: put it into one and give that to load_plugin()",
+          key));
+}
+
 void save_run(const HeldFlight& held, const std::string& folder) {
   const FlightLog& log = held.finished_log();
+  require_files(log.scenario);
   OutputFolder output(folder, run_contents(log.scenario), Replace::nothing);
   write_run_files(log, output.path());
   output.finish();
@@ -305,14 +388,13 @@ void bind_scenario(py::module_& module) {
       .def_property_readonly("rig",
                              [](const Scenario& self) { return rig_of(self, data_root() / "models").rig; })
       .def("with_seed",
-           [](const Scenario& self, const py::int_& seed) {
-             const auto text = std::string(py::str(py::handle(seed)));
-             const auto number = number_in<std::uint64_t>(text);
-             if (!number || *number > maximum_seed)
+           [](const Scenario& self, const py::object& seed) {
+             const auto number = taken<std::int64_t>(seed, "seed", "a whole number");
+             if (number < 0 || static_cast<std::uint64_t>(number) > maximum_seed)
                throw ScenarioError(
-                   fmt::format("seed: expected a whole number from 0 to {}, got {}", maximum_seed, text));
+                   fmt::format("seed: expected a whole number from 0 to {}, got {}", maximum_seed, number));
              Scenario other = self;
-             other.seed = *number;
+             other.seed = static_cast<std::uint64_t>(number);
              return other;
            })
       .def("with_actions",
@@ -321,7 +403,12 @@ void bind_scenario(py::module_& module) {
              other.autopilot.actions = file;
              return other;
            })
-      .def("text", &scenario_to_text);
+      .def("text", &scenario_to_text)
+      .def("require_files", &require_files)
+      .def(py::pickle([](const Scenario& self) { return py::make_tuple(scenario_to_text(self)); },
+                      [](const py::tuple& state) {
+                        return scenario_from_text(py::cast<std::string>(state[0]), "a copied scenario");
+                      }));
   module.def(
       "load_scenario",
       [](const std::string& name, const std::vector<std::string>& settings,
@@ -350,13 +437,17 @@ void bind_scenario(py::module_& module) {
 }  // namespace
 
 void bind_flight(py::module_& module) {
+  py::module_::import("atexit").attr("register")(py::cpp_function(stop_flights));
   bind_scenario(module);
   py::class_<HeldFlight>(module, "Flight")
       .def(py::init<const Scenario&, const py::object&, const py::object&, const py::object&, bool, bool,
                     bool, const std::string&>(),
            py::arg("scenario"), py::arg("detector"), py::arg("state_source"), py::arg("planner"),
            py::arg("by_hand"), py::arg("images"), py::arg("record"), py::arg("renderer"))
-      .def("advance", [](HeldFlight& self, std::string_view until) { return self.advance(until_of(until)); })
+      .def("advance",
+           [](HeldFlight& self, const py::object& until) {
+             return self.advance(until_of(taken<std::string>(until, "step", "a word")));
+           })
       .def("advance_control", [](HeldFlight& self) { return self.advance(Until::control); })
       .def("advance_camera", [](HeldFlight& self) { return self.advance(Until::camera); })
       .def("tell", &HeldFlight::tell)
@@ -392,10 +483,8 @@ void bind_flight(py::module_& module) {
       .def_property_readonly("objects",
                              [](const HeldFlight& self) { return array_of(self.true_view().objects); })
       .def("chase_view",
-           [](const HeldFlight& self, int width_px, int height_px) {
-             if (self.flight().cameras() == nullptr)
-               throw std::runtime_error("this flight has no images: make it with images=True");
-             return array_of(self.flight().cameras()->chase_view(self.flight().truth(), width_px, height_px));
+           [](const HeldFlight& self, const py::object& width_px, const py::object& height_px) {
+             return array_of(self.chase_view(width_px, height_px));
            })
       .def_property_readonly("imu", [](const HeldFlight& self) { return self.flight().newest<ImuSample>(); })
       .def_property_readonly("pitot",

@@ -2,6 +2,7 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 #include <utility>
@@ -61,6 +62,7 @@ struct PartContext {
   StereoRig rig;
   py::dict config;
   std::uint64_t seed = 0;
+  std::weak_ptr<const char> life;
 
   const FlightContext& there() const {
     if (context == nullptr)
@@ -69,15 +71,16 @@ struct PartContext {
   }
 };
 
-/// One of our parts, or of another plug-in, for a part in Python to wrap.
-struct NativeDetector {
-  std::unique_ptr<ObstacleDetector> detector;
-};
-struct NativeStateSource {
-  std::unique_ptr<StateSource> source;
-};
-struct NativePlanner {
-  std::unique_ptr<Planner> planner;
+/// One of our parts, or of another plug-in, for a part in Python to wrap, and no longer than that lives.
+template <typename Made>
+struct Native {
+  std::unique_ptr<Made> made;
+  std::weak_ptr<const char> life;
+
+  Made& operator*() const {
+    if (life.expired()) throw std::runtime_error("the part that this one was made for has ended");
+    return *made;
+  }
 };
 
 template <typename List>
@@ -97,6 +100,7 @@ struct PlanningContext {
   Mission mission;
   py::dict keys;
   std::uint64_t seed = 0;
+  std::weak_ptr<const char> life;
 
   /// Flies commands (bank in rad, climb in m/s, duration in s) from the request's start in the flight model;
   /// the guidance to the course takes over after the last.
@@ -151,17 +155,21 @@ py::object made_by(py::handle factory, Context prepared, Prepare&& forget) {
   return factory(context);
 }
 
-py::object from_flight(py::handle factory, const FlightContext& context) {
-  return made_by(factory, PartContext{&context, context.rig.rig, values_of(context.config), context.seed},
+py::object from_flight(py::handle factory, const FlightContext& context, const Life& life) {
+  return made_by(factory,
+                 PartContext{&context, context.rig.rig, values_of(context.config), context.seed, life},
                  [](PartContext& kept) { kept.context = nullptr; });
 }
 
 void add_detector(const std::string& name, const std::string& meaning, const std::string& file,
                   const std::vector<PythonKey>& keys, const py::object& factory, bool needs_images,
                   double cost_s) {
+  if (!(cost_s >= 0 && cost_s <= 10))
+    throw py::value_error(fmt::format("cost_s: must be from 0 to 10, got {}", cost_s));
   auto part = part_of<std::unique_ptr<ObstacleDetector>, FlightContext>(name, meaning, file, keys);
   part.make = [kept = factory.inc_ref()](const FlightContext& context) {
-    return in_python([&] { return detector_from(from_flight(kept, context)); });
+    const auto life = std::make_shared<const char>();
+    return in_python([&] { return detector_from(from_flight(kept, context, life), life); });
   };
   part.needs_images = needs_images;
   part.cost_s = [cost_s](const PerceptionSection&) { return cost_s; };
@@ -172,7 +180,8 @@ void add_state_source(const std::string& name, const std::string& meaning, const
                       const std::vector<PythonKey>& keys, const py::object& factory) {
   auto part = part_of<std::unique_ptr<StateSource>, FlightContext>(name, meaning, file, keys);
   part.make = [kept = factory.inc_ref()](const FlightContext& context) {
-    return in_python([&] { return state_source_from(from_flight(kept, context)); });
+    const auto life = std::make_shared<const char>();
+    return in_python([&] { return state_source_from(from_flight(kept, context, life), life); });
   };
   parts_to_fill().state_sources.add(std::move(part));
 }
@@ -181,12 +190,14 @@ void add_planner(const std::string& name, const std::string& meaning, const std:
                  const std::vector<PythonKey>& keys, const py::object& factory) {
   auto part = part_of<std::unique_ptr<Planner>, PlannerPartContext>(name, meaning, file, keys);
   part.make = [kept = factory.inc_ref()](const PlannerPartContext& context) {
+    const auto life = std::make_shared<const char>();
     return in_python([&] {
       return planner_from(
           made_by(kept,
                   PlanningContext{&context, context.PlannerContext::config, context.model, context.mission,
-                                  values_of(context.PlannerPartContext::config), context.seed},
-                  [](PlanningContext& used) { used.context = nullptr; }));
+                                  values_of(context.PlannerPartContext::config), context.seed, life},
+                  [](PlanningContext& used) { used.context = nullptr; }),
+          life);
     });
   };
   parts_to_fill().planners.add(std::move(part));
@@ -198,8 +209,10 @@ void add_course(const std::string& name, const std::string& meaning, const std::
   part.make = [kept = factory.inc_ref()](const CourseContext& context) {
     return in_python([&] {
       const py::dict config = values_of(context.config);
-      const py::object given = kept(context.seed, context.scenario.goal_x_m(), **config);
-      return Planted{py::cast<std::vector<Obstacle>>(given)};
+      Planted planted;
+      for (const py::handle one : kept(context.seed, context.scenario.goal_x_m(), **config))
+        planted.obstacles.push_back(taken<Obstacle>(one, "the list's entry", "an understory.Obstacle"));
+      return planted;
     });
   };
   parts_to_fill().courses.add(std::move(part));
@@ -228,10 +241,11 @@ void bind_contexts(py::module_& module) {
       .def_property_readonly("obstacles", [](const PartContext& self) { return self.there().obstacles; })
       .def("make_detector",
            [](const PartContext& self, const std::string& name) {
-             return NativeDetector{part_named(parts().detectors, name).make(self.there())};
+             return Native<ObstacleDetector>{part_named(parts().detectors, name).make(self.there()),
+                                             self.life};
            })
       .def("make_state_source", [](const PartContext& self, const std::string& name) {
-        return NativeStateSource{part_named(parts().state_sources, name).make(self.there())};
+        return Native<StateSource>{part_named(parts().state_sources, name).make(self.there()), self.life};
       });
   py::class_<PlanningContext>(module, "PlanningContext")
       .def_readonly("config", &PlanningContext::keys)
@@ -246,25 +260,24 @@ void bind_contexts(py::module_& module) {
       .def("make_planner", [](const PlanningContext& self, const std::string& name) {
         if (self.context == nullptr)
           throw std::runtime_error("the context can only make parts while this part is made");
-        return NativePlanner{part_named(parts().planners, name).make(*self.context)};
+        return Native<Planner>{part_named(parts().planners, name).make(*self.context), self.life};
       });
-  py::class_<NativeDetector>(module, "Detector")
-      .def("detect", [](NativeDetector& self, const StereoFrame& frame) {
-        return array_of(self.detector->detect(frame));
+  py::class_<Native<ObstacleDetector>>(module, "Detector")
+      .def("detect", [](Native<ObstacleDetector>& self, const StereoFrame& frame) {
+        return array_of((*self).detect(frame));
       });
-  py::class_<NativeStateSource>(module, "StateSource")
-      .def("on", [](NativeStateSource& self, const Sample& sample) { self.source->on(sample); })
-      .def("state", [](const NativeStateSource& self) { return self.source->state(); })
+  py::class_<Native<StateSource>>(module, "StateSource")
+      .def("on", [](Native<StateSource>& self, const Sample& sample) { (*self).on(sample); })
+      .def("state", [](const Native<StateSource>& self) { return (*self).state(); })
       .def("state_at",
-           [](const NativeStateSource& self, std::int64_t t_ns) { return self.source->state_at(t_ns); });
-  py::class_<NativePlanner>(module, "Planner")
-      .def("plan",
-           [](NativePlanner& self, const PlanRequest& request) { return self.planner->plan(request); })
+           [](const Native<StateSource>& self, std::int64_t t_ns) { return (*self).state_at(t_ns); });
+  py::class_<Native<Planner>>(module, "Planner")
+      .def("plan", [](Native<Planner>& self, const PlanRequest& request) { return (*self).plan(request); })
       .def("concerns",
-           [](const NativePlanner& self, const Eigen::Vector3d& position_world, const Plan& plan) {
+           [](const Native<Planner>& self, const Eigen::Vector3d& position_world, const Plan& plan) {
              ObstaclePoint point;
              point.position_world = position_world;
-             return self.planner->concerns(point, plan);
+             return (*self).concerns(point, plan);
            });
 }
 
@@ -297,7 +310,13 @@ void bind_parts(py::module_& module) {
   module.def("add_state_source", add_state_source);
   module.def("add_planner", add_planner);
   module.def("add_course", add_course);
-  module.def("load_plugin", [](const std::string& file) { return load_plugin(file, "load_plugin").file; });
+  module.def("load_plugin", [](const std::string& name) {
+    const std::string& file = load_plugin(name, "load_plugin").file;
+    std::vector<std::string>& given =
+        given_plugins();  // so that scenarios name it, and what they save flies again
+    if (std::ranges::find(given, file) == given.end()) given.push_back(file);
+    return file;
+  });
   module.def("parts", [] {
     py::dict all;
     all["detector"] = parts().detectors.names();

@@ -2,7 +2,6 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
-#include <atomic>
 #include <map>
 #include <stdexcept>
 #include <utility>
@@ -16,12 +15,12 @@
 namespace understory {
 namespace {
 
-std::atomic<bool> interrupted = false;
+thread_local bool interrupted = false;
 
 /// An object of Python that a part owns: it is let go with the interpreter's lock held.
 class Held {
  public:
-  explicit Held(py::object object) : object_(std::move(object)) {}
+  Held(py::object object, Life life) : object_(std::move(object)), life_(std::move(life)) {}
   Held(const Held&) = delete;
   Held& operator=(const Held&) = delete;
   ~Held() {
@@ -29,14 +28,17 @@ class Held {
       object_.release();
       return;
     }
-    const py::gil_scoped_acquire lock;
-    object_ = py::object();
+    or_wait_for_the_end([&] {
+      const py::gil_scoped_acquire lock;
+      object_ = py::object();
+    });
   }
   const py::object& operator*() const { return object_; }
   bool has(const char* method) const { return py::hasattr(object_, method); }
 
  private:
   py::object object_;
+  Life life_;
 };
 
 std::vector<StereoHit> hits_of(const py::object& given) {
@@ -68,7 +70,7 @@ void require_method(const py::object& object, const char* kind, const char* meth
 
 class PythonDetector : public ObstacleDetector {
  public:
-  explicit PythonDetector(py::object object) : object_(std::move(object)) {}
+  PythonDetector(py::object object, Life life) : object_(std::move(object), std::move(life)) {}
   const std::vector<StereoHit>& detect(const StereoFrame& frame) override {
     hits_ = in_python([&] { return hits_of((*object_).attr("detect")(frame)); });
     return hits_;
@@ -81,41 +83,48 @@ class PythonDetector : public ObstacleDetector {
 
 class PythonStateSource : public StateSource {
  public:
-  explicit PythonStateSource(py::object object) : object_(std::move(object)) {
-    newest_ = in_python([&] { return py::cast<State>((*object_).attr("state")()); });
+  PythonStateSource(py::object object, Life life) : object_(std::move(object), std::move(life)) {
+    newest_ = in_python([&] { return asked(); });
   }
   void on(const Sample& sample) override {
     newest_ = in_python([&] {
       (*object_).attr("on")(sample);
-      return py::cast<State>((*object_).attr("state")());
+      return asked();
     });
   }
   const State& state() const override { return newest_; }
   State state_at(std::int64_t t_ns) const override {
-    return in_python([&] { return py::cast<State>((*object_).attr("state_at")(t_ns)); });
+    return in_python([&] { return taken<State>((*object_).attr("state_at")(t_ns), "state_at()", a_state); });
   }
 
  private:
+  static constexpr const char* a_state = "an understory.State";
+  State asked() const { return taken<State>((*object_).attr("state")(), "state()", a_state); }
   Held object_;
   State newest_;
 };
 
 class PythonPlanner : public Planner {
  public:
-  explicit PythonPlanner(py::object object)
-      : object_(std::move(object)),
+  PythonPlanner(py::object object, Life life)
+      : object_(std::move(object), std::move(life)),
         has_concerns_(object_.has("concerns")),
         has_counts_(object_.has("counts")) {}
   Plan plan(const PlanRequest& request) override {
-    Plan plan = in_python([&] { return py::cast<Plan>((*object_).attr("plan")(request)); });
+    Plan plan = in_python([&] {
+      return taken<Plan>((*object_).attr("plan")(request), "plan()",
+                         "an understory.Plan (context.fly() makes one)");
+    });
     counts_.replans += 1;
     counts_.straight += plan.origin == PlanOrigin::straight;
     counts_.solved += plan.origin == PlanOrigin::solved;
     counts_.kept += plan.origin == PlanOrigin::kept;
     counts_.fallback += plan.origin == PlanOrigin::fallback;
     if (has_counts_) {
-      const auto own =
-          in_python([&] { return py::cast<std::map<std::string, std::int64_t>>((*object_).attr("counts")); });
+      const auto own = in_python([&] {
+        return taken<std::map<std::string, std::int64_t>>((*object_).attr("counts"), "counts",
+                                                          "a dict of names and whole numbers");
+      });
       counts_.own.assign(own.begin(), own.end());
     }
     return plan;
@@ -123,7 +132,8 @@ class PythonPlanner : public Planner {
   bool concerns(const ObstaclePoint& point, const Plan& plan) const override {
     if (!has_concerns_) return true;
     return in_python([&] {
-      return py::cast<bool>((*object_).attr("concerns")(Eigen::Vector3d(point.position_world), plan));
+      return taken<bool>((*object_).attr("concerns")(Eigen::Vector3d(point.position_world), plan),
+                         "concerns()", "True or False");
     });
   }
 
@@ -133,9 +143,9 @@ class PythonPlanner : public Planner {
 };
 
 template <typename Made, typename Adapter>
-std::unique_ptr<Made> adapted(const py::object& object, const char* kind, const char* method) {
+std::unique_ptr<Made> adapted(const py::object& object, Life life, const char* kind, const char* method) {
   require_method(object, kind, method);
-  return std::make_unique<Adapter>(object);
+  return std::make_unique<Adapter>(object, std::move(life));
 }
 
 /// A part that makes itself from an object; the context of its making is not looked at.
@@ -156,9 +166,9 @@ const Scenario& empty_scenario() {
 }  // namespace
 
 std::string told(py::error_already_set& error) {
-  if (error.matches(PyExc_KeyboardInterrupt)) interrupted = true;
+  interrupted = error.matches(PyExc_KeyboardInterrupt);
   std::string text = py::str(error.type().attr("__name__"));
-  text += ": " + std::string(py::str(error.value()));
+  if (const std::string said = py::str(error.value()); !said.empty()) text += ": " + said;
   py::object trace = error.trace();
   std::string place;
   while (trace && !trace.is_none()) {
@@ -174,23 +184,21 @@ std::string told(py::error_already_set& error) {
 
 void throw_as_ours(py::error_already_set& error) {
   const std::string line = told(error);
-  if (!interrupted) {
-    error.restore();
-    PyErr_Print();
-  }
+  PyErr_Display(error.type().ptr(), error.value().ptr(),
+                error.trace().ptr());  // PyErr_Print obeys sys.exit()
   throw std::runtime_error(line);
 }
 
-std::unique_ptr<ObstacleDetector> detector_from(const py::object& object) {
-  return adapted<ObstacleDetector, PythonDetector>(object, "detector", "detect");
+std::unique_ptr<ObstacleDetector> detector_from(const py::object& object, Life life) {
+  return adapted<ObstacleDetector, PythonDetector>(object, std::move(life), "detector", "detect");
 }
 
-std::unique_ptr<StateSource> state_source_from(const py::object& object) {
-  return adapted<StateSource, PythonStateSource>(object, "state source", "state");
+std::unique_ptr<StateSource> state_source_from(const py::object& object, Life life) {
+  return adapted<StateSource, PythonStateSource>(object, std::move(life), "state source", "state");
 }
 
-std::unique_ptr<Planner> planner_from(const py::object& object) {
-  return adapted<Planner, PythonPlanner>(object, "planner", "plan");
+std::unique_ptr<Planner> planner_from(const py::object& object, Life life) {
+  return adapted<Planner, PythonPlanner>(object, std::move(life), "planner", "plan");
 }
 
 std::unique_ptr<ObstacleDetector> checked_detector_from(const py::object& object, const CalibratedRig& rig) {
@@ -213,6 +221,6 @@ std::unique_ptr<Planner> checked_planner_from(const py::object& object) {
   return checked(part, {{config.planner, model, Mission()}, empty_scenario()});
 }
 
-bool was_interrupted() { return interrupted.exchange(false); }
+bool was_interrupted() { return std::exchange(interrupted, false); }
 
 }  // namespace understory

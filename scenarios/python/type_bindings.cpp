@@ -7,6 +7,7 @@
 #include "estimation/samples.hpp"
 #include "planning/flight_model.hpp"
 #include "planning/plan.hpp"
+#include "scenarios/course/courses.hpp"
 #include "scenarios/python/bindings.hpp"
 #include "sim/aircraft/truth.hpp"
 #include "sim/scene/obstacle.hpp"
@@ -177,7 +178,8 @@ void bind_planning(py::module_& module) {
              const auto word = std::ranges::find(obstacle_kind_names, kind);
              if (word == obstacle_kind_names.end() || kind == "wall" || kind == "box" || kind == "branch")
                throw std::invalid_argument(
-                   "kind must be trunk, post, crossbar, rail, capsule or sphere, got '" + kind + "'");
+                   "kind must be trunk, post, crossbar, rail, capsule or sphere (box() makes boxes), got '" +
+                   kind + "'");
              obstacle.kind = static_cast<ObstacleKind>(word - obstacle_kind_names.begin());
              return obstacle;
            }),
@@ -188,6 +190,10 @@ void bind_planning(py::module_& module) {
       .def_readonly("to_world", &Obstacle::to_world)
       .def_readonly("radius_m", &Obstacle::radius_m)
       .def_property_readonly("kind", [](const Obstacle& one) { return std::string(word_for(one.kind)); });
+  module.def("box", [](const std::string& name, const Eigen::Vector3d& position_m,
+                       const Eigen::Vector3d& size_m, const Eigen::Vector3d& rotation_rad) {
+    return placed({name, ListedShape::box, position_m, rotation_rad, size_m});
+  });
 }
 
 }  // namespace

@@ -1,13 +1,22 @@
 #include "scenarios/scenario/plugin.hpp"
 
 #include <dlfcn.h>
+#include <elf.h>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
+#include <cstring>
 #include <deque>
 #include <exception>
+#include <fstream>
 #include <functional>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 #include "perception/io/text_file.hpp"
 #include "scenarios/config/config_tree.hpp"
@@ -40,17 +49,67 @@ Function function_in(void* library, const char* name) {
   throw ScenarioError(fmt::format("{}: {}: {}", asked_by, file, why));
 }
 
+using AddParts = void (*)(Parts&);
+
 /// Opens a library. Gives the function that adds its parts.
-std::function<void(Parts&)> opened_library(const std::string& file, const std::string& asked_by) {
+AddParts opened_library(const std::string& file, const std::string& asked_by) {
   void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) throw ScenarioError(fmt::format("{}: cannot be loaded: {}", asked_by, dlerror()));
   const auto stamp = function_in<const char* (*)()>(library, "understory_plugin_stamp");
-  const auto add = function_in<void (*)(Parts&)>(library, "understory_plugin_add");
+  const auto add = function_in<AddParts>(library, "understory_plugin_add");
   if (stamp == nullptr || add == nullptr)
     refuse(file, asked_by, "is not a plug-in: it has no UNDERSTORY_PLUGIN (docs/integrate.md)");
-  if (const std::string difference = difference_of(plugin_stamp(), stamp()); !difference.empty())
+  const char* theirs = stamp();
+  if (const std::string difference = difference_of(plugin_stamp(), theirs != nullptr ? theirs : "");
+      !difference.empty())
     refuse(file, asked_by, difference + "; build it again with this version's understory_add_plugin");
   return add;
+}
+
+/// Pages that a file has no more end the process that asks for them, perhaps only in flight.
+void require_whole_library(const std::string& file, const std::string& asked_by) {
+  std::ifstream stream(file, std::ios::binary);
+  Elf64_Ehdr head{};
+  stream.read(reinterpret_cast<char*>(&head), sizeof head);
+  std::vector<Elf64_Phdr> segments(std::memcmp(head.e_ident, ELFMAG, SELFMAG) == 0 ? head.e_phnum : 0);
+  stream.seekg(static_cast<std::streamoff>(head.e_phoff));
+  stream.read(reinterpret_cast<char*>(segments.data()),
+              static_cast<std::streamsize>(segments.size() * sizeof(Elf64_Phdr)));
+  std::uint64_t needed =
+      head.e_shoff + std::uint64_t{head.e_shnum} * head.e_shentsize;  // the last table of all
+  for (const Elf64_Phdr& segment : segments) needed = std::max(needed, segment.p_offset + segment.p_filesz);
+  const std::uintmax_t size = fs::file_size(file);
+  if (!segments.empty() && needed > size)
+    refuse(file, asked_by,
+           fmt::format("is cut off: its headers speak of {} bytes, it has {}; build or copy it again", needed,
+                       size));
+}
+
+/// A damaged library may end the process that loads it: a child goes first.
+void try_library(const std::string& file, const std::string& asked_by) {
+  constexpr int survived = 42, longest_s = 20;
+  const pid_t child = fork();
+  if (child == 0) {
+    for (const int signal : {SIGABRT, SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
+    const int nothing = open("/dev/null", O_RDWR);
+    for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nothing, standard);
+    alarm(longest_s);
+    try {
+      Parts more = parts();
+      opened_library(file, asked_by)(more);
+    } catch (...) {  // told where it is loaded
+    }
+    _exit(survived);
+  }
+  int status = 0;
+  if (child < 0 || waitpid(child, &status, 0) != child) return;  // then without
+  const bool is_killed = WIFSIGNALED(status);
+  if (is_killed || WEXITSTATUS(status) != survived)
+    refuse(
+        file, asked_by,
+        fmt::format(
+            "loading it ends a process ({}): it is damaged or was built for another machine; build it again",
+            is_killed ? strsignal(WTERMSIG(status)) : fmt::format("status {}", WEXITSTATUS(status))));
 }
 
 /// Opens Python, where that has not been done. libpython's names are made global, which numpy's libraries
@@ -82,6 +141,8 @@ void add_parts(const std::function<void(Parts&)>& add, const std::string& file, 
     throw;
   } catch (const std::exception& error) {
     refuse(file, asked_by, error.what());
+  } catch (...) {
+    refuse(file, asked_by, "threw what is no std::exception");
   }
   const std::vector<Key> keys = keys_of(Scenario());
   const auto mark = [&](auto& list, const auto& before, const std::string& group) {
@@ -102,7 +163,9 @@ void add_parts(const std::function<void(Parts&)>& add, const std::string& file, 
                             mark(more.planners, parts().planners, "autopilot.") +
                             mark(more.courses, parts().courses, "");
   if (added == 0) refuse(file, asked_by, "adds no part");
-  parts() = std::move(more);
+  // A part that is being made may load a plug-in: its table stays.
+  static std::deque<Parts> before;
+  before.push_back(std::exchange(parts(), std::move(more)));
 }
 
 constexpr std::size_t maximum_python_bytes = std::size_t{16} << 20;
@@ -137,9 +200,16 @@ const Plugin& load_plugin(const fs::path& file, const std::string& asked_by) {
     for (const FileConfig& module : one.imported) require_unchanged(module.file, module.hash, asked_by);
     return one;
   }
+  static bool is_loading = false;
+  if (is_loading)
+    refuse(found, asked_by, "a plug-in cannot load another: give both to --plugin, or to load_plugin()");
   if (!fs::is_regular_file(found))
     throw ScenarioError(
         fmt::format("{}: {}: must be a shared library or a Python file", asked_by, found.string()));
+  struct Loading {
+    Loading() { is_loading = true; }
+    ~Loading() { is_loading = false; }
+  } loading;
   Plugin plugin{found.string(), "", {}};
   if (found.extension() == ".py") {
     const std::string text = read_file(found, maximum_python_bytes);
@@ -147,7 +217,11 @@ const Plugin& load_plugin(const fs::path& file, const std::string& asked_by) {
     add_parts(opened_python(plugin.file, text, asked_by, plugin.imported), plugin.file, asked_by);
   } else {
     plugin.hash = digest_of_file(found);
-    add_parts(opened_library(plugin.file, asked_by), plugin.file, asked_by);
+    require_whole_library(plugin.file, asked_by);
+    try_library(plugin.file, asked_by);
+    const AddParts add = opened_library(plugin.file, asked_by);
+    require_unchanged(plugin.file, plugin.hash, asked_by);
+    add_parts(add, plugin.file, asked_by);
   }
   loaded.push_back(std::move(plugin));
   return loaded.back();

@@ -1,9 +1,13 @@
 #include "sim/render/offscreen_context.hpp"
 
+#include <unistd.h>
+
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
+#include <string_view>
 
 #include "sim/render/offscreen_backend.hpp"
 
@@ -19,15 +23,15 @@ constexpr unsigned gl_unpack_alignment = 0x0CF5;
 constexpr unsigned gl_renderer = 0x1F01;
 constexpr unsigned gl_version = 0x1F02;
 
-/// Mesa's, and glibc's choice among its versions of a function.
-constexpr std::array variables_that_change_bits{"GALLIVM_PERF",
-                                                "GALLIVM_DEBUG",
-                                                "LP_PERF",
-                                                "LP_DEBUG",
-                                                "LP_NATIVE_VECTOR_WIDTH",
-                                                "MESA_EXTENSION_OVERRIDE",
-                                                "MESA_GL_VERSION_OVERRIDE",
-                                                "GLIBC_TUNABLES"};
+/// Mesa's variables, of which many change its images, and glibc's choice among its versions of a function.
+bool changes_bits(std::string_view variable) {
+  constexpr std::array beginnings{"GALLIUM_", "GALLIVM_",  "LP_",    "MESA_",
+                                  "DRAW_",    "ST_DEBUG=", "LIBGL_", "GLIBC_TUNABLES="};
+  constexpr std::array harmless{"GALLIUM_DRIVER=",  "LP_NUM_THREADS=", "MESA_SHADER_CACHE_",
+                                "MESA_GLSL_CACHE_", "MESA_LOG",        "LIBGL_DEBUG="};
+  const auto begins = [&](const char* word) { return variable.starts_with(word); };
+  return std::ranges::any_of(beginnings, begins) && std::ranges::none_of(harmless, begins);
+}
 
 using BindTexture = void (*)(unsigned target, unsigned texture);
 using Backend = std::unique_ptr<OffscreenBackend>;
@@ -75,8 +79,17 @@ Backend backend_of(RendererKind kind) {
 
 }  // namespace
 
+std::set<std::string> variables_that_change_bits() {
+  std::set<std::string> set;
+  for (char** variable = environ; *variable != nullptr; ++variable)
+    if (changes_bits(*variable)) set.insert(*variable);
+  return set;
+}
+
 OffscreenContext::OffscreenContext(const OffscreenOptions& options) {
   setenv("LP_NUM_THREADS", std::to_string(options.raster_threads).c_str(), 0);
+  for (const char* wrapper : {"GALLIUM_DDEBUG", "GALLIUM_TRACE"})
+    unsetenv(wrapper);                      // end or slow the process
   setenv("GALLIUM_DRIVER", "llvmpipe", 1);  // Mesa's others crash without their device, or draw other bits
   backend_ = backend_of(options.renderer);
 }
@@ -107,8 +120,7 @@ std::string OffscreenContext::renderer() const {
     return value == nullptr ? std::string("?") : std::string(reinterpret_cast<const char*>(value));
   };
   std::string name = text(gl_renderer) + ", " + text(gl_version);
-  for (const char* variable : variables_that_change_bits)
-    if (const char* value = std::getenv(variable)) name += std::string(", ") + variable + "=" + value;
+  for (const std::string& variable : variables_that_change_bits()) name += ", " + variable;
   return name;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "sim/render/offscreen_backend.hpp"
@@ -17,6 +18,9 @@ struct OffscreenOptions {
   /// it.
   int raster_threads = 0;
 };
+
+/// "NAME=VALUE" of the variables of the environment that are set and change what is drawn or computed.
+std::set<std::string> variables_that_change_bits();
 
 /// An OpenGL context that draws into memory, without a window: of OSMesa or EGL, opened with dlopen so that
 /// nothing links GL and the stack runs where it is missing. At most one should be current per thread. A

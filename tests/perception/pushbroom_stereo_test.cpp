@@ -326,7 +326,7 @@ TEST(PushbroomStereo, RefusesRulesThatCannotBeMeant) {
   });
   expect_fault("depths_m: must be from 0.1 to 1000, is -1",
                [](PushbroomConfig& config) { config.depths_m = {-1}; });
-  expect_fault("disparities_px: the rig long cannot look at -20 px", [](PushbroomConfig& config) {
+  expect_fault("disparities_px: the rig long cannot look at -20 px (u_right - u_left)", [](PushbroomConfig& config) {
     config.disparities_px = {-30, -20};
   });
   expect_fault("disparities_px and depths_m exclude each other: name one of them",

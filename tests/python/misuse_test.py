@@ -60,7 +60,31 @@ class Planning:
         return self.given
 
 
+class Stating:
+    """A state source that gives what it is told of the filter's state."""
+
+    def __init__(self, **changed):
+        self.changed = changed
+
+    def on(self, sample):
+        pass
+
+    def state(self):
+        state = understory.State()
+        for name, value in self.changed.items():
+            setattr(state, name, value)
+        return state
+
+    def state_at(self, t_ns):
+        return self.state()
+
+
+def keyed(*keys):
+    return understory.detector("keyed", keys=keys)(Detecting)
+
+
 RIG = understory.load_scenario("clear").rig
+MIRRORED = np.diag([1.0, -1.0, 1.0, 1.0])
 
 WRONG = [
     # scenarios and keys
@@ -98,7 +122,35 @@ WRONG = [
     ("a hit behind the camera", lambda: flown(detector=Detecting(one_hit(position_camera=(0, 0, -1)))), MachineError,
      "behind"),
     ("a detector that raises", lambda: flown(detector=Detecting(lambda _: 1 / 0)), MachineError, "ZeroDivisionError"),
-    ("a planner that gives None", lambda: flown(planner=Planning(None)), MachineError, "plan"),
+    ("a planner that gives None", lambda: flown(planner=Planning(None)), MachineError, "must be an understory.Plan"),
+    ("a planner that gives a list", lambda: flown(planner=Planning([1])), MachineError, "must be an understory.Plan"),
+    ("a detector that exits", lambda: flown(detector=Detecting(lambda _: sys.exit(0))), MachineError, "SystemExit: 0"),
+    ("a state without a rotation", lambda: flown(state_source=Stating(T_world_body=np.zeros((4, 4)))), MachineError,
+     "no pose"),
+    ("a mirrored state", lambda: flown(state_source=Stating(T_world_body=MIRRORED)), MachineError, "no pose"),
+    ("a wind that is not finite", lambda: flown(state_source=Stating(wind_world_mps=[0, np.nan, 0])), MachineError,
+     "not finite"),
+    ("a default out of bounds", lambda: keyed(understory.Key("a", 100.0, 2.0, 40.0, "m")), ValueError,
+     "must be from 2 to 40"),
+    ("a default that is not finite", lambda: keyed(understory.Key("a", np.nan, 2.0, 40.0, "m")), ValueError,
+     "must be from 2 to 40"),
+    ("bounds the other way round", lambda: keyed(understory.Key("a", 3.0, 40.0, 2.0, "m")), ValueError, "smaller one first"),
+    ("bounds without end", lambda: keyed(understory.Key("a", 3.0, 2.0, np.inf, "m")), ValueError, "must be finite"),
+    ("a key twice", lambda: keyed(*[understory.Key("a", 3.0, 2.0, 4.0, "m")] * 2), ValueError, "stands twice"),
+    ("a key's name with a point", lambda: keyed(understory.Key("a.b", 3.0, 2.0, 4.0, "m")), ValueError, "letters, digits"),
+    ("a cost below zero", lambda: understory.detector("cheap", cost_s=-1.0)(Detecting), ValueError, "cost_s"),
+    ("controls that are no numbers", lambda: flight(by_hand=True).control(np.nan, 0, 1), ValueError,
+     "left_elevon_rad: must be a number, got nan"),
+    ("controls that are words", lambda: flight(by_hand=True).control(0, "a", 1), TypeError,
+     "right_elevon_rad: must be a number, got str"),
+    ("a command that is no number", lambda: flight(by_hand=True).command(np.nan, 0), ValueError, "bank_rad"),
+    ("a step that is a number", lambda: flight().step(5), TypeError, "step: must be a word, got int"),
+    ("a picture of no size", lambda: flight().chase_view(-1, 5), ValueError, "width_px: must be from 1 to 8192"),
+    ("a picture too large", lambda: flight().chase_view(10**6, 10**6), ValueError, "width_px: must be from 1 to 8192"),
+    ("a box for a kind", lambda: understory.Obstacle("a", [0, 0, 0], [0, 0, 1], 0.1, "box"), ValueError, r"box\(\)"),
+    ("hits that are no numbers", lambda: understory.hits(RIG, [1], [1], np.nan), ValueError, "infinity"),
+    ("a seed beyond 32 bits", lambda: begun().reset(seed=2**40), ValueError, "seed"),
+    ("a seed that is a word", lambda: understory.load_scenario("clear").with_seed("a"), TypeError, "seed: must be a whole"),
     ("a name that is taken", lambda: understory.detector("pushbroom")(Detecting), ValueError, "is taken"),
     ("a name with blanks", lambda: understory.course("my course")(list), ValueError, "letters a-z"),
     ("a kind of obstacle that is none", lambda: understory.Obstacle("a", [0, 0, 0], [0, 0, 1], 0.1, "tree"),
@@ -117,6 +169,8 @@ WRONG = [
     ("unknown observation", lambda: env(observe=("sonar",)), ValueError, "sonar"),
     ("unknown action", lambda: env(act="stick"), ValueError, "stick"),
     ("unknown step", lambda: env(step="frame"), ValueError, "frame"),
+    ("a picture of no size in an environment", lambda: env(render_mode="rgb_array", render_size=(0, 0)), ValueError,
+     "render_size"),
     ("unknown render mode", lambda: env(render_mode="human"), ValueError, "human"),
     ("step before reset", lambda: env().step([0, 0]), RuntimeError, "before reset"),
     ("render before reset", lambda: env(render_mode="rgb_array").render(), RuntimeError, "before reset"),
@@ -179,6 +233,31 @@ class WrongUses(unittest.TestCase):
             vector.reset()
 
 
+class Reentrance(unittest.TestCase):
+    def test_a_part_does_not_step_its_own_flight(self):
+        for step in ("physics", "camera", "end"):
+            detector = Detecting(lambda _: detector.flight.step(step))
+            detector.flight = understory.Flight("forest", seed=1003, set=SHORT, detector=detector)
+            with self.assertRaisesRegex(MachineError, "cannot step the flight that it is a part of"):
+                detector.flight.run()
+
+    def test_an_interrupt_is_no_later_flights(self):
+        class Interrupted:
+            def on(self, sample):
+                pass
+
+            def state(self):
+                raise KeyboardInterrupt
+
+            def state_at(self, t_ns):
+                pass
+
+        with self.assertRaises(KeyboardInterrupt):
+            flight(state_source=Interrupted())
+        with self.assertRaisesRegex(MachineError, "ZeroDivisionError"):
+            flown(detector=Detecting(lambda _: 1 / 0))
+
+
 class OtherProcesses(InFolder):
     def python(self, code):
         return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
@@ -194,6 +273,76 @@ class OtherProcesses(InFolder):
         )
         ended = self.python(code)
         self.assertEqual(ended.stdout, "0\n", ended.stderr)
+
+    def test_a_script_on_standard_input_has_environments(self):
+        code = (
+            "from understory.gym import VectorEnv\n"
+            "with VectorEnv(2, {'scenario': 'clear', 'observe': ('course',)}) as envs:\n"
+            "    print(envs.reset(seed=1)[0]['course'].shape)\n"
+        )
+        ended = subprocess.run([sys.executable, "-"], input=code, capture_output=True, text=True)
+        self.assertEqual(ended.stdout, "(2, 2)\n", ended.stderr)
+
+    def test_a_flight_may_be_dropped_on_another_thread(self):
+        for dropped in ("threading.Thread(target=box.clear)", "threading.Thread(target=gc.collect)"):
+            ended = self.python(
+                "import gc, threading, understory\n"
+                "fly = lambda: understory.Flight('forest', seed=1003, set={'forest.length_m': 5})\n"
+                "class Box(list): pass\n"
+                "box = Box([fly()]); box[0].step('camera'); box.itself = box; gc.disable()\n"
+                + ("del box\n" if "gc" in dropped else "")
+                + f"thread = {dropped}; thread.start(); thread.join()\n"
+                "print(fly().run()['outcome'])\n")
+            self.assertEqual(ended.stdout, "goal\n", ended.stderr)
+
+    def test_a_thread_that_flies_at_the_end_ends_quietly(self):
+        for detector in ("'none'", "Mine()"):
+            ended = self.python(
+                "import threading, time, numpy, understory\n"
+                "class Mine:\n"
+                "    def detect(self, frame): return numpy.zeros(0, understory.hit_dtype)\n"
+                "def fly():\n"
+                f"    understory.Flight('forest', set={{'forest.length_m': 900}}, detector={detector}).run()\n"
+                "for _ in range(2): threading.Thread(target=fly, daemon=True).start()\n"
+                "time.sleep(1)\n")
+            self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (0, "", ""))
+
+    def test_the_watchdog_sees_every_call_and_no_stopped_time(self):
+        # Nested: the inner flight's calls come and go while the outer call does not return. On another thread: that one's
+        # calls come and go. Stopped for longer than a call may take: it flies on. All at once, for each takes 20 s.
+        begin = (
+            "import threading, time, numpy, understory\n"
+            "class Sleeps:\n"
+            "    first = True\n"
+            "    def detect(self, frame):\n"
+            "        if Sleeps.first: Sleeps.first = False; self.once()\n"
+            "        return numpy.zeros(0, understory.hit_dtype)\n"
+            "class Quick:\n"
+            "    def detect(self, frame): return numpy.zeros(0, understory.hit_dtype)\n"
+            "def fly(detector): return understory.Flight('clear', seed=1, set={'forest.length_m': 5}, detector=detector).run()\n"
+        )
+        nested = begin + (
+            "def once(self):\n"
+            "    while True: fly(Quick())\n"
+            "Sleeps.once = once\nfly(Sleeps())\n")
+        beside = begin + (
+            "def once(self): time.sleep(3600)\n"
+            "def others():\n"
+            "    while True: fly(Quick())\n"
+            "Sleeps.once = once\nthreading.Thread(target=others, daemon=True).start()\nfly(Sleeps())\n")
+        stopped = begin + (
+            "import os, signal, subprocess\n"
+            "def once(self):\n"
+            "    subprocess.Popen(['sh', '-c', 'sleep 23; kill -CONT %d' % os.getpid()])\n"
+            "    os.kill(os.getpid(), signal.SIGSTOP)\n"
+            "Sleeps.once = once\nprint(fly(Sleeps())['outcome'])\n")
+        began = [subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                 for code in (nested, beside, stopped)]
+        ended = [one.communicate() for one in began]
+        for (_, said), one in zip(ended[:2], began):
+            self.assertIn("detect(): has not returned for 20 s", said)
+            self.assertEqual(one.returncode, 3)
+        self.assertEqual(ended[2][0], "goal\n", ended[2][1])
 
     def test_a_program_that_ends_in_the_middle_of_flights_ends(self):
         code = (

@@ -2,6 +2,7 @@
 
 import importlib.util
 import json
+import os
 import shutil
 import sys
 import unittest
@@ -121,6 +122,66 @@ class Plugins(InFolder):
                        "--set", "perception.wrapped.gain=0.5", "--out", self.folder / "run", status=3)
         self.assertIn("Traceback (most recent call last)", said)
         self.assertIn("detector 'wrapped': detect() threw: AttributeError", said.splitlines()[-1])
+
+    def test_a_part_does_not_end_the_program(self):
+        for code in ("sys.exit(0)", "sys.exit('bye')", "os._exit(0)", "raise KeyboardInterrupt"):
+            self.mine.write_text("import os, sys\n" + MINE.replace("return self.inner.detect(frame)", code).replace('"gain": 0.5', '"gain": 1.0'))
+            chosen = ["--plugin", self.mine, "--set", "perception.detector=wrapped"]
+            said = program("fly", "forest", *SHORT, *chosen, "--out", self.folder / "run", status=3)
+            self.assertIn("Traceback (most recent call last)", said)
+            self.assertIn("detector 'wrapped': detect() threw: ", said.splitlines()[-1])
+            program("record", "forest", *SHORT, *chosen, "--out", self.folder / "recording", status=3)
+            program("plugin", self.mine, "--check", status=1)
+
+    def test_an_edit_of_the_same_second_is_flown(self):
+        """Python's compiled files are as old as a second: of two texts in one, the first would fly under the second's hash."""
+        for file in ("helper.py", "pack/__init__.py"):
+            (self.folder / "pack").mkdir(exist_ok=True)
+            helper = self.folder / file
+            module = file.split("/")[0].removesuffix(".py")
+            self.mine.write_text(f"import {module}\n" + MINE.replace("trunk(15, 2 + seed % 2)", f"trunk({module}.X_M, 2)"))
+            surroundings = {**os.environ}
+            surroundings.pop("PYTHONDONTWRITEBYTECODE", None)
+            hashes = []
+            for x_m in (15, 14):
+                helper.write_text(f"X_M = {x_m}\n")
+                os.utime(helper, (1_700_000_000, 1_700_000_000))
+                run = self.folder / f"run{x_m}{module}"
+                program("fly", "forest", *SHORT, "--plugin", self.mine, "--set", "course=two_trunks", "--quiet", "--out", run,
+                        env=surroundings)
+                self.assertIn(f",{x_m}.000,", (run / "obstacles.csv").read_text())
+                hashes.append((run / "scenario.yaml").read_text())
+            self.assertNotEqual(*hashes)  # the imported module's hash stands there
+            said = program("fly", self.folder / f"run15{module}" / "scenario.yaml", "--out", self.folder / "again", status=2)
+            self.assertIn("files[0].hash", said)
+
+    def test_a_box_in_python_is_the_scenarios_box(self):
+        self.mine.write_text("import understory\n@understory.course('boxed')\ndef boxed(seed, goal_x_m):\n"
+                             "    'a box'\n    return [understory.box([20, 1, 2], [1, 2, 4], [0, 0, 0.5])]\n")
+        ours = native("clear", "--seed", 1003, *SHORT, "--set",
+                      "obstacles=[{name: box, shape: box, position_m: [20, 1, 2], size_m: [1, 2, 4], rotation_rad: [0, 0, 0.5]}]")
+        self.assertEqual(native("clear", "--seed", 1003, *SHORT, "--plugin", self.mine, "--set", "course=boxed"), ours)
+
+    def test_what_a_loaded_part_flew_flies_again(self):
+        self.mine.write_text(MINE.replace('"wrapped"', '"wrapped_saved"').replace('"wrapped_sst"', '"sst_saved"').replace(
+            '"wrapped_filter"', '"filter_saved"').replace('"two_trunks"', '"trunks_saved"').replace('"gain": 0.5', '"gain": 1.0'))
+        understory.load_plugin(self.mine)
+        flight = understory.Flight("forest", seed=1003, set={"forest.length_m": 20}, detector="wrapped_saved")
+        flight.run()
+        flight.save(self.folder / "saved.yaml")
+        self.assertEqual(native(self.folder / "saved.yaml"), flight.digest)
+        flight.save_run(self.folder / "saved_run")
+        self.assertEqual(native(self.folder / "saved_run" / "scenario.yaml"), flight.digest)
+        self.mine.write_text(self.mine.read_text() + "# edited\n")
+        with self.assertRaisesRegex(understory.InputError, "has changed since this process loaded it"):
+            understory.load_plugin(self.mine)
+
+    def test_a_part_of_this_program_alone_is_not_saved(self):
+        understory.course("session_only")(lambda seed, goal_x_m: [understory.trunk(15, 2)])
+        flight = understory.Flight("clear", seed=1003, set={"forest.length_m": 20, "course": "session_only"})
+        flight.run()
+        with self.assertRaisesRegex(RuntimeError, "load_plugin"):
+            flight.save(self.folder / "never.yaml")
 
     def test_campaigns_fly_them(self):
         flown = {"scenario": "forest", "seeds": "1003..1004"}

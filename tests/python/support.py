@@ -11,10 +11,10 @@ EXAMPLES = SOURCE / "docs" / "examples" / "python"
 SHORT = {"forest.length_m": 20}  # a flight of half a second of wall time
 
 
-def program(*arguments, status=0):
+def program(*arguments, status=0, env=None):
     """What `understory` prints; fails the test at another status."""
     command = [os.environ["UNDERSTORY_PROGRAM"], *map(str, arguments)]
-    ended = subprocess.run(command, capture_output=True, text=True)
+    ended = subprocess.run(command, capture_output=True, text=True, env=env)
     if ended.returncode != status:
         raise AssertionError(f"{command}: status {ended.returncode}, not {status}: {ended.stderr}")
     return ended.stdout + ended.stderr

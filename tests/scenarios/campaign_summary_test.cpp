@@ -99,7 +99,7 @@ TEST(CampaignPlots, JoinsConditionsThatDifferInSpeedOnly) {
   expect_part(campaign_svg(rows, conditions), "success over speed");
 }
 
-TEST(CampaignPlots, DensityIsTreesPerHundredSquareMetres) {
+TEST(CampaignPlots, DensityIsTreesPerHectare) {
   std::vector<FlightRow> rows;
   const std::vector<Condition> conditions{{"a", "", "forest", "", {{density_key, "25"}}},
                                           {"b", "", "forest", "late", {{density_key, "50"}}}};
@@ -108,9 +108,9 @@ TEST(CampaignPlots, DensityIsTreesPerHundredSquareMetres) {
   const LinePlot plot = success_over_density(rows, conditions);
   ASSERT_EQ(plot.series.size(), 2u);
   EXPECT_EQ(plot.series[0].name, "forest");
-  EXPECT_NEAR(plot.series[0].x[0], 4, 0.05);
+  EXPECT_NEAR(plot.series[0].x[0], 400, 5);
   EXPECT_EQ(plot.series[1].name, "late");
-  EXPECT_NEAR(plot.series[1].x[0], 2, 0.05);
+  EXPECT_NEAR(plot.series[1].x[0], 200, 5);
 }
 
 TEST(CampaignPlots, WithoutAnAxisConditionsStandSideBySide) {

@@ -99,6 +99,26 @@ TEST(StandStatistics, TestsTellForestsApartAndLeaveEqualOnesAlone) {
 
 constexpr const char* table = "x_m,y_m,diameter_m,species,height_m,lean_rad,lean_toward_rad,kind\n";
 
+TEST(Inventory, ReadsWhatRWrites) {
+  const std::vector<Stem> quoted = stems_in_text(
+      "\"x_m\",\"y_m\",\"diameter_m\",\"note\"\n1,2,.3,\"Genus species, L.\"\n3,4,0.2,\"a \"\"b\"\",\nc\"\n",
+      "stems.csv");
+  ASSERT_EQ(quoted.size(), 2u);
+  EXPECT_EQ(quoted[1].place_m, Vector2d(3, 4));
+  const std::string unclosed =
+      support::refusal_of([] { stems_in_text("x_m,y_m,diameter_m\n1,2,\"0.3\n", "stems.csv"); });
+  EXPECT_EQ(unclosed.find("stems.csv:2: quotation marks"), 0u) << unclosed;
+}
+
+// A height in centimetres would be passed over.
+TEST(Inventory, ColumnsThatAreNearlyOursAreRefused) {
+  for (const char* column : {"height_cm", "Height_m", "lean_deg", "Kind", "diameter_cm"}) {
+    const std::string said = support::refusal_of(
+        [&] { stems_in_text(std::string("x_m,y_m,diameter_m,") + column + "\n1,2,0.3,4\n", "stems.csv"); });
+    EXPECT_EQ(said.find(std::string("stems.csv:1: ") + column + ": not a column that is read"), 0u) << said;
+  }
+}
+
 TEST(Inventory, ReadsWhatTheColumnsSay) {
   const std::vector<Stem> stems =
       stems_in_text(std::string(table) + "1,2,0.2,quru,17,0.1,0,oak\n3.5,-4,0.05,,,,,\n", "stems.csv");

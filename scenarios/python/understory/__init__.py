@@ -38,7 +38,7 @@ from _understory import (
 
 from .commands import Campaign, CommandFailed, campaign, evaluate, gate, keys, record
 from .flight import Flight, load_scenario
-from .parts import _run_plugin, course, detector, hits, load_plugin, parts, planner, state_source, trunk
+from .parts import _outlive_parts, _run_plugin, box, course, detector, hits, load_plugin, parts, planner, state_source, trunk
 
 __all__ = [
     "Campaign",
@@ -58,6 +58,7 @@ __all__ = [
     "StereoRig",
     "Truth",
     "__version__",
+    "box",
     "campaign",
     "course",
     "detector",

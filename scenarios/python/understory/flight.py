@@ -319,6 +319,7 @@ def save_scenario(core: _understory.Flight, file: str | os.PathLike) -> None:
     """Write the scenario of a flight, and the controls that were flown by hand beside it."""
     path = os.path.abspath(os.fspath(file))
     scenario = core.scenario
+    scenario.require_files()
     try:
         actions = core.flown_actions()
     except RuntimeError:  # the planner flew

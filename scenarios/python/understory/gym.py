@@ -10,6 +10,7 @@ Where Gymnasium is installed: `gymnasium.make("understory/Forest-v0")` after `im
 
 from __future__ import annotations
 
+import copy
 import functools
 import os
 from typing import Any, Mapping, Optional, Sequence
@@ -79,7 +80,7 @@ class FlightEnv(_Base):
 
     def __new__(cls, *arguments: Any, **named: Any) -> FlightEnv:
         env = super().__new__(cls)
-        env._made_with = (arguments, named)
+        env._made_with = copy.deepcopy((arguments, named))
         return env
 
     def __reduce__(self) -> Any:
@@ -112,6 +113,8 @@ class FlightEnv(_Base):
             raise ValueError(f"step: must be 'camera' or 'control', got {step!r}")
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode: must be 'rgb_array' or None, got {render_mode!r}")
+        if len(render_size) != 2 or not all(isinstance(side, int) and 1 <= side <= 8192 for side in render_size):
+            raise ValueError(f"render_size: must be two whole numbers from 1 to 8192, got {render_size!r}")
         for plugin in plugins:
             load_plugin(plugin)
         settings = {"autopilot.method": "straight", **dict(set or {})}

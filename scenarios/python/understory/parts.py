@@ -99,6 +99,14 @@ def trunk(x_m: float, y_m: float, radius_m: float = 0.15, height_m: float = 12.0
     return _understory.Obstacle(name, [x_m, y_m, 0.0], [x_m, y_m, height_m], radius_m)
 
 
+def box(
+    position_m: Any, size_m: Any, rotation_rad: Any = (0.0, 0.0, 0.0), name: str = "box"
+) -> _understory.Obstacle:
+    """A box with its middle at position_m, size_m along its own axes, turned by roll, pitch and yaw: as in `obstacles` of a
+    scenario."""
+    return _understory.box(name, position_m, size_m, rotation_rad)
+
+
 def hits(
     rig: _understory.StereoRig,
     columns_px: Any,
@@ -120,7 +128,7 @@ def hits(
     )
     if columns.ndim != 1:
         raise ValueError(f"columns_px, rows_px and disparities_px must have one dimension, got shape {columns.shape}")
-    if np.any(disparities <= rig.infinity_disparity_px):
+    if not np.all(disparities > rig.infinity_disparity_px):
         raise ValueError(f"disparities_px must be more than the rig's {rig.infinity_disparity_px:.2f} px of infinity")
     depths = rig.depth_m(disparities)
     middle = 0.5 * (block_px - 1)
@@ -147,33 +155,67 @@ def parts() -> dict[str, list[str]]:
     return _understory.parts()
 
 
+_folders: list[str] = []  # of plug-ins
+_imported: list[str] = []  # files of modules there, as they were read
+
+
 class _FromSource(importlib.machinery.SourceFileLoader):
     """Compiles what it reads: compiled files beside a module may be of an older text of the same second."""
 
-    def path_stats(self, path: str) -> dict[str, Any]:
-        raise OSError
+    def get_code(self, fullname: str) -> Any:
+        _imported.append(self.path)
+        return self.source_to_code(self.get_data(self.path), self.path)
+
+
+class _Extension(importlib.machinery.ExtensionFileLoader):
+    def create_module(self, spec: Any) -> Any:
+        _imported.append(self.path)
+        return super().create_module(spec)
+
+
+def _finder(path: str) -> Any:
+    """Finds modules beside and below plug-ins, packages that are installed there excepted."""
+    below = any(path == folder or path.startswith(folder + os.sep) for folder in _folders)
+    if not below or "-packages" in path:
+        raise ImportError
+    return importlib.machinery.FileFinder(
+        path,
+        (_Extension, importlib.machinery.EXTENSION_SUFFIXES),
+        (_FromSource, importlib.machinery.SOURCE_SUFFIXES),
+    )
 
 
 def _run_plugin(file: str, text: bytes) -> list[str]:
     """Run a plug-in's text as a module of its own name; its decorators add the parts. Called by load_plugin. Returns the files
-    of the modules beside or below it that it imported.
-    """
+    of the modules beside or below it that it imported."""
     name = "understory_plugin_" + os.path.splitext(os.path.basename(file))[0]  # no name of another module
     folder = os.path.dirname(file)
+    if _finder not in sys.path_hooks:
+        sys.path_hooks.insert(0, _finder)
+    if folder not in _folders:
+        _folders.append(folder)
+        sys.path_importer_cache.pop(folder, None)
     if folder not in sys.path:
         sys.path.append(folder)  # for modules beside it
-    sys.path_importer_cache[folder] = importlib.machinery.FileFinder(
-        folder,
-        (importlib.machinery.ExtensionFileLoader, importlib.machinery.EXTENSION_SUFFIXES),
-        (_FromSource, importlib.machinery.SOURCE_SUFFIXES),
-    )
     module = types.ModuleType(name)
     module.__file__ = file
     sys.modules[name] = module
+    before = len(_imported)
     try:
-        exec(compile(text, file, "exec"), module.__dict__)
+        exec(compile(text, file, "exec", dont_inherit=True), module.__dict__)
     except BaseException:
-        del sys.modules[name]
+        sys.modules.pop(name, None)
         raise
-    files = {getattr(one, "__file__", None) or "" for one in list(sys.modules.values())}
-    return sorted(one for one in files if one.startswith(folder + os.sep) and one != file)
+    return sorted(set(_imported[before:]))
+
+
+def _outlive_parts() -> None:
+    """Make os._exit() an error of the part that calls it; processes that it has forked may end so. Called by the program."""
+    really_exit, process = os._exit, os.getpid()
+
+    def exit_(status: int) -> Any:
+        if os.getpid() == process:
+            raise SystemExit(status)
+        really_exit(status)
+
+    os._exit = exit_
