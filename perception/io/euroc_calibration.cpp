@@ -83,7 +83,7 @@ Sensor read_sensor(const fs::path& file, double meters_per_unit) {
   sensor.camera.distortion = map.numbers("distortion_coefficients", found == 5 || found == 8 ? found : 4,
                                          -maximum_coefficient, maximum_coefficient);
   read_additions(map, sensor);
-  map.refuse_others({"sensor_type", "comment", "rate_hz"});
+  map.refuse_others(" sensor_type comment rate_hz ");
   return sensor;
 }
 

@@ -29,8 +29,8 @@ class StrictMap {
 
   /// To be called once every known key was asked for.
   void refuse_others() const;
-  /// The same of a file of others, in which these keys may stand, too: they change nothing.
-  void refuse_others(const std::vector<std::string>& harmless) const;
+  /// The same of a file of others, in which these keys may stand, too: they change nothing. " E F Q "
+  void refuse_others(std::string_view harmless) const;
 
   [[noreturn]] void fail(const std::string& key, const std::string& expected) const;
 

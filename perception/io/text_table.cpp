@@ -93,6 +93,12 @@ std::vector<std::size_t> places_of(const Column& column, const std::vector<std::
   return places;
 }
 
+/// Another unit or spelling of a column, which would be passed over: "height_cm" of "height_m".
+bool is_nearly(std::string_view name, std::string_view column, std::span<const Column> columns) {
+  return name.starts_with(column.substr(0, column.rfind('_'))) &&
+         std::ranges::find(columns, name, &Column::names) == columns.end();
+}
+
 /// The names that a comment above the first line of values gives: all that are looked for, or one for each
 /// cell.
 std::vector<std::string> names_in_comment(std::string_view comment, const TableLine& first,
@@ -156,19 +162,23 @@ NamedTable named_table(std::string_view text, CellsParted parted, const std::str
     head = table.lines.front().number;
     table.lines.erase(table.lines.begin());
   }
+  constexpr std::size_t nowhere = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> places;
   for (const Column& column : columns) {
     const std::vector<std::size_t> found = places_of(column, names);
     std::string called(column.names);
     for (std::size_t at = 0; (at = called.find('|', at)) != std::string::npos;) called.replace(at, 1, ", ");
-    if (found.size() != 1)
+    if (found.size() > 1 || (found.empty() && !column.is_optional))
       fail_at_line(name, head,
                    "one column must be called " + called + ", found " + std::to_string(found.size()));
-    places.push_back(found[0]);
-    table.names.push_back(names[found[0]]);
+    places.push_back(found.empty() ? nowhere : found[0]);
+    table.names.push_back(found.empty() ? "" : names[found[0]]);
     if (const std::string_view unit = unit_in(table.names.back());
         !unit.empty() && !is_among(unit, std::string(column.units)))
       fail_at_line(name, head, table.names.back() + ": must be in " + std::string(column.units));
+    for (const std::string& one : names)
+      if (column.is_optional && is_nearly(one, column.names, columns))
+        fail_at_line(name, head, one + ": not a column that is read; " + called + " is");
   }
   for (TableLine& line : table.lines) {
     if (line.cells.size() != names.size())
@@ -176,7 +186,8 @@ NamedTable named_table(std::string_view text, CellsParted parted, const std::str
                    "expected " + std::to_string(names.size()) + " cells, as line " + std::to_string(head) +
                        " has names, found " + std::to_string(line.cells.size()));
     std::vector<std::string_view> cells;
-    for (const std::size_t place : places) cells.push_back(line.cells[place]);
+    for (const std::size_t place : places)
+      cells.push_back(place == nowhere ? std::string_view() : line.cells[place]);
     line.cells = std::move(cells);
   }
   return table;

@@ -33,6 +33,7 @@ std::vector<TableLine> table_lines(std::string_view text, CellsParted parted, co
 /// case, parted by '|'. "timestamp|t" and "ns|s".
 struct Column {
   std::string_view names, units = "";
+  bool is_optional = false;  ///< where it is missing its cells are empty
 };
 
 /// The lines of a table that may name its columns, in its first line or in a comment above the first line of

@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <numbers>
 #include <random>
 
@@ -24,61 +22,23 @@ using Eigen::Vector2d;
 constexpr std::size_t most_stems = 2'000'000;
 constexpr std::size_t largest_file_bytes = std::size_t{256} << 20;
 
-/// Columns by name, and the number in a cell.
-class StemTable {
- public:
-  StemTable(const TableLine& header, const std::string& name) : name_(name) {
-    constexpr std::array ours{"x_m", "y_m", "diameter_m", "height_m", "lean_rad", "lean_toward_rad", "kind"};
-    for (std::size_t i = 0; i < header.cells.size(); ++i) {
-      // A column of another unit or spelling would be passed over.
-      std::string lower(header.cells[i]);
-      std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
-      for (const std::string_view known : ours)
-        if (const auto stem = known.substr(0, known.rfind('_'));
-            lower.starts_with(stem) && stem.size() > 1 &&
-            std::ranges::find(ours, header.cells[i]) == ours.end())
-          fail_at_line(name, header.number,
-                       fmt::format("{}: not a column that is read; these are: {}", header.cells[i],
-                                   fmt::join(ours, ", ")));
-      if (!columns_.emplace(header.cells[i], i).second)
-        fail_at_line(name, header.number, fmt::format("{}: this column stands there twice", header.cells[i]));
-    }
-    for (const char* needed : {"x_m", "y_m", "diameter_m"})
-      if (!columns_.contains(needed))
-        fail_at_line(name, header.number, fmt::format("expected a column {} in the first line", needed));
-    if (columns_.contains("lean_rad") != columns_.contains("lean_toward_rad"))
-      fail_at_line(name, header.number, "expected both lean_rad and lean_toward_rad, or neither");
-    width_ = header.cells.size();
-  }
+constexpr std::array columns{Column{"x_m"},
+                             Column{"y_m"},
+                             Column{"diameter_m"},
+                             Column{"height_m", "", true},
+                             Column{"lean_rad", "", true},
+                             Column{"lean_toward_rad", "", true},
+                             Column{"kind", "", true}};
 
-  void check_width(const TableLine& line) const {
-    if (line.cells.size() != width_)
-      fail_at_line(name_, line.number,
-                   fmt::format("expected {} cells as in the first line, got {}", width_, line.cells.size()));
-  }
-  /// Nothing where the table has no such column, or where the cell is empty and may be.
-  std::string_view cell(const TableLine& line, std::string_view column) const {
-    const auto found = columns_.find(column);
-    return found == columns_.end() ? std::string_view() : line.cells[found->second];
-  }
-  double number(const TableLine& line, std::string_view column, double least, double most) const {
-    const auto value = number_in(cell(line, column));
-    if (!value || *value < least || *value > most)
-      fail_at_line(name_, line.number,
-                   fmt::format("{}: expected a number from {} to {}, got '{}'", column, least, most,
-                               cell(line, column)));
-    return *value;
-  }
-  double number_or(const TableLine& line, std::string_view column, double least, double most,
-                   double otherwise) const {
-    return cell(line, column).empty() ? otherwise : number(line, column, least, most);
-  }
-
- private:
-  const std::string& name_;
-  std::map<std::string_view, std::size_t> columns_;
-  std::size_t width_ = 0;
-};
+double number_at(const TableLine& line, std::size_t column, double least, double most,
+                 const std::string& name) {
+  const auto value = number_in(line.cells[column]);
+  if (!value || *value < least || *value > most)
+    fail_at_line(name, line.number,
+                 fmt::format("{}: expected a number from {} to {}, got '{}'", columns[column].names, least,
+                             most, line.cells[column]));
+  return *value;
+}
 
 std::optional<TreeKind> kind_in(std::string_view word, const std::string& name, int line) {
   if (word.empty()) return std::nullopt;
@@ -99,28 +59,29 @@ Eigen::Rotation2Dd turned(double heading_rad) { return Eigen::Rotation2Dd(headin
 }  // namespace
 
 std::vector<Stem> stems_in_text(std::string_view text, const std::string& name) {
-  const std::vector<TableLine> lines = table_lines(text, CellsParted::by_commas, name);
-  if (lines.empty()) fail_at_line(name, 1, "expected a first line with the names of the columns");
-  const StemTable table(lines.front(), name);
-  if (lines.size() > most_stems)
-    fail_at_line(name, lines.back().number, fmt::format("expected at most {} stems", most_stems));
+  const NamedTable table = named_table(text, CellsParted::by_commas, name, columns);
+  if (table.names.empty())
+    fail_at_line(name, 1, "expected a first line with the names of the columns: x_m, y_m, diameter_m");
+  if (table.names[4].empty() != table.names[5].empty())
+    fail_at_line(name, 1, "expected both lean_rad and lean_toward_rad, or neither");
+  if (table.lines.empty()) fail_at_line(name, 1, "expected at least one stem below this line");
+  if (table.lines.size() > most_stems)
+    fail_at_line(name, table.lines.back().number, fmt::format("expected at most {} stems", most_stems));
   std::vector<Stem> stems;
-  stems.reserve(lines.size());
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    const TableLine& line = lines[i];
-    table.check_width(line);
-    Stem stem{{table.number(line, "x_m", -1e7, 1e7), table.number(line, "y_m", -1e7, 1e7)},
-              table.number(line, "diameter_m", 0.001, 10),
-              {}};
-    stem.known.height_m = table.number_or(line, "height_m", 1, 150, 0);
-    const double lean_rad = table.number_or(line, "lean_rad", 0, 1, 0),
-                 toward_rad = table.number_or(line, "lean_toward_rad", -6.3, 6.3, 0);
-    if (!table.cell(line, "lean_rad").empty())
+  stems.reserve(table.lines.size());
+  for (const TableLine& line : table.lines) {
+    const auto number = [&](std::size_t column, double least, double most) {
+      return number_at(line, column, least, most, name);
+    };
+    Stem stem{{number(0, -1e7, 1e7), number(1, -1e7, 1e7)}, number(2, 0.001, 10), {}};
+    if (!line.cells[3].empty()) stem.known.height_m = number(3, 1, 150);
+    if (!line.cells[4].empty()) {
+      const double lean_rad = number(4, 0, 1), toward_rad = line.cells[5].empty() ? 0 : number(5, -6.3, 6.3);
       stem.known.lean = std::tan(lean_rad) * Vector2d(std::cos(toward_rad), std::sin(toward_rad));
-    stem.known.kind = kind_in(table.cell(line, "kind"), name, line.number);
+    }
+    stem.known.kind = kind_in(line.cells[6], name, line.number);
     stems.push_back(stem);
   }
-  if (stems.empty()) fail_at_line(name, lines.front().number, "expected at least one stem below this line");
   return stems;
 }
 

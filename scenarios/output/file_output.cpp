@@ -315,10 +315,4 @@ void require_not_within(const fs::path& folder, const std::vector<fs::path>& oth
     if (!path_within(folder, other).empty()) refuse_other_use(folder, "this folder lies within what is read");
 }
 
-void require_free_space(const fs::path& file, std::uintmax_t bytes) {
-  std::error_code error;
-  const fs::space_info space = fs::space(file.parent_path(), error);
-  if (!error && space.available < bytes) refuse_output(file, ENOSPC);
-}
-
 }  // namespace understory

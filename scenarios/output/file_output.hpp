@@ -46,9 +46,6 @@ void require_writable(const std::filesystem::path& file);
 /// Makes `folder` and proves that files can be written into it. Throws as writing does.
 void prepare_output_folder(const std::filesystem::path& folder);
 
-/// Throws MachineError where fewer than `bytes` are free beside `file`: for writers that cannot tell (video).
-void require_free_space(const std::filesystem::path& file, std::uintmax_t bytes);
-
 /// Throws ScenarioError where one of `outputs` is also one of `others` or is given twice. Empty names mean
 /// nothing; devices and FIFOs may be given again and again.
 void require_separate(const std::vector<std::filesystem::path>& outputs,

@@ -241,17 +241,17 @@ class CheckedPlanner : public Planner {
   Callee callee_;
 };
 
-constexpr double farthest_m = 10'000, widest_m = 400;
+constexpr double farthest_m = 10'000, widest_m = 400, thinnest_m = 0.001;
 
 bool is_sound(const Obstacle& one) {
-  const auto within = [](const auto& numbers, double limit) {
-    return (numbers.array().abs() <= limit).all();
+  const auto within = [](const auto& numbers, double least, double most) {
+    return (numbers.array() >= least && numbers.array() <= most).all();  // false for what is not a number
   };
-  const bool has_radius = one.kind != ObstacleKind::wall && one.kind != ObstacleKind::box;
+  const bool is_wall = one.kind == ObstacleKind::wall, is_box = one.kind == ObstacleKind::box;
   const bool has_length = one.kind == ObstacleKind::sphere || one.to_world != one.from_world;
-  return within(one.from_world, farthest_m) && within(one.to_world, farthest_m) && has_length &&
-         within(one.half_size_m, widest_m) && one.radius_m <= widest_m && one.radius_m >= 0 &&
-         (one.radius_m > 0 || !has_radius);
+  return within(one.from_world, -farthest_m, farthest_m) && within(one.to_world, -farthest_m, farthest_m) &&
+         has_length && one.radius_m >= (is_wall ? 0 : thinnest_m) && one.radius_m <= widest_m &&
+         (!is_box || within(one.half_size_m, thinnest_m, widest_m));
 }
 
 template <typename Checked, typename One, typename Context, typename... More>
@@ -287,12 +287,10 @@ Planted checked(const CoursePart& part, const CourseContext& context) {
                                       maximum_obstacles));
   for (std::size_t i = 0; i < planted.obstacles.size(); ++i) {
     if (!is_sound(planted.obstacles[i]))
-      callee.fail(
-          "make()",
-          fmt::format(
-              "gave obstacle {}, which is not finite, has no size, is larger than {} m or lies farther "
-              "than {} m from the launch",
-              i + 1, widest_m, farthest_m));
+      callee.fail("make()", fmt::format("gave obstacle {}, which is not finite, has no length, is thinner "
+                                        "than {} m or larger than {} m, or "
+                                        "lies farther than {} m from the launch",
+                                        i + 1, thinnest_m, widest_m, farthest_m));
   }
   return planted;
 }

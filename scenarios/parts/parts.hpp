@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <stdexcept>
@@ -102,8 +103,8 @@ class PartList {
       if (part.name == name) return &part;
     return nullptr;
   }
-  const std::vector<One>& all() const { return parts_; }
-  std::vector<One>& all() { return parts_; }
+  const std::deque<One>& all() const { return parts_; }
+  std::deque<One>& all() { return parts_; }
   std::vector<std::string> names() const {
     std::vector<std::string> names;
     for (const One& part : parts_) names.push_back(part.name);
@@ -118,7 +119,7 @@ class PartList {
   }
 
  private:
-  std::vector<One> parts_;
+  std::deque<One> parts_;  ///< a part that is being made may add another
 };
 
 /// Everything that a scenario can name.

@@ -66,7 +66,7 @@ void VideoFile::finish() {
   writer_->release();
   // The encoder reports no failed write: see whether the disk is full and whether the file's index reads
   // back.
-  require_free_space(file_.path(), 1 << 16);
+  require_writable(file_.path());
   const auto reader = picture_codecs().read_film(file_.path().string());
   if (!reader->isOpened() || static_cast<int>(reader->get(cv::CAP_PROP_FRAME_COUNT)) != picture_count_) {
     throw MachineError(fmt::format("{}: what was written does not read back whole", file_.path().string()));

@@ -1,6 +1,7 @@
 // Parts with one defect each, which `understory plugin --check` must find.
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <stdexcept>
 #include <thread>
 #include <variant>
@@ -76,6 +77,20 @@ void add_planner(Parts& parts, const std::string& name, FunctionPlanner::Functio
                         return std::make_unique<FunctionPlanner>(function);
                       }});
 }
+
+/// Its rotation is none.
+class PoselessSource : public StateSource {
+ public:
+  PoselessSource() { state_.T_world_body.linear().setZero(); }
+  void on(const Sample& sample) override {
+    if (const auto* imu = std::get_if<ImuSample>(&sample)) state_.t_ns = imu->t_ns;
+  }
+  const State& state() const override { return state_; }
+  State state_at(std::int64_t) const override { return state_; }
+
+ private:
+  State state_;
+};
 
 class StuckSource : public StateSource {
  public:
@@ -183,6 +198,22 @@ void add_others(Parts& parts) {
                        pole.from_world = {std::nan(""), 0, 0};
                        return Planted{{pole}};
                      }});
+  parts.courses.add({.name = "sideways_nowhere", .meaning = "has a defect", .make = [](const CourseContext&) {
+                       Obstacle pole{.name = "pole"};
+                       pole.from_world = {30, std::nan(""), 0};
+                       pole.to_world = {30, 0, 9};
+                       return Planted{{pole}};
+                     }});
+  parts.courses.add({.name = "huge", .meaning = "has a defect", .make = [](const CourseContext&) {
+                       Obstacle pole{.name = "pole"};
+                       pole.from_world = {30, 5, 0};
+                       pole.to_world = {30, 5, 9};
+                       pole.radius_m = 1e9;
+                       return Planted{{pole}};
+                     }});
+  parts.state_sources.add({.name = "no_pose", .meaning = "has a defect", .make = [](const FlightContext&) {
+                             return std::make_unique<PoselessSource>();
+                           }});
 }
 
 void add_blocking(Parts& parts) {
@@ -191,6 +222,8 @@ void add_blocking(Parts& parts) {
       std::this_thread::sleep_for(std::chrono::hours(1));
     };
   });
+  add_detector(parts, "exits",
+               [] { return [](const StereoFrame&, std::vector<StereoHit>&) { std::exit(0); }; });
 }
 
 }  // namespace

@@ -149,10 +149,27 @@ TEST_F(Plugins, ThatBreakTheirPromisesEndTheFlightAsAFailedMachine) {
 
 TEST_F(Plugins, WrongFilesAreOneLine) {
   std::ofstream(folder.path() / "text.so") << "no library";
+  // Cut off, and with zeros within: what is needed of it may be asked for in flight only.
+  const std::string whole = content_of(plugin("edge_detector"));
+  for (const std::size_t percent : {60, 90})
+    std::ofstream(folder.path() / ("cut" + std::to_string(percent) + ".so"), std::ios::binary)
+        << whole.substr(0, whole.size() * percent / 100);
+  std::string holed = whole;
+  holed.replace(holed.size() / 3, 4000, std::string(4000, '\0'));
+  std::ofstream(folder.path() / "holed.so", std::ios::binary) << holed;
   const std::pair<std::string, const char*> cases[] = {
       {plugin("wrong_no_entry"), "is not a plug-in"},
       {plugin("wrong_stamp"),
        "was built for 'headers of understory 0.0.1: 0123456789abcdef', this program needs"},
+      {plugin("wrong_null_stamp"), "was built for 'nothing', this program needs"},
+      {plugin("wrong_data_symbol"), "loading it ends a process"},
+      {plugin("wrong_throws_int"), "threw what is no std::exception"},
+      {plugin("wrong_exits"), "loading it ends a process (status 0)"},
+      {plugin("wrong_bounds"),
+       "key 'backwards.gain': its bounds 40 and 2 must be finite, the smaller one first"},
+      {(folder.path() / "cut60.so").string(), "is cut off: its headers speak of"},
+      {(folder.path() / "cut90.so").string(), "is cut off: its headers speak of"},
+      {(folder.path() / "holed.so").string(), "holed.so"},
       {plugin("wrong_symbol"), "a_function_that_nobody_has"},
       {plugin("wrong_name_taken"), "the name 'pushbroom' is taken"},
       {plugin("wrong_name"), "the name 'My Detector' must be letters"},
@@ -207,13 +224,23 @@ TEST_F(Plugins, DefectsAreFoundByName) {
       {"'no_plan'", "outputs are finite"},
       {"'back_in_time'", "outputs are finite"},
       {"'another_each_time'", "equal inputs give equal outputs"},
-      {"'nowhere'", "outputs are finite"}};
+      {"'no_pose'", "outputs are finite"},
+      {"'nowhere'", "outputs are finite"},
+      {"'sideways_nowhere'", "outputs are finite"},
+      {"'huge'", "outputs are finite"}};
   for (const auto& [part, check] : faults)
     EXPECT_EQ(lines_with(checked.text, {part, check, "FAULT"}), 1) << part << " " << check << "\n"
                                                                    << checked.text;
   // A defect is not found where it is not.
   for (const char* part : {"'unequal'", "'leaky'", "'wants_later_times'", "'slow'"})
     EXPECT_EQ(lines_with(checked.text, {part, "outputs are finite", "passed"}), 1) << part;
+}
+
+TEST_F(Plugins, ThatEndTheProcessAreNamed) {
+  expect_refusal("fly forest --quiet --set perception.detector=exits --plugin " + plugin("blocking") +
+                     " --row " + (folder.path() / "row.json").string(),
+                 "blocking.so: detector 'exits': detect(): ended the process", 3);
+  EXPECT_FALSE(fs::exists(folder.path() / "row.json"));
 }
 
 /// What a command that is ended by the watchdog says, and how.
