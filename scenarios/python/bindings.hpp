@@ -104,8 +104,13 @@ Value taken(const py::handle& given, const char* name, const char* what) {
 bool was_interrupted();
 
 // What the module holds, a file each.
-void bind_types(py::module_& module);   ///< plain data: samples, states, frames, plans
-void bind_parts(py::module_& module);   ///< parts written in Python
-void bind_flight(py::module_& module);  ///< scenarios and flights
+void bind_types(py::module_& module);  ///< plain data: samples, states, frames, plans
+void bind_parts(py::module_& module);  ///< parts written in Python
+void bind_scenario(py::module_& module);
+void bind_flight(py::module_& module);
+
+/// Throws where a file with the scenario's text would not fly again: a part of it was made by this program
+/// alone.
+void require_files(const Scenario& scenario);
 
 }  // namespace understory

@@ -18,5 +18,6 @@ PYBIND11_MODULE(_understory, module) {
   });
   bind_types(module);
   bind_parts(module);
+  bind_scenario(module);
   bind_flight(module);
 }

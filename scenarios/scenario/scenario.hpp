@@ -161,24 +161,8 @@ AutopilotSection planning_of(PlanningPreset preset);
 
 inline constexpr std::uint64_t maximum_seed = std::uint64_t{1} << 32;
 
-/// A file with parts of one's own (docs/integrate.md).
-struct PluginConfig {
-  std::string file;
-  std::string hash;
-};
-
-template <typename Visitor>
-void visit_fields(Visitor& visit, PluginConfig& plugin) {
-  visit("file", plugin.file,
-        "The shared library, or the Python file. A relative path is looked for beside the scenario file, "
-        "then in the working "
-        "directory.");
-  visit("hash", plugin.hash,
-        "Hash of the file's contents. Empty: any. A run writes it, so that another build of the plug-in is "
-        "not mistaken for the one that flew.");
-}
-
-/// A file that a flight reads beside its scenario, since a key names it or a plug-in imports it.
+/// A file that a flight reads beside its scenario: a plug-in (docs/integrate.md), what such a one imports, or
+/// what another key names.
 struct FileConfig {
   std::string file;
   std::string hash;
@@ -187,11 +171,13 @@ struct FileConfig {
 template <typename Visitor>
 void visit_fields(Visitor& visit, FileConfig& read) {
   visit("file", read.file,
-        "A file that the flight reads: another key names it, or a plug-in in Python imports it.");
-  visit(
-      "hash", read.hash,
-      "Hash of the file's contents. A run writes it, so that a changed file is not mistaken for the one that "
-      "flew.");
+        "The file. A plug-in is a shared library or a Python file; files are listed by the run. A relative "
+        "path is "
+        "looked for beside the scenario file, then in the working directory.");
+  visit("hash", read.hash,
+        "Hash of the file's contents. Empty: any. A run writes it, so that another file is not mistaken for "
+        "the one "
+        "that flew.");
 }
 
 struct Scenario {
@@ -199,8 +185,7 @@ struct Scenario {
   std::uint64_t seed = 1000;
   std::string rig = "long";
   std::string course = "forest";
-  std::vector<PluginConfig> plugins;
-  std::vector<FileConfig> files;
+  std::vector<FileConfig> plugins, files;
   double time_limit_s = 30;
   Eigen::Vector3d wind_world_mps = Eigen::Vector3d::Zero();
   WindConfig wind;

@@ -200,19 +200,17 @@ Files files_of(const Scenario& scenario, const Sources& sources) {
       add(file.string(), "rig");
   add(scenario.forest.trees_file, "forest.trees_file");
   add(scenario.autopilot.actions, "autopilot.actions");
-  for (const PluginConfig& plugin : scenario.plugins)
+  for (const FileConfig& plugin : scenario.plugins)
     for (const FileConfig& imported : load_plugin(plugin.file, "plugins").imported) files.push_back(imported);
   return files;
 }
 
 /// A run's scenario flies again only with the files that it flew with.
-template <typename Listed>
-void require_hashes(const char* list, const std::vector<Listed>& asked, const std::vector<Listed>& there,
-                    const Sources& sources) {
+void require_hashes(const char* list, const Files& asked, const Files& there, const Sources& sources) {
   for (std::size_t i = 0; i < asked.size(); ++i) {
     const std::string key = fmt::format("{}[{}].", list, i),
                       file = found_file(asked[i].file, origin_of(sources, key + "file"));
-    const auto is = std::ranges::find(there, file, &Listed::file);
+    const auto is = std::ranges::find(there, file, &FileConfig::file);
     if (is != there.end() && !asked[i].hash.empty() && asked[i].hash != is->hash)
       throw ScenarioError(fmt::format("{}: {}hash: must be {}, the hash of {}, got {}",
                                       origin_of(sources, key + "hash"), key, is->hash, file, asked[i].hash));
@@ -239,11 +237,11 @@ void read_all(const Sources& sources, Scenario& scenario) {
 
 /// Loads the plug-ins that the sources name, whose parts and keys the sources may name, too, and those of
 /// --plugin. Gives all of them, with absolute paths and hashes.
-std::vector<PluginConfig> load_plugins(const Sources& sources) {
-  std::vector<PluginConfig> loaded;
+std::vector<FileConfig> load_plugins(const Sources& sources) {
+  std::vector<FileConfig> loaded;
   const auto load = [&](const std::string& file, const std::string& origin) {
     const Plugin& plugin = load_plugin(file, origin);
-    if (std::ranges::find(loaded, plugin.file, &PluginConfig::file) == loaded.end())
+    if (std::ranges::find(loaded, plugin.file, &FileConfig::file) == loaded.end())
       loaded.push_back({plugin.file, plugin.hash});
   };
   for (const ConfigNode& source : sources)
@@ -257,7 +255,7 @@ std::vector<PluginConfig> load_plugins(const Sources& sources) {
 
 /// Twice: the first reading learns the presets and the launch, the second puts the written keys over them.
 Scenario compose(const Sources& sources, const std::string& name) {
-  const std::vector<PluginConfig> plugins = load_plugins(sources);
+  const std::vector<FileConfig> plugins = load_plugins(sources);
   Scenario first;
   read_all(sources, first);
   Scenario scenario;

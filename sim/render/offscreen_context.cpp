@@ -126,15 +126,13 @@ std::string OffscreenContext::renderer() const {
 
 std::string OffscreenContext::take_errors() const {
   const auto next = as_function<unsigned (*)()>(backend_->function("glGetError"));
-  std::string errors;
-  for (int i = 0; i < 100; ++i) {  // without a context some libraries give errors for ever
-    const unsigned error = next();
-    if (error == 0) break;
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%sOpenGL error 0x%x", i == 0 ? "" : ", ", error);
-    if (i < 5) errors += text.data();
-  }
-  return errors;
+  std::array<char, 32> first{};
+  for (int i = 0; i < 100; ++i)  // without a context some libraries give errors for ever
+    if (const unsigned error = next(); error == 0)
+      break;
+    else if (i == 0)
+      std::snprintf(first.data(), first.size(), "OpenGL error 0x%x", error);
+  return first.data();
 }
 
 }  // namespace understory

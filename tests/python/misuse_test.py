@@ -128,7 +128,7 @@ WRONG = [
     ("a state without a rotation", lambda: flown(state_source=Stating(T_world_body=np.zeros((4, 4)))), MachineError,
      "no pose"),
     ("a mirrored state", lambda: flown(state_source=Stating(T_world_body=MIRRORED)), MachineError, "no pose"),
-    ("a wind that is not finite", lambda: flown(state_source=Stating(wind_world_mps=[0, np.nan, 0])), MachineError,
+    ("a wind that is not finite", lambda: flown(state_source=Stating(wind_world_mps=[0, np.nan])), MachineError,
      "not finite"),
     ("a default out of bounds", lambda: keyed(understory.Key("a", 100.0, 2.0, 40.0, "m")), ValueError,
      "must be from 2 to 40"),

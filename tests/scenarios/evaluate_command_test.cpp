@@ -112,18 +112,21 @@ void write_true_disparities(const fs::path& recording, const fs::path& to, const
   }
 }
 
-// The right principal point lies further right than the left one, as in one rig of the original aircraft: what is far away has
-// negative disparities.
+// The right principal point lies further right than the left one, as in one rig of the original aircraft:
+// what is far away has negative disparities.
 TEST(EvaluateCommand, DisparitiesMayBeNegativeWhereInfinityIs) {
   const TemporaryFolder folder;
-  const fs::path recording = folder.path() / "a", given = folder.path() / "given", out = folder.path() / "out";
+  const fs::path recording = folder.path() / "a", given = folder.path() / "given",
+                 out = folder.path() / "out";
   const fs::path rig = folder.write(
       "rig.yaml",
       "name: negative\nwidth_px: 376\nheight_px: 240\nfocal_px: 321.9355\nbaseline_m: 0.32662\n"
       "center_left_x_px: 174.0\ncenter_right_x_px: 190.5\ncenter_y_px: 120.6\ndetection_depth_m: 10\n"
       "left_camera_body_m: [0.1, 0.16, 0]\npitch_down_deg: 10.97\n");
-  expect_success("record forest --seed 1003 --walk=5 --height 3 --set cameras.rate_hz=5 --set time_limit_s=1 --quiet "
-                 "--set rig=" + rig.string() + " --out " + recording.string());
+  expect_success(
+      "record forest --seed 1003 --walk=5 --height 3 --set cameras.rate_hz=5 --set time_limit_s=1 --quiet "
+      "--set rig=" +
+      rig.string() + " --out " + recording.string());
   write_true_disparities(recording, given, understory::read_calibrated_rig(recording, {}).rig);
   expect_success("evaluate " + recording.string() + " --preset robust --disparities exact=" + given.string() +
                  " --out " + out.string());

@@ -167,8 +167,8 @@ TEST(Scenario, EveryDefaultIsWritten) {
 
 TEST(Scenario, FilterAndPlannerTakeTheWingFromTheAirframe) {
   const Scenario heavy =
-      scenario_from_text("airframe: {mass_kg: 0.8, wing_area_m2: 0.2, winglet_area_m2: 0.03}\n",
-                         "a.yaml", {"airframe.air_density_kgpm3=1.1", "airframe.gravity_mps2=9.7"});
+      scenario_from_text("airframe: {mass_kg: 0.8, wing_area_m2: 0.2, winglet_area_m2: 0.03}\n", "a.yaml",
+                         {"airframe.air_density_kgpm3=1.1", "airframe.gravity_mps2=9.7"});
   const FilterConfig& filter = heavy.estimation.filter;
   EXPECT_EQ(filter.gravity_mps2, 9.7);
   EXPECT_EQ(filter.sideslip.mass_kg, 0.8);

@@ -9,7 +9,7 @@
 #include "scenarios/course/inventory.hpp"
 #include "scenarios/output/errors.hpp"
 #include "tests/support/shared_data.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 namespace understory {
 namespace {
