@@ -22,7 +22,6 @@ namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds checked_every{10};  ///< a flight takes seconds
 /// exit_bad_input and exit_machine_failed of the command line.
@@ -30,7 +29,7 @@ constexpr int status_refused = 2, status_machine_failed = 3;
 
 struct InTheAir {
   const CampaignTask* task = nullptr;
-  double since_s = 0;  ///< of time_s()
+  int looks = 0;  ///< at it. A batch system that suspends us suspends our flights, too: nobody looks then.
   bool hung = false;
 };
 
@@ -86,7 +85,7 @@ class Flights {
     fs::remove(folder_.flight_file(task));  // how it failed the last time is no answer any more
     const pid_t child = start_this_program(flight_arguments(folder_, campaign_, task, config_.keeps_runs),
                                            SIGKILL, folder_.log_file(task));
-    air_[child] = {&task, time_s()};
+    air_[child] = {&task};
   }
 
   /// Each flight that is over, with what it left.
@@ -94,7 +93,7 @@ class Flights {
   void land(OnOver&& on_over) {
     for (auto flight = air_.begin(); flight != air_.end();) {
       const EndedProcess process = wait_for_process(flight->first, WNOHANG);
-      const double taken_s = time_s() - flight->second.since_s;
+      const double taken_s = ++flight->second.looks * std::chrono::duration<double>(checked_every).count();
       if (process.pid == 0) {
         if (!flight->second.hung && taken_s > campaign_.timeout_s) {
           flight->second.hung = true;
@@ -147,17 +146,6 @@ class Flights {
   }
 
  private:
-  /// Time that this process has run, s. A batch system that suspends it suspends its flights, too: they take
-  /// no longer for that.
-  double time_s() {
-    constexpr double longest_look_s = 1;
-    run_s_ += std::min(seconds_since(looked_), longest_look_s);
-    looked_ = Clock::now();
-    return run_s_;
-  }
-
-  double run_s_ = 0;
-  Clock::time_point looked_ = Clock::now();
   const CampaignFolder& folder_;
   const Campaign& campaign_;
   const LocalEngineConfig& config_;

@@ -116,9 +116,9 @@ void visit_fields(Visitor& visit, AnyConfig& config) {
   config.visit(fields);
 }
 
-/// Throws std::invalid_argument where what is written of these keys could not be read again: a name that is
-/// no plain word or stands twice, bounds that are none, a value outside of them. `part` begins the message.
-void require_sound_keys(const std::string& part, AnyConfig& keys);
+/// Throws std::invalid_argument where what is written of these keys cannot be read again: a name that is no
+/// plain word or stands twice, a value outside of its bounds. `part` begins the message.
+void require_sound_keys(const std::string& part, const AnyConfig& keys);
 
 /// The configurations of the parts that plug-ins bring, by their names. Copies are deep.
 class PartConfigs {

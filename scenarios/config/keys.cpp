@@ -1,11 +1,12 @@
 #include "scenarios/config/keys.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cctype>
-#include <cmath>
 #include <cstddef>
+#include <memory>
 #include <stdexcept>
+
+#include "scenarios/config/config_reader.hpp"
+#include "scenarios/config/config_writer.hpp"
 
 namespace understory {
 namespace {
@@ -53,54 +54,23 @@ std::string unit_of(std::string_view name) {
   return "";
 }
 
-/// A visitor that lets only keys pass whose values can be written and read again.
-struct KeyCheck {
-  std::string part;
-  std::vector<std::string> seen = {};
-
-  void expect(bool holds, std::string_view name, const std::string& what) const {
-    if (!holds) throw std::invalid_argument(fmt::format("key '{}.{}': {}", part, name, what));
-  }
-  void take(std::string_view name) {
-    expect(!name.empty() &&
-               std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) || c == '_'; }),
-           name, "the name must be letters, digits and '_'");
-    expect(std::ranges::find(seen, name) == seen.end(), name, "the name stands twice");
-    seen.emplace_back(name);
-  }
-  void operator()(std::string_view name, bool&, std::string_view) { take(name); }
-  void operator()(std::string_view name, std::string& word, std::string_view) {
-    take(name);
-    expect(std::ranges::none_of(word, [](unsigned char c) { return c < ' ' || c == 127; }), name,
-           "must be one line");
-  }
-  void operator()(std::string_view name, std::string& word, const std::vector<std::string>& words,
-                  std::string_view) {
-    take(name);
-    expect(std::ranges::find(words, word) != words.end(), name,
-           fmt::format("must be {}, is {}", fmt::join(words, " | "), word));
-  }
-  template <typename Value, typename Bound>
-  void operator()(std::string_view name, Value& value, Bound minimum, Bound maximum, std::string_view) {
-    take(name);
-    expect(std::isfinite(minimum) && std::isfinite(maximum) && minimum <= maximum, name,
-           fmt::format("its bounds {} and {} must be finite, the smaller one first", minimum, maximum));
-    const auto check = [&](double number) {
-      expect(number >= minimum && number <= maximum, name,
-             fmt::format("must be from {} to {}, is {}", minimum, maximum, number));
-    };
-    if constexpr (std::is_arithmetic_v<Value>)
-      check(value);
-    else
-      for (const double number : value) check(number);
-  }
-};
-
 }  // namespace
 
-void require_sound_keys(const std::string& part, AnyConfig& keys) {
-  KeyCheck check{part};
-  visit_fields(check, keys);
+void require_sound_keys(const std::string& part, const AnyConfig& keys) try {
+  const std::unique_ptr<AnyConfig> written = keys.clone(), read = keys.clone();
+  KeyLister lister;
+  visit_fields(lister, *written);
+  for (const Key& key : lister.keys())
+    if (key.name.empty() ||
+        key.name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") !=
+            std::string::npos)
+      throw ScenarioError(
+          fmt::format("{}: {}: a key's name must be letters, digits and '_'", part, key.name));
+  ConfigWriter writer;
+  visit_fields(writer, *written);
+  if (!lister.keys().empty()) read_config(parse_yaml(writer.text(), part), *read);
+} catch (const InputError& error) {
+  throw std::invalid_argument(error.what());
 }
 
 Key key_of(std::string_view name, std::string_view text) {

@@ -88,7 +88,7 @@ class PartList {
       throw std::invalid_argument("the name '" + part.name + "' must be letters a-z, digits and '_'");
     if (find(part.name) != nullptr) throw std::invalid_argument("the name '" + part.name + "' is taken");
     if (!part.make) throw std::invalid_argument("'" + part.name + "' must have a function that makes it");
-    if (part.defaults) require_sound_keys(part.name, *part.defaults->clone());
+    if (part.defaults) require_sound_keys(part.name, *part.defaults);
     return parts_.emplace_back(std::move(part));
   }
   /// Adds a part with keys of its own: `defaults` has a visit_fields(), the keys stand below the part's name.

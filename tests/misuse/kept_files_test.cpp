@@ -1,4 +1,6 @@
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -220,15 +222,15 @@ const std::map<std::string, std::string> that_go_on{
     {"fly", "$U fly s.yaml --quiet --mcap --out out"},
     {"collect", "$U collect out"}};
 
-/// Whether a process counts there.
-bool is_at_work(const std::string& calls) {
+/// Whether a process still holds a lock below: one that was killed lets go of its memory first, and then of
+/// its files.
+bool is_locked(const fs::path& folder) {
   std::error_code ignored;
-  for (const auto& process : fs::directory_iterator("/proc", ignored)) {
-    std::ifstream environment(process.path() / "environ", std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(environment), {}};
-    if (process.path().filename() != std::to_string(getpid()) &&
-        text.find("FAILING_DISK_CALLS=" + calls + '\0') != std::string::npos)
-      return true;
+  for (const auto& entry : fs::recursive_directory_iterator(folder, ignored)) {
+    const int file = open(entry.path().c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    const bool is_held = file >= 0 && flock(file, LOCK_EX | LOCK_NB) != 0;
+    if (file >= 0) close(file);
+    if (is_held) return true;
   }
   return false;
 }
@@ -242,8 +244,7 @@ std::int64_t moments_of(const std::string& command, const fs::path& folder, cons
   setenv("FAILING_DISK_KILL", std::to_string(killed_at).c_str(), 1);
   status = run(command, folder, fixtures, {"", true, 0, 1'000'000'000'000}, {});
   unsetenv("FAILING_DISK_CALLS");
-  while (is_at_work(calls))
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));  // its children end, too
+  while (is_locked(folder)) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   std::int64_t count = 0;
   std::ifstream(calls, std::ios::binary).read(reinterpret_cast<char*>(&count), sizeof count);
   return count;

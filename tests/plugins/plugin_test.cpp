@@ -163,7 +163,7 @@ TEST_F(Plugins, WrongFilesAreOneLine) {
       {plugin("wrong_throws_int"), "threw what is no std::exception"},
       {plugin("wrong_exits"), "loading it ends a process (status 0)"},
       {plugin("wrong_bounds"),
-       "key 'backwards.gain': its bounds 40 and 2 must be finite, the smaller one first"},
+       "backwards:1: gain: expected a number from 40 to 2, got 3"},
       {(folder.path() / "cut60.so").string(), "is cut off: its headers speak of"},
       {(folder.path() / "cut90.so").string(), "is cut off: its headers speak of"},
       {plugin("wrong_symbol"), "a_function_that_nobody_has"},
