@@ -51,17 +51,13 @@ std::size_t StrictMap::length(const std::string& key) const {
 
 StrictMap StrictMap::map(const std::string& key) { return StrictMap(take(key), prefix_ + key + "."); }
 
-void StrictMap::refuse_others() const {
-  for (const TextNode& child : map_.children)
-    if (std::find(known_.begin(), known_.end(), child.key) == known_.end())
-      fail(child.key, fmt::format("unknown key; known here: {}", fmt::join(known_, ", ")));
-}
-
 void StrictMap::refuse_others(std::string_view harmless) const {
   for (const TextNode& child : map_.children)
     if (std::find(known_.begin(), known_.end(), child.key) == known_.end() &&
         harmless.find(' ' + child.key + ' ') == std::string_view::npos)
-      fail(child.key, "unknown key: it may change what the other numbers mean, and it is not read");
+      fail(child.key, harmless.empty()
+                          ? fmt::format("unknown key; known here: {}", fmt::join(known_, ", "))
+                          : "unknown key: it may change what the other numbers mean, and it is not read");
 }
 
 void StrictMap::fail(const std::string& key, const std::string& expected) const {

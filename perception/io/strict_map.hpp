@@ -27,10 +27,9 @@ class StrictMap {
   /// What the value calls itself: "opencv-matrix".
   std::string type(const std::string& key) { return take(key).type; }
 
-  /// To be called once every known key was asked for.
-  void refuse_others() const;
-  /// The same of a file of others, in which these keys may stand, too: they change nothing. " E F Q "
-  void refuse_others(std::string_view harmless) const;
+  /// To be called once every known key was asked for. `harmless`: keys that may stand in a file of others,
+  /// since they change nothing: " E F Q ".
+  void refuse_others(std::string_view harmless = "") const;
 
   [[noreturn]] void fail(const std::string& key, const std::string& expected) const;
 

@@ -40,8 +40,7 @@ struct Column {
 /// values: each with the cells of `columns` alone, in their order. Without names that order is the table's
 /// own, and lines are as table_lines() gives them.
 struct NamedTable {
-  std::vector<std::string>
-      names;  ///< of `columns`, as the table has them: "t_s", "timestamp[ns]"; empty: none
+  std::vector<std::string> names;  ///< of `columns`, as the table has them: "timestamp[ns]"; empty: none
   std::vector<TableLine> lines;
 };
 

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 
 #include "perception/perception_config.hpp"
@@ -42,18 +41,6 @@ void require_detectors(const std::vector<std::string>& names) {
   }
 }
 
-/// Two of one name would stand in every table as one.
-void require_different_names(const EvaluationSettings& settings) {
-  EvaluationSum sum;
-  sum.make_room(settings);
-  for (auto name = sum.algorithms.begin(); name != sum.algorithms.end(); ++name)
-    if (std::find(sum.algorithms.begin(), name, *name) != name)
-      throw ScenarioError(
-          fmt::format("{}: two algorithms have this name: each --detector and the NAME of each "
-                      "--disparities must differ from the others and from {}",
-                      *name, fmt::join(algorithm_names, ", ")));
-}
-
 int run_evaluate(EvaluateArguments arguments) {
   EvaluationOptions options;
   arguments.vision.one_depth = true;  // full stereo is cropped to one depth's interval, to be compared
@@ -65,7 +52,7 @@ int run_evaluate(EvaluateArguments arguments) {
   for (const std::string& given : arguments.disparities)
     options.settings.disparities.push_back(disparity_folder_of(given));
   options.settings.detectors = arguments.detectors;
-  require_different_names(options.settings);
+  EvaluationSum().make_room(options.settings);
   options.jobs = jobs_or_cores(arguments.jobs);
   fs::path out = arguments.out;
   std::error_code ignored;

@@ -10,7 +10,6 @@
 
 namespace understory {
 
-/// What draws in this process.
 struct OpenedRenderer {
   RendererKind kind;  ///< osmesa or egl, never automatic
   std::string name;   ///< as OffscreenContext::renderer()

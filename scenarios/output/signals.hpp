@@ -36,8 +36,7 @@ class StopSignals {
   int number() const;  ///< the signal that came; 0: none
 };
 
-/// Removes what is unfinished. The list of a folder goes last: until then it says whose the rest is, where
-/// that could not be removed.
+/// The list of a folder goes last: until then it says whose the rest is, where that could not be removed.
 void remove_unfinished(const std::filesystem::path& path);
 
 /// A file or folder that bears another name until it is whole, and is removed where the work ends before: by

@@ -23,7 +23,6 @@ constexpr int longest_call_looks = 40;  // 20 s
 constexpr double largest = 1e7;         ///< of any coordinate, speed or angle in SI units
 constexpr const char* not_sound = "which is not finite, or beyond 1e7";
 
-/// What a plug-in does to the process cannot be undone: one line, and the status of a failed machine.
 [[noreturn]] void end_process(const std::string& line) {
   fmt::print(stderr, "understory: {}\n", line);
   std::fflush(nullptr);
@@ -121,7 +120,6 @@ struct Callee {
   }
 };
 
-/// Finite, and of a size that can be reckoned with.
 bool is_sound(const auto& numbers) { return (numbers.array().abs() <= largest).all(); }
 bool is_sound(double number) { return std::abs(number) <= largest; }
 

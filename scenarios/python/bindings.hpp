@@ -43,8 +43,7 @@ py::array_t<PointRecord> array_of(const std::vector<ObstaclePoint>& points);
 /// An image as a read-only array that keeps it alive: no copy is made.
 py::array array_of(const cv::Mat& image);
 
-/// Lives as long as the part that was made from an object does: what its factory made of ours refers to its
-/// flight.
+/// Lives as long as the part of an object: what its factory made of ours refers to its flight.
 using Life = std::shared_ptr<const char>;
 
 /// Objects of Python as parts. They call Python with its lock held. Throw std::runtime_error, one line, where
@@ -88,8 +87,7 @@ auto in_python(Function&& function) {
   });
 }
 
-/// What Python gave, as `Value`. Throws TypeError in one line where it is none: "plan(): must be a Plan, got
-/// NoneType".
+/// Throws TypeError in one line where it is no such value: "plan(): must be a Plan, got NoneType".
 template <typename Value>
 Value taken(const py::handle& given, const char* name, const char* what) {
   try {
@@ -109,8 +107,7 @@ void bind_parts(py::module_& module);  ///< parts written in Python
 void bind_scenario(py::module_& module);
 void bind_flight(py::module_& module);
 
-/// Throws where a file with the scenario's text would not fly again: a part of it was made by this program
-/// alone.
+/// Throws where a file with the scenario's text would not fly again: a part was made by this program alone.
 void require_files(const Scenario& scenario);
 
 }  // namespace understory

@@ -167,9 +167,9 @@ class HeldFlight {
   bool advance(Until until) {
     flight();
     if (!fault_.empty()) throw MachineError(fault_);
-    if (is_stepped_)
+    if (std::exchange(is_stepped_, true))
       throw std::runtime_error("a part cannot step the flight that it is a part of: this is within a step");
-    const Stepping stepping(is_stepped_);
+    const std::unique_ptr<bool, void (*)(bool*)> stepping(&is_stepped_, [](bool* flag) { *flag = false; });
     bool goes_on = true;
     without_lock([&] {
       try {
@@ -249,12 +249,6 @@ class HeldFlight {
   void draw_images(bool draws) { watcher_.draws = draws; }
 
  private:
-  struct Stepping {
-    explicit Stepping(bool& flag) : now(flag) { now = true; }
-    ~Stepping() { now = false; }
-    bool& now;
-  };
-
   static double number(const py::object& given, const char* name) {
     const double value = taken<double>(given, name, "a number");
     if (std::isnan(value)) throw py::value_error(std::string(name) + ": must be a number, got nan");

@@ -14,6 +14,7 @@
 #include <exception>
 #include <fstream>
 #include <functional>
+#include <memory>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -201,15 +202,12 @@ const Plugin& load_plugin(const fs::path& file, const std::string& asked_by) {
     return one;
   }
   static bool is_loading = false;
-  if (is_loading)
+  if (std::exchange(is_loading, true))
     refuse(found, asked_by, "a plug-in cannot load another: give both to --plugin, or to load_plugin()");
+  const std::unique_ptr<bool, void (*)(bool*)> loading(&is_loading, [](bool* flag) { *flag = false; });
   if (!fs::is_regular_file(found))
     throw ScenarioError(
         fmt::format("{}: {}: must be a shared library or a Python file", asked_by, found.string()));
-  struct Loading {
-    Loading() { is_loading = true; }
-    ~Loading() { is_loading = false; }
-  } loading;
   Plugin plugin{found.string(), "", {}};
   if (found.extension() == ".py") {
     const std::string text = read_file(found, maximum_python_bytes);

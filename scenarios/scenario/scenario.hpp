@@ -171,13 +171,11 @@ struct FileConfig {
 template <typename Visitor>
 void visit_fields(Visitor& visit, FileConfig& read) {
   visit("file", read.file,
-        "The file. A plug-in is a shared library or a Python file; files are listed by the run. A relative "
-        "path is "
-        "looked for beside the scenario file, then in the working directory.");
+        "Name of the file: of a plug-in (a shared library, or Python), or of a file that the run read. A "
+        "relative "
+        "path is looked for beside the scenario file, then in the working directory.");
   visit("hash", read.hash,
-        "Hash of the file's contents. Empty: any. A run writes it, so that another file is not mistaken for "
-        "the one "
-        "that flew.");
+        "Hash of the file's contents; empty: any. A run writes it, so that no other file is taken for it.");
 }
 
 struct Scenario {

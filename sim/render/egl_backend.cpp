@@ -153,7 +153,10 @@ class EglBackend : public OffscreenBackend {
         core<PFNEGLCREATECONTEXTPROC>("eglCreateContext")(egl_.display, egl_.config, EGL_NO_CONTEXT, nullptr);
     if (context_ == EGL_NO_CONTEXT)
       throw std::runtime_error("EGL gave no OpenGL context: reinstall Debian's libgl1-mesa-dri");
-    if (!egl_.is_surfaceless) surface_ = small_pbuffer();
+    const std::array<EGLint, 5> size{EGL_WIDTH, 16, EGL_HEIGHT, 16, EGL_NONE};
+    if (!egl_.is_surfaceless)  // of no other use than to be bound
+      surface_ = core<PFNEGLCREATEPBUFFERSURFACEPROC>("eglCreatePbufferSurface")(egl_.display, egl_.config,
+                                                                                 size.data());
   }
   ~EglBackend() override {
     if (current_context_() == context_)
@@ -209,13 +212,6 @@ class EglBackend : public OffscreenBackend {
       }
     } at_end;
     at_end.release = core<PFNEGLRELEASETHREADPROC>("eglReleaseThread");
-  }
-
-  /// Of no other use than to be bound where EGL asks for a surface.
-  EGLSurface small_pbuffer() const {
-    const std::array<EGLint, 5> size{EGL_WIDTH, 16, EGL_HEIGHT, 16, EGL_NONE};
-    return core<PFNEGLCREATEPBUFFERSURFACEPROC>("eglCreatePbufferSurface")(egl_.display, egl_.config,
-                                                                           size.data());
   }
 
   /// The context deletes them with itself.

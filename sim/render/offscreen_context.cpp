@@ -23,16 +23,6 @@ constexpr unsigned gl_unpack_alignment = 0x0CF5;
 constexpr unsigned gl_renderer = 0x1F01;
 constexpr unsigned gl_version = 0x1F02;
 
-/// Mesa's variables, of which many change its images, and glibc's choice among its versions of a function.
-bool changes_bits(std::string_view variable) {
-  constexpr std::array beginnings{"GALLIUM_", "GALLIVM_",  "LP_",    "MESA_",
-                                  "DRAW_",    "ST_DEBUG=", "LIBGL_", "GLIBC_TUNABLES="};
-  constexpr std::array harmless{"GALLIUM_DRIVER=",  "LP_NUM_THREADS=", "MESA_SHADER_CACHE_",
-                                "MESA_GLSL_CACHE_", "MESA_LOG",        "LIBGL_DEBUG="};
-  const auto begins = [&](const char* word) { return variable.starts_with(word); };
-  return std::ranges::any_of(beginnings, begins) && std::ranges::none_of(harmless, begins);
-}
-
 using BindTexture = void (*)(unsigned target, unsigned texture);
 using Backend = std::unique_ptr<OffscreenBackend>;
 
@@ -80,9 +70,16 @@ Backend backend_of(RendererKind kind) {
 }  // namespace
 
 std::set<std::string> variables_that_change_bits() {
+  constexpr std::array beginnings{"GALLIUM_", "GALLIVM_",  "LP_",    "MESA_",
+                                  "DRAW_",    "ST_DEBUG=", "LIBGL_", "GLIBC_TUNABLES="};
+  constexpr std::array harmless{"GALLIUM_DRIVER=",  "LP_NUM_THREADS=", "MESA_SHADER_CACHE_",
+                                "MESA_GLSL_CACHE_", "MESA_LOG",        "LIBGL_DEBUG="};
   std::set<std::string> set;
-  for (char** variable = environ; *variable != nullptr; ++variable)
-    if (changes_bits(*variable)) set.insert(*variable);
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const auto begins = [&](const char* word) { return std::string_view(*variable).starts_with(word); };
+    if (std::ranges::any_of(beginnings, begins) && std::ranges::none_of(harmless, begins))
+      set.insert(*variable);
+  }
   return set;
 }
 

@@ -129,25 +129,17 @@ struct SceneRenderer::Scene {
   }
 
   /// Scenes whose renderers ended on another thread. A context that is current on two threads ends a process.
-  struct Waiting {
-    std::mutex mutex;
-    std::vector<std::unique_ptr<Scene>> scenes;
-  };
-  static Waiting& waiting() {
-    static auto* never_ends = new Waiting;  // a thread may end after main()
-    return *never_ends;
-  }
-  static void free_waiting() {
-    const std::lock_guard lock(waiting().mutex);
-    std::erase_if(waiting().scenes,
-                  [](const auto& one) { return one->thread == std::this_thread::get_id(); });
-  }
+  static inline auto& waiting = *new std::vector<std::unique_ptr<Scene>>;  // a thread may end after main()
+  static inline auto& waiting_mutex = *new std::mutex;
 };
 
 SceneRenderer::SceneRenderer(const mjModel& model, double view_distance_m, int width_px, int height_px,
                              RendererKind renderer, const WoodsMesh* woods)
     : model_(model), view_distance_m_(view_distance_m) {
-  Scene::free_waiting();
+  {
+    const std::lock_guard lock(Scene::waiting_mutex);
+    std::erase_if(Scene::waiting, [](const auto& one) { return one->thread == std::this_thread::get_id(); });
+  }
   scene_ = std::make_unique<Scene>(renderer);
   begin_picture(width_px, height_px);
   make_context();
@@ -161,8 +153,8 @@ SceneRenderer::SceneRenderer(const mjModel& model, double view_distance_m, int w
 
 SceneRenderer::~SceneRenderer() {
   if (scene_->thread == std::this_thread::get_id()) return;
-  const std::lock_guard lock(Scene::waiting().mutex);
-  Scene::waiting().scenes.push_back(std::move(scene_));
+  const std::lock_guard lock(Scene::waiting_mutex);
+  Scene::waiting.push_back(std::move(scene_));
 }
 
 std::string SceneRenderer::name() const {

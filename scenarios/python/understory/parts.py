@@ -102,8 +102,7 @@ def trunk(x_m: float, y_m: float, radius_m: float = 0.15, height_m: float = 12.0
 def box(
     position_m: Any, size_m: Any, rotation_rad: Any = (0.0, 0.0, 0.0), name: str = "box"
 ) -> _understory.Obstacle:
-    """A box with its middle at position_m, size_m along its own axes, turned by roll, pitch and yaw: as in `obstacles` of a
-    scenario."""
+    """A box: its middle, its size along its own axes, turned by roll, pitch and yaw, as in `obstacles` of a scenario."""
     return _understory.box(name, position_m, size_m, rotation_rad)
 
 
@@ -186,8 +185,7 @@ def _finder(path: str) -> Any:
 
 
 def _run_plugin(file: str, text: bytes) -> list[str]:
-    """Run a plug-in's text as a module of its own name; its decorators add the parts. Called by load_plugin. Returns the files
-    of the modules beside or below it that it imported."""
+    """Run a plug-in's text as a module; its decorators add the parts. Returns the files of the modules there that it imported."""
     name = "understory_plugin_" + os.path.splitext(os.path.basename(file))[0]  # no name of another module
     folder = os.path.dirname(file)
     if _finder not in sys.path_hooks:

@@ -29,20 +29,6 @@ except ImportError:
         DISABLED = "Disabled"
 
 
-@contextlib.contextmanager
-def _without_script_on_stdin() -> Iterator[None]:
-    """A script on standard input is no file that a worker could import, and it needs nothing of it."""
-    main, file = sys.modules["__main__"], getattr(sys.modules["__main__"], "__file__", None)
-    hides = file is not None and not os.path.exists(file)
-    if hides:
-        del main.__file__
-    try:
-        yield
-    finally:
-        if hides:
-            main.__file__ = file
-
-
 _ALIGNED = 64
 
 
@@ -166,8 +152,10 @@ class VectorEnv:
         # A file descriptor can be handed over only while a process is spawned.
         arguments = (theirs, _Descriptor(self._file), self._size, self._layout, index, self._settings)
         process = self._spawn.Process(target=_work, args=arguments, daemon=True)
-        with _without_script_on_stdin():
-            process.start()
+        main = sys.modules["__main__"]
+        if not os.path.exists(getattr(main, "__file__", None) or "."):
+            del main.__file__  # a script on standard input is no file that a worker could import, and it needs none
+        process.start()
         theirs.close()
         return process, ours
 

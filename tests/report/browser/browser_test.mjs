@@ -112,6 +112,12 @@ async function check_hands({ page, settle }, name, end_s) {
   }
   await settle();
   check(`${name}: all ${buttons.length} buttons work and have names`, unnamed === 0, unnamed || "");
+  const film_px = () => page.$eval(".film", (film) => (film.hidden ? 0 : film.getBoundingClientRect().width));
+  const large_px = await film_px();
+  await page.keyboard.press("v");
+  await settle();
+  const small_px = await film_px();
+  check(`${name}: v makes the film small again`, large_px === 0 || large_px > 1.5 * small_px, `${large_px}, ${small_px}`);
   const at_s = () => page.evaluate(() => understory.time());
   await page.evaluate(() => (understory.pause(), document.activeElement.blur()));
   const press = async (...keys) => {
