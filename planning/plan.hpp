@@ -84,7 +84,8 @@ void visit_fields(Visitor& visit, Counts& counts) {
   visit("replans", counts.replans, "number of plans made");
   visit("straight", counts.straight,
         "number of plans that fly straight on, because no obstacle comes within comfortable clearance");
-  visit("solved", counts.solved, "number of plans that use a manoeuvre that the planner's search found in the same replan");
+  visit("solved", counts.solved,
+        "number of plans that use a manoeuvre that the planner's search found in the same replan");
   visit("kept", counts.kept, "number of plans that continue the plan in force, because it is still good");
   visit("kept_ompl", counts.kept_ompl,
         "number of plans counted in kept that continue a manoeuvre; the other kept plans fly straight on");

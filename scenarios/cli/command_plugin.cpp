@@ -91,8 +91,8 @@ void add_plugin_command(CommandLine& line) {
   const auto arguments = std::make_shared<PluginArguments>();
   Command& command =
       line.add({"plugin", "list and test the parts in plug-ins: detectors, state sources, planners, courses",
-                "understory plugin my_parts/edge_detector.so --check", "done; with --check: every check passed",
-                "a check found a fault"});
+                "understory plugin my_parts/edge_detector.so --check",
+                "done; with --check: every check passed", "a check found a fault"});
   command.texts("file", "FILE", arguments->files, "plug-ins; without any: Understory's own parts");
   command.flag("--check", arguments->check, "test each part alone and in flights");
   command.runs([arguments] { return run(*arguments); });

@@ -102,7 +102,8 @@ EvaluationRecording::EvaluationRecording(const fs::path& folder, const Calibrati
     sequence_ = euroc_sequence(folder);
     folder_ = *euroc_folder(folder);
     camera_ = read_calibrated_rig(folder, options);
-    if (const std::string rig = rig_named_in(folder); !rig.empty()) camera_.rig.name = rig;  // else the folder's
+    if (const std::string rig = rig_named_in(folder); !rig.empty())
+      camera_.rig.name = rig;  // else the folder's
     true_poses_ = poses_where_there(folder_ / "state_groundtruth_estimate0/data.csv");
     estimates_ = poses_where_there(folder_ / "estimate0/data.csv");
     has_depth_ = fs::exists(folder_ / "depth0/data.csv");

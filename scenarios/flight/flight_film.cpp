@@ -64,7 +64,8 @@ cv::Mat FlightFilm::draw(const Flight& flight, Moment& moment) {
   if (rig.calibration && !rectifier_) rectifier_.emplace(*rig.calibration, Interpolation::nearest);
   moment.overlay.left = rectifier_ ? rectifier_->rectify(moment.frame).left : moment.frame.left;
   const cv::Mat eye = draw_overlay(moment.overlay, rig.rig, scale);
-  // At half its size the view from behind is drawn in a quarter of the time, and takes half of a film's bytes.
+  // At half its size the view from behind is drawn in a quarter of the time, and takes half of a film's
+  // bytes.
   cv::Mat chase, pictures, picture;
   cv::resize(flight.cameras()->chase_view(moment.truth, eye.cols / 2, eye.rows / 2), chase, eye.size());
   cv::hconcat(eye, chase, pictures);

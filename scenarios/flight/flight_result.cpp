@@ -174,9 +174,11 @@ std::vector<std::pair<std::string, std::string>> result_lines(const FlightResult
                                  result.remembered_points));
   const PlannerCounts& planner = result.planner;
   line("replans",
-       fmt::format("{}: {} straight on, {} new manoeuvres, {} kept from the plan before ({} of them manoeuvres), {} "
-                   "emergency manoeuvres", planner.replans,
-                   planner.straight, planner.solved, planner.kept, planner.kept_ompl, planner.fallback));
+       fmt::format(
+           "{}: {} straight on, {} new manoeuvres, {} kept from the plan before ({} of them manoeuvres), {} "
+           "emergency manoeuvres",
+           planner.replans, planner.straight, planner.solved, planner.kept, planner.kept_ompl,
+           planner.fallback));
   line("obstacle ahead", fmt::format("in {} replans; in {} of them a manoeuvre of the search was flown",
                                      planner.obstacle_ahead, planner.obstacle_ahead_ompl));
   for (const auto& [name, number] : planner.own) {

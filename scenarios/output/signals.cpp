@@ -98,7 +98,7 @@ void end_on_signals() {
   // A fork's signals are its own, and not ours to answer.
   pthread_atfork(nullptr, nullptr, [] {
     for (const int signal : signals)
-      if (struct sigaction now {}; sigaction(signal, nullptr, &now) == 0 && now.sa_handler != SIG_IGN)
+      if (struct sigaction now{}; sigaction(signal, nullptr, &now) == 0 && now.sa_handler != SIG_IGN)
         std::signal(signal, SIG_DFL);
   });
   std::thread(wait_and_end).detach();

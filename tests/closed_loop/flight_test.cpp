@@ -113,6 +113,24 @@ TEST(Flight, ThatIsAskedForEverythingIsTheSame) {
 
 const std::vector<std::string> twenty_metres{"forest.length_m=20", "forest.square_metres_per_tree=25"};
 
+// An airframe four metres long on a body of 0.4 m: its nose is in the pole behind the goal, and nothing was
+// touched.
+TEST(Flight, AClearanceBelowZeroWithoutAContactIsAContradiction) {
+  std::vector<std::string> settings{
+      "forest.length_m=10", "perception.detector=none",
+      "obstacles=[{name: pole, shape: capsule, position_m: [27, 0, 5], size_m: [0.6, 0.6, 10]}]"};
+  const auto result_of = [&] {
+    return Recorded(load_scenario(root / "scenarios/library/clear.yaml", settings)).flown();
+  };
+  EXPECT_EQ(result_of().contradiction, "");
+  settings.push_back("airframe.chord_m=2");
+  const FlightResult result = result_of();
+  EXPECT_EQ(result.outcome, Outcome::goal);
+  EXPECT_LT(result.minimum_clearance_m, 0);
+  EXPECT_NE(result.contradiction.find("nothing was touched"), std::string::npos) << result.contradiction;
+  EXPECT_NE(to_report(result).find("contradiction"), std::string::npos);
+}
+
 TEST(Repeat, TheSameFlightTwiceIsTheSameToTheBit) {
   const Flown one = flown("forest", 1000, twenty_metres);
   const Flown other = flown("forest", 1000, twenty_metres);

@@ -41,7 +41,8 @@ std::vector<std::vector<double>> vertices(const std::string& ply, std::size_t pr
     std::istringstream cells(line);
     rows.emplace_back(std::istream_iterator<double>(cells), std::istream_iterator<double>());
     EXPECT_EQ(rows.back().size(), properties) << line;
-    for (std::size_t i = 0; i < std::min<std::size_t>(3, rows.back().size()); ++i)  // what a reader makes of places
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, rows.back().size());
+         ++i)  // what a reader makes of places
       if (is_float[i]) rows.back()[i] = static_cast<float>(rows.back()[i]);
   }
   EXPECT_EQ(rows.size(), count);

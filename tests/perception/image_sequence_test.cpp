@@ -41,11 +41,13 @@ TEST(ImageNames, PairWhereNothingCanBeMissing) {
   };
   EXPECT_EQ(lone({"1", "2", "3"}, {"1", "3"}), "2");
   // What differs within a folder pairs, not a size or a camera's number.
-  EXPECT_EQ(lone({"img_0001_160x96", "img_0002_160x96"}, {"img_0001_160x96", "img_0003_160x96"}), "img_0002_160x96");
+  EXPECT_EQ(lone({"img_0001_160x96", "img_0002_160x96"}, {"img_0001_160x96", "img_0003_160x96"}),
+            "img_0002_160x96");
   EXPECT_EQ(lone({"f_1_cam0", "f_2_cam0"}, {"f_01_cam1", "f_02_cam1"}), "none");
   EXPECT_EQ(lone({"cam0_7", "cam0_8"}, {"cam1_7", "cam1_8"}), "none");
   EXPECT_EQ(lone({"f_1_cam0", "f_2_cam0", "f_3_cam0"}, {"f_1_cam1", "f_3_cam1"}), "f_2_cam0");
-  EXPECT_EQ(lone({"1_9.763", "2_9.813", "3_9.863"}, {"1_9.764", "3_9.864"}), "2_9.813");  // clocks differ a little
+  EXPECT_EQ(lone({"1_9.763", "2_9.813", "3_9.863"}, {"1_9.764", "3_9.864"}),
+            "2_9.813");  // clocks differ a little
   EXPECT_EQ(lone({"10.1", "10.6"}, {"10.2", "10.7"}), "10.1");
   EXPECT_EQ(lone({"1", "3"}, {"1", "2", "3"}), "2");
   EXPECT_EQ(lone({"1", "2", "3"}, {"1", "2"}), "3");
@@ -140,7 +142,8 @@ TEST(EurocImages, ColumnsGoByTheirNames) {
   const auto turned = parse_euroc_images("#filename,timestamp [ns]\na.png,1\n", "d");
   EXPECT_EQ(turned.at(0).t_ns, 1);
   EXPECT_EQ(turned.at(0).file_name, "a.png");
-  EXPECT_EQ(parse_euroc_images("\"timestamp\",\"filename\"\n1,\"a,b.png\"\n", "d").at(0).file_name, "a,b.png");
+  EXPECT_EQ(parse_euroc_images("\"timestamp\",\"filename\"\n1,\"a,b.png\"\n", "d").at(0).file_name,
+            "a,b.png");
   for (const char* text : {"#timestamp [s],filename\n1,a.png\n", "#timestamp,picture of\n1,a.png\n"})
     EXPECT_EQ(refusal_of([&] { parse_euroc_images(text, "d"); }).find("d:1: "), 0u) << text;
 }

@@ -109,8 +109,8 @@ class ExactRule : public testing::TestWithParam<Case> {
  protected:
   StereoRig rig = support::house_rig(GetParam().rig_file);
   // u_left - u_right; the files state u_right - u_left.
-  int disparity =
-      -GetParam().disparity_px.value_or(-static_cast<int>(std::lround(rig.disparity_px(rig.detection_depth_m))));
+  int disparity = -GetParam().disparity_px.value_or(
+      -static_cast<int>(std::lround(rig.disparity_px(rig.detection_depth_m))));
   int infinity = -GetParam().infinity_px.value_or(
       static_cast<int>(std::lround(rig.center_right_x_px - rig.center_left_x_px)));
 

@@ -326,9 +326,10 @@ TEST(PushbroomStereo, RefusesRulesThatCannotBeMeant) {
   });
   expect_fault("depths_m: must be from 0.1 to 1000, is -1",
                [](PushbroomConfig& config) { config.depths_m = {-1}; });
-  expect_fault("disparities_px: the rig long cannot look at -20 px (u_right - u_left)", [](PushbroomConfig& config) {
-    config.disparities_px = {-30, -20};
-  });
+  expect_fault("disparities_px: the rig long cannot look at -20 px (u_right - u_left)",
+               [](PushbroomConfig& config) {
+                 config.disparities_px = {-30, -20};
+               });
   expect_fault("disparities_px and depths_m exclude each other: name one of them",
                [](PushbroomConfig& config) {
                  config.depths_m = {10};
@@ -336,8 +337,8 @@ TEST(PushbroomStereo, RefusesRulesThatCannotBeMeant) {
                });
 }
 
-// The two pairs of numbers in the original's files (FACTS of docs/sources.md [2]): of the paper's rig, and of a later one
-// whose infinity lies on the other side.
+// The two pairs of numbers in the original's files (FACTS of docs/sources.md [2]): of the paper's rig, and of
+// a later one whose infinity lies on the other side.
 TEST(PushbroomStereo, TakesTheOriginalsNumbersAsItsFilesStateThem) {
   StereoRig later = house_rig("paper.yaml");
   later.focal_px = 320;
@@ -351,7 +352,8 @@ TEST(PushbroomStereo, TakesTheOriginalsNumbersAsItsFilesStateThem) {
     double depth_m;
   } cases[] = {
       // focal length times baseline over the parallax: 180.4 * 0.353 / (105 - 91.8), 320 * 0.33 / (-6 + 16.5)
-      {paper, -105, -95, paper.focal_px * paper.baseline_m / (105 - (paper.center_left_x_px - paper.center_right_x_px))},
+      {paper, -105, -95,
+       paper.focal_px * paper.baseline_m / (105 - (paper.center_left_x_px - paper.center_right_x_px))},
       {later, 6, 16, 10.06}};
   for (const auto& one : cases) {
     PushbroomConfig config = original_pushbroom();

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -205,6 +206,9 @@ TEST(CliOutput, AFullDiskIsOneLineAndAFilmThatDoesNotFitLosesNoResult) {
   const TemporaryFolder folder;
   const Outcome none = on_small_disk(short_flight + "--out run", folder.path(), "4k", "ls -A");
   EXPECT_NE(none.text.find("No space left on device\nstatus 3\n"), std::string::npos) << none.text;
+  const Outcome no_film = on_small_disk("fly clear --set forest.length_m=5 --quiet --video --out run",
+                                        folder.path(), "16k", "ls -A");
+  EXPECT_NE(no_film.text.find("No space left on device\nstatus 3\n"), std::string::npos) << no_film.text;
   const Outcome film = on_small_disk("fly clear --set forest.length_m=10 --quiet --video --out run",
                                      folder.path(), "300k", "ls -A . run");
   EXPECT_NE(film.text.find("No space left on device\nstatus 3\n"), std::string::npos) << film.text;
@@ -213,6 +217,21 @@ TEST(CliOutput, AFullDiskIsOneLineAndAFilmThatDoesNotFitLosesNoResult) {
             std::string::npos)
       << film.text;
   EXPECT_EQ(film.text.find("unfinished", film.text.find("status 3")), std::string::npos) << film.text;
+}
+
+// 60 frames take 6 MB, and a second of the next command's hour 12 MB.
+TEST(CliOutput, ARecordingThatDoesNotFitSaysWhatItNeedsAndWhatIsFree) {
+  if (!mounts_disks()) GTEST_SKIP() << "only root may mount a small disk";
+  const TemporaryFolder folder;
+  const std::string record = "record clear --set time_limit_s=0.5 --quiet --out r";
+  EXPECT_NE(on_small_disk(record, folder.path(), "20m", "true").text.find("status 0"), std::string::npos);
+  const fs::path path = folder.path().string() + ".tum";  // the disk lies over the folder
+  std::ofstream(path) << "0 0 0 3 0 0 0 1\n60 9 0 3 0 0 0 1\n";
+  const Outcome refused = on_small_disk("record clear --path " + path.string() + " --quiet --out r",
+                                        folder.path(), "20m", "true");
+  for (const char* part :
+       {"the recording needs up to 0.7", "GB more (7200 frames", "GB are free there", "status 3"})
+    EXPECT_NE(refused.text.find(part), std::string::npos) << part << "\n" << refused.text;
 }
 
 TEST(CliOutput, AFolderThatIsADiskOfItsOwnIsWrittenWithin) {
