@@ -61,12 +61,9 @@ void EvaluationSum::make_room(const EvaluationSettings& settings) {
   algorithms.assign(algorithm_names.begin(), algorithm_names.end());
   append(algorithms, settings.detectors);
   for (const DisparityFolder& given : settings.disparities) algorithms.push_back(given.name);
-  for (auto name = algorithms.begin(); name != algorithms.end(); ++name)
-    if (std::find(algorithms.begin(), name, *name) != name)
-      throw ScenarioError(
-          fmt::format("{}: two algorithms have this name: each --detector and the NAME of each "
-                      "--disparities needs one of its own",
-                      *name));
+  for (auto one = algorithms.begin(); one != algorithms.end(); ++one)
+    if (std::find(algorithms.begin(), one, *one) != one)
+      throw ScenarioError(*one + ": two algorithms have this name; each needs a name of its own");
   const std::size_t count = algorithms.size();
   tallies.resize(count);
   sightings.resize(count);
