@@ -13,8 +13,6 @@
 
 namespace understory {
 
-/// Throws where a file with the scenario's text would not fly again: a part of it was made by this program
-/// alone.
 void require_files(const Scenario& scenario) {
   const std::pair<const char*, std::string> brought_by[] = {
       {"perception.detector", scenario.perception.part().plugin},
@@ -24,9 +22,8 @@ void require_files(const Scenario& scenario) {
   for (const auto& [key, file] : brought_by)
     if (!file.empty() &&
         std::ranges::find(scenario.plugins, file, &FileConfig::file) == scenario.plugins.end())
-      throw std::runtime_error(fmt::format(
-          "{}: no file can name a part of this program: put it into one and give that to load_plugin()",
-          key));
+      throw std::runtime_error(
+          fmt::format("{}: no file holds this part: put it into one and give that to load_plugin()", key));
 }
 
 void bind_scenario(py::module_& module) {

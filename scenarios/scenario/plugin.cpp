@@ -76,8 +76,7 @@ void require_whole_library(const std::string& file, const std::string& asked_by)
   stream.seekg(static_cast<std::streamoff>(head.e_phoff));
   stream.read(reinterpret_cast<char*>(segments.data()),
               static_cast<std::streamsize>(segments.size() * sizeof(Elf64_Phdr)));
-  std::uint64_t needed =
-      head.e_shoff + std::uint64_t{head.e_shnum} * head.e_shentsize;  // the last table of all
+  std::uint64_t needed = head.e_shoff + std::uint64_t{head.e_shnum} * head.e_shentsize;
   for (const Elf64_Phdr& segment : segments) needed = std::max(needed, segment.p_offset + segment.p_filesz);
   const std::uintmax_t size = fs::file_size(file);
   if (!segments.empty() && needed > size)
@@ -108,9 +107,8 @@ void try_library(const std::string& file, const std::string& asked_by) {
   if (is_killed || WEXITSTATUS(status) != survived)
     refuse(
         file, asked_by,
-        fmt::format(
-            "loading it ends a process ({}): it is damaged or was built for another machine; build it again",
-            is_killed ? strsignal(WTERMSIG(status)) : fmt::format("status {}", WEXITSTATUS(status))));
+        fmt::format("ends the process that loads it ({}): it is damaged; build it again",
+                    is_killed ? strsignal(WTERMSIG(status)) : fmt::format("status {}", WEXITSTATUS(status))));
 }
 
 /// Opens Python, where that has not been done. libpython's names are made global, which numpy's libraries
@@ -169,8 +167,6 @@ void add_parts(const std::function<void(Parts&)>& add, const std::string& file, 
   before.push_back(std::exchange(parts(), std::move(more)));
 }
 
-constexpr std::size_t maximum_python_bytes = std::size_t{16} << 20;
-
 void require_unchanged(const std::string& file, const std::string& hash, const std::string& asked_by) {
   if (digest_of_file(file) != hash)
     refuse(file, asked_by,
@@ -210,7 +206,7 @@ const Plugin& load_plugin(const fs::path& file, const std::string& asked_by) {
         fmt::format("{}: {}: must be a shared library or a Python file", asked_by, found.string()));
   Plugin plugin{found.string(), "", {}};
   if (found.extension() == ".py") {
-    const std::string text = read_file(found, maximum_python_bytes);
+    const std::string text = read_file(found, std::size_t{16} << 20);
     plugin.hash = digest_of_text(text);
     add_parts(opened_python(plugin.file, text, asked_by, plugin.imported), plugin.file, asked_by);
   } else {
