@@ -195,7 +195,7 @@ std::string to_report(const FlightResult& result) {
   std::string text = fmt::format("{} (scenario {}, seed {}, {}, {})\n", word_for(result.outcome),
                                  result.scenario, result.seed, result.detector, result.state_source);
   for (const auto& [name, value] : result_lines(result))
-    if (name != "outcome" && name != "renderer") text += fmt::format("  {:<18}{}\n", name, value);
+    if (name != "outcome" && name != "renderer") text += fmt::format("  {:<17} {}\n", name, value);
   return text + fmt::format("  {:<18}{:.2f} ({:.1f} s of wall time)\n", "real-time factor",
                             result.wall_s > 0 ? result.simulated_s / result.wall_s : 0.0, result.wall_s);
 }

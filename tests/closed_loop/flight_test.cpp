@@ -131,6 +131,12 @@ TEST(Flight, AClearanceBelowZeroWithoutAContactIsAContradiction) {
   EXPECT_NE(to_report(result).find("contradiction"), std::string::npos);
 }
 
+TEST(Flight, ALongNameOfACountStandsApartFromItsNumber) {
+  FlightResult result;
+  result.planner.own.emplace_back("search_found_no_better", 8);
+  EXPECT_NE(to_report(result).find("search found no better 8"), std::string::npos) << to_report(result);
+}
+
 TEST(Repeat, TheSameFlightTwiceIsTheSameToTheBit) {
   const Flown one = flown("forest", 1000, twenty_metres);
   const Flown other = flown("forest", 1000, twenty_metres);
