@@ -1,7 +1,9 @@
 """The environments keep Gymnasium's contract: what its check_env asks for, asked here without it."""
 
+import copy
 import multiprocessing
 import os
+import pickle
 import signal
 import unittest
 
@@ -118,6 +120,16 @@ class Contract(InFolder):
         train.reset(seed=1), test.reset(seed=2)
         for _ in range(10):
             train.step([0, 0]), test.step([0, 0])
+
+    def test_a_copy_is_an_environment_of_its_own(self):
+        env = FlightEnv(**CHEAP)
+        expected = [env.reset(seed=5)[0]] + [env.step([0.2, 0.1])[0] for _ in range(10)]
+        for copied in copy.copy(env), copy.deepcopy(env), pickle.loads(pickle.dumps(env)):
+            with self.assertRaisesRegex(Exception, "reset"):
+                copied.step([0, 0])
+            again = [copied.reset(seed=5)[0]] + [copied.step([0.2, 0.1])[0] for _ in range(10)]
+            self.assertTrue(all(same(a, b) for a, b in zip(expected, again)))
+        env.step([0, 0])
 
     def test_gymnasiums_own_check(self):
         try:
