@@ -1,5 +1,6 @@
 # Writes a header with the version and a hash of all public headers: a plug-in that was built against others is refused.
 #   cmake -DSOURCE=... -DHEADERS=a.hpp,b.hpp -DVERSION=... -DOUTPUT=... -P cmake/understory_header_hash.cmake
+cmake_minimum_required(VERSION 3.25)
 string(REPLACE "," ";" headers "${HEADERS}")
 set(all "")
 foreach(header IN LISTS headers)

@@ -49,7 +49,7 @@ constexpr std::array tum_columns{time_column, px, py, pz, qx, qy, qz, qw},
 Form with_named_time(Form form, const std::string& name) {
   if (name.ends_with("_ns") || name.find("[ns") != std::string::npos) form.time = nanoseconds_in;
   if (name.ends_with("_s") || name.find("[s") != std::string::npos) form.time = seconds_in;
-  form.expected = "expected numbers under the names of the columns, the time from 0";
+  form.expected = "expected numbers under the columns' names; times from 0, in seconds as t_s, in ns as t_ns";
   return form;
 }
 

@@ -134,7 +134,7 @@ std::vector<TableLine> table_lines(std::string_view text, CellsParted parted, co
       line = without_blanks(text.substr(0, end));
       lines.push_back({number, cells_of(line, parted)});
       if (lines.back().cells.empty())
-        fail_at_line(name, number, "quotation marks must stand around a whole cell, and twice within it");
+        fail_at_line(name, number, "quotation marks stand around a whole cell, commas between cells");
       cells += lines.back().cells.size();
       if (cells > maximum_cells) fail_at_line(name, number, "a table must have at most 16 million cells");
     }

@@ -45,8 +45,8 @@ void check_principal_point(const StereoCalibration& calibration, const fs::path&
 CalibratedRig read_rig_for(cv::Size images, const fs::path& file, CalibrationOptions options) {
   try {
     return read_calibrated_rig(file, options);
-  } catch (const std::runtime_error&) {
-    if (options.width_px) throw;
+  } catch (const std::runtime_error& error) {
+    if (options.width_px || std::string(error.what()).find("image size") == std::string::npos) throw;
   }
   options.width_px = images.width;
   options.height_px = images.height;
