@@ -112,7 +112,9 @@ def test(file, first, last):
 
 
 if __name__ == "__main__":
-    if sys.argv[1] == "train":
+    if sys.argv[1:2] == ["train"] and len(sys.argv) == 3:
         train(sys.argv[2])
-    else:
+    elif sys.argv[1:2] == ["test"] and len(sys.argv) == 5:
         test(sys.argv[2], int(sys.argv[3]), int(sys.argv[4]))
+    else:
+        sys.exit(__doc__)
