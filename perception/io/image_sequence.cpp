@@ -184,8 +184,8 @@ std::optional<LoneName> first_unpaired(const std::vector<std::string>& first,
     return std::nullopt;
   if (common == 0) return same_count ? std::nullopt : std::optional(LoneName{second.empty(), 0});
   const auto keys = keys_of({first, second});
-  for (std::size_t i = 0; i < common;
-       ++i)  // of two that do not belong together, the first has no partner further on
+  // Of two that do not belong together, the first has no partner further on.
+  for (std::size_t i = 0; i < common; ++i)
     if (keys[0][i] != keys[1][i]) return LoneName{comes_before(keys[0][i], keys[1][i]), i};
   if (same_count) return std::nullopt;
   return LoneName{first.size() > second.size(), common};

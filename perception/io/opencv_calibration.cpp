@@ -181,10 +181,8 @@ void check_other_keys(StrictMap& keys) {
                                    found));
   keys.refuse_others(
       " R T E F Q image_width image_height calibration_time date time name comment nframes board_width "
-      "board_height "
-      "square_size marker_size flags avg_reprojection_error per_view_reprojection_errors rms rms_error "
-      "epipolar_error "
-      "extrinsic_parameters image_points grid_points validRoi1 validRoi2 views ");
+      "board_height square_size marker_size flags avg_reprojection_error per_view_reprojection_errors rms "
+      "rms_error epipolar_error extrinsic_parameters image_points grid_points validRoi1 validRoi2 views ");
 }
 
 }  // namespace

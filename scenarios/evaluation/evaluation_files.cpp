@@ -23,8 +23,8 @@ using Json = nlohmann::ordered_json;
 std::string heading(const Evaluation& evaluation) {
   const RecordingEvaluation& first = evaluation.recordings.front();
   return fmt::format(
-      "{} recording{}, {} frames, {:.1f} s; rig {}, looking {:.2f} m ahead, one pixel is {:.2f} to {:.2f} "
-      "m\n",
+      "{} recording{}, {} frames, {:.1f} s; rig {}, looking {:.2f} m ahead, one pixel is "
+      "{:.2f} to {:.2f} m\n",
       evaluation.recordings.size(), evaluation.recordings.size() == 1 ? "" : "s", evaluation.all.frames,
       evaluation.all.seconds, one_line(first.rig.name), first.detection_depth.depth_m,
       first.detection_depth.one_pixel.near_m, first.detection_depth.one_pixel.far_m);

@@ -57,9 +57,8 @@ void check_obstacles(const std::vector<ListedObstacle>& obstacles, Expect&& expe
            key + "size_m: a sphere requires three equal numbers");
     expect(listed.shape != ListedShape::capsule || (size.x() == size.y() && size.z() > size.x()),
            key +
-               "size_m: a capsule requires x and y to be equal and z to be larger; with three equal numbers "
-               "it is a "
-               "sphere");
+               "size_m: a capsule requires x and y to be equal and z to be larger; with three equal "
+               "numbers it is a sphere");
   }
   expect(obstacles.size() <= 1000, "obstacles: must have at most 1000 entries");
 }

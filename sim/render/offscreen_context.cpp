@@ -85,8 +85,8 @@ std::set<std::string> variables_that_change_bits() {
 
 OffscreenContext::OffscreenContext(const OffscreenOptions& options) {
   setenv("LP_NUM_THREADS", std::to_string(options.raster_threads).c_str(), 0);
-  for (const char* wrapper : {"GALLIUM_DDEBUG", "GALLIUM_TRACE"})
-    unsetenv(wrapper);                      // end or slow the process
+  // These two end the process or slow it.
+  for (const char* wrapper : {"GALLIUM_DDEBUG", "GALLIUM_TRACE"}) unsetenv(wrapper);
   setenv("GALLIUM_DRIVER", "llvmpipe", 1);  // Mesa's others crash without their device, or draw other bits
   backend_ = backend_of(options.renderer);
 }

@@ -337,8 +337,8 @@ TEST(PushbroomStereo, RefusesRulesThatCannotBeMeant) {
                });
 }
 
-// The two pairs of numbers in the original's files (FACTS of docs/sources.md [2]): of the paper's rig, and of
-// a later one whose infinity lies on the other side.
+// The two pairs of numbers in the configuration files of the original (docs/sources.md [2]): of the paper's
+// rig, and of a later one whose infinity lies on the other side.
 TEST(PushbroomStereo, TakesTheOriginalsNumbersAsItsFilesStateThem) {
   StereoRig later = house_rig("paper.yaml");
   later.focal_px = 320;

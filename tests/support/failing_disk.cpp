@@ -5,11 +5,10 @@
 //   FAILING_DISK_DIARY    gets a line for each "write PATH", "sync PATH", "syncfs", "rename FROM TO", "say"
 //   (descriptor 1)
 //   FAILING_DISK_KILL     the program and whoever of its children gets there are killed at this moment:
-//   before (odd)
-//                         or behind (even) a call that makes, changes or removes a name on the disk
+//                         before (odd) or behind (even) a call that makes, changes or removes a name on the
+//                         disk
 //   FAILING_DISK_CALLS    a file of 16 bytes, zero at first, in which they count these moments
-//   FAILING_DISK_SIGNALS  "-1.txt 11 -3.txt 9": who makes a file whose name ends so is sent that signal
-//   before
+//   FAILING_DISK_SIGNALS  "-1.txt 11 -3.txt 9": who makes a file whose name ends so is sent that signal first
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/mman.h>
