@@ -129,8 +129,7 @@ void visit_fields(Visitor& visit, PushbroomConfig& config) {
       "(-105 for the paper's rig); empty: those nearest to depths_m. | docs/sources.md [2]");
   visit("infinity_px", config.infinity_px, -8192, 8192,
         "Whole-pixel disparity u_right - u_left of an infinitely distant point in the invariance and "
-        "uniqueness "
-        "tests (-95 for the paper's rig); ~: the calibration's, rounded.");
+        "uniqueness tests (-95 for the paper's rig); ~: the calibration's, rounded.");
   visit("subpixel", config.subpixel,
         "Refines a disparity to the vertex of the parabola through the SADs at the match and one pixel to "
         "either side. It moves by half a pixel at most, and only if the match's SAD is the smallest.");

@@ -142,8 +142,9 @@ ImageSize agreed_image_size(const std::string& file, std::optional<ImageSize> of
   if (options.width_px.has_value() != options.height_px.has_value())
     fail("image_width and image_height belong together, one is missing");
   if (!options.width_px) {
-    if (!of_file) fail("not in the file (image_width, image_height): name it with --size WxH");
-    return *of_file;
+    if (of_file) return *of_file;
+    if (options.images_at_hand) return {options.images_at_hand->width, options.images_at_hand->height};
+    fail("not in the file (image_width, image_height): name it with --size WxH");
   }
   const ImageSize given{*options.width_px, *options.height_px};
   if (!in_range(given.width_px) || !in_range(given.height_px))

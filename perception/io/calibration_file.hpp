@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <opencv2/core/types.hpp>
 #include <optional>
 
 #include "perception/stereo_calibration.hpp"
@@ -12,6 +13,7 @@ struct CalibrationOptions {
   double meters_per_unit = 1;  ///< of the file's translations: 0.01 where they are in centimetres
   std::optional<int> width_px{}, height_px{};  ///< of the images, both, where the files do not tell
   std::optional<double> detection_depth_m{};   ///< goes before the rig file's own; 10 m where nobody says
+  std::optional<cv::Size> images_at_hand{};    ///< their size is taken where neither files nor options tell
 };
 
 /// Reads a rig from any of

@@ -26,8 +26,8 @@ struct ImageSize {
   bool operator==(const ImageSize&) const = default;
 };
 
-/// What the file says, else what the options say. Throws InputError where nobody says it, where the two
-/// differ, or where the options' size is none.
+/// What the file says, else what the options say, else that of the images at hand. Throws InputError where
+/// nobody says it, where file and options differ, or where the options' size is none.
 ImageSize agreed_image_size(const std::string& file, std::optional<ImageSize> of_file,
                             const CalibrationOptions& options);
 

@@ -149,6 +149,19 @@ std::optional<ImageSize> size_in(StrictMap& keys) {
                    keys.whole("image_height", minimum_size_px, maximum_size_px)};
 }
 
+/// A calibration that states no size fits images of any size: its principal point gives away a wrong one.
+void check_principal_point(StrictMap& keys, const cv::Matx33d& camera_matrix, const ImageSize& size) {
+  const double u = camera_matrix(0, 2), v = camera_matrix(1, 2);
+  const auto is_central = [](double place, int size_px) {
+    return place > 0.3 * size_px && place < 0.7 * size_px;
+  };
+  if (!is_central(u, size.width_px) || !is_central(v, size.height_px))
+    keys.fail("M1", fmt::format("the principal point must lie near the middle of the {0}x{1} images, is "
+                                "({2:.0f}, {3:.0f}): calibrated at another resolution? (--size {0}x{1} says "
+                                "it was not)",
+                                size.width_px, size.height_px, u, v));
+}
+
 void read_rectification(StrictMap& keys, StereoCalibration& calibration, double meters_per_unit) {
   calibration.left.rectification = opencv_rotation(keys, "R1");
   calibration.right.rectification = opencv_rotation(keys, "R2");
@@ -199,7 +212,9 @@ StereoCalibration read_opencv_calibration(const fs::path& path, const Calibratio
   calibration.left.distortion = opencv_distortion(keys, "D1");
   calibration.right.camera_matrix = opencv_camera_matrix(keys, "M2");
   calibration.right.distortion = opencv_distortion(keys, "D2");
-  const ImageSize size = agreed_image_size(path.string(), size_in(keys), options);
+  const std::optional<ImageSize> of_file = size_in(keys);
+  const ImageSize size = agreed_image_size(path.string(), of_file, options);
+  if (!of_file && !options.width_px) check_principal_point(keys, calibration.left.camera_matrix, size);
   calibration.width_px = size.width_px;
   calibration.height_px = size.height_px;
   // Where both are there, R and T say nothing more: these are what the rig's maker rectified with.

@@ -24,6 +24,17 @@ std::optional<std::int64_t> seconds_or_ns_in(std::string_view cell) {
                                      : std::nullopt;
 }
 
+/// The first line that holds anything but a comment.
+std::string_view first_line(std::string_view text) {
+  while (!text.empty()) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    const std::size_t begin = line.find_first_not_of("\xEF\xBB\xBF \t\r\v\f");
+    if (begin != std::string_view::npos && line[begin] != '#') return line;
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+  }
+  return {};
+}
+
 /// One way of writing a pose into a line: cell 0 is the time, 1 to 3 the position, 4 to 7 the quaternion.
 struct Form {
   std::optional<std::int64_t> (*time)(std::string_view cell);
@@ -84,8 +95,7 @@ std::vector<TimedPose> read_poses(const std::filesystem::path& file, Repeats rep
 }
 
 std::vector<TimedPose> parse_poses(std::string_view text, const std::string& name, Repeats repeats) {
-  const std::vector<TableLine> by_commas = table_lines(text, CellsParted::by_commas, name);
-  const bool is_tum = by_commas.empty() || by_commas.front().cells.size() == 1;
+  const bool is_tum = first_line(text).find(',') == std::string_view::npos;
   const NamedTable table = is_tum ? named_table(text, CellsParted::by_blanks, name, tum_columns)
                                   : named_table(text, CellsParted::by_commas, name, euroc_columns);
   const Form unnamed = is_tum ? tum : euroc,

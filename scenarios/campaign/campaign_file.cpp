@@ -38,16 +38,6 @@ void add_changes(const ConfigNode& map, const std::string& prefix, Changes& chan
   }
 }
 
-/// A name for files: whatever a value is made of becomes letters, digits and . _ = -
-std::string plain(std::string text) {
-  for (char& c : text)
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0 &&
-        std::string_view("._=-").find(c) == std::string::npos)
-      c = '_';
-  if (text.starts_with('=') || text.starts_with('-')) text[0] = '_';  // a formula to spreadsheets
-  return text;
-}
-
 std::string joined(const std::string& name, const std::string& more) {
   return name.empty() || more.empty() ? name + more : name + "-" + more;
 }
@@ -120,7 +110,7 @@ std::size_t require_grid(const ConfigNode* grid, std::size_t variants) {
 /// "forest-blind-cruise_speed_mps=10".
 std::string name_of(const std::string& scenario, const Variant& variant) {
   std::string name = joined(scenario, variant.name);
-  for (const auto& [key, value] : variant.grid) name = joined(name, plain(short_key(key) + "=" + value));
+  for (const auto& [key, value] : variant.grid) name = joined(name, plain_name(short_key(key) + "=" + value));
   return name;
 }
 
@@ -176,7 +166,7 @@ std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, cons
 std::string name_in(const ConfigNode& top, const fs::path& file) {
   const ConfigNode* name = find_child(top, "name");
   if (name == nullptr) {
-    const std::string stem = plain(file.stem().string());
+    const std::string stem = plain_name(file.stem().string());
     return stem.starts_with('.') ? "_" + stem : stem.substr(0, 200);
   }
   if (!is_plain_name(name->text)) refuse_key(*name, "name", "letters, digits and . _ = -");
@@ -241,7 +231,7 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario,
     campaign.files.push_back(path);
     for (const Variant& variant : variants) {
       const Scenario scenario = load_changed_scenario(path, variant.changes);
-      const std::string name = name_of(plain(path.stem().string()), variant);
+      const std::string name = name_of(plain_name(path.stem().string()), variant);
       if (!is_plain_name(name))
         refuse_key(
             *scenarios, "scenarios",
@@ -249,7 +239,7 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario,
       if (!seen.insert(name).second)
         refuse_input(scenarios->origin, "scenarios", fmt::format("two conditions are called '{}'", name));
       campaign.conditions.push_back(
-          {name, scenario_to_text(scenario), plain(path.stem().string()), variant.name, variant.grid});
+          {name, scenario_to_text(scenario), plain_name(path.stem().string()), variant.name, variant.grid});
       if (on_condition) on_condition(campaign.conditions.size(), conditions);
     }
   }

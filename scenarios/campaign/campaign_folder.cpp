@@ -92,15 +92,18 @@ const std::vector<std::string> campaign_patterns{"campaign.json", "conditions/*.
 
 const std::vector<std::string> flight_patterns{"flights/*", "tracks/*", "logs/*", "runs/*"};
 
-bool is_plain_name(const std::string& name) {
-  const auto is_plain = [](unsigned char c) {
-    return std::isalnum(c) != 0 ||
-           std::string_view("._=-").find(static_cast<char>(c)) != std::string_view::npos;
-  };
+std::string plain_name(std::string text) {
+  for (char& c : text)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 &&
+        std::string_view("._=-").find(c) == std::string_view::npos)
+      c = '_';
   // A cell of a table that begins with = or - is a formula to spreadsheets.
-  return !name.empty() && name.size() <= 200 &&
-         std::string_view(".=-").find(name.front()) == std::string_view::npos &&
-         std::ranges::all_of(name, is_plain);
+  if (text.starts_with('=') || text.starts_with('-')) text[0] = '_';
+  return text;
+}
+
+bool is_plain_name(const std::string& name) {
+  return !name.empty() && name.size() <= 200 && !name.starts_with('.') && plain_name(name) == name;
 }
 
 void require_identity(const CampaignFolder& folder, const Campaign& held, const Identity& identity) {

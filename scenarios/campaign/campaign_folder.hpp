@@ -94,7 +94,10 @@ void require_identity(const CampaignFolder& folder, const Campaign& held, const 
 /// The campaign that a folder holds. Throws ScenarioError where it holds none or one of another format.
 Campaign read_campaign(const CampaignFolder& folder);
 
-/// Letters, digits and . _ = -, no '.' first, at most 200: a name for files.
+/// The text with '_' for all but letters, digits and . _ = -, and for a first = or -.
+std::string plain_name(std::string text);
+
+/// Letters, digits and . _ = -, none of . = - first, at most 200: a name for files and tables.
 bool is_plain_name(const std::string& name);
 
 /// A file's text; nothing where it cannot be read.

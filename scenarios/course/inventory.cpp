@@ -22,6 +22,7 @@ using Eigen::Vector2d;
 constexpr std::size_t most_stems = 2'000'000;
 constexpr std::size_t largest_file_bytes = std::size_t{256} << 20;
 
+enum StemColumn : std::size_t { x_m, y_m, diameter_m, height_m, lean_rad, lean_toward_rad, kind };
 constexpr std::array columns{Column{"x_m"},
                              Column{"y_m"},
                              Column{"diameter_m"},
@@ -30,7 +31,7 @@ constexpr std::array columns{Column{"x_m"},
                              Column{"lean_toward_rad", "", true},
                              Column{"kind", "", true}};
 
-double number_at(const TableLine& line, std::size_t column, double least, double most,
+double number_at(const TableLine& line, StemColumn column, double least, double most,
                  const std::string& name) {
   const auto value = number_in(line.cells[column]);
   if (!value || *value < least || *value > most)
@@ -62,7 +63,7 @@ std::vector<Stem> stems_in_text(std::string_view text, const std::string& name) 
   const NamedTable table = named_table(text, CellsParted::by_commas, name, columns);
   if (table.names.empty())
     fail_at_line(name, 1, "expected a first line with the names of the columns: x_m, y_m, diameter_m");
-  if (table.names[4].empty() != table.names[5].empty())
+  if (table.names[lean_rad].empty() != table.names[lean_toward_rad].empty())
     fail_at_line(name, 1, "expected both lean_rad and lean_toward_rad, or neither");
   if (table.lines.empty()) fail_at_line(name, 1, "expected at least one stem below this line");
   if (table.lines.size() > most_stems)
@@ -70,16 +71,17 @@ std::vector<Stem> stems_in_text(std::string_view text, const std::string& name) 
   std::vector<Stem> stems;
   stems.reserve(table.lines.size());
   for (const TableLine& line : table.lines) {
-    const auto number = [&](std::size_t column, double least, double most) {
+    const auto number = [&](StemColumn column, double least, double most) {
       return number_at(line, column, least, most, name);
     };
-    Stem stem{{number(0, -1e7, 1e7), number(1, -1e7, 1e7)}, number(2, 0.001, 10), {}};
-    if (!line.cells[3].empty()) stem.known.height_m = number(3, 1, 150);
-    if (!line.cells[4].empty()) {
-      const double lean_rad = number(4, 0, 1), toward_rad = line.cells[5].empty() ? 0 : number(5, -6.3, 6.3);
-      stem.known.lean = std::tan(lean_rad) * Vector2d(std::cos(toward_rad), std::sin(toward_rad));
+    Stem stem{{number(x_m, -1e7, 1e7), number(y_m, -1e7, 1e7)}, number(diameter_m, 0.001, 10), {}};
+    if (!line.cells[height_m].empty()) stem.known.height_m = number(height_m, 1, 150);
+    if (!line.cells[lean_rad].empty()) {
+      const double lean = std::tan(number(lean_rad, 0, 1)),
+                   toward_rad = line.cells[lean_toward_rad].empty() ? 0 : number(lean_toward_rad, -6.3, 6.3);
+      stem.known.lean = lean * Vector2d(std::cos(toward_rad), std::sin(toward_rad));
     }
-    stem.known.kind = kind_in(line.cells[6], name, line.number);
+    stem.known.kind = kind_in(line.cells[kind], name, line.number);
     stems.push_back(stem);
   }
   return stems;

@@ -8,7 +8,6 @@
 #include <chrono>
 #include <iterator>
 #include <memory>
-#include <stdexcept>
 
 #include "perception/io/calibration_file.hpp"
 #include "perception/io/hit_files.hpp"
@@ -29,32 +28,6 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// A calibration file that tells no size fits images of any: its principal point gives away a wrong one.
-void check_principal_point(const StereoCalibration& calibration, const fs::path& rig) {
-  const double u = calibration.left.camera_matrix(0, 2), v = calibration.left.camera_matrix(1, 2);
-  const auto is_central = [](double place, int size) { return place > 0.3 * size && place < 0.7 * size; };
-  if (is_central(u, calibration.width_px) && is_central(v, calibration.height_px)) return;
-  const std::string size = fmt::format("{}x{}", calibration.width_px, calibration.height_px);
-  throw std::runtime_error(fmt::format(
-      "{}: the principal point must lie near the middle of the {} images, is ({:.0f}, {:.0f}): calibrated at "
-      "another resolution? (--size {} says it was not)",
-      rig.string(), size, u, v, size));
-}
-
-/// As `file` tells it, where need be with the size of the images.
-CalibratedRig read_rig_for(cv::Size images, const fs::path& file, CalibrationOptions options) {
-  try {
-    return read_calibrated_rig(file, options);
-  } catch (const std::runtime_error& error) {
-    if (options.width_px || std::string(error.what()).find("image size") == std::string::npos) throw;
-  }
-  options.width_px = images.width;
-  options.height_px = images.height;
-  CalibratedRig camera = read_calibrated_rig(file, options);
-  if (camera.calibration) check_principal_point(*camera.calibration, file);
-  return camera;
-}
-
 /// The rig the options name, or the EuRoC input's own; its size is that of the images.
 CalibratedRig rig_for(const DetectionOptions& options, const StereoRecording& recording) {
   const bool brings_its_own = options.inputs.size() == 1 && euroc_folder(options.inputs[0]).has_value();
@@ -63,8 +36,9 @@ CalibratedRig rig_for(const DetectionOptions& options, const StereoRecording& re
                                     options.inputs.front().string()));
   const fs::path file = options.rig.empty() ? options.inputs[0] : options.rig;
   const cv::Size images = recording.image_size();
-  const CalibratedRig camera =
-      bad_input_if_refused([&] { return read_rig_for(images, file, options.calibration); });
+  CalibrationOptions calibration = options.calibration;
+  calibration.images_at_hand = images;
+  const CalibratedRig camera = bad_input_if_refused([&] { return read_calibrated_rig(file, calibration); });
   if (images != cv::Size(camera.rig.width_px, camera.rig.height_px))
     throw ScenarioError(fmt::format("{}: must be {}x{} as {} says, is {}x{}", recording.first_file().string(),
                                     camera.rig.width_px, camera.rig.height_px, file.string(), images.width,

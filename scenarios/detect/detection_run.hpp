@@ -17,7 +17,7 @@ namespace understory {
 struct DetectionOptions {
   std::vector<std::filesystem::path> inputs;  ///< as StereoRecording takes them
   std::filesystem::path rig;       ///< as read_calibrated_rig takes it; empty: the EuRoC input's own
-  CalibrationOptions calibration;  ///< sizes left open here are the images'
+  CalibrationOptions calibration;  ///< the images' size is added
   Interpolation interpolation = Interpolation::nearest;  ///< of raw images, as in flight
   VisionConfigSources vision;
   std::filesystem::path poses;  ///< empty: no map

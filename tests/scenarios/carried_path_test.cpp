@@ -141,7 +141,7 @@ TEST(PathFile, WhatNobodyCanBeCarriedAlongIsRefused) {
   expect_complaint("t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,4,1,0,0,0\n\n1,2,3\n",
                    "path:4: expected 8 cells, as line 1 has names, found 3");
   expect_complaint("t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,4,1,0,0,0\n\n1,2,3,a,1,0,0,0\n",
-                   "path:4: expected numbers under the names");
+                   "path:4: expected numbers under the columns' names");
 }
 
 TEST(PathFile, ThinningKeepsBothEndsAndADistance) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
@@ -84,6 +85,20 @@ inline World forest_world(bool visible = true) {
   WorldConfig config;
   config.obstacles_visible = visible;
   return build_world(models_folder(), Airframe{}, obstacles, config);
+}
+
+/// The depths of the ground below an empty forest, seen with the nose down, are by pencil.
+inline void expect_depths_of_the_ground(StereoCameras& cameras, const StereoRig& rig) {
+  const double height_m = 2, pitch_rad = 0.3;  // nose down
+  const Eigen::Quaterniond attitude(Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()));
+  const cv::Mat depth = cameras.depth(body_at({10, 0, height_m}, attitude));
+  for (int row = 130; row < 240; row += 10)
+    for (int column = 3; column < 376; column += 31) {
+      const Eigen::Vector3d ray_camera((column - rig.center_left_x_px) / rig.focal_px,
+                                       (row - rig.center_y_px) / rig.focal_px, 1);
+      const double falls = -(attitude * rig.T_body_camera.linear() * ray_camera).z();
+      EXPECT_NEAR(depth.at<float>(row, column), height_m / falls, 0.001) << row << ", " << column;
+    }
 }
 
 inline bool equal(const cv::Mat& a, const cv::Mat& b) { return cv::norm(a, b, cv::NORM_INF) == 0; }

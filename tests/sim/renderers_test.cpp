@@ -199,17 +199,8 @@ constexpr std::array both_renderers{RendererKind::osmesa, RendererKind::egl};
 void expect_closed_forms(RendererKind kind) {
   const StereoRig rig = paper_rig();
   const World empty = forest_world(false), trunks = forest_world(), woods = woods_world();
-  const double height_m = 2, pitch_rad = 0.3;  // nose down
-  const Eigen::Quaterniond attitude(Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()));
   StereoCameras above(empty, rig, noiseless(), {1, 1}, std::nullopt, kind);
-  const cv::Mat depth = above.depth(body_at({10, 0, height_m}, attitude));
-  for (int row = 130; row < 240; row += 10)
-    for (int column = 3; column < 376; column += 31) {
-      const Eigen::Vector3d ray_camera((column - rig.center_left_x_px) / rig.focal_px,
-                                       (row - rig.center_y_px) / rig.focal_px, 1);
-      const double falls = -(attitude * rig.T_body_camera.linear() * ray_camera).z();
-      EXPECT_NEAR(depth.at<float>(row, column), height_m / falls, 0.001) << row << ", " << column;
-    }
+  expect_depths_of_the_ground(above, rig);
   for (const World* world : {&trunks, &woods}) {
     StereoCameras before(*world, rig, noiseless(), {1, 1}, std::nullopt, kind);
     const TrueView view = before.true_view(body_at({5, 0, 1.3}, level));

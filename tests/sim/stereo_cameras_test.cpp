@@ -25,16 +25,7 @@ TEST(StereoCameras, DepthOfTheGroundIsTheRaysOwn) {
   const World world = forest_world(false);
   const StereoRig rig = paper_rig();
   StereoCameras cameras(world, rig, noiseless(), {1, 1});
-  const double height_m = 2.0, pitch_rad = 0.3;  // nose down
-  const Eigen::Quaterniond attitude(Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()));
-  const cv::Mat depth = cameras.depth(body_at({10, 0, height_m}, attitude));
-  for (int row = 130; row < 240; row += 10)
-    for (int column = 3; column < 376; column += 31) {
-      const Eigen::Vector3d ray_camera((column - rig.center_left_x_px) / rig.focal_px,
-                                       (row - rig.center_y_px) / rig.focal_px, 1);
-      const double falls = -(attitude * rig.T_body_camera.linear() * ray_camera).z();
-      EXPECT_NEAR(depth.at<float>(row, column), height_m / falls, 0.001) << row << ", " << column;
-    }
+  expect_depths_of_the_ground(cameras, rig);
 }
 
 TEST(StereoCameras, ABallAppearsWhereTheRigSays) {
