@@ -243,40 +243,26 @@ double elapsed_s(Clock::time_point since) {
   return std::chrono::duration<double>(Clock::now() - since).count();
 }
 
-double timed_s(Subject& subject, int input) {
-  const Clock::time_point call = Clock::now();
-  subject.step(input % usual_inputs, 0, Odd::no);
-  return elapsed_s(call);
-}
-
-double median(std::vector<double> times_s) {
-  std::ranges::sort(times_s);
-  return times_s[times_s.size() / 2];
-}
-
 struct CallTimes {
   double median_s, p99_s;
   double yardstick_s;  ///< median of the yardstick's
-  double ratio;        ///< of calls in turns
 };
 
-/// The first calls by turns with the yardstick's: what else the machine does slows both alike.
+/// By turns with the yardstick: what else the machine does slows both alike.
 CallTimes times_of(const Trial& trial, const Trial& yardstick) {
-  constexpr std::size_t turns = 20, most_calls = 400;
   std::vector<double> times_s, yardsticks_s;
   const auto subject = trial.make(), other = yardstick.make();
-  subject->step(0, 0, Odd::no);  // the first call may allocate
-  other->step(0, 0, Odd::no);
-  for (int input = 0; times_s.size() < turns; ++input) {
-    yardsticks_s.push_back(timed_s(*other, input));
-    times_s.push_back(timed_s(*subject, input));
-  }
-  const double yardstick_s = median(yardsticks_s), ratio = median(times_s) / yardstick_s;
   const Clock::time_point begin = Clock::now();
-  for (int input = 0; times_s.size() < most_calls && elapsed_s(begin) < 3; ++input)
-    times_s.push_back(timed_s(*subject, input));
+  for (int input = 0; times_s.size() < 20 || (times_s.size() < 400 && elapsed_s(begin) < 0.5); ++input)
+    for (const auto& [one, times] : {std::pair(&subject, &times_s), std::pair(&other, &yardsticks_s)}) {
+      const Clock::time_point call = Clock::now();
+      (*one)->step(input % usual_inputs, 0, Odd::no);
+      times->push_back(elapsed_s(call));
+    }
   std::ranges::sort(times_s);
-  return {median(times_s), times_s[times_s.size() * 99 / 100], yardstick_s, ratio};
+  std::ranges::sort(yardsticks_s);
+  return {times_s[times_s.size() / 2], times_s[times_s.size() * 99 / 100],
+          yardsticks_s[yardsticks_s.size() / 2]};
 }
 
 double heap_bytes() {
@@ -397,7 +383,7 @@ std::vector<PartCheck> check_parts(const PartCheckOptions& options) {
     double ratio = 0;
     check("time of a call", [&](std::string& note) {
       const CallTimes times = times_of(trial, sgbm);
-      ratio = times.ratio;
+      ratio = times.median_s / times.yardstick_s;
       note = fmt::format("median {:.3f} ms, 99 % {:.3f} ms", 1e3 * times.median_s, 1e3 * times.p99_s);
       const auto yardstick = std::ranges::find_if(ours, [&](const Trial& other) {
         return other.kind == trial.kind && other.name == yardstick_of(trial.kind);
