@@ -158,7 +158,7 @@ TEST(CliOutput, ASignalEndsEveryCommandInOneLineAndLeavesNothing) {
   expect_stopped("record forest --out recording --set forest.length_m=400",
                  "ls -d .understory-recording.unfinished/mav0", folder.path());
   const std::string listens =
-      "grep -q 'SigCgt:.*[2367abef]$' /proc/$p/status";  // handles SIGINT; no file tells
+      "grep -q 'SigCgt:.*[4567cdef]..[2367abef]$' /proc/$p/status";  // handles both signals; no file tells
   expect_stopped("bench --rounds 100000 --json rows.json", listens, folder.path());
   expect_stopped("bench --closed-loop --flights 50 --json rows.json", listens, folder.path());
 }
