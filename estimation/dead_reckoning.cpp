@@ -1,5 +1,7 @@
 #include "estimation/dead_reckoning.hpp"
 
+#include "perception/field_visitor.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -51,6 +53,12 @@ void DeadReckoning::on_imu(const ImuSample& sample) {
     state_.distance_flown_m += dt_s * state_.velocity_body_mps.norm();
   }
   history_.record(state_);
+}
+
+void visit_fields(FieldVisitor& visit, DeadReckoningConfig& config) {
+  visit("angle_of_attack_rad", config.angle_of_attack_rad, -0.2, 0.8,
+        "angle of attack that dead reckoning assumes in the whole flight: it turns the airspeed into a "
+        "velocity");
 }
 
 }  // namespace understory

@@ -9,16 +9,13 @@
 
 namespace understory {
 
+class FieldVisitor;
+
 struct DeadReckoningConfig {
   double angle_of_attack_rad = 0.19;
 };
 
-template <typename Visitor>
-void visit_fields(Visitor& visit, DeadReckoningConfig& config) {
-  visit("angle_of_attack_rad", config.angle_of_attack_rad, -0.2, 0.8,
-        "angle of attack that dead reckoning assumes in the whole flight: it turns the airspeed into a "
-        "velocity");
-}
+void visit_fields(FieldVisitor& visit, DeadReckoningConfig& config);
 
 /// The state from pitot and gyro alone, without a filter: the turn rates integrated from the known attitude
 /// on the catapult, the airspeed integrated along an assumed angle of attack. The gyro's bias is its mean at

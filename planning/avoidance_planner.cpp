@@ -49,18 +49,18 @@ Plan AvoidancePlanner::plan(const PlanRequest& request) {
 
 Plan AvoidancePlanner::avoid(const FlightTask& task, const FlightState& start, std::int64_t t_ns,
                              bool outdated) {
-  const Manoeuvre left = rest_of(manoeuvre_, 1e-9 * static_cast<double>(t_ns - manoeuvre_t_ns_));
+  const Manoeuvre remaining = rest_of(manoeuvre_, 1e-9 * static_cast<double>(t_ns - manoeuvre_t_ns_));
   const TrajectoryConfig& limits = config_.trajectory;
-  Rollout kept = fly_out(task, start, left, limits.minimum_kept_clearance_m, true);
+  Rollout kept = fly_out(task, start, remaining, limits.minimum_kept_clearance_m, true);
   const bool may_keep = kept.reached_horizon && manoeuvre_origin_ != PlanOrigin::fallback;
-  const bool kept_good = !left.empty() && kept.cost <= config_.kept_cost_ratio * manoeuvre_cost_ + 1.0;
+  const bool kept_good = !remaining.empty() && kept.cost <= config_.kept_cost_ratio * manoeuvre_cost_ + 1.0;
   const double searched_s = 1e-9 * static_cast<double>(t_ns - searched_t_ns_);
   const bool fresh = replans_kept_ < config_.refresh_replans && searched_s < config_.refresh_s;
   if (may_keep && (kept_good || !outdated) && fresh) {
     ++replans_kept_;
-    return keep(t_ns, left, std::move(kept));
+    return keep(t_ns, remaining, std::move(kept));
   }
-  std::optional<Plan> searched = search(task, start, t_ns, left, may_keep);
+  std::optional<Plan> searched = search(task, start, t_ns, remaining, may_keep);
   return searched ? std::move(*searched) : fall_back(task, start, t_ns);
 }
 
@@ -71,7 +71,7 @@ Plan AvoidancePlanner::keep(std::int64_t t_ns, const Manoeuvre& manoeuvre, Rollo
 }
 
 std::optional<Plan> AvoidancePlanner::search(const FlightTask& task, const FlightState& start,
-                                             std::int64_t t_ns, const Manoeuvre& left, bool may_keep) {
+                                             std::int64_t t_ns, const Manoeuvre& remaining, bool may_keep) {
   const TrajectoryConfig& limits = config_.trajectory;
   const std::uint64_t search_seed = seed_ * 1'000'003 + static_cast<std::uint64_t>(counts_.replans);
   const auto improved = [&](const Manoeuvre& manoeuvre, double minimum_clearance_m) {
@@ -79,13 +79,13 @@ std::optional<Plan> AvoidancePlanner::search(const FlightTask& task, const Fligh
   };
   ++counts_.searches;
   const std::optional<Manoeuvre> answer =
-      search_manoeuvre(task, start, left, config_.search, search_seed, tree_);
+      search_manoeuvre(task, start, remaining, config_.search, search_seed, tree_);
   ImprovedManoeuvre found{{}, INFINITY}, kept{{}, INFINITY};
   if (answer) {
     ++counts_.found;
     found = improved(*answer, limits.minimum_clearance_m);
   }
-  if (may_keep) kept = improved(left, limits.minimum_kept_clearance_m);
+  if (may_keep) kept = improved(remaining, limits.minimum_kept_clearance_m);
   if (may_keep && kept.cost <= config_.change_cost_ratio * found.cost) {
     ++count("search_found_no_better");
     replans_kept_ = 0;

@@ -28,9 +28,9 @@ class AvoidancePlanner : public Planner {
 
  private:
   Plan keep(std::int64_t t_ns, const Manoeuvre& manoeuvre, Rollout rollout);
-  /// The tree's answer; or `left`, where `may_keep` and the answer is not clearly cheaper; or nothing.
+  /// The tree's answer; or `remaining`, where `may_keep` and the answer is not clearly cheaper; or nothing.
   std::optional<Plan> search(const FlightTask& task, const FlightState& start, std::int64_t t_ns,
-                             const Manoeuvre& left, bool may_keep);
+                             const Manoeuvre& remaining, bool may_keep);
   Plan fall_back(const FlightTask& task, const FlightState& start, std::int64_t t_ns);
   /// The plan where the straight way comes nearer than the comfortable clearance.
   Plan avoid(const FlightTask& task, const FlightState& start, std::int64_t t_ns, bool outdated);

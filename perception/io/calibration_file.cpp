@@ -8,7 +8,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "perception/io/calibration_formats.hpp"
-#include "perception/io/strict_map.hpp"
+#include "perception/io/field_reader.hpp"
 #include "perception/io/text_file.hpp"
 
 namespace understory {
@@ -61,6 +61,27 @@ bool is_rectified(const CameraCalibration& camera) {
                                    [](double coefficient) { return coefficient != 0; });
   return !is_bent && camera.rectification == cv::Matx33d::eye() &&
          camera.projection.get_minor<3, 3>(0, 0) == camera.camera_matrix;
+}
+
+/// A rig file as it stands.
+struct RigText {
+  StereoRig rig;
+  Eigen::Vector3d left_camera_body_m = Eigen::Vector3d::Zero();
+  double pitch_down_deg = 0;
+};
+
+void visit_fields(FieldVisitor& visit, RigText& text) {
+  visit("name", text.rig.name);
+  visit("width_px", text.rig.width_px, minimum_size_px, maximum_size_px);
+  visit("height_px", text.rig.height_px, minimum_size_px, maximum_size_px);
+  visit("focal_px", text.rig.focal_px, minimum_focal_px, maximum_focal_px);
+  visit("baseline_m", text.rig.baseline_m, minimum_baseline_m, maximum_baseline_m);
+  visit("center_left_x_px", text.rig.center_left_x_px, minimum_center_px, maximum_center_px);
+  visit("center_right_x_px", text.rig.center_right_x_px, minimum_center_px, maximum_center_px);
+  visit("center_y_px", text.rig.center_y_px, minimum_center_px, maximum_center_px);
+  visit("detection_depth_m", text.rig.detection_depth_m, minimum_depth_m, maximum_depth_m);
+  visit("left_camera_body_m", text.left_camera_body_m, -maximum_offset_m, maximum_offset_m);
+  visit("pitch_down_deg", text.pitch_down_deg, -90, 90);
 }
 
 CalibratedRig from_rig_file(const fs::path& path, const CalibrationOptions& options) {
@@ -194,26 +215,15 @@ Eigen::Isometry3d T_body_camera_of(const Eigen::Vector3d& left_camera_body_m, do
 }
 
 StereoRig read_rig(const std::filesystem::path& file) {
-  StrictMap map(parse_yaml(read_file(file), file.string()));
-  StereoRig rig;
-  rig.name = map.text("name");
-  rig.width_px = map.whole("width_px", minimum_size_px, maximum_size_px);
-  rig.height_px = map.whole("height_px", minimum_size_px, maximum_size_px);
-  rig.focal_px = map.number("focal_px", minimum_focal_px, maximum_focal_px);
-  rig.baseline_m = map.number("baseline_m", minimum_baseline_m, maximum_baseline_m);
-  rig.center_left_x_px = map.number("center_left_x_px", minimum_center_px, maximum_center_px);
-  rig.center_right_x_px = map.number("center_right_x_px", minimum_center_px, maximum_center_px);
-  rig.center_y_px = map.number("center_y_px", minimum_center_px, maximum_center_px);
-  rig.detection_depth_m = map.number("detection_depth_m", minimum_depth_m, maximum_depth_m);
-  const std::vector<double> left_camera_body_m =
-      map.numbers("left_camera_body_m", 3, -maximum_offset_m, maximum_offset_m);
-  const double pitch_down_deg = map.number("pitch_down_deg", -90, 90);
-  map.refuse_others();
-  rig.T_body_camera =
-      T_body_camera_of(Eigen::Vector3d(left_camera_body_m.data()), pitch_down_deg * std::numbers::pi / 180);
+  const TextNode map = parse_yaml(read_file(file), file.string());
+  RigText text;
+  read_fields(map, fields_of(text), "", Keys::all_required);
+  StereoRig& rig = text.rig;
+  if (rig.name.empty()) refuse_input(map.origin, "name", "expected a word");
+  rig.T_body_camera = T_body_camera_of(text.left_camera_body_m, text.pitch_down_deg * std::numbers::pi / 180);
   if (!rig.can_look_at(std::round(rig.disparity_px(rig.detection_depth_m))))
-    map.fail("detection_depth_m",
-             "must be a depth more than a pixel of disparity nearer than infinity and inside the image");
+    refuse_input(find_child(map, "detection_depth_m")->origin, "detection_depth_m",
+                 "must be a depth more than a pixel of disparity nearer than infinity and inside the image");
   return rig;
 }
 

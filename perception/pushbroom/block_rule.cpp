@@ -66,7 +66,7 @@ ReadColumns read_columns(const BlockRule& rule) {
 
 int row_count(const BlockRule& rule) { return std::min(rule.last_row_px, rule.height_px - block_px) + 1; }
 
-void assert_sound(const BlockRule& rule) {
+const BlockRule& sound(const BlockRule& rule) {
   assert_always(rule.width_px >= block_px && rule.height_px >= block_px, "images must hold a block");
   assert_always(rule.stride_px > 0 && rule.last_row_px >= 0, "blocks need a stride and a first row");
   assert_always(rule.right_margin_px >= 0, "a margin lies inside the image");
@@ -74,6 +74,7 @@ void assert_sound(const BlockRule& rule) {
   for (const DisparityRule& one : rule.disparities)
     assert_always(std::abs(one.disparity_px) + rule.right_margin_px + block_px <= rule.width_px,
                   "disparity wider than the image");
+  return rule;
 }
 
 }  // namespace understory

@@ -49,11 +49,8 @@ struct DisparityRule {
 struct BlockRule {
   int width_px = 0, height_px = 0;
   int stride_px = block_px;  ///< from block to block, both ways
-  /// Dense: a window at every pixel, and of each cell of 5x5 windows the one with the minimum score (the
-  /// first of equals, by row, then column) goes on to the filters. The stride has no part in it.
-  bool every_pixel = false;
-  int last_row_px = 0;      ///< top edge of the lowest blocks that may be looked at
-  int right_margin_px = 0;  ///< columns at the end of a search that no block touches
+  int last_row_px = 0;       ///< top edge of the lowest blocks that may be looked at
+  int right_margin_px = 0;   ///< columns at the end of a search that no block touches
   std::vector<DisparityRule> disparities;
 
   bool horizontal_invariance = false;
@@ -98,7 +95,8 @@ ReadColumns read_columns(const BlockRule& rule);
 /// Rows at which blocks may begin: 0 .. this - 1.
 int row_count(const BlockRule& rule);
 
-/// Asserts that the rule makes sense: images of at least one block, disparities inside them, a stride.
-void assert_sound(const BlockRule& rule);
+/// The rule itself. Asserts that it makes sense: images of at least one block, disparities inside them, a
+/// stride.
+const BlockRule& sound(const BlockRule& rule);
 
 }  // namespace understory

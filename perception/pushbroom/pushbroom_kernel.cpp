@@ -70,18 +70,11 @@ void StripSearch::take_candidates(const GrayView& left, const GrayView& right, i
 }
 
 PushbroomKernel::PushbroomKernel(const BlockRule& rule)
-    : rule_(rule), self_similarity_(rule.window, rule.infinity_px) {
-  assert_sound(rule);
-  if (rule.every_pixel) {
-    rule_.stride_px = block_px;  // of the cells
-    dense_.emplace(rule_);
-  } else {
-    strips_.emplace(rule_);
-  }
+    : rule_(sound(rule)), strips_(rule_), self_similarity_(rule.window, rule.infinity_px) {
   for (const DisparityRule& one : rule.disparities)
     uniqueness_.emplace_back(one.disparity_px, std::min(one.disparity_px, rule.minimum_disparity_px),
                              std::max(one.disparity_px, rule.maximum_disparity_px), rule.uniqueness_ratio);
-  if (rule.every_pixel || rule.horizontal_invariance) right_edges_ = EdgeMap(rule.width_px, rule.height_px);
+  if (rule.horizontal_invariance) right_edges_ = EdgeMap(rule.width_px, rule.height_px);
 }
 
 int PushbroomKernel::strip_count() const { return (row_count(rule_) - 1) / rule_.stride_px + 1; }
@@ -91,14 +84,9 @@ const std::vector<BlockMatch>& PushbroomKernel::search(const GrayView& left, con
   matches_.clear();
   if (first_strip >= last_strip) return matches_;
   const int first_row = first_strip * rule_.stride_px, last_row = (last_strip - 1) * rule_.stride_px;
-  if (dense_) {
-    dense_->search(left, right, first_row, std::min(last_row + block_px, row_count(rule_)), right_edges_,
+  for (int row = first_row; row <= last_row; row += rule_.stride_px)
+    strips_.search(left, right, row, from_afar, rule_.horizontal_invariance ? &right_edges_ : nullptr,
                    matches_);
-  } else {
-    for (int row = first_row; row <= last_row; row += rule_.stride_px)
-      strips_->search(left, right, row, from_afar, rule_.horizontal_invariance ? &right_edges_ : nullptr,
-                      matches_);
-  }
   if (rule_.horizontal_invariance && !matches_.empty())
     fill_right_edges(right, first_row, std::min(last_row + block_px, rule_.height_px));
   if (rule_.horizontal_invariance || rule_.uniqueness) drop_unlike_the_rule(left, right);

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "perception/pushbroom/block_rule.hpp"
-#include "perception/pushbroom/dense_search.hpp"
 #include "perception/pushbroom/match_filters.hpp"
+#include "perception/pushbroom/strip_sums.hpp"
 
 namespace understory {
 
@@ -46,7 +45,7 @@ class PushbroomKernel {
   /// Asserts that the rule is sound.
   explicit PushbroomKernel(const BlockRule& rule);
 
-  /// Rows of blocks in an image; dense, rows of cells.
+  /// Rows of blocks in an image.
   int strip_count() const;
 
   /// The matches of the strips first_strip .. last_strip - 1, by strip, then disparity, then column. The
@@ -62,8 +61,7 @@ class PushbroomKernel {
   void look_beside(const GrayView& left, const GrayView& right);
 
   BlockRule rule_;
-  std::optional<StripSearch> strips_;  ///< one of the two
-  std::optional<DenseSearch> dense_;
+  StripSearch strips_;
   std::vector<UniquenessTest> uniqueness_;  ///< one for each disparity
   SelfSimilarityFilter self_similarity_;
   StripReader right_reader_;

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
 #include "perception/assertion.hpp"
+#include "perception/field_visitor.hpp"
 #include "perception/pushbroom/frame_views.hpp"
 
 namespace understory {
@@ -41,21 +43,13 @@ std::string text_of(const Parts&... parts) {
 }
 
 /// The visitor that finds a number out of its range.
-struct RangeCheck {
-  std::string fault;
-  template <typename T>
-  void operator()(const char*, T&, const char* = "") {}
-  template <typename T, typename Bound>
-  void operator()(const char* name, const T& field, Bound minimum, Bound maximum, const char* = "") {
-    if constexpr (std::is_arithmetic_v<T>) {
-      if (!(field >= minimum && field <= maximum))  // written so that nan is refused
-        fault = text_of(name, ": must be from ", minimum, " to ", maximum, ", is ", field);
-    } else if constexpr (requires { field.has_value(); }) {
-      if (field) (*this)(name, *field, minimum, maximum);
-    } else {
-      for (const auto value : field) (*this)(name, value, minimum, maximum);
-    }
+struct RangeCheck : FieldVisitor {
+  void numbers(std::string_view name, FieldNumbers& numbers, std::string_view) override {
+    for (const double value : numbers.values)
+      if (!(value >= numbers.minimum && value <= numbers.maximum))  // written so that nan is refused
+        fault = text_of(name, ": must be from ", numbers.minimum, " to ", numbers.maximum, ", is ", value);
   }
+  std::string fault;
 };
 
 /// Looks outwards from the hit in the frame's order: neighbours in the image are near in the order too, so
@@ -93,7 +87,7 @@ std::string fault_of(const PushbroomConfig& config, const StereoRig& rig) {
   RangeCheck range;
   PushbroomConfig visited = config;  // visitors take fields they could change
   visit_fields(range, visited);
-  range("depths_m", config.depths_m, 0.1, 1000.0);
+  range("depths_m", visited.depths_m, 0.1, 1000.0);
   if (!range.fault.empty()) return range.fault;
   if (!config.depths_m.empty() && !config.disparities_px.empty())
     return "disparities_px and depths_m exclude each other: name one of them";
@@ -203,7 +197,6 @@ BlockRule PushbroomStereo::block_rule() const {
   rule.stride_px = config_.stride_px;
   rule.last_row_px = rig_.scaled_row_px(config_.last_row_px);
   rule.right_margin_px = config_.right_margin_px;
-  rule.every_pixel = config_.every_pixel;
   for (std::size_t i = 0; i < depths_.size(); ++i) {
     const double edges = config_.depths_minimum_edge_sum.empty() ? config_.minimum_edge_sum
                                                                  : config_.depths_minimum_edge_sum[i];
@@ -254,8 +247,7 @@ void PushbroomStereo::search(const GrayView& left, const GrayView& right, int in
     return;
   }
   // The edge map looks one row beyond the blocks, and the invariance window's beyond its own.
-  const int stride_px = config_.every_pixel ? block_px : config_.stride_px;
-  const int rows_end = (last - 1) * stride_px + (config_.every_pixel ? 2 * block_px - 1 : block_px);
+  const int stride_px = config_.stride_px, rows_end = (last - 1) * stride_px + block_px;
   const auto rectify = [&](const ByteRemap& map, const GrayView& raw, int beyond, std::uint8_t* output) {
     map.apply(raw, std::max(0, first * stride_px - beyond), std::min(rig_.height_px, rows_end + beyond),
               output, rig_.width_px);

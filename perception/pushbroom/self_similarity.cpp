@@ -84,7 +84,7 @@ HWY_INLINE bool RowIsSimilar(const WindowSearch& search, const WindowTask& task,
       sad = hn::Add(sad, SumsOfDifferences(block, other));
       edges = hn::Add(edges, hn::SumsOf8(other_edges));
     }
-    // SAD / (both edge sums) < limit, as block_score.hpp has it; 64 bits hold every product.
+    // SAD / (both edge sums) < limit, as in scores_below() (block_rule.hpp); 64 bits hold every product.
     const auto both_edges = hn::Add(edges, hn::Set(d64, static_cast<std::uint64_t>(task.left_edge_sum)));
     const auto scaled_sad =
         hn::MulEven(hn::BitCast(d32, sad), hn::Set(d32, static_cast<std::uint32_t>(score_unit)));

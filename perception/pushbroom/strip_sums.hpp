@@ -9,7 +9,7 @@
 
 /// The detector's inner loops in portable SIMD (Highway, dispatched at run time): everything that must be
 /// looked at for every pixel of a strip of block rows. All of it is exact: what is computed equals
-/// block_score.hpp's arithmetic bit for bit on every instruction set, except that candidates are a superset,
+/// block_rule.hpp's arithmetic bit for bit on every instruction set, except that candidates are a superset,
 /// still to be tested exactly.
 namespace understory {
 

@@ -86,9 +86,8 @@ void add_detectors(const CalibratedRig& rig, const std::vector<StereoFrame>& raw
                      }});
   };
   const PushbroomConfig paper = original_pushbroom(), ours = robust_pushbroom();
-  PushbroomConfig two_threads = paper, dense = paper, four = paper;
+  PushbroomConfig two_threads = paper, four = paper;
   two_threads.threads = 2;
-  dense.every_pixel = true;
   four.depths_m = depths_around(rig.rig, 4);
   detect(one_depth_name, paper, matching_name);
   detect("detect, robust parameters", ours, matching_name);
@@ -100,7 +99,6 @@ void add_detectors(const CalibratedRig& rig, const std::vector<StereoFrame>& raw
              std::size_t i) { rectifier->rectify(raw[i]); }});
   detect_raw("rectify and detect", paper);
   detect_raw("rectify and detect, two threads", two_threads);
-  detect_raw("rectify and detect, every pixel", dense);
   detect_raw("rectify and detect, robust parameters", ours);
 }
 

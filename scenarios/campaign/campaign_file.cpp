@@ -17,11 +17,43 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t maximum_flights = 200'000, maximum_conditions = 2'000;
 
+const std::string the_seeds = "the seeds to fly, for instance 1..200";
 const std::string seeds_decide = "no seed here: each flight has one of the campaign's seeds";
 
 using Changes = std::vector<ConfigNode>;  ///< a tree per key
 
-/// What is added to a scenario's name and keys.
+struct Override {
+  std::string name;
+  std::vector<std::string> with;
+  ConfigNode set;
+};
+
+void visit_fields(FieldVisitor& visit, Override& one) {
+  visit("name", one.name);
+  visit("with", one.with, "a file of keys, or a list of such");
+  visit("set", one.set);
+}
+
+/// The file as it stands.
+struct CampaignText {
+  std::string name;
+  std::vector<std::string> scenario, scenarios, seeds;
+  std::vector<Override> overrides;
+  ConfigNode grid;
+  double timeout_s = Campaign().timeout_s;
+};
+
+void visit_fields(FieldVisitor& visit, CampaignText& text) {
+  visit("name", text.name);
+  visit("scenario", text.scenario, "the name or file of a scenario");
+  visit("scenarios", text.scenarios, "names or files of scenarios");
+  visit("seeds", text.seeds, the_seeds);
+  visit("overrides", text.overrides);
+  visit("grid", text.grid);
+  visit("timeout_s", text.timeout_s, 1, 86400);
+}
+
+/// A condition's changes to its scenario.
 struct Variant {
   std::string name;  ///< of the overrides; empty: the scenario as it is
   Changes changes;
@@ -56,39 +88,33 @@ fs::path beside_or_as_said(const std::string& word, const fs::path& campaign_fil
   return fs::is_regular_file(beside, ignored) ? beside : fs::path(word);
 }
 
-std::vector<Variant> overrides_of(const ConfigNode* list, const fs::path& campaign_file,
-                                  std::vector<fs::path>& files) {
-  if (list == nullptr) return {{}};
-  if (list->kind != ConfigNode::Kind::list || list->children.empty())
-    refuse_key(*list, "overrides", "a list [{name: ..., set: {key: value}}, ...]");
+std::vector<Variant> overrides_of(const CampaignText& text, const ConfigNode& top,
+                                  const fs::path& campaign_file, std::vector<fs::path>& files) {
+  if (find_child(top, "overrides") == nullptr) return {{}};
+  if (text.overrides.empty()) refuse_key(top, "overrides", "a list [{name: ..., set: {key: value}}, ...]");
   std::vector<Variant> variants;
-  for (const ConfigNode& entry : list->children) {
-    if (entry.kind != ConfigNode::Kind::map) refuse_key(entry, "overrides", "{name: ..., set: {key: value}}");
-    require_known_keys(entry, {"name", "with", "set"}, "overrides.");
-    const ConfigNode* name = find_child(entry, "name");
-    if (name == nullptr || !is_plain_name(name->text))
-      refuse_key(name == nullptr ? entry : *name, "overrides.name", "a name of letters, digits and . _ = -");
-    Variant variant{name->text, {}};
-    if (const ConfigNode* with = find_child(entry, "with"))
-      for (const std::string& word : words_of(*with, "overrides.with", "a file of keys, or a list of such"))
-        variant.changes.push_back(
-            parse_config_file(files.emplace_back(beside_or_as_said(word, campaign_file))));
-    if (const ConfigNode* set = find_child(entry, "set")) {
-      if (set->kind != ConfigNode::Kind::map) refuse_key(*set, "overrides.set", "a group {key: value, ...}");
-      if (const ConfigNode* seed = find_child(*set, "seed"))
-        refuse_key(*seed, "overrides.set.seed", seeds_decide);
-      add_changes(*set, "", variant.changes);
-    }
+  for (const Override& one : text.overrides) {
+    const std::string here = fmt::format("overrides[{}]", variants.size());
+    if (!is_plain_name(one.name)) refuse_key(top, here + ".name", "a name of letters, digits and . _ = -");
+    Variant variant{one.name, {}};
+    for (const std::string& word : one.with)
+      variant.changes.push_back(
+          parse_config_file(files.emplace_back(beside_or_as_said(word, campaign_file))));
+    if (one.set.kind != ConfigNode::Kind::nothing && one.set.kind != ConfigNode::Kind::map)
+      refuse_key(top, here + ".set", "a group {key: value, ...}");
+    if (find_child(one.set, "seed") != nullptr) refuse_key(top, here + ".set.seed", seeds_decide);
+    add_changes(one.set, "", variant.changes);
     variants.push_back(std::move(variant));
   }
   return variants;
 }
 
 /// Before any is made: whether the grid's keys are a scenario's, and how many variants it makes of so many.
-std::size_t require_grid(const ConfigNode* grid, std::size_t variants) {
+std::size_t require_grid(const ConfigNode& top, std::size_t variants) {
+  const ConfigNode* grid = find_child(top, "grid");
   if (grid == nullptr) return variants;
   if (grid->kind != ConfigNode::Kind::map || grid->children.empty())
-    refuse_key(*grid, "grid", "a group {key: [values], ...}");
+    refuse_key(top, "grid", "a group {key: [values], ...}");
   std::vector<std::string> known;
   for (const Key& key : keys_of(scenario_from_text("{}", "defaults"))) known.push_back(key.name);
   for (const ConfigNode& axis : grid->children) {
@@ -97,12 +123,12 @@ std::size_t require_grid(const ConfigNode* grid, std::size_t variants) {
     };
     if (std::ranges::none_of(known, is_named))
       refuse_input(axis.origin, "grid." + axis.key, "unknown key" + did_you_mean(axis.key, known));
-    if (axis.key == "seed") refuse_key(axis, "grid.seed", seeds_decide);
+    if (axis.key == "seed") refuse_input(axis.origin, "grid.seed", "expected " + seeds_decide);
     if (axis.kind != ConfigNode::Kind::list || axis.children.empty())
-      refuse_key(axis, "grid." + axis.key, "a list of values");
+      refuse_input(axis.origin, "grid." + axis.key, "expected a list of values");
     variants *= axis.children.size();
     if (variants > maximum_conditions)
-      refuse_key(*grid, "grid", fmt::format("at most {} conditions in all", maximum_conditions));
+      refuse_key(top, "grid", fmt::format("at most {} conditions in all", maximum_conditions));
   }
   return variants;
 }
@@ -115,9 +141,8 @@ std::string name_of(const std::string& scenario, const Variant& variant) {
 }
 
 /// Every combination of the grid's values over each of `variants`.
-std::vector<Variant> with_grid(std::vector<Variant> variants, const ConfigNode* grid) {
-  if (grid == nullptr) return variants;
-  for (const ConfigNode& axis : grid->children) {
+std::vector<Variant> with_grid(std::vector<Variant> variants, const ConfigNode& grid) {
+  for (const ConfigNode& axis : grid.children) {
     std::vector<Variant> more;
     for (const Variant& variant : variants)
       for (const ConfigNode& value : axis.children) {
@@ -163,33 +188,30 @@ std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, cons
 
 }  // namespace
 
-std::string name_in(const ConfigNode& top, const fs::path& file) {
-  const ConfigNode* name = find_child(top, "name");
-  if (name == nullptr) {
+std::string name_or_stem(const std::string& name, const ConfigNode& top, const fs::path& file) {
+  if (find_child(top, "name") == nullptr) {
     const std::string stem = plain_name(file.stem().string());
     return stem.starts_with('.') ? "_" + stem : stem.substr(0, 200);
   }
-  if (!is_plain_name(name->text)) refuse_key(*name, "name", "letters, digits and . _ = -");
-  return name->text;
+  if (!is_plain_name(name)) refuse_key(top, "name", "letters, digits and . _ = -");
+  return name;
 }
 
-std::vector<std::uint64_t> seeds_in(const ConfigNode& map, const std::string& key,
-                                    const std::string& within) {
-  const std::string expected = "the seeds to fly, for instance 1..200";
-  const ConfigNode* node = find_child(map, key);
-  if (node == nullptr) refuse_key(map, within + key, expected);
-  return seeds_of(words_of(*node, within + key, expected), node->origin + ": " + within + key);
+std::vector<std::uint64_t> seeds_in(const std::vector<std::string>& words, const ConfigNode& top,
+                                    const std::string& key) {
+  if (words.empty()) refuse_key(top, key, the_seeds);
+  return seeds_of(words, nearest_origin(top, key) + ": " + key);
 }
 
-fs::path scenario_beside(const fs::path& file, const ConfigNode& node, const std::string& word,
-                         const FindScenario& find_scenario) {
+fs::path scenario_beside(const fs::path& file, const ConfigNode& top, const std::string& key,
+                         const std::string& word, const FindScenario& find_scenario) {
   std::error_code ignored;
   const fs::path beside = file.parent_path() / word;
   if (fs::is_regular_file(beside, ignored)) return beside;
   try {
     return find_scenario(word);
   } catch (const ScenarioError& error) {
-    throw ScenarioError(fmt::format("{}: {}: {}", node.origin, node.key, error.what()));
+    refuse_key_since(top, key, error.what());
   }
 }
 
@@ -197,47 +219,44 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario,
                        const std::vector<ConfigNode>& over,
                        const std::function<void(std::size_t done, std::size_t of)>& on_condition) {
   const ConfigNode top = parse_config_file(file);
-  require_known_keys(top, {"name", "scenario", "scenarios", "seeds", "overrides", "grid", "timeout_s"}, "");
+  CampaignText text;
+  read_config(top, text);
   Campaign campaign;
-  campaign.name = name_in(top, file);
+  campaign.name = name_or_stem(text.name, top, file);
   campaign.files.push_back(file);
-  if (const ConfigNode* timeout = find_child(top, "timeout_s"))
-    campaign.timeout_s = number_of(*timeout, "timeout_s", 1, 86400);
+  campaign.timeout_s = text.timeout_s;
+  const std::string key = text.scenario.empty() ? "scenarios" : "scenario";
+  const std::vector<std::string>& words = text.scenario.empty() ? text.scenarios : text.scenario;
+  if (text.scenario.empty() == text.scenarios.empty())
+    refuse_key(top, "scenarios", "the scenarios to fly, once: [forest, dense]");
+  campaign.seeds = seeds_in(text.seeds, top, "seeds");
 
-  const ConfigNode* one = find_child(top, "scenario");
-  const ConfigNode* scenarios = one != nullptr ? one : find_child(top, "scenarios");
-  if (scenarios == nullptr || (one != nullptr && find_child(top, "scenarios") != nullptr))
-    refuse_key(scenarios == nullptr ? top : *scenarios, "scenarios",
-               "the scenarios to fly, once: [forest, dense]");
-  campaign.seeds = seeds_in(top, "seeds");
-
-  std::vector<Variant> overrides = overrides_of(find_child(top, "overrides"), file, campaign.files);
-  const std::vector<std::string> words = words_of(*scenarios, "scenarios", "names or files of scenarios");
-  const std::size_t conditions = words.size() * require_grid(find_child(top, "grid"), overrides.size());
+  std::vector<Variant> overrides = overrides_of(text, top, file, campaign.files);
+  const std::size_t conditions = words.size() * require_grid(top, overrides.size());
   if (conditions > maximum_conditions)
-    refuse_key(*scenarios, "scenarios", fmt::format("at most {} conditions in all", maximum_conditions));
+    refuse_key(top, key, fmt::format("at most {} conditions in all", maximum_conditions));
   if (conditions * campaign.seeds.size() > maximum_flights)
-    refuse_key(*find_child(top, "seeds"), "seeds",
+    refuse_key(top, "seeds",
                fmt::format("at most {} flights in all, these are {}", maximum_flights,
                            conditions * campaign.seeds.size()));
-  std::vector<Variant> variants = with_grid(std::move(overrides), find_child(top, "grid"));
+  std::vector<Variant> variants = with_grid(std::move(overrides), text.grid);
   for (const ConfigNode& tree : over) {
-    if (const ConfigNode* seed = find_child(tree, "seed")) refuse_key(*seed, "seed", seeds_decide);
+    if (find_child(tree, "seed") != nullptr) refuse_key(tree, "seed", seeds_decide);
     for (Variant& variant : variants) variant.changes.push_back(tree);
   }
   std::set<std::string> seen;
   for (const std::string& word : words) {
-    const fs::path path = scenario_beside(file, *scenarios, word, find_scenario);
+    const fs::path path = scenario_beside(file, top, key, word, find_scenario);
     campaign.files.push_back(path);
     for (const Variant& variant : variants) {
       const Scenario scenario = load_changed_scenario(path, variant.changes);
       const std::string name = name_of(plain_name(path.stem().string()), variant);
       if (!is_plain_name(name))
         refuse_key(
-            *scenarios, "scenarios",
+            top, key,
             fmt::format("names of conditions of at most 200 characters, no '.' first; '{}' comes out", name));
       if (!seen.insert(name).second)
-        refuse_input(scenarios->origin, "scenarios", fmt::format("two conditions are called '{}'", name));
+        refuse_key_since(top, key, fmt::format("two conditions are called '{}'", name));
       campaign.conditions.push_back(
           {name, scenario_to_text(scenario), plain_name(path.stem().string()), variant.name, variant.grid});
       if (on_condition) on_condition(campaign.conditions.size(), conditions);

@@ -34,17 +34,19 @@ Campaign load_campaign(const std::filesystem::path& file, const FindScenario& fi
                        const std::vector<ConfigNode>& over = {},
                        const std::function<void(std::size_t done, std::size_t of)>& on_condition = {});
 
-/// The scenario that `word`, given under `node`, means: a file beside `file`, or whatever the command line
-/// would find. Throws ScenarioError, beginning with the node's line and key.
-std::filesystem::path scenario_beside(const std::filesystem::path& file, const ConfigNode& node,
-                                      const std::string& word, const FindScenario& find_scenario);
+/// The scenario that `word`, given under a key of `top`, means: a file beside `file`, or whatever the command
+/// line would find. Throws ScenarioError, beginning with the key and its line.
+std::filesystem::path scenario_beside(const std::filesystem::path& file, const ConfigNode& top,
+                                      const std::string& key, const std::string& word,
+                                      const FindScenario& find_scenario);
 
-/// What the file calls itself: its name, else its file's. Throws ScenarioError where that is no plain word.
-std::string name_in(const ConfigNode& top, const std::filesystem::path& file);
+/// What the file calls itself: the name that `top` has, else its file's. Throws ScenarioError where that is
+/// no plain word.
+std::string name_or_stem(const std::string& name, const ConfigNode& top, const std::filesystem::path& file);
 
-/// The seeds under a key of `map`: "1..200", "7", or a list of such things. Throws ScenarioError where there
-/// are none or one is given twice; `within` stands before the key in the message.
-std::vector<std::uint64_t> seeds_in(const ConfigNode& map, const std::string& key,
-                                    const std::string& within = "");
+/// The seeds under a key of `top`: "1..200", "7", or a list of such things. Throws ScenarioError where there
+/// are none or one is given twice.
+std::vector<std::uint64_t> seeds_in(const std::vector<std::string>& words, const ConfigNode& top,
+                                    const std::string& key);
 
 }  // namespace understory

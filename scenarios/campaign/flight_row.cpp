@@ -135,7 +135,7 @@ FlightRow flown_row(const std::string& condition, const Scenario& scenario, cons
   FlightRow row;
   row.id = fmt::format("{}-{}", condition, result.seed);
   row.condition = condition;
-  row.cruise_speed_mps = scenario.autopilot.autopilot.flight_model.cruise_speed_mps;
+  row.cruise_speed_mps = scenario.autopilot.flight_model.cruise_speed_mps;
   row.square_metres_per_tree = scenario.forest.square_metres_per_tree;
   row.goal_m = scenario.goal_x_m();
   row.seed = result.seed;

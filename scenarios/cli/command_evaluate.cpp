@@ -51,7 +51,7 @@ int run_evaluate(EvaluateArguments arguments) {
   require_detectors(arguments.detectors);
   for (const std::string& given : arguments.disparities)
     options.settings.disparities.push_back(disparity_folder_of(given));
-  options.settings.detectors = arguments.detectors;
+  options.settings.more_detectors = arguments.detectors;
   EvaluationSum().make_room(options.settings);
   options.jobs = jobs_or_cores(arguments.jobs);
   fs::path out = arguments.out;

@@ -69,7 +69,7 @@ Scenario scenario_of(const FlightArguments& arguments) {
 
 /// What is odd about a scenario and no error, on standard error: a grid sweeps through it.
 void warn_of(const Scenario& scenario, bool quiet) {
-  const FlightModel model(scenario.airframe, scenario.autopilot.autopilot.flight_model);
+  const FlightModel model(scenario.airframe, scenario.autopilot.flight_model);
   const double asked_mps = model.config().cruise_speed_mps, fastest_mps = model.fastest_level_mps();
   if (!quiet && asked_mps > fastest_mps + 0.1)
     fmt::print(stderr,

@@ -28,9 +28,9 @@ void add_parts(const List& list, const std::string& plugin, const std::string& k
     table.add(kind, part.name, key + "=" + part.name, part.meaning);
     if (!part.defaults) continue;
     const std::string group = key.find('.') == std::string::npos ? "" : key.substr(0, key.rfind('.') + 1);
-    KeyLister lister(group + part.name + ".");
-    visit_fields(lister, *part.defaults->clone());
-    keys.insert(keys.end(), lister.keys().begin(), lister.keys().end());
+    const auto config = part.defaults->clone();
+    for (Key& own : list_keys(fields_of(*config), fmt::format("{}{}.", group, part.name)))
+      keys.push_back(std::move(own));
   }
 }
 
@@ -43,7 +43,7 @@ std::string list_of(const std::string& plugin) {
   add_parts(parts().courses, plugin, "course", "course", table, keys);
   Table key_table{{"Key", "Default", "Unit", "Range", "Meaning"}};
   for (const Key& key : keys) key_table.add(key.name, key.value, key.unit, key.range, key.meaning);
-  return to_text(table) + (keys.empty() ? "" : "\n" + to_text(key_table));
+  return keys.empty() ? to_text(table) : fmt::format("{}\n{}", to_text(table), to_text(key_table));
 }
 
 /// Whether all checks passed.

@@ -64,9 +64,7 @@ struct Stage {
         rig(rig_of(scenario, models)),
         obstacles(course_obstacles(scenario)) {}
 
-  FlightContext context(const PartConfigs& plugged, const std::string& name) const {
-    return {scenario, rig, obstacles, history, plugged.find(name), 7};
-  }
+  FlightContext context() const { return {scenario, rig, obstacles, history, 7}; }
   Scenario scenario;
   CalibratedRig rig;
   std::vector<Obstacle> obstacles;
@@ -79,7 +77,7 @@ class DetectorSubject : public Subject {
                   const std::vector<StereoFrame>& frames)
       : stage_(yaml, models), frames_(frames) {
     stage_.history.observe(Truth{});
-    detector_ = checked(part, stage_.context(stage_.scenario.perception.plugged, part.name));
+    detector_ = checked(part, stage_.context());
   }
   std::string step(int input, int stream, Odd odd) override {
     StereoFrame frame = frames_[static_cast<std::size_t>(input * (stream + 1)) % frames_.size()];
@@ -115,7 +113,7 @@ class StateSourceSubject : public Subject {
                      const std::filesystem::path& models)
       : stage_(yaml, models) {
     stage_.history.observe(Truth{});
-    source_ = checked(part, stage_.context(stage_.scenario.estimation.plugged, part.name));
+    source_ = checked(part, stage_.context());
   }
   /// Ten IMU samples with what else arrives: at rest, along the rail, level.
   std::string step(int input, int stream, Odd odd) override {
@@ -151,11 +149,10 @@ class PlannerSubject : public Subject {
  public:
   PlannerSubject(const PlannerPart& part, const std::string& yaml)
       : scenario_(scenario_from_text(yaml, "check")),
-        model_(scenario_.airframe, scenario_.autopilot.autopilot.flight_model),
+        model_(scenario_.airframe, scenario_.autopilot.flight_model),
         mission_(scenario_.mission()) {
-    const PlannerContext context{scenario_.autopilot.autopilot.planner, model_, mission_, 7};
-    planner_ =
-        checked(part, PlannerPartContext{context, scenario_, scenario_.autopilot.plugged.find(part.name)});
+    const PlannerContext context{scenario_.autopilot.planner, model_, mission_, 7};
+    planner_ = checked(part, PlannerPartContext{context, scenario_});
   }
   std::string step(int input, int stream, Odd odd) override {
     if (odd != Odd::repeated) t_ns_ += 40'000'000;
@@ -194,7 +191,7 @@ class CourseSubject : public Subject {
       : part_(part), scenario_(scenario_from_text(yaml, "check")) {}
   std::string step(int input, int stream, Odd) override {
     scenario_.seed = static_cast<std::uint64_t>(1 + input + 100 * stream);
-    const Planted planted = checked(part_, {scenario_, scenario_.plugged.find(part_.name), scenario_.seed});
+    const Planted planted = checked(part_, {scenario_, scenario_.seed});
     std::string bytes;
     for (const Obstacle& one : planted.obstacles)
       append(bytes, one.from_world), append(bytes, one.to_world), append(bytes, one.radius_m);

@@ -3,28 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "perception/io/text_table.hpp"
-
 namespace understory {
 namespace {
-
-/// `name` as it is called now, where it has changed since version 0.1: keys, options and values.
-std::string renamed(std::string name) {
-  static const std::map<std::string, std::string, std::less<>> whole{
-      {"rule", "preset"},   {"--rule", "--preset"},  {"paper", "original"},
-      {"plain", "nominal"}, {"gate_m", "opening_m"}, {"--no-film", "--no-video"},
-  };
-  if (const auto found = whole.find(name); found != whole.end()) return found->second;
-  for (const auto& [before, now] : {std::pair{"least", "minimum"}, std::pair{"greatest", "maximum"}})
-    if (const auto at = name.find(before); at != std::string::npos)
-      name.replace(at, std::strlen(before), now);
-  return name;
-}
 
 /// The child that a word of a path names: "launch", or "faults[2]" for an entry of a list. None: null.
 const ConfigNode* child_of(const ConfigNode& node, std::string_view word) {
@@ -50,16 +33,6 @@ void flatten(const ConfigNode& node, const std::string& path, FlatKeys& keys) {
   } else {
     keys.emplace_back(path, node.kind == ConfigNode::Kind::nothing ? "~" : node.text);
   }
-}
-
-template <typename Number>
-Number parsed(const ConfigNode& node, const std::string& key, Number minimum, Number maximum,
-              const char* what) {
-  const bool is_plain = node.kind == ConfigNode::Kind::scalar && !node.quoted;
-  const auto value = is_plain ? number_in<Number>(node.text) : std::nullopt;
-  if (!value || *value < minimum || *value > maximum)
-    refuse_key(node, key, fmt::format("{} from {} to {}", what, minimum, maximum));
-  return *value;
 }
 
 }  // namespace
@@ -124,63 +97,21 @@ std::string origin_of(const std::vector<ConfigNode>& sources, std::string_view p
 
 std::string short_key(const std::string& key) { return key.substr(key.rfind('.') + 1); }
 
-std::string did_you_mean(std::string_view word, const std::vector<std::string>& known) {
-  std::string best = renamed(std::string(word));
-  if (std::ranges::find(known, best) == known.end()) best.clear();
-  std::size_t best_distance = !best.empty() ? 0 : std::max<std::size_t>(2, word.size() / 3) + 1;
-  for (const std::string& name : known) {  // Levenshtein, one row at a time
-    std::vector<std::size_t> row(name.size() + 1);
-    for (std::size_t i = 0; i < row.size(); ++i) row[i] = i;
-    for (std::size_t w = 1; w <= word.size(); ++w) {
-      std::size_t diagonal = row[0];
-      row[0] = w;
-      for (std::size_t i = 1; i < row.size(); ++i) {
-        const std::size_t replaced = diagonal + (word[w - 1] == name[i - 1] ? 0 : 1);
-        diagonal = row[i];
-        row[i] = std::min({replaced, row[i] + 1, row[i - 1] + 1});
-      }
-    }
-    if (row.back() < best_distance) {
-      best_distance = row.back();
-      best = name;
-    }
+std::string nearest_origin(const ConfigNode& top, std::string key) {
+  while (!key.empty()) {
+    if (const std::string origin = origin_of({top}, key); !origin.empty()) return origin;
+    const std::size_t dot = key.rfind('.');
+    key.resize(dot == std::string::npos ? 0 : dot);
   }
-  return best.empty() ? "" : fmt::format(" (did you mean {}?)", best);
+  return top.origin;
 }
 
-void refuse_key(const ConfigNode& node, const std::string& key, const std::string& expected) {
-  refuse_input(node.origin, key, "expected " + expected);
+void refuse_key(const ConfigNode& top, const std::string& key, const std::string& expected) {
+  refuse_key_since(top, key, "expected " + expected);
 }
 
-void require_known_keys(const ConfigNode& map, const std::vector<std::string>& known,
-                        const std::string& within) {
-  for (const ConfigNode& node : map.children) {
-    if (std::ranges::find(known, node.key) != known.end()) continue;
-    const std::string near = did_you_mean(node.key, known);
-    refuse_input(node.origin, within + node.key,
-                 "unknown key" + (near.empty() ? fmt::format(", known: {}", fmt::join(known, ", ")) : near));
-  }
-}
-
-std::vector<std::string> words_of(const ConfigNode& node, const std::string& key,
-                                  const std::string& expected) {
-  std::vector<std::string> words;
-  if (node.kind == ConfigNode::Kind::scalar && !node.text.empty()) words.push_back(node.text);
-  if (node.kind == ConfigNode::Kind::list)
-    for (const ConfigNode& entry : node.children) {
-      if (entry.kind != ConfigNode::Kind::scalar) refuse_key(entry, key, expected);
-      words.push_back(entry.text);
-    }
-  if (words.empty()) refuse_key(node, key, expected);
-  return words;
-}
-
-double number_of(const ConfigNode& node, const std::string& key, double minimum, double maximum) {
-  return parsed(node, key, minimum, maximum, "a number");
-}
-
-int whole_number_of(const ConfigNode& node, const std::string& key, int minimum, int maximum) {
-  return parsed(node, key, minimum, maximum, "a whole number");
+void refuse_key_since(const ConfigNode& top, const std::string& key, const std::string& what) {
+  refuse_input(nearest_origin(top, key), key, what);
 }
 
 nlohmann::ordered_json parse_json(const std::string& text) {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "perception/io/text_tree.hpp"
+#include "perception/io/field_reader.hpp"
 #include "scenarios/output/errors.hpp"
 
 namespace understory {
@@ -39,24 +39,13 @@ std::string origin_of(const std::vector<ConfigNode>& sources, std::string_view p
 /// "cruise_speed_mps" of "autopilot.flight_model.cruise_speed_mps".
 std::string short_key(const std::string& key);
 
-/// " (did you mean NAME?)", of the known name that `word` most likely meant; empty where none is near.
-std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
+/// The line where `top` has the key "a.b", or else the group that would hold it.
+std::string nearest_origin(const ConfigNode& top, std::string key);
 
-/// Throws ScenarioError "file:line: key: expected ...". This and what follows is for files whose keys are no
-/// struct's fields: campaigns, tunings, suites of recordings.
-[[noreturn]] void refuse_key(const ConfigNode& node, const std::string& key, const std::string& expected);
-
-/// Refuses the first key that is none of `known`; `within` is what stands before it in the message.
-void require_known_keys(const ConfigNode& map, const std::vector<std::string>& known,
-                        const std::string& within);
-
-/// A scalar, or each scalar of a list; refuses anything else, and nothing.
-std::vector<std::string> words_of(const ConfigNode& node, const std::string& key,
-                                  const std::string& expected);
-
-/// What is no number, or lies outside minimum .. maximum, is refused.
-double number_of(const ConfigNode& node, const std::string& key, double minimum, double maximum);
-int whole_number_of(const ConfigNode& node, const std::string& key, int minimum, int maximum);
+/// Throws ScenarioError "file:line: key: expected ...", with the nearest_origin() of the key.
+[[noreturn]] void refuse_key(const ConfigNode& top, const std::string& key, const std::string& expected);
+/// The same without "expected".
+[[noreturn]] void refuse_key_since(const ConfigNode& top, const std::string& key, const std::string& what);
 
 /// A JSON text's value, discarded (is_discarded()) where the text is broken or nests more than 16 levels.
 /// Files that are large are refused before: read_file(file, maximum_json_bytes).

@@ -1,12 +1,16 @@
 #include "scenarios/config/keys.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <memory>
 #include <stdexcept>
 
-#include "scenarios/config/config_reader.hpp"
-#include "scenarios/config/config_writer.hpp"
+#include "scenarios/config/any_config.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/config/field_writer.hpp"
 
 namespace understory {
 namespace {
@@ -54,21 +58,85 @@ std::string unit_of(std::string_view name) {
   return "";
 }
 
+class KeyLister : public FieldVisitor {
+ public:
+  explicit KeyLister(std::string prefix) : prefix_(std::move(prefix)) {}
+
+  void truth(std::string_view name, bool& value, std::string_view meaning) override {
+    add(name, value ? "true" : "false", "true | false", meaning);
+  }
+  void word(std::string_view name, std::string& value, std::string_view meaning) override {
+    add(name, value, "a word", meaning);
+  }
+  void choice(std::string_view name, std::size_t& chosen, const std::vector<std::string>& words,
+              std::string_view meaning) override {
+    add(name, chosen < words.size() ? words[chosen] : "", fmt::format("{}", fmt::join(words, " | ")),
+        meaning);
+  }
+  void numbers(std::string_view name, FieldNumbers& numbers, std::string_view meaning) override {
+    const bool optional = numbers.shape == Shape::optional;
+    const std::string values = text_of_values(numbers);
+    const bool is_list = numbers.shape == Shape::three || numbers.shape == Shape::list;
+    const std::string value = is_list                      ? fmt::format("[{}]", values)
+                              : optional && values.empty() ? "~"
+                                                           : values;
+    add(name, value,
+        numbers.whole ? fmt::format("{:.0f} .. {:.0f}", numbers.minimum, numbers.maximum)
+                      : fmt::format("{} .. {}", numbers.minimum, numbers.maximum),
+        meaning);
+    if (optional) return;
+    Key& key = keys.back();
+    key.numbers = numbers.values;
+    key.minimum = numbers.minimum;
+    key.maximum = numbers.maximum;
+    key.whole = numbers.whole;
+  }
+  void seed(std::string_view name, std::uint64_t& value, std::uint64_t maximum,
+            std::string_view meaning) override {
+    add(name, fmt::format("{}", value), fmt::format("0 .. {}", maximum), meaning);
+  }
+  void group(std::string_view name, const Fields& fields) override { list_below(std::string(name), fields); }
+  void list(std::string_view name, const FieldList& list) override {
+    list_below(std::string(name) + "[]", [&](FieldVisitor& visit) { list.visit(visit, list.size); });
+  }
+
+  std::vector<Key> keys;
+
+ private:
+  void list_below(const std::string& name, const Fields& fields) {
+    const std::vector<Key> below = list_keys(fields, prefix_ + name + ".");
+    keys.insert(keys.end(), below.begin(), below.end());
+  }
+  void add(std::string_view name, std::string value, std::string range, std::string_view meaning) {
+    Key key = key_of(prefix_ + std::string(name), meaning);
+    key.value = std::move(value);
+    key.range = std::move(range);
+    keys.push_back(std::move(key));
+  }
+
+  std::string prefix_;
+};
+
+void require_plain_keys(const std::string& part, const ConfigNode& map) {
+  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+  for (const ConfigNode& node : map.children) {
+    if (map.kind == ConfigNode::Kind::map &&
+        (node.key.empty() || node.key.find_first_not_of(plain) != std::string::npos))
+      throw ScenarioError(
+          fmt::format("{}: {}: a key's name must be letters, digits and '_'", part, node.key));
+    require_plain_keys(part, node);
+  }
+}
+
 }  // namespace
 
 void require_sound_keys(const std::string& part, const AnyConfig& keys) try {
   const std::unique_ptr<AnyConfig> written = keys.clone(), read = keys.clone();
-  KeyLister lister;
-  visit_fields(lister, *written);
-  for (const Key& key : lister.keys())
-    if (key.name.empty() ||
-        key.name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") !=
-            std::string::npos)
-      throw ScenarioError(
-          fmt::format("{}: {}: a key's name must be letters, digits and '_'", part, key.name));
-  ConfigWriter writer;
-  visit_fields(writer, *written);
-  if (!lister.keys().empty()) read_config(parse_yaml(writer.text(), part), *read);
+  const std::string text = write_fields(fields_of(*written));
+  if (text.empty()) return;
+  const ConfigNode tree = parse_yaml(text, part);
+  require_plain_keys(part, tree);
+  read_config(tree, *read);
 } catch (const InputError& error) {
   throw std::invalid_argument(error.what());
 }
@@ -85,11 +153,10 @@ Key key_of(std::string_view name, std::string_view text) {
   return {std::string(name), "", unit.empty() ? unit_of(name) : unit, "", meaning, source};
 }
 
-void KeyLister::add(std::string_view name, std::string value, std::string range, std::string_view meaning) {
-  Key key = key_of(prefix_ + std::string(name), meaning);
-  key.value = std::move(value);
-  key.range = std::move(range);
-  keys_.push_back(std::move(key));
+std::vector<Key> list_keys(const Fields& fields, const std::string& prefix) {
+  KeyLister lister(prefix);
+  fields(lister);
+  return lister.keys;
 }
 
 }  // namespace understory

@@ -53,7 +53,7 @@ VisionConfig vision_for(const DetectionOptions& options, const StereoRig& rig) {
   VisionConfigSources sources = options.vision;
   sources.one_depth = options.calibration.detection_depth_m.has_value();  // --depth goes before the preset's
   const VisionConfig config = read_vision_config(sources, name);
-  check_depths(config.pushbroom, rig, "perception.depths_m", "perception.pushbroom");
+  check_depths(config.pushbroom(), rig, "perception.depths_m", "perception.pushbroom");
   return config;
 }
 
@@ -161,7 +161,7 @@ DetectionResult described(const CalibratedRig& camera, const ObstacleDetector& d
     for (int i = 0; i < pushbroom->depth_count(); ++i)
       result.depths.push_back({pushbroom->detection_depth_m(i), pushbroom->detection_disparity_px(i),
                                pushbroom->one_pixel_interval(i)});
-  result.last_row_px = camera.rig.scaled_row_px(config.pushbroom.last_row_px);
+  result.last_row_px = camera.rig.scaled_row_px(config.pushbroom().last_row_px);
   result.frames_expected = recording.frame_count();
   result.unpaired_images = recording.unpaired();
   return result;

@@ -13,15 +13,9 @@ RecordedDetector::RecordedDetector(const VisionConfig& config, const std::string
   if (!part.needs_images)
     throw ScenarioError(
         fmt::format("perception.detector: {} looks at no images; recordings have nothing else", name));
-  PerceptionSection& perception = scenario_.perception;
-  perception.detector = name;
-  perception.pushbroom = config.pushbroom;
-  perception.stereo_bm = config.stereo_bm;
-  perception.stereo_sgbm = config.stereo_sgbm;
-  perception.full_stereo = config.full_stereo;
-  perception.compute = config.compute;
-  perception.plugged = config.plugged;
-  detector_ = checked(part, {scenario_, rig_, no_obstacles_, truth_, perception.plugged.find(part.name), 1});
+  scenario_.perception = config;
+  scenario_.perception.detector = name;
+  detector_ = checked(part, {scenario_, rig_, no_obstacles_, truth_, 1});
 }
 
 double RecordedDetector::cost_s() const {

@@ -20,19 +20,22 @@ namespace understory {
 /// or not.
 struct EvaluationSettings : VisionConfig {
   int every = 1;                                  ///< every n-th frame only
-  std::vector<std::string> detectors = {};        ///< further ones, by the names of their parts
+  std::vector<std::string> more_detectors = {};   ///< further ones, by the names of their parts
   std::vector<DisparityFolder> disparities = {};  ///< of other programs
 };
 
 /// The algorithms that every evaluation has; the first four have to be computed, and so have those that
 /// follow all six: the settings' detectors, then their disparities. All look at the same depths, detectors of
 /// one's own where they like.
-enum AlgorithmIndex { our_rule, the_papers_rule, stereo_bm, stereo_sgbm, true_depth, at_random };
+namespace algorithm {
+enum Index : std::size_t { our_rule, the_papers_rule, stereo_bm, stereo_sgbm, true_depth, at_random };
+}
 inline constexpr std::size_t algorithm_count = 6, computed_count = 4;
 inline constexpr std::array<const char*, algorithm_count> algorithm_names{
     "pushbroom", "pushbroom, original", "StereoBM", "StereoSGBM", "true depth", "random"};
 /// Those that go through the paper's own evaluations.
-inline constexpr std::array<AlgorithmIndex, 3> published_algorithms{our_rule, the_papers_rule, at_random};
+inline constexpr std::array<algorithm::Index, 3> published_algorithms{
+    algorithm::our_rule, algorithm::the_papers_rule, algorithm::at_random};
 
 /// Settings of one algorithm's threshold from lax to strict, at one pixel, over all frames.
 struct PrecisionRecallCurve {

@@ -169,9 +169,10 @@ void write_evaluation(const Evaluation& evaluation, const fs::path& folder, cons
   if (evaluation.has_depth()) {
     write_plots("precision_recall.svg", {precision_recall_plot(evaluation)});
     write_plots("response.svg", {response_plot(evaluation)});
-    write_picture(folder / "heat_map.png", heat_maps(evaluation.all.tallies[our_rule], "pushbroom"));
+    write_picture(folder / "heat_map.png",
+                  heat_maps(evaluation.all.tallies[algorithm::our_rule], "pushbroom"));
     write_picture(folder / "heat_map_paper.png",
-                  heat_maps(evaluation.all.tallies[the_papers_rule], "pushbroom, original"));
+                  heat_maps(evaluation.all.tallies[algorithm::the_papers_rule], "pushbroom, original"));
     page.insert(page.begin() + 1, write_worst_frames(evaluation, folder / "worst"));
   }
   if (evaluation.has_objects()) {

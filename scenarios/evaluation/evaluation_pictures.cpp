@@ -134,7 +134,7 @@ std::vector<WorstPicture> worst_pictures(const Evaluation& evaluation) {
   for (const auto& [worst, recording] : all) {
     EvaluationRecording source(recording->folder);
     cv::Mat picture =
-        annotated_frame(source.frame(worst.index), recording->rig, evaluation.settings.pushbroom);
+        annotated_frame(source.frame(worst.index), recording->rig, evaluation.settings.pushbroom());
     const std::string caption =
         fmt::format("{}, frame {}", recording->folder.filename().string(), worst.index);
     write_line(picture, caption, {8, 18});
@@ -201,7 +201,7 @@ LinePlot first_hits_plot(const Evaluation& evaluation) {
   plot.title = "Obstacles within 3 m of the path: found by then";
   plot.x_label = "true distance, m";
   plot.y_label = "% of obstacles";
-  for (const std::size_t i : {our_rule, the_papers_rule, stereo_bm}) {
+  for (const std::size_t i : {algorithm::our_rule, algorithm::the_papers_rule, algorithm::stereo_bm}) {
     std::vector<double> first_m, third_m;
     std::size_t of = 0;
     for (const ObstacleSighting& sighting : evaluation.all.sightings[i]) {

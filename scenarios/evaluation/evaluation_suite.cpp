@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <set>
 
 #include "scenarios/config/config_tree.hpp"
@@ -27,6 +28,34 @@ struct SuiteRecording {
   std::vector<std::string> arguments;  ///< further ones: --path, --walk, --height
 };
 
+/// An entry of the file as it stands: a recording for each seed.
+struct SuiteEntry {
+  std::string name, scenario, path;
+  std::vector<std::string> seeds;
+  std::optional<double> walk_mps, height_m;
+  ConfigNode set;
+};
+
+void visit_fields(FieldVisitor& visit, SuiteEntry& entry) {
+  visit("name", entry.name);
+  visit("scenario", entry.scenario);
+  visit("seeds", entry.seeds, "the seeds to fly, for instance 1..200");
+  visit("path", entry.path);
+  visit("walk_mps", entry.walk_mps, 0.1, 5.0);
+  visit("height_m", entry.height_m, 0.3, 8.0);
+  visit("set", entry.set);
+}
+
+struct SuiteText {
+  std::vector<SuiteEntry> recordings;
+  ConfigNode set;
+};
+
+void visit_fields(FieldVisitor& visit, SuiteText& text) {
+  visit("recordings", text.recordings);
+  visit("set", text.set);
+}
+
 /// YAML in one line again, as --set takes it.
 std::string value_text(const ConfigNode& value) {
   if (value.kind != ConfigNode::Kind::list) return value.text;
@@ -35,60 +64,43 @@ std::string value_text(const ConfigNode& value) {
   return fmt::format("[{}]", fmt::join(parts, ", "));
 }
 
-void add_settings(const ConfigNode* set, std::vector<std::string>& settings) {
-  if (set == nullptr) return;
-  if (set->kind != ConfigNode::Kind::map) refuse_key(*set, "set", "a group {key: value, ...}");
-  for (const ConfigNode& node : set->children) settings.push_back(node.key + "=" + value_text(node));
+void add_settings(const ConfigNode& set, const ConfigNode& top, const std::string& key,
+                  std::vector<std::string>& settings) {
+  if (set.kind != ConfigNode::Kind::map && !set.origin.empty())
+    refuse_key(top, key, "a group {key: value, ...}");
+  for (const ConfigNode& node : set.children) settings.push_back(node.key + "=" + value_text(node));
 }
 
-std::string word(const ConfigNode& entry, const char* key, const char* expected) {
-  const ConfigNode* node = find_child(entry, key);
-  if (node == nullptr || node->kind != ConfigNode::Kind::scalar || node->text.empty())
-    refuse_key(node == nullptr ? entry : *node, std::string("recordings.") + key, expected);
-  return node->text;
-}
-
-/// The entry's recordings: one for each seed.
-std::vector<SuiteRecording> recordings_of(const ConfigNode& entry, const ConfigNode* set_of_all,
+/// The entry's recordings: one for each seed. `here` is its key: "recordings[0]".
+std::vector<SuiteRecording> recordings_of(const SuiteEntry& entry, const ConfigNode& set_of_all,
+                                          const ConfigNode& top, const std::string& here,
                                           const fs::path& folder, const FindScenario& find_scenario) {
-  if (entry.kind != ConfigNode::Kind::map)
-    refuse_key(entry, "recordings", "{name: ..., scenario: ..., seeds: ...}");
-  require_known_keys(entry, {"name", "scenario", "seeds", "path", "walk_mps", "height_m", "set"},
-                     "recordings.");
-  const std::string name = word(entry, "name", "a name of letters, digits and . _ = -");
-  if (!is_plain_name(name)) refuse_key(entry, "recordings.name", "a name of letters, digits and . _ = -");
-  const std::string scenario = word(entry, "scenario", "a scenario");
+  if (!is_plain_name(entry.name)) refuse_key(top, here + ".name", "a name of letters, digits and . _ = -");
+  if (entry.scenario.empty()) refuse_key(top, here + ".scenario", "a scenario");
   SuiteRecording recording;
-  recording.origin = entry.origin;
+  recording.origin = nearest_origin(top, here);
   recording.scenario =
-      scenario_beside(folder / "suite", *find_child(entry, "scenario"), scenario, find_scenario);
-  if (find_child(entry, "path") != nullptr && find_child(entry, "walk_mps") != nullptr)
-    refuse_input(find_child(entry, "walk_mps")->origin, "recordings.walk_mps",
-                 "path and walk_mps exclude each other");
-  if (const ConfigNode* height = find_child(entry, "height_m"); height != nullptr) {
-    number_of(*height, "recordings.height_m", 0.3, 8);
-    if (find_child(entry, "walk_mps") == nullptr)
-      refuse_input(height->origin, "recordings.height_m", "requires walk_mps: it is the height of a walk");
-  }
-  if (const ConfigNode* walk = find_child(entry, "walk_mps")) number_of(*walk, "recordings.walk_mps", 0.1, 5);
-  if (find_child(entry, "path") != nullptr) {
-    const fs::path path = folder / word(entry, "path", "a file of poses");
+      scenario_beside(folder / "suite", top, here + ".scenario", entry.scenario, find_scenario);
+  if (!entry.path.empty() && entry.walk_mps)
+    refuse_key_since(top, here + ".walk_mps", "path and walk_mps exclude each other");
+  if (entry.height_m && !entry.walk_mps)
+    refuse_key_since(top, here + ".height_m", "requires walk_mps: it is the height of a walk");
+  if (!entry.path.empty()) {
+    const fs::path path = folder / entry.path;
     std::error_code ignored;
     if (!fs::is_regular_file(path, ignored))
-      refuse_key(*find_child(entry, "path"), "recordings.path",
-                 "a file of poses, found none at " + path.string());
+      refuse_key(top, here + ".path", "a file of poses, found none at " + path.string());
     recording.arguments.insert(recording.arguments.end(), {"--path", path.string()});
   }
-  if (find_child(entry, "walk_mps") != nullptr)
-    recording.arguments.push_back("--walk=" + word(entry, "walk_mps", "a speed"));
-  if (find_child(entry, "height_m") != nullptr)
-    recording.arguments.insert(recording.arguments.end(), {"--height", word(entry, "height_m", "a height")});
-  add_settings(set_of_all, recording.settings);
-  add_settings(find_child(entry, "set"), recording.settings);
+  if (entry.walk_mps) recording.arguments.push_back(fmt::format("--walk={}", *entry.walk_mps));
+  if (entry.height_m)
+    recording.arguments.insert(recording.arguments.end(), {"--height", fmt::format("{}", *entry.height_m)});
+  add_settings(set_of_all, top, "set", recording.settings);
+  add_settings(entry.set, top, here + ".set", recording.settings);
   std::vector<SuiteRecording> recordings;
-  for (const std::uint64_t seed : seeds_in(entry, "seeds", "recordings.")) {
+  for (const std::uint64_t seed : seeds_in(entry.seeds, top, here + ".seeds")) {
     recordings.push_back(recording);
-    recordings.back().name = fmt::format("{}-{}", name, seed);
+    recordings.back().name = fmt::format("{}-{}", entry.name, seed);
     recordings.back().settings.push_back(fmt::format("seed={}", seed));
   }
   return recordings;
@@ -96,21 +108,21 @@ std::vector<SuiteRecording> recordings_of(const ConfigNode& entry, const ConfigN
 
 std::vector<SuiteRecording> load_suite(const fs::path& file, const FindScenario& find_scenario) {
   const ConfigNode top = parse_config_file(file);
-  require_known_keys(top, {"recordings", "set"}, "");
-  const ConfigNode* list = find_child(top, "recordings");
-  if (list == nullptr || list->kind != ConfigNode::Kind::list || list->children.empty())
-    refuse_key(list == nullptr ? top : *list, "recordings",
-               "a list [{name: ..., scenario: ..., seeds: ...}, ...]");
+  SuiteText text;
+  read_config(top, text);
+  if (text.recordings.empty())
+    refuse_key(top, "recordings", "a list [{name: ..., scenario: ..., seeds: ...}, ...]");
   std::vector<SuiteRecording> suite;
   std::set<std::string> names;
-  for (const ConfigNode& entry : list->children)
+  for (std::size_t i = 0; i < text.recordings.size(); ++i) {
+    const std::string here = fmt::format("recordings[{}]", i);
     for (SuiteRecording& recording :
-         recordings_of(entry, find_child(top, "set"), file.parent_path(), find_scenario)) {
+         recordings_of(text.recordings[i], text.set, top, here, file.parent_path(), find_scenario)) {
       if (!names.insert(recording.name).second)
-        refuse_key(entry, "recordings",
-                   fmt::format("each recording once, {} is given twice", recording.name));
+        refuse_key(top, here, fmt::format("each recording once, {} is given twice", recording.name));
       suite.push_back(std::move(recording));
     }
+  }
   return suite;
 }
 

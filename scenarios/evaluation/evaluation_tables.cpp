@@ -147,13 +147,13 @@ EvaluationTable scenes_table(const Evaluation& evaluation) {
                "of", "found 3 m", "of", "hidden"}};
   for_each_scene(evaluation, [&](const EvaluationSum& sum) {
     std::int64_t hidden = 0;
-    const Share near = found_within(sum.sightings[our_rule], 1),
-                far = found_within(sum.sightings[our_rule], 3, &hidden);
-    const VisionTally& tally = sum.tallies[our_rule];
-    table.add(sum.name, sum.recordings, number_text(sum.seconds, 1), per_frame(sum.hits[our_rule], sum, 1),
-              share_text(tally.at_one_pixel().precision), share_text(tally.at_one_pixel().recall),
-              number_text(tally.false_per_second(), 0), share_text(near), near.of, share_text(far), far.of,
-              hidden);
+    const Share near = found_within(sum.sightings[algorithm::our_rule], 1),
+                far = found_within(sum.sightings[algorithm::our_rule], 3, &hidden);
+    const VisionTally& tally = sum.tallies[algorithm::our_rule];
+    table.add(sum.name, sum.recordings, number_text(sum.seconds, 1),
+              per_frame(sum.hits[algorithm::our_rule], sum, 1), share_text(tally.at_one_pixel().precision),
+              share_text(tally.at_one_pixel().recall), number_text(tally.false_per_second(), 0),
+              share_text(near), near.of, share_text(far), far.of, hidden);
   });
   return {"scenes", "The pushbroom in every scene, at one pixel", std::move(table)};
 }
@@ -200,7 +200,7 @@ EvaluationTable on_the_path_table(const Evaluation& evaluation) {
 
 EvaluationTable parts_table(const Evaluation& evaluation) {
   Table table{{"by", "part", "detections", "precision", "blocks", "recall"}};
-  for (const auto& [name, bins] : evaluation.all.tallies[our_rule].parts)
+  for (const auto& [name, bins] : evaluation.all.tallies[algorithm::our_rule].parts)
     for (const auto& [bin, rates] : bins) {
       const std::size_t space = bin.find(' ');  // behind the number that sorts
       const bool numbered = name != "kind" && space != std::string::npos;
@@ -286,7 +286,7 @@ Table obstacles_table(const Evaluation& evaluation) {
   Table table{{"recording", "object", "name", "kind", "miss_m", "on_the_path", "hidden", "blocks_in_view",
                "hits", "first_hit_m", "third_hit_m"}};
   for (const RecordingEvaluation& recording : evaluation.recordings)
-    for (const ObstacleSighting& sighting : recording.sum.sightings[our_rule]) {
+    for (const ObstacleSighting& sighting : recording.sum.sightings[algorithm::our_rule]) {
       const auto object = std::ranges::find(recording.objects, sighting.object, &RecordedObject::number);
       table.add(recording.folder.filename().string(), sighting.object, object->name, object->kind,
                 number_text(sighting.miss_m, 3), sighting.on_the_path ? "1" : "0",

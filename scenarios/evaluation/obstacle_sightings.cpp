@@ -6,14 +6,15 @@
 #include <set>
 #include <utility>
 
+#include "planning/airframe.hpp"
 #include "scenarios/flight/clearance.hpp"
 
 namespace understory {
 namespace {
 
-constexpr double half_span_m = 0.4318;  // span 0.8636 m: docs/sources.md [3]
-constexpr double straight_on_m = 15;    // farther than any depth looked at
-constexpr double passed_by_m = 0.5;     // the path goes on at least this far beyond
+const double half_span_m = 0.5 * Airframe().span_m;  // a scenario can name no other span
+constexpr double straight_on_m = 15;                 // farther than any depth looked at
+constexpr double passed_by_m = 0.5;                  // the path goes on at least this far beyond
 
 }  // namespace
 

@@ -36,10 +36,10 @@ std::string scene_of(const fs::path& folder) {
 }
 
 /// Of a frame, on the aircraft's computer. What disparities cost nobody knows.
-double cost_s(std::size_t algorithm, const ComputeConfig& compute) {
-  if (algorithm >= algorithm_count) return 0;
-  if (algorithm == stereo_bm) return compute.factor * compute.stereo_bm_s;
-  if (algorithm == stereo_sgbm) return compute.factor * compute.stereo_sgbm_s;
+double cost_s(std::size_t index, const ComputeConfig& compute) {
+  if (index >= algorithm_count) return 0;
+  if (index == algorithm::stereo_bm) return compute.factor * compute.stereo_bm_s;
+  if (index == algorithm::stereo_sgbm) return compute.factor * compute.stereo_sgbm_s;
   return compute.factor * compute.pushbroom_s;
 }
 
@@ -65,11 +65,13 @@ class CurveSweeps {
  public:
   CurveSweeps(const StereoRig& rig, const DetectionGrid& grid, const EvaluationSettings& settings)
       : grid_(grid) {
-    const FullStereoCrop crop = crop_beside(settings.pushbroom, rig);
-    add_rule(rig, algorithm_names[our_rule], settings.pushbroom);
-    add_rule(rig, algorithm_names[the_papers_rule], papers_rule_beside(settings.pushbroom));
-    add_full_stereo(rig, algorithm_names[stereo_bm], settings.stereo_bm, crop, {0, 5, 10, 18, 30, 50});
-    add_full_stereo(rig, algorithm_names[stereo_sgbm], settings.stereo_sgbm, crop, {0, 10, 30, 60});
+    const FullStereoCrop crop = crop_beside(settings.pushbroom(), rig);
+    add_rule(rig, algorithm_names[algorithm::our_rule], settings.pushbroom());
+    add_rule(rig, algorithm_names[algorithm::the_papers_rule], papers_rule_beside(settings.pushbroom()));
+    add_full_stereo(rig, algorithm_names[algorithm::stereo_bm],
+                    settings.detectors.of<StereoBmConfig>("stereo_bm"), crop, {0, 5, 10, 18, 30, 50});
+    add_full_stereo(rig, algorithm_names[algorithm::stereo_sgbm],
+                    settings.detectors.of<StereoSgbmConfig>("stereo_sgbm"), crop, {0, 10, 30, 60});
   }
 
   void add(const EvaluationFrame& frame, const std::vector<ExpectedBlock>& expected) {
@@ -142,13 +144,13 @@ class Evaluator {
   Evaluator(const fs::path& folder, const EvaluationSettings& settings)
       : settings_(settings),
         recording_(folder),
-        grid_(recording_.rig(), stated_depths_m(settings.pushbroom, recording_.rig()),
-              settings.pushbroom.last_row_px) {
+        grid_(recording_.rig(), stated_depths_m(settings.pushbroom(), recording_.rig()),
+              settings.pushbroom().last_row_px) {
     const StereoRig& rig = recording_.rig();
-    check_depths(settings.pushbroom, rig, "perception.depths_m", "perception.pushbroom");
+    check_depths(settings.pushbroom(), rig, "perception.depths_m", "perception.pushbroom");
     for (const RecordedObject& object : recording_.objects()) kinds_[object.number] = object.kind;
-    const PushbroomConfig paper = papers_rule_beside(settings.pushbroom);
-    const FullStereoCrop crop = crop_beside(settings.pushbroom, rig);
+    const PushbroomConfig paper = papers_rule_beside(settings.pushbroom());
+    const FullStereoCrop crop = crop_beside(settings.pushbroom(), rig);
     if (recording_.is_raw() && !settings.disparities.empty())
       throw ScenarioError(fmt::format(
           "{}: --disparities requires a recording of rectified images; this one has raw ones (record without "
@@ -156,19 +158,22 @@ class Evaluator {
           folder.string()));
     result_.sum.make_room(settings);
     const std::size_t count = result_.sum.algorithms.size();
-    auto block_matching = std::make_unique<FullStereoDetector>(rig, settings.stereo_bm, crop);
-    auto semi_global = std::make_unique<FullStereoDetector>(rig, settings.stereo_sgbm, crop);
-    dense_ = {{stereo_bm, &block_matching->depth_m()}, {stereo_sgbm, &semi_global->depth_m()}};
+    auto block_matching =
+        std::make_unique<FullStereoDetector>(rig, settings.detectors.of<StereoBmConfig>("stereo_bm"), crop);
+    auto semi_global = std::make_unique<FullStereoDetector>(
+        rig, settings.detectors.of<StereoSgbmConfig>("stereo_sgbm"), crop);
+    dense_ = {{algorithm::stereo_bm, &block_matching->depth_m()},
+              {algorithm::stereo_sgbm, &semi_global->depth_m()}};
     detectors_.resize(count);
-    detectors_[our_rule] = std::make_unique<PushbroomStereo>(rig, settings.pushbroom);
-    detectors_[the_papers_rule] = std::make_unique<PushbroomStereo>(rig, paper);
+    detectors_[algorithm::our_rule] = std::make_unique<PushbroomStereo>(rig, settings.pushbroom());
+    detectors_[algorithm::the_papers_rule] = std::make_unique<PushbroomStereo>(rig, paper);
     stereo_bm_ = block_matching.get();
-    detectors_[stereo_bm] = std::move(block_matching);
-    detectors_[stereo_sgbm] = std::move(semi_global);
+    detectors_[algorithm::stereo_bm] = std::move(block_matching);
+    detectors_[algorithm::stereo_sgbm] = std::move(semi_global);
     std::vector<double> costs_s(count);
     for (std::size_t i = 0; i < count; ++i) costs_s[i] = cost_s(i, settings.compute);
     std::size_t next = algorithm_count;
-    for (const std::string& name : settings.detectors) {
+    for (const std::string& name : settings.more_detectors) {
       brought_.push_back(std::make_unique<RecordedDetector>(settings, name, rig));
       costs_s[next++] = brought_.back()->cost_s();
     }
@@ -186,7 +191,7 @@ class Evaluator {
     }
     for (const bool on : {false, true})
       for (const auto& [name, rule] :
-           {std::pair("original", paper), std::pair("as given", settings.pushbroom)}) {
+           {std::pair("original", paper), std::pair("as given", settings.pushbroom())}) {
         PushbroomConfig filtered = rule;
         filtered.horizontal_invariance = on;
         invariance_.emplace_back(rig, filtered);
@@ -231,8 +236,10 @@ class Evaluator {
       result_.sum.cost_ms[i].push_back(1e3 * seconds_since(begin));
       hits_[i] = seen;
     }
-    hits_[at_random] = random_hits(hits_[our_rule].size(), grid_, recording_.rig(), random_);
-    if (recording_.has_depth()) hits_[true_depth] = true_depth_hits(frame.truth, grid_, recording_.rig());
+    hits_[algorithm::at_random] =
+        random_hits(hits_[algorithm::our_rule].size(), grid_, recording_.rig(), random_);
+    if (recording_.has_depth())
+      hits_[algorithm::true_depth] = true_depth_hits(frame.truth, grid_, recording_.rig());
     for (std::size_t i = 0; i < hits_.size(); ++i)
       result_.sum.hits[i] += static_cast<std::int64_t>(hits_[i].size());
   }
@@ -250,7 +257,7 @@ class Evaluator {
   void keep_if_bad(const EvaluationFrame& frame, std::size_t index) {
     constexpr std::size_t apart = 30;
     int false_positives = 0;
-    for (const StereoHit& hit : hits_[our_rule])
+    for (const StereoHit& hit : hits_[algorithm::our_rule])
       false_positives += !true_within(hit, frame.truth, grid_)[one_pixel];
     if (false_positives == 0) return;
     std::vector<WorstFrame>& bad = result_.worst;

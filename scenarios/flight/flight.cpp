@@ -67,7 +67,7 @@ void Flight::step() {
   while (std::optional<StereoFrame> frame = computer_.next_frame(clock_.t_ns())) process(std::move(*frame));
   act();
   tell(&FlightObserver::on_step);
-  const bool stopped_by_leaves = scenario_.world.world.woods.leaves_end_flight && in_leaves();
+  const bool stopped_by_leaves = scenario_.world.woods.leaves_end_flight && in_leaves();
   outcome_ =
       referee_.outcome_at(truth(), stopped_by_leaves ? Contact::obstacle : aircraft_.contact(), launched());
   if (outcome_)
@@ -91,7 +91,7 @@ void Flight::expose() {
   const std::int64_t arrival_ns = t_ns + latency_ns;
   const bool taken = computer_.will_take(arrival_ns, clock_.next_camera_t_ns() + latency_ns) ||
                      !scenario_.every_frame_arrives();
-  StereoFrame frame{t_ns - scenario_.cameras.cameras.exposure_lag_ns(), {}, {}};
+  StereoFrame frame{t_ns - scenario_.cameras.exposure_lag_ns(), {}, {}};
   if (cameras_ && taken && is_looked_at()) {
     const auto timed = stopwatch_.time("render");
     frame = cameras_->capture(truth().T_world_body, t_ns);

@@ -8,7 +8,7 @@
 #include "perception/io/text_file.hpp"
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "scenarios/config/bad_input.hpp"
-#include "scenarios/config/config_writer.hpp"
+#include "scenarios/config/field_writer.hpp"
 #include "scenarios/config/named_seed.hpp"
 #include "scenarios/flight/actions.hpp"
 #include "scenarios/output/file_output.hpp"
@@ -41,7 +41,7 @@ std::unique_ptr<StereoCameras> cameras_of(const Scenario& scenario, const World&
   constexpr std::size_t drawing_bytes = std::size_t{320} << 20;
   require_address_space(drawing_bytes, "drawing");
   try {
-    return std::make_unique<StereoCameras>(world, rig.rig, scenario.cameras.cameras, seeds, rig.calibration,
+    return std::make_unique<StereoCameras>(world, rig.rig, scenario.cameras, seeds, rig.calibration,
                                            renderer);
   } catch (const std::runtime_error& error) {
     const std::string lacking = lacking_resource();
@@ -64,26 +64,23 @@ std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const Ca
                                               const std::vector<Obstacle>& obstacles,
                                               const TruthHistory& history) {
   const DetectorPart& part = scenario.perception.part();
-  return checked(part, {scenario, rig, obstacles, history, scenario.perception.plugged.find(part.name),
-                        seed_for(scenario.seed, "detector")});
+  return checked(part, {scenario, rig, obstacles, history, seed_for(scenario.seed, "detector")});
 }
 
 std::unique_ptr<StateSource> state_source_of(const Scenario& scenario, const CalibratedRig& rig,
                                              const std::vector<Obstacle>& obstacles,
                                              const TruthHistory& history) {
   const StateSourcePart& part = *parts().state_sources.find(scenario.estimation.source);
-  return checked(part, {scenario, rig, obstacles, history, scenario.estimation.plugged.find(part.name),
-                        seed_for(scenario.seed, "state_source")});
+  return checked(part, {scenario, rig, obstacles, history, seed_for(scenario.seed, "state_source")});
 }
 
 std::unique_ptr<Planner> planner_of(const Scenario& scenario) {
   const AutopilotSection& autopilot = scenario.autopilot;
-  const FlightModel model(scenario.airframe, autopilot.autopilot.flight_model);
+  const FlightModel model(scenario.airframe, autopilot.flight_model);
   const Mission mission = scenario.mission();
   const PlannerPart& part = *parts().planners.find(autopilot.method);
-  const PlannerContext context{autopilot.autopilot.planner, model, mission,
-                               seed_for(scenario.seed, "planner")};
-  return checked(part, {context, scenario, autopilot.plugged.find(part.name)});
+  const PlannerContext context{autopilot.planner, model, mission, seed_for(scenario.seed, "planner")};
+  return checked(part, {context, scenario});
 }
 
 std::unique_ptr<Pilot> pilot_of(const Scenario& scenario) {
@@ -95,8 +92,8 @@ std::unique_ptr<Pilot> pilot_of(const Scenario& scenario) {
 }
 
 AutopilotConfig autopilot_config_of(const Scenario& scenario, const StereoRig& rig) {
-  AutopilotConfig config = scenario.autopilot.autopilot;
-  config.resightings.depths_m = stated_depths_m(scenario.perception.pushbroom, rig);
+  AutopilotConfig config = scenario.autopilot;
+  config.resightings.depths_m = stated_depths_m(scenario.perception.pushbroom(), rig);
   return config;
 }
 

@@ -352,7 +352,7 @@ int pixels_in_view(const FlightLog& log, const Eigen::Isometry3d& T_world_body, 
   const Eigen::Isometry3d T_world_camera = T_world_body * rig.T_body_camera;
   const Eigen::Vector3d eye_world = T_world_camera.translation();
   const Obstacle& target = log.obstacles[obstacle];
-  if (distance_m(eye_world, target) > log.scenario.cameras.cameras.view_distance_m) return 0;
+  if (distance_m(eye_world, target) > log.scenario.cameras.view_distance_m) return 0;
   const ImageWindow window = window_of(rig, T_world_camera.inverse(), target);
   int pixels = 0;
   for (int row = window.first_row; row <= window.last_row; ++row)

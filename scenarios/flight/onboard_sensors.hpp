@@ -19,12 +19,12 @@ class FlightClock {
  public:
   explicit FlightClock(const Scenario& scenario, std::int64_t step = 0)
       : step_(step),
-        imu_steps_(physics_rate_hz / scenario.sensors.sensors.imu_rate_hz),
-        pitot_steps_(physics_rate_hz / scenario.sensors.sensors.pitot_rate_hz),
-        barometer_steps_(physics_rate_hz / scenario.sensors.sensors.barometer_rate_hz),
-        magnetometer_steps_(physics_rate_hz / scenario.sensors.sensors.magnetometer_rate_hz),
-        gps_steps_(physics_rate_hz / scenario.sensors.sensors.gps_rate_hz),
-        gps_enabled_(scenario.sensors.sensors.gps.enabled),
+        imu_steps_(physics_rate_hz / scenario.sensors.imu_rate_hz),
+        pitot_steps_(physics_rate_hz / scenario.sensors.pitot_rate_hz),
+        barometer_steps_(physics_rate_hz / scenario.sensors.barometer_rate_hz),
+        magnetometer_steps_(physics_rate_hz / scenario.sensors.magnetometer_rate_hz),
+        gps_steps_(physics_rate_hz / scenario.sensors.gps_rate_hz),
+        gps_enabled_(scenario.sensors.gps.enabled),
         camera_steps_(physics_rate_hz / scenario.cameras.rate_hz),
         replan_steps_(physics_rate_hz / scenario.autopilot.replan_rate_hz) {}
 
@@ -83,13 +83,13 @@ class OnboardSensors {
 };
 
 inline OnboardSensors::OnboardSensors(const Scenario& scenario)
-    : imu_(scenario.sensors.sensors.imu, seed_for(scenario.sensor_seed(), "imu")),
-      pitot_(scenario.sensors.sensors.pitot, scenario.airframe.air_density_kgpm3,
+    : imu_(scenario.sensors.imu, seed_for(scenario.sensor_seed(), "imu")),
+      pitot_(scenario.sensors.pitot, scenario.airframe.air_density_kgpm3,
              seed_for(scenario.sensor_seed(), "pitot")),
-      barometer_(scenario.sensors.sensors.barometer, seed_for(scenario.sensor_seed(), "barometer")),
-      magnetometer_(scenario.sensors.sensors.magnetometer, seed_for(scenario.sensor_seed(), "magnetometer")),
-      gps_(scenario.sensors.sensors.gps, seed_for(scenario.sensor_seed(), "gps")),
-      gps_delay_ns_(nanoseconds(scenario.sensors.sensors.gps.delay_s)),
+      barometer_(scenario.sensors.barometer, seed_for(scenario.sensor_seed(), "barometer")),
+      magnetometer_(scenario.sensors.magnetometer, seed_for(scenario.sensor_seed(), "magnetometer")),
+      gps_(scenario.sensors.gps, seed_for(scenario.sensor_seed(), "gps")),
+      gps_delay_ns_(nanoseconds(scenario.sensors.gps.delay_s)),
       faults_(scenario.faults) {}
 
 template <typename Receiver>

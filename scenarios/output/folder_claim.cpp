@@ -100,7 +100,7 @@ void add_files(const fs::path& folder, const fs::path& below, const std::vector<
     };
     if (std::ranges::any_of(patterns, leads_there)) add_files(folder, file, patterns, files);
   }
-  // What cannot be looked at may be anybody's.
+  // A file that cannot be looked at may be the user's own.
   const bool is_none = error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory;
   if (error && !is_none) refuse_output(folder / below, error.value());
 }

@@ -61,8 +61,8 @@ std::string last_line_of(const std::filesystem::path& log);
 /// Waits for `pid`, or with -1 for any child; with WNOHANG in `options` only looks: pid 0 where it runs yet.
 EndedProcess wait_for_process(pid_t pid, int options = 0);
 
-/// Runs copies of this very program, a few at a time: one process flies one flight, since OMPL's random
-/// generator is one per process.
+/// Runs copies of this very program, a few at a time, so that a flight that crashes or hangs ends its own
+/// process alone.
 class ProgramProcesses {
  public:
   /// Called with the tag of a process and its exit status (128 + signal where it was killed).

@@ -14,11 +14,12 @@
 #include "perception/io/calibration_file.hpp"
 #include "perception/obstacle_detector.hpp"
 #include "planning/planner.hpp"
-#include "scenarios/config/field_visitor.hpp"
+#include "scenarios/config/any_config.hpp"
 #include "scenarios/course/courses.hpp"
 
 /// The parts that a scenario chooses by name: what detects obstacles, what says where the aircraft is, what
-/// decides its way, and what stands in its way. Ours and those of plug-ins are registered in the same way.
+/// decides its way, and what stands in its way. Ours and those of plug-ins are registered in the same way,
+/// with their keys.
 namespace understory {
 
 class TruthHistory;
@@ -28,13 +29,15 @@ struct Scenario;
 /// A part under its name. `Context` is what it is made from; all of that outlives the part.
 template <typename Made, typename Context>
 struct Part {
+  using MadeFrom = Context;
+
   std::string name;     ///< letters a-z, digits and '_'
   std::string meaning;  ///< one sentence, for lists
   std::function<Made(const Context&)> make;
   std::shared_ptr<const AnyConfig> defaults = nullptr;  ///< its own keys, below its name; null: none
   std::string plugin = "";                              ///< file that it came from; empty: ours
 
-  // Of detectors alone.
+  // What others ask of a detector before it is made; other kinds leave it as it is.
   bool needs_images = true;  ///< images that nobody needs are not rendered
   /// Time that one pair costs the measuring machine (docs/thesis.md), before perception.compute.factor.
   std::function<double(const PerceptionSection&)> cost_s = nullptr;
@@ -48,21 +51,21 @@ struct FlightContext {
   const CalibratedRig& rig;
   const std::vector<Obstacle>& obstacles;  ///< the truth, for oracles
   const TruthHistory& truth;               ///< the truth, for oracles
-  const AnyConfig* config = nullptr;       ///< the part's own keys
   std::uint64_t seed = 0;                  ///< of its random generators
+  const AnyConfig* config = nullptr;       ///< the part's own keys; PartList sets it
 };
 
 /// What a planner is made from.
 struct PlannerPartContext : PlannerContext {
   const Scenario& scenario;
-  const AnyConfig* config = nullptr;  ///< the part's own keys
+  const AnyConfig* config = nullptr;  ///< the part's own keys; PartList sets it
 };
 
 /// What a course is made from.
 struct CourseContext {
   const Scenario& scenario;
-  const AnyConfig* config = nullptr;  ///< the part's own keys
   std::uint64_t seed = 0;             ///< the scenario's
+  const AnyConfig* config = nullptr;  ///< the part's own keys; PartList sets it
 };
 
 using DetectorPart = Part<std::unique_ptr<ObstacleDetector>, FlightContext>;
@@ -81,6 +84,9 @@ const Config& own_config(const Context& context) {
 template <typename One>
 class PartList {
  public:
+  /// `configs_of`: where a scenario holds the keys of these parts.
+  explicit PartList(const PartConfigs& (*configs_of)(const Scenario&)) : configs_of_(configs_of) {}
+
   /// Adds a part. Throws std::invalid_argument where the name is taken or not a plain word.
   One& add(One part) {
     constexpr const char* letters = "abcdefghijklmnopqrstuvwxyz0123456789_";
@@ -88,7 +94,10 @@ class PartList {
       throw std::invalid_argument("the name '" + part.name + "' must be letters a-z, digits and '_'");
     if (find(part.name) != nullptr) throw std::invalid_argument("the name '" + part.name + "' is taken");
     if (!part.make) throw std::invalid_argument("'" + part.name + "' must have a function that makes it");
-    if (part.defaults) require_sound_keys(part.name, *part.defaults);
+    if (part.defaults) {
+      require_sound_keys(part.name, *part.defaults);
+      give_own_keys(part);
+    }
     return parts_.emplace_back(std::move(part));
   }
   /// Adds a part with keys of its own: `defaults` has a visit_fields(), the keys stand below the part's name.
@@ -114,11 +123,22 @@ class PartList {
   PartConfigs configs() const {
     PartConfigs configs;
     for (const One& part : parts_)
-      if (part.defaults) configs.entries.push_back({part.name, part.defaults->clone()});
+      if (part.defaults) configs.entries.push_back({part.name, part.defaults->clone(), !part.plugin.empty()});
     return configs;
   }
 
  private:
+  /// Whoever makes the part, it gets its own keys: another part may make it and wrap it.
+  void give_own_keys(One& part) const {
+    using Context = typename One::MadeFrom;
+    part.make = [make = part.make, name = part.name, configs_of = configs_of_](const Context& context) {
+      Context own = context;
+      own.config = configs_of(context.scenario).find(name);
+      return make(own);
+    };
+  }
+
+  const PartConfigs& (*configs_of_)(const Scenario&);
   std::deque<One> parts_;  ///< a part that is being made may add another
 };
 

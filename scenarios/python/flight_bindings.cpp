@@ -37,8 +37,7 @@ namespace fs = std::filesystem;
 class ToldPilot : public Pilot {
  public:
   explicit ToldPilot(const Scenario& scenario)
-      : model_(scenario.airframe, scenario.autopilot.autopilot.flight_model),
-        follower_(scenario.autopilot.autopilot.follower) {}
+      : model_(scenario.airframe, scenario.autopilot.flight_model), follower_(scenario.autopilot.follower) {}
 
   Controls controls(std::int64_t t_ns, const State& state) override {
     Controls now = command ? follow(model_, follower_, *command, state) : direct;

@@ -216,7 +216,7 @@ std::unique_ptr<StateSource> checked_state_source_from(const py::object& object)
 std::unique_ptr<Planner> checked_planner_from(const py::object& object) {
   const auto part =
       part_around<PlannerPart>(object, [&](const PlannerPartContext&) { return planner_from(object); });
-  const AutopilotConfig& config = empty_scenario().autopilot.autopilot;
+  const AutopilotConfig& config = empty_scenario().autopilot;
   const FlightModel model(Airframe(), config.flight_model);
   return checked(part, {{config.planner, model, Mission()}, empty_scenario()});
 }

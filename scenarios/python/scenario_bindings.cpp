@@ -36,8 +36,7 @@ void bind_scenario(py::module_& module) {
       .def_property_readonly("goal_x_m", &Scenario::goal_x_m)
       .def_property_readonly("half_width_m", [](const Scenario& self) { return self.forest.half_width_m; })
       .def_property_readonly("camera_rate_hz", [](const Scenario& self) { return self.cameras.rate_hz; })
-      .def_property_readonly("imu_rate_hz",
-                             [](const Scenario& self) { return self.sensors.sensors.imu_rate_hz; })
+      .def_property_readonly("imu_rate_hz", [](const Scenario& self) { return self.sensors.imu_rate_hz; })
       .def_property_readonly("elevon_min_rad",
                              [](const Scenario& self) { return self.airframe.elevon_min_rad; })
       .def_property_readonly("elevon_max_rad",

@@ -24,8 +24,7 @@ constexpr double widest_turn_rad = std::numbers::pi / 2;
 constexpr std::int64_t closest_ns = 50'000'000;
 
 constexpr double shoulder_room_m = 0.5;  // between the lane and the next trunk
-constexpr double pi = 3.14159265358979323846;
-constexpr double degree = pi / 180;
+constexpr double pi = std::numbers::pi, degree = pi / 180;
 
 double room_beside(const Segment& lane, const std::vector<Obstacle>& obstacles) {
   double room_m = std::numeric_limits<double>::infinity();

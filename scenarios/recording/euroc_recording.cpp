@@ -54,7 +54,7 @@ EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario,
                                double expected_s)
     : folder_(folder / "mav0"),
       rig_(rig.rig),
-      truth_every_steps_(physics_rate_hz / scenario.sensors.sensors.imu_rate_hz),
+      truth_every_steps_(physics_rate_hz / scenario.sensors.imu_rate_hz),
       expected_frames_(expected_s * scenario.cameras.rate_hz) {
   const Wood wood = course_wood(scenario);
   const std::size_t last_number = wood.scenery == Scenery::plain
@@ -68,7 +68,7 @@ EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario,
     prepare_output_folder(folder_ / sensor);
 
   // The flight's own IMU draws its constants from this seed.
-  const ImuConfig& config = scenario.sensors.sensors.imu;
+  const ImuConfig& config = scenario.sensors.imu;
   const Imu imu(config, seed_for(scenario.sensor_seed(), "imu"));
   gyro_bias_radps_ = imu.gyro_bias_radps();
   accelerometer_bias_mps2_ = imu.accelerometer_bias_mps2();
@@ -81,8 +81,7 @@ EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario,
   write_whole_file(folder_ / "depth1/sensor.yaml", depth_sensor_text(rig_, camera_hz, Side::right));
   write_whole_file(folder_ / "objects0/sensor.yaml", objects_sensor_text(rig_, camera_hz));
   write_whole_file(folder_ / "objects0/objects.csv", objects_text(wood));
-  write_whole_file(folder_ / "imu0/sensor.yaml",
-                   imu_sensor_text(config, scenario.sensors.sensors.imu_rate_hz));
+  write_whole_file(folder_ / "imu0/sensor.yaml", imu_sensor_text(config, scenario.sensors.imu_rate_hz));
   write_whole_file(folder_ / "state_groundtruth_estimate0/sensor.yaml",
                    state_sensor_text("the simulation's truth; biases are the flight's constants"));
 }

@@ -37,7 +37,7 @@ Carried carry_recorded(const Scenario& scenario, const Carriage& carriage, const
                            static_cast<double>(carriage.end_ns) * 1e-9);
   const World world = world_of(scenario, options.models_folder);
   const auto cameras = cameras_of(scenario, world, carriage.rig, options.renderer);
-  Imu imu(scenario.sensors.sensors.imu, seed_for(scenario.sensor_seed(), "imu"));
+  Imu imu(scenario.sensors.imu, seed_for(scenario.sensor_seed(), "imu"));
   Carried carried;
   Eigen::Vector3d before_world = carriage.truth_at(0).T_world_body.translation();
   for (FlightClock clock(scenario); clock.t_ns() < carriage.end_ns; clock.advance()) {

@@ -20,28 +20,27 @@ namespace {
 std::vector<double> rig_depth_m(const Scenario&, const StereoRig& rig) { return {rig.detection_depth_m}; }
 
 std::vector<double> pushbroom_depths_m(const Scenario& scenario, const StereoRig& rig) {
-  const std::vector<double> depths_m = stated_depths_m(scenario.perception.pushbroom, rig);
+  const std::vector<double> depths_m = stated_depths_m(scenario.perception.pushbroom(), rig);
   return depths_m.empty() ? std::vector{rig.detection_depth_m} : depths_m;
 }
 
 double pushbroom_cost_s(const PerceptionSection& perception) {
-  const PushbroomConfig& config = perception.pushbroom;
+  const PushbroomConfig& config = perception.pushbroom();
   const std::size_t depths = std::max({std::size_t{1}, config.depths_m.size(), config.disparities_px.size()});
   return perception.compute.pushbroom_s *
          (1 + perception.compute.more_depths * (static_cast<double>(depths) - 1));
 }
 
 std::unique_ptr<ObstacleDetector> pushbroom_of(const FlightContext& context) {
-  const PushbroomConfig& config = context.scenario.perception.pushbroom;
+  const auto& config = own_config<PushbroomConfig>(context);
   check_depths(config, context.rig.rig, "perception.depths_m", "perception.pushbroom");
   return std::make_unique<PushbroomStereo>(context.rig, config);
 }
 
-template <auto matcher>
+template <typename Config>
 std::unique_ptr<ObstacleDetector> full_stereo_of(const FlightContext& context) {
-  const PerceptionSection& perception = context.scenario.perception;
-  auto detector =
-      std::make_unique<FullStereoDetector>(context.rig.rig, perception.*matcher, perception.full_stereo);
+  auto detector = std::make_unique<FullStereoDetector>(context.rig.rig, own_config<Config>(context),
+                                                       context.scenario.perception.full_stereo);
   if (!context.rig.calibration) return detector;
   return std::make_unique<RectifyingDetector>(*context.rig.calibration, std::move(detector));
 }
@@ -51,15 +50,18 @@ void add_detectors(PartList<DetectorPart>& detectors) {
                  .meaning = "pushbroom stereo at the depths of perception.depths_m",
                  .make = pushbroom_of,
                  .cost_s = pushbroom_cost_s,
-                 .depths_m = pushbroom_depths_m});
+                 .depths_m = pushbroom_depths_m},
+                tuned_pushbroom("long"));
   detectors.add({.name = "stereo_bm",
                  .meaning = "OpenCV's block matcher over all depths",
-                 .make = full_stereo_of<&PerceptionSection::stereo_bm>,
-                 .cost_s = [](const PerceptionSection& section) { return section.compute.stereo_bm_s; }});
+                 .make = full_stereo_of<StereoBmConfig>,
+                 .cost_s = [](const PerceptionSection& section) { return section.compute.stereo_bm_s; }},
+                StereoBmConfig());
   detectors.add({.name = "stereo_sgbm",
                  .meaning = "OpenCV's semi-global matcher over all depths",
-                 .make = full_stereo_of<&PerceptionSection::stereo_sgbm>,
-                 .cost_s = [](const PerceptionSection& section) { return section.compute.stereo_sgbm_s; }});
+                 .make = full_stereo_of<StereoSgbmConfig>,
+                 .cost_s = [](const PerceptionSection& section) { return section.compute.stereo_sgbm_s; }},
+                StereoSgbmConfig());
   detectors.add({.name = "true_depth",
                  .meaning = "exact depth from the simulator, at the rig's detection depth",
                  .make =
@@ -77,15 +79,19 @@ void add_detectors(PartList<DetectorPart>& detectors) {
 void add_state_sources(PartList<StateSourcePart>& sources) {
   sources.add({.name = "filter",
                .meaning = "the error-state Kalman filter",
-               .make = [](const FlightContext& context) {
-                 return std::make_unique<Filter>(context.scenario.estimation.filter);
-               }});
+               .make =
+                   [](const FlightContext& context) {
+                     return std::make_unique<Filter>(own_config<FilterConfig>(context));
+                   }},
+              FilterConfig());
   sources.add({.name = "dead_reckoning",
                .meaning = "pitot and gyro alone, integrated",
-               .make = [](const FlightContext& context) {
-                 const EstimationSection& estimation = context.scenario.estimation;
-                 return std::make_unique<DeadReckoning>(estimation.dead_reckoning, estimation.filter);
-               }});
+               .make =
+                   [](const FlightContext& context) {
+                     return std::make_unique<DeadReckoning>(own_config<DeadReckoningConfig>(context),
+                                                            context.scenario.estimation.filter());
+                   }},
+              DeadReckoningConfig());
   sources.add(
       {.name = "truth", .meaning = "the simulator's exact state", .make = [](const FlightContext& context) {
          return std::make_unique<TrueState>(context.truth);
@@ -109,9 +115,11 @@ void add_planners(PartList<PlannerPart>& planners) {
                 .make = tree_planner_of<est_tree>});
   planners.add({.name = "library",
                 .meaning = "the manoeuvre with the largest clearance from a list",
-                .make = [](const PlannerPartContext& context) {
-                  return library_planner(context, context.scenario.autopilot.library);
-                }});
+                .make =
+                    [](const PlannerPartContext& context) {
+                      return library_planner(context, own_config<ManoeuvreLibraryConfig>(context));
+                    }},
+               ManoeuvreLibraryConfig());
   planners.add({.name = "straight",
                 .meaning = "straight on, through everything",
                 .make = [](const PlannerPartContext& context) { return straight_planner(context); }});
@@ -127,25 +135,35 @@ void add_courses(PartList<CoursePart>& courses) {
   courses.add({.name = "forest", .meaning = "random or measured trees", .make = planted_forest});
   courses.add({.name = "goalposts",
                .meaning = "two uprights and a crossbar",
-               .make = [](const CourseContext& context) {
-                 return Planted{goalposts(context.scenario.goalposts, context.seed)};
-               }});
+               .make =
+                   [](const CourseContext& context) {
+                     return Planted{goalposts(own_config<GoalpostsConfig>(context), context.seed)};
+                   }},
+              GoalpostsConfig());
   courses.add(
       {.name = "clear", .meaning = "no obstacles", .make = [](const CourseContext&) { return Planted{}; }});
   courses.add({.name = "windows",
                .meaning = "a facade of equal windows behind the goal",
-               .make = [](const CourseContext& context) {
-                 return Planted{windows(context.scenario.windows, context.scenario.goal_x_m())};
-               }});
+               .make =
+                   [](const CourseContext& context) {
+                     return Planted{windows(own_config<WindowsConfig>(context), context.scenario.goal_x_m())};
+                   }},
+              WindowsConfig());
   courses.add({.name = "fence",
                .meaning = "fences of equal palings beside and across the way",
-               .make = [](const CourseContext& context) {
-                 return Planted{fence(context.scenario.fence, context.scenario.goal_x_m())};
-               }});
+               .make =
+                   [](const CourseContext& context) {
+                     return Planted{fence(own_config<FenceConfig>(context), context.scenario.goal_x_m())};
+                   }},
+              FenceConfig());
 }
 
 Parts built_in_parts() {
-  Parts parts;
+  using In = const Scenario&;
+  Parts parts{PartList<DetectorPart>([](In one) -> const PartConfigs& { return one.perception.detectors; }),
+              PartList<StateSourcePart>([](In one) -> const PartConfigs& { return one.estimation.sources; }),
+              PartList<PlannerPart>([](In one) -> const PartConfigs& { return one.autopilot.planners; }),
+              PartList<CoursePart>([](In one) -> const PartConfigs& { return one.courses; })};
   add_detectors(parts.detectors);
   add_state_sources(parts.state_sources);
   add_planners(parts.planners);

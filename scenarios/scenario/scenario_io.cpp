@@ -9,8 +9,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "scenarios/config/config_reader.hpp"
-#include "scenarios/config/config_writer.hpp"
+#include "scenarios/config/field_writer.hpp"
 #include "scenarios/config/keys.hpp"
 #include "scenarios/config/named_seed.hpp"
 #include "scenarios/output/program.hpp"
@@ -72,7 +71,7 @@ void check_counts(const Scenario& scenario, Expect&& expect) {
          fmt::format("forest.square_metres_per_tree: a forest may have at most {} trees, this one would have "
                      "about {:.0f} (length_m, half_width_m)",
                      maximum_obstacles, trees));
-  const double palings = palings_of(scenario.fence, scenario.goal_x_m());
+  const double palings = palings_of(scenario.courses.of<FenceConfig>("fence"), scenario.goal_x_m());
   expect(scenario.course != "fence" || palings <= maximum_obstacles,
          fmt::format("fence.spacing_m: a fence may have at most {} palings, this one would have about {:.0f}",
                      maximum_obstacles, palings));
@@ -99,18 +98,19 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
                      "(models/airframe/delta_wing.xml)",
                      Airframe().span_m));
   check_counts(scenario, expect);
-  expect(scenario.goalposts.pass_minimum_m <= scenario.goalposts.pass_maximum_m,
+  const GoalpostsConfig& goalposts = scenario.courses.of<GoalpostsConfig>("goalposts");
+  expect(goalposts.pass_minimum_m <= goalposts.pass_maximum_m,
          "goalposts.pass_minimum_m: must be at most goalposts.pass_maximum_m");
-  expect(scenario.world.world.scenery == Scenery::plain || scenario.course == "forest" ||
-             scenario.course == "clear",
-         "world.scenery: woods requires the course forest or clear");
+  expect(
+      scenario.world.scenery == Scenery::plain || scenario.course == "forest" || scenario.course == "clear",
+      "world.scenery: woods requires the course forest or clear");
   check_obstacles(scenario.obstacles, expect);
-  expect(scenario.fence.opening_m < 2 * scenario.fence.reach_m,
-         "fence.opening_m: must be less than twice fence.reach_m");
+  const FenceConfig& fence = scenario.courses.of<FenceConfig>("fence");
+  expect(fence.opening_m < 2 * fence.reach_m, "fence.opening_m: must be less than twice fence.reach_m");
   expect(scenario.actuators.pitch_speed_mps == 0 ||
              scenario.actuators.pitch_speed_mps > scenario.actuators.thrust_speed_mps,
          "actuators.pitch_speed_mps: must be 0 or more than actuators.thrust_speed_mps");
-  const SensorsConfig& sensors = scenario.sensors.sensors;
+  const SensorsConfig& sensors = scenario.sensors;
   const std::pair<const char*, int> rates_hz[] = {{"autopilot.replan_", scenario.autopilot.replan_rate_hz},
                                                   {"cameras.", scenario.cameras.rate_hz},
                                                   {"sensors.imu_", sensors.imu_rate_hz},
@@ -121,8 +121,8 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
   for (const auto& [key, rate_hz] : rates_hz)
     expect(physics_rate_hz % rate_hz == 0, fmt::format("{}rate_hz: must divide 1200", key));
   const PerceptionSection& perception = scenario.perception;
-  const StereoBmConfig& bm = perception.stereo_bm;
-  const StereoSgbmConfig& sgbm = perception.stereo_sgbm;
+  const StereoBmConfig& bm = perception.detectors.of<StereoBmConfig>("stereo_bm");
+  const StereoSgbmConfig& sgbm = perception.detectors.of<StereoSgbmConfig>("stereo_sgbm");
   const std::pair<const char*, int> odd_numbers[] = {{"stereo_bm.window_px", bm.window_px},
                                                      {"stereo_sgbm.window_px", sgbm.window_px},
                                                      {"stereo_bm.prefilter_size_px", bm.prefilter_size_px}};
@@ -147,7 +147,7 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
 
 /// The stack believes in one airframe: what the filter and the planner need of it they take from there.
 void take_airframe(const Airframe& airframe, Scenario& scenario) {
-  FilterConfig& filter = scenario.estimation.filter;
+  FilterConfig& filter = scenario.estimation.filter();
   filter.gravity_mps2 = airframe.gravity_mps2;
   filter.angle_of_attack.mass_kg = filter.sideslip.mass_kg = airframe.mass_kg;
   filter.angle_of_attack.air_density_kgpm3 = filter.sideslip.air_density_kgpm3 = airframe.air_density_kgpm3;
@@ -258,23 +258,23 @@ Scenario compose(const Sources& sources, const std::string& name) {
   Scenario first;
   read_all(sources, first);
   Scenario scenario;
-  scenario.sensors.sensors = sensors_of_grade(first.sensors.grade);
-  scenario.perception.pushbroom = pushbroom_of(first.perception.preset, first.rig);
-  if (first.estimation.preset == FilterPreset::original) scenario.estimation.filter = original_filter();
-  if (first.estimation.preset == FilterPreset::windy) scenario.estimation.filter = windy_filter();
+  static_cast<SensorsConfig&>(scenario.sensors) = sensors_of_grade(first.sensors.grade);
+  scenario.perception.pushbroom() = pushbroom_of(first.perception.preset, first.rig);
+  FilterConfig& filter = scenario.estimation.filter();
+  if (first.estimation.preset == FilterPreset::original) filter = original_filter();
+  if (first.estimation.preset == FilterPreset::windy) filter = windy_filter();
   // The original's filter knew nothing of its sensors; ideal sensors leave the nominal ones' margins.
   if (first.estimation.preset != FilterPreset::original && first.sensors.grade != SensorGrade::ideal)
-    scenario.estimation.filter =
-        filter_for_sensors(scenario.estimation.filter, sensors_of_grade(first.sensors.grade));
+    filter = filter_for_sensors(filter, sensors_of_grade(first.sensors.grade));
   scenario.autopilot = planning_of(first.autopilot.preset);
   // Woods are seen through a lens: without one their edges are sharper than a camera's can be.
-  if (first.world.world.scenery == Scenery::woods) {
-    scenario.cameras.cameras.psf_px = 0.6;
-    scenario.cameras.cameras.vignetting_power = 4;
+  if (first.world.scenery == Scenery::woods) {
+    scenario.cameras.psf_px = 0.6;
+    scenario.cameras.vignetting_power = 4;
   }
-  scenario.estimation.filter.distrust.imu_gap_s = 1.5 / first.sensors.sensors.imu_rate_hz;
-  scenario.estimation.filter.start.position_world_m = rail_start_world(first.launch);
-  scenario.estimation.filter.start.pitch_rad =
+  filter.distrust.imu_gap_s = 1.5 / first.sensors.imu_rate_hz;
+  filter.start.position_world_m = rail_start_world(first.launch);
+  filter.start.pitch_rad =
       first.launch.climb_angle_rad + release_angle_of_attack_rad(first.airframe, first.launch.speed_mps);
   take_airframe(first.airframe, scenario);
   read_all(sources, scenario);
@@ -300,11 +300,11 @@ AutopilotSection planning_of(PlanningPreset preset) {
   if (preset == PlanningPreset::thorough) return section;
   // At once for what is new near the way, seldom otherwise, with smaller searches.
   section.replan_rate_hz = 600;  // the moments at which it may plan
-  section.autopilot.straight_period_s = 0.1;
-  section.autopilot.avoiding_period_s = 0.025;
-  section.autopilot.planner.refresh_s = 0.105;
-  section.autopilot.planner.search.iterations = 100;
-  section.autopilot.planner.improvement.iterations = 20;
+  section.straight_period_s = 0.1;
+  section.avoiding_period_s = 0.025;
+  section.planner.refresh_s = 0.105;
+  section.planner.search.iterations = 100;
+  section.planner.improvement.iterations = 20;
   return section;
 }
 
@@ -335,19 +335,15 @@ std::string found_trees_file(const std::string& trees_file, const std::string& o
   return found_file(trees_file, origin, data != nullptr ? data : "");
 }
 
-std::vector<Key> keys_of(Scenario scenario) {
-  KeyLister lister;
-  visit_fields(lister, scenario);
-  return lister.keys();
-}
+std::vector<Key> keys_of(Scenario scenario) { return list_keys(fields_of(scenario)); }
 
 std::string scenario_to_text(const Scenario& scenario) { return write_config(scenario); }
 
 Wood course_wood(const Scenario& scenario) {
   const CoursePart& course = *parts().courses.find(scenario.course);
-  Planted trunks = checked(course, {scenario, scenario.plugged.find(course.name), scenario.seed});
+  Planted trunks = checked(course, {scenario, scenario.seed});
   Wood wood;
-  if (scenario.world.world.scenery == Scenery::woods)
+  if (scenario.world.scenery == Scenery::woods)
     wood = grow(trunks.obstacles, woods_of(scenario), seed_for(scenario.seed, "trees"), trunks.known);
   else
     wood.obstacles = std::move(trunks.obstacles);
@@ -356,14 +352,14 @@ Wood course_wood(const Scenario& scenario) {
 }
 
 WoodsConfig woods_of(const Scenario& scenario) {
-  return drawn(scenario.world.world.woods, seed_for(scenario.seed, "woods"));
+  return drawn(scenario.world.woods, seed_for(scenario.seed, "woods"));
 }
 
 std::vector<Obstacle> course_obstacles(const Scenario& scenario) { return course_wood(scenario).obstacles; }
 
 std::vector<Obstacle> course_crowns(const Scenario& scenario) {
   std::vector<Obstacle> crowns;
-  if (scenario.world.world.scenery == Scenery::plain) return crowns;
+  if (scenario.world.scenery == Scenery::plain) return crowns;
   try {
     const Wood wood = course_wood(scenario);
     for (const Tree& tree : wood.trees) {
@@ -379,35 +375,9 @@ std::vector<Obstacle> course_crowns(const Scenario& scenario) {
   return crowns;
 }
 
-/// The groups of a scenario that the keys stand in.
-struct PerceptionKeys {
-  VisionConfig& config;
-};
-struct AutopilotKeys {
-  VisionConfig& config;
-};
-template <typename Visitor>
-void visit_fields(Visitor& visit, PerceptionKeys& perception) {
-  visit("detector", perception.config.detector, parts().detectors.names());
-  visit("preset", perception.config.preset, pushbroom_preset_names);
-  visit("depths_m", perception.config.pushbroom.depths_m, 0.1, 1000.0);
-  visit("pushbroom", perception.config.pushbroom);
-  visit("stereo_bm", perception.config.stereo_bm);
-  visit("stereo_sgbm", perception.config.stereo_sgbm);
-  visit("full_stereo", perception.config.full_stereo);
-  visit("compute", perception.config.compute);
-  visit_parts(visit, perception.config.plugged);
-}
-template <typename Visitor>
-void visit_fields(Visitor& visit, AutopilotKeys& autopilot) {
-  visit("map", autopilot.config.map);
-}
-template <typename Visitor>
-void visit_fields(Visitor& visit, VisionConfig& config) {
-  PerceptionKeys perception{config};
-  AutopilotKeys autopilot{config};
-  visit("perception", perception);
-  visit("autopilot", autopilot);
+void visit_fields(FieldVisitor& visit, VisionConfig& config) {
+  visit("perception", static_cast<PerceptionSection&>(config));
+  visit.group("autopilot", [&](FieldVisitor& within) { within("map", config.map); });
 }
 
 VisionConfig read_vision_config(const VisionConfigSources& sources, std::string_view rig) {
@@ -419,8 +389,8 @@ VisionConfig read_vision_config(const VisionConfigSources& sources, std::string_
   first.preset = sources.preset;
   for (const ConfigNode& tree : trees) read_config(tree, first);
   VisionConfig config;
-  config.pushbroom = pushbroom_of(first.preset, rig);
-  if (sources.one_depth) config.pushbroom.depths_m.clear();
+  config.pushbroom() = pushbroom_of(first.preset, rig);
+  if (sources.one_depth) config.pushbroom().depths_m.clear();
   for (const ConfigNode& tree : trees) read_config(tree, config);
   config.preset = first.preset;
   return config;

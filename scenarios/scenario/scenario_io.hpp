@@ -55,15 +55,7 @@ std::vector<Obstacle> course_crowns(const Scenario& scenario);
 /// What a scenario says of seeing, for commands that look at recordings: the detectors' and the map's numbers
 /// under a scenario's own keys (perception.preset, perception.depths_m, perception.pushbroom.X, ...,
 /// autopilot.map.X), so that a file of keys means the same in `fly`, `detect` and `evaluate`.
-struct VisionConfig {
-  std::string detector = "pushbroom";
-  PushbroomPreset preset = PushbroomPreset::tuned;
-  PushbroomConfig pushbroom;
-  StereoBmConfig stereo_bm;
-  StereoSgbmConfig stereo_sgbm;
-  FullStereoCrop full_stereo;
-  ComputeConfig compute;
-  PartConfigs plugged = parts().detectors.configs();  ///< keys of the detectors of plug-ins
+struct VisionConfig : PerceptionSection {
   LocalMapConfig map;
 };
 

@@ -104,7 +104,7 @@ class VisionJudge : public Judge {
   }
 
   Measured measure(const std::string&, const Scenario& scenario) override {
-    const PushbroomConfig& rule = scenario.perception.pushbroom;
+    const PushbroomConfig& rule = scenario.perception.pushbroom();
     try {
       check_depths(rule, rig_, "perception.depths_m", "perception.pushbroom");
     } catch (const ScenarioError& error) {

@@ -13,6 +13,8 @@
 
 namespace understory {
 
+class FieldVisitor;
+
 /// A value for each parameter, in their order.
 using Point = std::vector<double>;
 
@@ -64,6 +66,8 @@ struct SearchConfig {
   std::uint64_t seed = 1;
   int sensitivity_points = 9;  ///< afterwards, of each parameter alone over its range; 2 .. 1000
 };
+
+void visit_fields(FieldVisitor& visit, SearchConfig& search);
 
 /// Measures one point. Whatever it throws ends the search and comes out of it.
 using Evaluate = std::function<Figures(const Point&)>;

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <set>
+#include <tuple>
 
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/keys.hpp"
@@ -18,60 +19,79 @@ namespace fs = std::filesystem;
 
 constexpr int maximum_trials = 1'000'000;
 
-const ConfigNode& required(const ConfigNode& map, std::string_view key, const std::string& expected) {
-  const ConfigNode* node = find_child(map, key);
-  if (node == nullptr) refuse_key(map, std::string(key), expected);
-  return *node;
+constexpr std::array<std::pair<std::string_view, TuningData>, 2> data_names{
+    {{"recordings", TuningData::recordings}, {"flights", TuningData::flights}}};
+constexpr std::array<std::pair<std::string_view, bool>, 2> scale_names{{{"linear", false}, {"log", true}}};
+
+struct ObjectiveText {
+  std::vector<std::string> maximize, minimize;
+  ConfigNode at_least, at_most;
+};
+
+void visit_fields(FieldVisitor& visit, ObjectiveText& text) {
+  visit("maximize", text.maximize, "a figure, or a list of such");
+  visit("minimize", text.minimize, "a figure, or a list of such");
+  visit("at_least", text.at_least);
+  visit("at_most", text.at_most);
 }
 
-const ConfigNode& required_group(const ConfigNode& map, std::string_view key, const std::string& expected) {
-  const ConfigNode& node = required(map, key, expected);
-  if (node.kind != ConfigNode::Kind::map || node.children.empty())
-    refuse_key(node, std::string(key), expected);
-  return node;
-}
+/// The file as it stands.
+struct TuneText {
+  std::string name, scenario;
+  ConfigNode parameters;
+  ObjectiveText objective;
+  TuneFile tune;  ///< the keys that need no more than reading
+  std::vector<std::string> training, validation;
+};
 
-/// Within the bounds of its key, and whole where it is.
-double value_of(const ConfigNode& node, const std::string& name, const NumericKey& key) {
-  const double value = number_of(node, name, key.minimum, key.maximum);
-  if (key.whole && value != std::round(value)) refuse_key(node, name, "a whole number");
-  return value;
-}
-
-void read_range(const ConfigNode& node, const NumericKey& key, Parameter& parameter) {
-  const std::string name = "parameters." + key.key;
-  const std::string expected = "{from: ..., to: ..., scale: linear | log, steps: ...} or {values: [...]}";
-  parameter.from = value_of(required(node, "from", expected), name + ".from", key);
-  parameter.to = value_of(required(node, "to", expected), name + ".to", key);
-  if (!(parameter.from < parameter.to)) refuse_input(node.origin, name, "from must be less than to");
-  if (const ConfigNode* scale = find_child(node, "scale")) {
-    if (scale->text != "linear" && scale->text != "log") refuse_key(*scale, name + ".scale", "linear | log");
-    parameter.logarithmic = scale->text == "log";
-    if (parameter.logarithmic && parameter.from <= 0)
-      refuse_input(node.origin, name, "scale: log requires from above 0");
-  }
-  if (const ConfigNode* steps = find_child(node, "steps"))
-    parameter.steps = whole_number_of(*steps, name + ".steps", 2, 1000);
+void visit_fields(FieldVisitor& visit, TuneText& text) {
+  const std::string data = "folders of recordings, or the seeds to fly, for instance 1..200";
+  visit("name", text.name);
+  visit("scenario", text.scenario);
+  visit("parameters", text.parameters);
+  visit("objective", text.objective);
+  visit("search", text.tune.search);
+  visit("over", text.tune.over, data_names);
+  visit("training", text.training, data);
+  visit("validation", text.validation, data);
+  visit("every", text.tune.every, 1, 1000);
+  visit("timeout_s", text.tune.timeout_s, 1, 86400);
 }
 
 Parameter parameter_of(const ConfigNode& node, const NumericKey& key) {
   const std::string name = "parameters." + node.key;
+  const std::string expected = "{from: ..., to: ..., scale: linear | log, steps: ...} or {values: [...]}";
+  if (node.kind != ConfigNode::Kind::map) refuse_input(node.origin, name, "expected " + expected);
   Parameter parameter{key.key, key.whole};
-  if (node.kind != ConfigNode::Kind::map) refuse_key(node, name, "{from: ..., to: ...} or {values: [...]}");
-  require_known_keys(node, {"from", "to", "scale", "steps", "values"}, name + ".");
-  const ConfigNode* values = find_child(node, "values");
-  if (values == nullptr) {
-    read_range(node, key, parameter);
+  FieldNumbers from{FieldNumbers::Shape::optional, key.whole, key.minimum, key.maximum},
+      to = from, values{FieldNumbers::Shape::list, key.whole, key.minimum, key.maximum};
+  read_fields(
+      node,
+      [&](FieldVisitor& visit) {
+        visit.numbers("from", from, "");
+        visit.numbers("to", to, "");
+        visit("scale", parameter.logarithmic, scale_names);
+        visit("steps", parameter.steps, 2, 1000);
+        visit.numbers("values", values, "");
+      },
+      name);
+  if (find_child(node, "values") != nullptr) {
+    const std::string origin = nearest_origin(node, "values");
+    if (values.values.size() < 2 || node.children.size() > 1)
+      refuse_input(origin, name + ".values", "must be a list of two values or more, without from and to");
+    parameter.values = values.values;
+    std::ranges::sort(parameter.values);
+    if (std::ranges::adjacent_find(parameter.values) != parameter.values.end())
+      refuse_input(origin, name + ".values", "all values must be different");
     return parameter;
   }
-  if (values->kind != ConfigNode::Kind::list || values->children.size() < 2 || node.children.size() > 1)
-    refuse_input(values->origin, name + ".values",
-                 "must be a list of two values or more, without from and to");
-  for (const ConfigNode& value : values->children)
-    parameter.values.push_back(value_of(value, name + ".values", key));
-  std::ranges::sort(parameter.values);
-  if (std::ranges::adjacent_find(parameter.values) != parameter.values.end())
-    refuse_input(values->origin, name + ".values", "all values must be different");
+  if (from.values.empty()) refuse_input(node.origin, name + ".from", "expected " + expected);
+  if (to.values.empty()) refuse_input(node.origin, name + ".to", "expected " + expected);
+  parameter.from = from.values[0];
+  parameter.to = to.values[0];
+  if (!(parameter.from < parameter.to)) refuse_input(node.origin, name, "from must be less than to");
+  if (parameter.logarithmic && parameter.from <= 0)
+    refuse_input(node.origin, name, "scale: log requires from above 0");
   return parameter;
 }
 
@@ -80,7 +100,8 @@ const NumericKey& key_of(const ConfigNode& node, const std::vector<NumericKey>& 
   if (found != keys.end()) return *found;
   std::vector<std::string> known;
   for (const NumericKey& key : keys) known.push_back(key.key);
-  refuse_key(node, "parameters." + node.key, "a numeric key of the scenario" + did_you_mean(node.key, known));
+  refuse_input(node.origin, "parameters." + node.key,
+               "expected a numeric key of the scenario" + did_you_mean(node.key, known));
 }
 
 void read_parameters(const ConfigNode& group, TuneFile& tune) {
@@ -88,9 +109,9 @@ void read_parameters(const ConfigNode& group, TuneFile& tune) {
   for (const ConfigNode& node : group.children) {
     const NumericKey& key = key_of(node, keys);
     if (tune.over == TuningData::recordings && !matters_on_recordings(key.key))
-      refuse_key(node, "parameters." + node.key,
-                 "a key of perception.pushbroom or perception.depths_m: no other key changes anything on "
-                 "recordings");
+      refuse_input(node.origin, "parameters." + node.key,
+                   "expected a key of perception.pushbroom or perception.depths_m: no other key changes "
+                   "anything on recordings");
     tune.space.parameters.push_back(parameter_of(node, key));
     tune.scenario_point.push_back(key.value);
     const std::size_t bracket = key.key.find('[');
@@ -102,90 +123,90 @@ void read_parameters(const ConfigNode& group, TuneFile& tune) {
   }
 }
 
-std::size_t figure_of(const ConfigNode& node, const std::string& key, const std::string& word,
-                      const std::vector<std::string>& names) {
-  const auto found = std::ranges::find(names, word);
-  if (found == names.end())
-    refuse_key(node, key, fmt::format("one of {}, got '{}'", fmt::join(names, ", "), word));
-  return static_cast<std::size_t>(found - names.begin());
+std::size_t figure_of(const std::string& word, const TuneFile& tune) {
+  return static_cast<std::size_t>(std::ranges::find(tune.figures, word) - tune.figures.begin());
 }
 
-void read_objective(const ConfigNode& group, TuneFile& tune) {
-  require_known_keys(group, {"maximize", "minimize", "at_least", "at_most"}, "objective.");
-  std::set<std::size_t> aimed_at;
-  for (const ConfigNode& node : group.children) {
-    const std::string name = "objective." + node.key;
-    if (node.key == "maximize" || node.key == "minimize") {
-      for (const std::string& word : words_of(node, name, "a figure, or a list of such")) {
-        const std::size_t figure = figure_of(node, name, word, tune.figures);
-        if (!aimed_at.insert(figure).second) refuse_input(node.origin, name, "this figure is named twice");
-        tune.objective.goals.push_back({figure, node.key == "maximize"});
-      }
-      continue;
-    }
-    if (node.kind != ConfigNode::Kind::map || node.children.empty())
-      refuse_key(node, name, "bounds of figures: {precision: 0.97}");
-    for (const ConfigNode& bound : node.children)
-      tune.objective.limits.push_back({figure_of(bound, name, bound.key, tune.figures),
-                                       node.key == "at_least",
-                                       number_of(bound, name + "." + bound.key, -1e9, 1e9)});
+void add_goals(const std::vector<std::string>& words, const ConfigNode& top, const std::string& key,
+               TuneFile& tune) {
+  for (const std::string& word : words) {
+    const Goal goal{figure_of(word, tune), key.ends_with("maximize")};
+    if (goal.figure == tune.figures.size())
+      refuse_key(top, key, fmt::format("one of {}, got '{}'", fmt::join(tune.figures, ", "), word));
+    if (std::ranges::find(tune.objective.goals, goal.figure, &Goal::figure) != tune.objective.goals.end())
+      refuse_key_since(top, key, "this figure is named twice");
+    tune.objective.goals.push_back(goal);
   }
-  if (tune.objective.goals.empty())
-    refuse_key(group, "objective",
-               "maximize or minimize, with one of " + fmt::format("{}", fmt::join(tune.figures, ", ")));
-  if (tune.over == TuningData::flights && tune.figures[tune.objective.goals.front().figure] == "success")
-    tune.objective.tie_breaker = figure_of(group, "objective", "progress", tune.figures);
 }
 
-void read_search(const ConfigNode& group, TuneFile& tune) {
-  require_known_keys(group, {"method", "trials", "seed", "sensitivity"}, "search.");
-  std::vector<std::string> methods;
-  for (const auto& [word, method] : search_method_names) methods.emplace_back(word);
-  const std::string expected = fmt::format("{}", fmt::join(methods, " | "));
-  const ConfigNode& method = required(group, "method", expected);
-  const auto found =
-      std::ranges::find(search_method_names, method.text, &std::pair<std::string_view, SearchMethod>::first);
-  if (found == search_method_names.end()) refuse_key(method, "search.method", expected);
-  tune.search.method = found->second;
+void add_limits(const ConfigNode& bounds, const ConfigNode& top, const std::string& key, TuneFile& tune) {
+  if (find_child(*find_child(top, "objective"), short_key(key)) == nullptr) return;
+  if (bounds.kind != ConfigNode::Kind::map || bounds.children.empty())
+    refuse_key(top, key, "bounds of figures: {precision: 0.97}");
+  std::vector<double> values(tune.figures.size());
+  read_fields(
+      bounds,
+      [&](FieldVisitor& visit) {
+        for (std::size_t i = 0; i < values.size(); ++i) visit(tune.figures[i], values[i], -1e9, 1e9);
+      },
+      key);
+  for (const ConfigNode& bound : bounds.children) {
+    const std::size_t figure = figure_of(bound.key, tune);
+    tune.objective.limits.push_back({figure, key.ends_with("at_least"), values[figure]});
+  }
+}
+
+void take_objective(const ObjectiveText& text, const ConfigNode& top, TuneFile& tune) {
+  add_goals(text.maximize, top, "objective.maximize", tune);
+  add_goals(text.minimize, top, "objective.minimize", tune);
+  add_limits(text.at_least, top, "objective.at_least", tune);
+  add_limits(text.at_most, top, "objective.at_most", tune);
+  if (tune.objective.goals.empty())
+    refuse_key(top, "objective",
+               fmt::format("maximize or minimize, with one of {}", fmt::join(tune.figures, ", ")));
+  if (tune.over == TuningData::flights && tune.figures[tune.objective.goals.front().figure] == "success")
+    tune.objective.tie_breaker = figure_of("progress", tune);
+}
+
+void check_search(const ConfigNode& top, TuneFile& tune) {
+  const SearchMethod method = tune.search.method;
   const std::size_t goals = tune.objective.goals.size();
-  if (found->second == SearchMethod::cma_es && goals > 1)
-    refuse_key(method, "search.method", "nsga2, random or grid where there are several goals");
-  if (found->second == SearchMethod::nsga2 && goals == 1)
-    refuse_key(method, "search.method", "cma_es, random or grid where there is one goal");
-  if (const ConfigNode* seed = find_child(group, "seed"))
-    tune.search.seed = static_cast<std::uint64_t>(whole_number_of(*seed, "search.seed", 0, 2'000'000'000));
-  if (const ConfigNode* points = find_child(group, "sensitivity"))
-    tune.search.sensitivity_points = whole_number_of(*points, "search.sensitivity", 2, 1000);
-  const ConfigNode* trials = find_child(group, "trials");
-  if (found->second != SearchMethod::grid) {
-    const std::string wanted = fmt::format("a whole number from 1 to {}", maximum_trials);
-    tune.search.trials =
-        whole_number_of(required(group, "trials", wanted), "search.trials", 1, maximum_trials);
+  const bool has_trials = tune.search.trials > 0;
+  if (find_child(*find_child(top, "search"), "method") == nullptr)
+    refuse_key(top, "search.method", "random | grid | cma_es | nsga2");
+  if (method == SearchMethod::cma_es && goals > 1)
+    refuse_key(top, "search.method", "nsga2, random or grid where there are several goals");
+  if (method == SearchMethod::nsga2 && goals == 1)
+    refuse_key(top, "search.method", "cma_es, random or grid where there is one goal");
+  if (method != SearchMethod::grid) {
+    if (!has_trials)
+      refuse_key(top, "search.trials", fmt::format("a whole number from 1 to {}", maximum_trials));
     return;
   }
-  if (trials != nullptr)
-    refuse_input(trials->origin, "search.trials",
-                 "must not be given for a grid: it tries every combination once");
+  if (has_trials)
+    refuse_key_since(top, "search.trials", "must not be given for a grid: it tries every combination once");
   double size = 1;
   for (const Parameter& parameter : tune.space.parameters) {
     if (parameter.values.empty() && parameter.steps == 0)
-      refuse_key(group, "parameters." + parameter.key, "values, or a range with steps, for a grid");
+      refuse_input(nearest_origin(top, "search"), "parameters." + parameter.key,
+                   "expected values, or a range with steps, for a grid");
     size *= static_cast<double>(spread_values(parameter, parameter.steps).size());
   }
   if (size > maximum_trials)
-    refuse_key(group, "search.method", fmt::format("a grid of at most {} points", maximum_trials));
+    refuse_key(top, "search.method", fmt::format("a grid of at most {} points", maximum_trials));
   tune.search.trials = static_cast<int>(size);
 }
 
 /// Folders as they are, beside the file or where they are said to be, links resolved.
-std::vector<fs::path> folders_of(const ConfigNode& node, const fs::path& file) {
+std::vector<fs::path> folders_of(const std::vector<std::string>& words, const ConfigNode& top,
+                                 const std::string& key, const fs::path& file) {
   std::vector<fs::path> folders;
-  for (const std::string& word : words_of(node, node.key, "folders of recordings")) {
+  for (const std::string& word : words) {
     std::error_code ignored;
     const fs::path beside = file.parent_path() / word;
     const fs::path folder = fs::is_directory(beside, ignored) ? beside : fs::path(word);
     if (!fs::is_directory(folder, ignored))
-      refuse_input(node.origin, node.key, fmt::format("there is no folder {}", word));
+      refuse_key_since(top, key, fmt::format("there is no folder {}", word));
     folders.push_back(fs::canonical(folder));
   }
   return folders;
@@ -195,34 +216,45 @@ bool holds(const fs::path& folder, const fs::path& other) {
   return std::mismatch(folder.begin(), folder.end(), other.begin(), other.end()).first == folder.end();
 }
 
-void read_data(const ConfigNode& top, const fs::path& file, TuneFile& tune) {
+void take_data(const TuneText& text, const ConfigNode& top, const fs::path& file, TuneFile& tune) {
   if (tune.over == TuningData::flights) {
-    tune.training_seeds = seeds_in(top, "training");
-    tune.validation_seeds = seeds_in(top, "validation");
+    tune.training_seeds = seeds_in(text.training, top, "training");
+    tune.validation_seeds = seeds_in(text.validation, top, "validation");
     for (const std::uint64_t seed : tune.validation_seeds)
       if (std::ranges::find(tune.training_seeds, seed) != tune.training_seeds.end())
-        refuse_input(find_child(top, "validation")->origin, "validation",
-                     fmt::format("seed {} is a seed of training, too", seed));
+        refuse_key_since(top, "validation", fmt::format("seed {} is a seed of training, too", seed));
     return;
   }
-  const ConfigNode& training = required(top, "training", "folders of recordings");
-  const ConfigNode& validation = required(top, "validation", "folders of recordings");
-  tune.training_folders = folders_of(training, file);
-  tune.validation_folders = folders_of(validation, file);
   std::set<fs::path> seen;
+  for (const auto& [key, words, folders] :
+       {std::tuple("training", &text.training, &tune.training_folders),
+        std::tuple("validation", &text.validation, &tune.validation_folders)}) {
+    if (words->empty()) refuse_key(top, key, "folders of recordings");
+    *folders = folders_of(*words, top, key, file);
+    for (const fs::path& folder : *folders)
+      if (!seen.insert(folder).second)
+        refuse_key_since(top, key, fmt::format("{} is given twice", folder.string()));
+  }
   for (const fs::path& one : tune.validation_folders)
     for (const fs::path& other : tune.training_folders)
       if (holds(one, other) || holds(other, one))
-        refuse_input(validation.origin, "validation",
-                     fmt::format("{} is a recording of training, too", one.string()));
-  for (const auto* some : {&tune.training_folders, &tune.validation_folders})
-    for (const fs::path& folder : *some)
-      if (!seen.insert(folder).second)
-        refuse_input((some == &tune.training_folders ? training : validation).origin, "training",
-                     fmt::format("{} is given twice", folder.string()));
+        refuse_key_since(top, "validation", fmt::format("{} is a recording of training, too", one.string()));
+}
+
+void require_group(const ConfigNode& top, const char* key, const std::string& expected) {
+  const ConfigNode* group = find_child(top, key);
+  if (group == nullptr || group->kind != ConfigNode::Kind::map || group->children.empty())
+    refuse_key(top, key, expected);
 }
 
 }  // namespace
+
+void visit_fields(FieldVisitor& visit, SearchConfig& search) {
+  visit("method", search.method, search_method_names);
+  visit("trials", search.trials, 1, maximum_trials);
+  visit("seed", search.seed, 0, 2'000'000'000);
+  visit("sensitivity", search.sensitivity_points, 2, 1000);
+}
 
 std::vector<NumericKey> numeric_keys(const Scenario& scenario) {
   std::vector<NumericKey> numeric;
@@ -236,32 +268,26 @@ std::vector<NumericKey> numeric_keys(const Scenario& scenario) {
 }
 
 TuneFile load_tune_file(const fs::path& file, const FindScenario& find_scenario) {
-  TuneFile tune;
-  tune.text = read_file(file);
-  const ConfigNode top = parse_yaml(tune.text, file.string());
-  require_known_keys(top,
-                     {"name", "scenario", "parameters", "objective", "search", "over", "training",
-                      "validation", "every", "timeout_s"},
-                     "");
-  tune.name = name_in(top, file);
-  const ConfigNode& scenario = required(top, "scenario", "the scenario whose keys are tuned");
-  tune.scenario_file = scenario_beside(file, scenario, scenario.text, find_scenario);
+  const std::string written = read_file(file);
+  const ConfigNode top = parse_yaml(written, file.string());
+  if (find_child(top, "scenario") == nullptr)
+    refuse_key(top, "scenario", "the scenario whose keys are tuned");
+  TuneText text;
+  read_config(top, text);
+  TuneFile tune = std::move(text.tune);
+  tune.text = written;
+  tune.name = name_or_stem(text.name, top, file);
+  tune.scenario_file = scenario_beside(file, top, "scenario", text.scenario, find_scenario);
   tune.scenario = load_scenario(tune.scenario_file);
-
-  const ConfigNode& over = required(top, "over", "recordings | flights");
-  if (over.text != "recordings" && over.text != "flights") refuse_key(over, "over", "recordings | flights");
-  tune.over = over.text == "flights" ? TuningData::flights : TuningData::recordings;
+  if (find_child(top, "over") == nullptr) refuse_key(top, "over", "recordings | flights");
   tune.figures = tune.over == TuningData::flights ? flight_figure_names : vision_figure_names;
-  if (const ConfigNode* timeout = find_child(top, "timeout_s"))
-    tune.timeout_s = number_of(*timeout, "timeout_s", 1, 86400);
-
-  if (const ConfigNode* every = find_child(top, "every"))
-    tune.every = whole_number_of(*every, "every", 1, 1000);
-
-  read_parameters(required_group(top, "parameters", "a group {key: {from: ..., to: ...}, ...}"), tune);
-  read_objective(required_group(top, "objective", "a group {maximize: ...}"), tune);
-  read_search(required_group(top, "search", "a group {method: ..., trials: ..., seed: ...}"), tune);
-  read_data(top, file, tune);
+  require_group(top, "parameters", "a group {key: {from: ..., to: ...}, ...}");
+  read_parameters(text.parameters, tune);
+  require_group(top, "objective", "a group {maximize: ...}");
+  take_objective(text.objective, top, tune);
+  require_group(top, "search", "a group {method: ..., trials: ..., seed: ...}");
+  check_search(top, tune);
+  take_data(text, top, file, tune);
   return tune;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "scenarios/config/config_tree.hpp"
@@ -77,7 +78,7 @@ std::size_t sensitivity_trials(const TuneFile& file) {
 /// All trials: the scenario as it is, then the search's.
 std::vector<Trial> run_search(const TuneFile& file, Tuning& tuning, Judge& training) {
   TrialLog log = tuning.log("trials", training);
-  double minimum = 3;
+  double minimum = std::numeric_limits<double>::infinity();
   const auto of = static_cast<std::size_t>(file.search.trials);
   const auto evaluate = [&](const Point& point) {
     const Trial trial = log.evaluate(point);
@@ -94,7 +95,7 @@ std::vector<Trial> run_search(const TuneFile& file, Tuning& tuning, Judge& train
   return log.evaluated();
 }
 
-/// The search's best, numbered as in `trials`; where none keeps the limits, the one that misses them minimum.
+/// The search's best, numbered as in `trials`; where none keeps the limits, the one that misses them least.
 std::size_t choose_best(const TuneFile& file, const std::vector<Trial>& trials,
                         const std::filesystem::path& folder, bool& keeps_limits) {
   std::vector<Figures> figures = figures_of(trials);

@@ -72,7 +72,6 @@ BlockRule rule(int variant) {
   rule.last_row_px = 205;
   rule.disparities = {{disparity_px, 215, score_limit_units(0.25)}};
   if (variant == 3) rule.disparities.push_back({28, 215, score_limit_units(0.25)});
-  rule.every_pixel = variant == 2;
   rule.horizontal_invariance = variant == 0 || variant == 3;
   rule.infinity_px = 20;
   rule.window.limit_units = score_limit_units(0.324);

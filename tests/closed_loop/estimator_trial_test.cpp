@@ -49,7 +49,7 @@ TEST(EstimatorTrial, ASecondDepthFindsTheWindThatNothingElseShows) {
   const auto velocity_error_at_the_end = [&](bool told) {
     TrialConfig config;
     config.filter = windy_filter();
-    config.sensors = flight.scenario.sensors.sensors;
+    config.sensors = flight.scenario.sensors;
     config.ground_velocity_unknown = true;
     config.sightings = &seen;
     config.resightings.enabled = told;
@@ -80,7 +80,7 @@ TEST(MismatchPage, TheEstimateFollowedIsTheOneThatFlew) {
 
 TEST(MismatchPage, TallyCountsEveryFlightAndEveryFilter) {
   Scenario scenario = forest(short_forest);
-  const FlightTally tally = fly_seeds(scenario, {scenario.estimation.filter}, {1000, 2});
+  const FlightTally tally = fly_seeds(scenario, {scenario.estimation.filter()}, {1000, 2});
   EXPECT_EQ(tally.flights(), 2);
   EXPECT_EQ(tally.goals(), 2);
   EXPECT_NEAR(tally.mean_speed_mps(), 12, 1);

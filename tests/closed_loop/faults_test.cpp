@@ -47,7 +47,7 @@ Listener heard(const std::vector<std::string>& settings) {
   Listener listener;
   NoDetector detector;
   const std::unique_ptr<Planner> planner = planner_of(scenario);
-  Autopilot autopilot(scenario.autopilot.autopilot, scenario.airframe, rig, detector, listener, *planner);
+  Autopilot autopilot(scenario.autopilot, scenario.airframe, rig, detector, listener, *planner);
   OnboardSensors sensors(scenario);
   for (FlightClock clock(scenario); clock.step() <= 2 * physics_rate_hz; clock.advance()) {
     Truth truth;

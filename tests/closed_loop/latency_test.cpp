@@ -54,8 +54,8 @@ struct Loop {
     OpeningEyes eyes(rig, obstacles, history, opens_ns);
     TrueState state_source(history);
     const std::unique_ptr<Planner> planner = planner_of(scenario);
-    Autopilot autopilot(scenario.autopilot.autopilot, scenario.airframe, rig, eyes, state_source, *planner);
-    Imu imu(scenario.sensors.sensors.imu, seed_for(1000, "imu"));
+    Autopilot autopilot(scenario.autopilot, scenario.airframe, rig, eyes, state_source, *planner);
+    Imu imu(scenario.sensors.imu, seed_for(1000, "imu"));
     const auto latency_ns = static_cast<std::int64_t>(scenario.cameras.latency_s * 1e9);
     std::deque<StereoFrame> pending;
     Controls controls;
@@ -81,8 +81,8 @@ struct Loop {
 TEST(Latency, TheConfiguredDelaysAddUpToLessThanTheLimit) {
   for (const char* name : {"forest", "dense", "paper", "goalposts"}) {
     const Scenario scenario = library_scenario(name);
-    const double control_period_s = 1.0 / scenario.sensors.sensors.imu_rate_hz;
-    EXPECT_LE(scenario.cameras.latency_s + scenario.autopilot.autopilot.plan_latency_s + control_period_s +
+    const double control_period_s = 1.0 / scenario.sensors.imu_rate_hz;
+    EXPECT_LE(scenario.cameras.latency_s + scenario.autopilot.plan_latency_s + control_period_s +
                   scenario.airframe.input_delay_s,
               0.050)
         << name;

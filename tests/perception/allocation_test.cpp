@@ -39,10 +39,9 @@ TEST(Allocation, AFrameAllocatesNothingAfterTheFirst) {
   for (std::uint64_t i = 0; i < 3; ++i)
     frames[i] =
         support::render_plane(rig, {.depth_m = PushbroomStereo(rig, {}).detection_depth_m(), .seed = i + 1});
-  PushbroomConfig dense = original_pushbroom(), several = robust_pushbroom();
-  dense.every_pixel = true;
+  PushbroomConfig several = robust_pushbroom();
   several.depths_m = {10.1, 8.0, 6.0, 5.0};
-  for (PushbroomConfig config : {original_pushbroom(), robust_pushbroom(), dense, several})
+  for (PushbroomConfig config : {original_pushbroom(), robust_pushbroom(), several})
     for (const int threads : {1, 2}) {
       config.threads = threads;
       PushbroomStereo rectified(rig, config);

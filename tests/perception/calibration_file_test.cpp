@@ -229,13 +229,13 @@ TEST_F(RigFile, NamesFileLineAndKeyOfEveryFault) {
   expect_complaint("focal_px: 180", "focal_pix: 180", "1: focal_px", "missing");
   expect_complaint("pitch_down_deg: 30", "pitch_down_deg: 30\ncolour: red", "12: colour", "unknown key");
   expect_complaint("height_px: 240", "height_px: 240\nwidth_px: 376", "4: width_px", "twice");
-  expect_complaint("focal_px: 180", "focal_px: wide", "4: focal_px", "must be a number from 10 to 20000");
-  expect_complaint("focal_px: 180", "focal_px: [180]", "4: focal_px", "must be a number");
-  expect_complaint("focal_px: 180", "focal_px: .nan", "4: focal_px", "must be a number");
+  expect_complaint("focal_px: 180", "focal_px: wide", "4: focal_px", "expected a number from 10 to 20000");
+  expect_complaint("focal_px: 180", "focal_px: [180]", "4: focal_px", "expected a number");
+  expect_complaint("focal_px: 180", "focal_px: .nan", "4: focal_px", "expected a number");
   expect_complaint("baseline_m: 0.35", "baseline_m: -0.35", "5: baseline_m", "from 0.01 to 10");
   expect_complaint("width_px: 376", "width_px: 376.5", "2: width_px", "whole number");
-  expect_complaint("[0.1, 0.2, 0.3]", "[0.1, 0.2]", "10: left_camera_body_m", "3 numbers");
-  expect_complaint("name: test", "name: [a]", "1: name", "text");
+  expect_complaint("[0.1, 0.2, 0.3]", "[0.1, 0.2]", "10: left_camera_body_m", "three numbers");
+  expect_complaint("name: test", "name: [a]", "1: name", "a word");
   expect_complaint("detection_depth_m: 4.8", "detection_depth_m: 900", "9: detection_depth_m", "infinity");
   expect_complaint("height_px: 240", "height_px: [240", "3", "closes");
 }

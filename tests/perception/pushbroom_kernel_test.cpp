@@ -144,11 +144,10 @@ TEST(Recordings, GiveTheKernelTheMatchesOfThePlainRule) {
     const int width = left.cols, height = left.rows;
     const Pair pair{width, height, {left.datastart, left.dataend}, {right.datastart, right.dataend}};
     ++pairs;
-    for (const int variant : {0, 1, 2}) {
+    for (const int variant : {0, 1}) {
       BlockRule rule = pushbroom_of(width, height, {22, 16});
       rule.horizontal_invariance = variant == 0;
       rule.uniqueness = variant == 1;
-      rule.every_pixel = variant == 2;
       found += expect_equal(rule, pair, 2);
     }
   }
@@ -163,22 +162,6 @@ TEST(PushbroomKernel, EqualsThePlainRuleWithSeveralDisparitiesAndBands) {
   for (const int bands : {1, 2, 3, 50}) EXPECT_GT(expect_equal(rule, pair, bands), 100u);
 }
 
-TEST(PushbroomKernel, EqualsThePlainRuleAtEveryPixel) {
-  std::size_t bare = 0, with_invariance = 0;
-  for (const Texture texture :
-       {Texture::noise, Texture::saturated, Texture::flat, Texture::stripes, Texture::smooth}) {
-    const Pair pair = pair_of(376, 240, texture, 33, 8);
-    BlockRule rule = pushbroom_of(376, 240, {33, 28});
-    rule.every_pixel = true;
-    rule.last_row_px = 203;  // not a whole number of cells
-    bare += expect_equal(rule, pair, 3);
-    rule.horizontal_invariance = true;
-    with_invariance += expect_equal(rule, pair, 2);
-  }
-  EXPECT_GT(bare, 1000u);
-  EXPECT_GT(with_invariance, 100u);
-}
-
 TEST(PushbroomKernel, EqualsThePlainRuleOnOddAndTinyImages) {
   for (const auto& [width, height] : std::vector<std::pair<int, int>>{
            {5, 5}, {6, 5}, {7, 9}, {13, 6}, {33, 7}, {64, 11}, {65, 12}, {127, 17}, {129, 33}, {301, 64}}) {
@@ -189,7 +172,6 @@ TEST(PushbroomKernel, EqualsThePlainRuleOnOddAndTinyImages) {
         BlockRule rule = pushbroom_of(width, height, {disparity});
         rule.horizontal_invariance = (filters & 1) != 0;
         rule.uniqueness = (filters & 2) != 0;
-        rule.every_pixel = filters == 0 && width % 3 == 0;
         rule.window.rows_each_side_px = 2;
         expect_equal(rule, pair);
       }
@@ -210,7 +192,6 @@ TEST(PushbroomKernel, EqualsThePlainRuleForRulesDrawnAtRandom) {
     for (const DisparityRule& one : rule.disparities)
       largest_px = std::max(largest_px, std::abs(one.disparity_px));
     rule.stride_px = *rc::gen::inRange(1, 9);
-    rule.every_pixel = *rc::gen::arbitrary<bool>();
     rule.right_margin_px = *rc::gen::inRange(0, width - block_px - std::abs(largest_px) + 1);
     rule.last_row_px = *rc::gen::inRange(0, 60);
     rule.disparities.front().minimum_edge_sum = *rc::gen::inRange(0, largest_edge_sum + 1);

@@ -53,7 +53,7 @@ TEST_F(CampaignFile, FliesEverySeedInEveryConditionOfOverridesAndGrid) {
   EXPECT_EQ(campaign.conditions[4].name, "dense-ours-cruise_speed_mps=10");
   const Scenario blind = scenario_from_text(campaign.conditions[3].scenario_text, "blind");
   EXPECT_EQ(blind.perception.detector, "none");
-  EXPECT_EQ(blind.autopilot.autopilot.flight_model.cruise_speed_mps, 12);
+  EXPECT_EQ(blind.autopilot.flight_model.cruise_speed_mps, 12);
   const std::vector<CampaignTask> tasks = tasks_of(campaign);
   ASSERT_EQ(tasks.size(), 32u);
   EXPECT_EQ(tasks[1].id, "forest-ours-cruise_speed_mps=10-10");
@@ -109,9 +109,10 @@ TEST_F(CampaignFile, RefusesBadFilesInOneLineWithFileLineAndKey) {
       {"scenario: forest\nseeds: 1\noverrides:\n  - {name: a}\n  - {name: a}\n",
        "two conditions are called 'forest-a'"},
       {"scenario: forest\nseeds: 1\noverrides:\n  - {name: a/b}\n",
-       "speed.yaml:4: overrides.name: expected a name"},
+       "speed.yaml:4: overrides[0].name: expected a name"},
       {"scenario: forest\nseeds: 1\noverrides: fast\n", "speed.yaml:3: overrides: expected a list"},
-      {"scenario: forest\nseeds: 1\noverrides:\n  - {name: a, sets: {}}\n", "overrides.sets: unknown key"},
+      {"scenario: forest\nseeds: 1\noverrides:\n  - {name: a, sets: {}}\n",
+       "speed.yaml:4: overrides[0].sets: unknown key"},
       {"scenario: forest\nseeds: 1\ngrid:\n  forest.length_m: 30\n",
        "speed.yaml:4: grid.forest.length_m: expected a list"},
       {"scenario: forest\nseeds: 1\ngrid:\n  forest.lenght_m: [30]\n",

@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
-#include "scenarios/config/config_reader.hpp"
-#include "scenarios/config/config_writer.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/config/field_writer.hpp"
 #include "tests/support/text.hpp"
 
 namespace understory {

@@ -173,9 +173,10 @@ TEST(EvaluateCommand, WrongInputIsRefusedInOneLine) {
   };
   refuses("recordings: []\n", "recordings: expected a list");
   refuses("recording: 1\n", "recording: unknown key (did you mean recordings?)");
-  refuses("recordings:\n  - {name: a, scenario: forest}\n", "recordings.seeds: expected the seeds to fly");
+  refuses("recordings:\n  - {name: a, scenario: forest}\n", "recordings[0].seeds: expected the seeds to fly");
   refuses("recordings:\n  - {name: a, scenario: forest, seeds: 3..1}\n", "ends before it begins");
-  refuses("recordings:\n  - {name: a/b, scenario: forest, seeds: 1}\n", "recordings.name: expected a name");
+  refuses("recordings:\n  - {name: a/b, scenario: forest, seeds: 1}\n",
+          "recordings[0].name: expected a name");
   refuses("recordings:\n  - {name: a, scenario: nowhere, seeds: 1}\n", "nowhere");
   refuses("recordings:\n  - {name: a, scenario: forest, seeds: 1, path: no.tum}\n", "no.tum");
   refuses(

@@ -196,7 +196,7 @@ TEST(EurocRecording, TheBiasesAreTheFlightsOwn) {
   ASSERT_EQ(line.cells.size(), 17u);
   const Eigen::Vector3d gravity_body =
       flight.truths[0].T_world_body.linear().transpose() * Eigen::Vector3d(0, 0, 9.81);
-  const ImuConfig& config = scenario.sensors.sensors.imu;
+  const ImuConfig& config = scenario.sensors.imu;
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(*number_in(line.cells[11 + axis]), flight.samples[5].angular_rate_body_radps[axis],
                 config.gyro_step_radps);

@@ -44,7 +44,7 @@ TEST(Scenario, TheLibraryIsWhatTheMissionSays) {
   EXPECT_EQ(Scenario().autopilot.replan_rate_hz, 600);
   EXPECT_EQ(load_scenario(library / "forest.yaml", {"autopilot.preset=thorough"}).autopilot.replan_rate_hz,
             120);
-  EXPECT_EQ(forest.autopilot.autopilot.planner.search.iterations, 100);
+  EXPECT_EQ(forest.autopilot.planner.search.iterations, 100);
   EXPECT_EQ(load_scenario(library / "forest.yaml", {"autopilot.replan_rate_hz=120"}).autopilot.replan_rate_hz,
             120);
   EXPECT_EQ(load_scenario(library / "dense.yaml").forest.square_metres_per_tree, 25);
@@ -123,24 +123,26 @@ TEST(Scenario, TwoOfTheLibraryDifferOnlyInWhatTheirCommentsSay) {
 
 TEST(Scenario, TheFilterStartsAsTheAircraftStandsAndKnowsItsSensors) {
   const Scenario nominal = scenario_from_text("name: a\n", "a.yaml");
-  EXPECT_NEAR(nominal.estimation.filter.start.pitch_rad, 0.398, 0.002);  // slope and angle of attack
+  EXPECT_NEAR(nominal.estimation.filter().start.pitch_rad, 0.398, 0.002);  // slope and angle of attack
   const FilterConfig tuned;
-  EXPECT_EQ(nominal.estimation.filter.altitude.noise_m, tuned.altitude.noise_m);
-  EXPECT_EQ(nominal.estimation.filter.gyro_noise_radps_rthz, tuned.gyro_noise_radps_rthz);
-  EXPECT_EQ(nominal.estimation.filter.altitude.wash_sigma_m_per_n, 0);
+  EXPECT_EQ(nominal.estimation.filter().altitude.noise_m, tuned.altitude.noise_m);
+  EXPECT_EQ(nominal.estimation.filter().gyro_noise_radps_rthz, tuned.gyro_noise_radps_rthz);
+  EXPECT_EQ(nominal.estimation.filter().altitude.wash_sigma_m_per_n, 0);
   const Scenario rough = scenario_from_text("sensors: {grade: rough}\n", "a.yaml");
-  EXPECT_NEAR(rough.estimation.filter.altitude.noise_m, 3 * tuned.altitude.noise_m, 1e-12);
-  EXPECT_NEAR(rough.estimation.filter.start.gyro_bias_sigma_radps, 3 * tuned.start.gyro_bias_sigma_radps,
+  EXPECT_NEAR(rough.estimation.filter().altitude.noise_m, 3 * tuned.altitude.noise_m, 1e-12);
+  EXPECT_NEAR(rough.estimation.filter().start.gyro_bias_sigma_radps, 3 * tuned.start.gyro_bias_sigma_radps,
               1e-12);
-  EXPECT_NEAR(rough.estimation.filter.altitude.wash_sigma_m_per_n, 0.39, 1e-12);
-  EXPECT_GT(rough.estimation.filter.rest.rate_tolerance_radps, tuned.rest.rate_tolerance_radps);
+  EXPECT_NEAR(rough.estimation.filter().altitude.wash_sigma_m_per_n, 0.39, 1e-12);
+  EXPECT_GT(rough.estimation.filter().rest.rate_tolerance_radps, tuned.rest.rate_tolerance_radps);
   // A scenario that says otherwise wins; the original's filter knew nothing of its sensors.
   EXPECT_EQ(scenario_from_text("{sensors: {grade: rough}, estimation: {filter: {altitude: {noise_m: 0.7}}}}",
                                "a.yaml")
-                .estimation.filter.altitude.noise_m,
+                .estimation.filter()
+                .altitude.noise_m,
             0.7);
   EXPECT_EQ(scenario_from_text("{sensors: {grade: rough}, estimation: {preset: original}}", "a.yaml")
-                .estimation.filter.altitude.sigma_m,
+                .estimation.filter()
+                .altitude.sigma_m,
             original_filter().altitude.sigma_m);
 }
 
@@ -169,7 +171,7 @@ TEST(Scenario, FilterAndPlannerTakeTheWingFromTheAirframe) {
   const Scenario heavy =
       scenario_from_text("airframe: {mass_kg: 0.8, wing_area_m2: 0.2, winglet_area_m2: 0.03}\n", "a.yaml",
                          {"airframe.air_density_kgpm3=1.1", "airframe.gravity_mps2=9.7"});
-  const FilterConfig& filter = heavy.estimation.filter;
+  const FilterConfig& filter = heavy.estimation.filter();
   EXPECT_EQ(filter.gravity_mps2, 9.7);
   EXPECT_EQ(filter.sideslip.mass_kg, 0.8);
   EXPECT_EQ(filter.sideslip.air_density_kgpm3, 1.1);
@@ -182,11 +184,11 @@ TEST(Scenario, FilterAndPlannerTakeTheWingFromTheAirframe) {
 
   const Scenario doubting =
       scenario_from_text("airframe: {mass_kg: 0.8}\n", "a.yaml", {"estimation.filter.sideslip.mass_kg=0.5"});
-  EXPECT_EQ(doubting.estimation.filter.sideslip.mass_kg, 0.5);  // written, so it wins
-  EXPECT_EQ(doubting.estimation.filter.angle_of_attack.mass_kg, 0.8);
+  EXPECT_EQ(doubting.estimation.filter().sideslip.mass_kg, 0.5);  // written, so it wins
+  EXPECT_EQ(doubting.estimation.filter().angle_of_attack.mass_kg, 0.8);
 
   // By default nothing is derived that the structs do not say themselves.
-  const FilterConfig plain = scenario_from_text("name: a\n", "a.yaml").estimation.filter;
+  const FilterConfig plain = scenario_from_text("name: a\n", "a.yaml").estimation.filter();
   EXPECT_EQ(plain.sideslip.winglets_area_m2, SideslipConfig{}.winglets_area_m2);
   EXPECT_EQ(plain.sideslip.winglets_body_m, SideslipConfig{}.winglets_body_m);
   EXPECT_EQ(plain.angle_of_attack.pitch_damping_nmspr, AngleOfAttackConfig{}.pitch_damping_nmspr);
@@ -238,19 +240,18 @@ TEST(Scenario, FullStereosNumbersAreRefusedInOneLineWhereOpenCvWouldThrow) {
 
 TEST(Scenario, AGradeIsWhereTheKeysBesideItStart) {
   const Scenario rough = scenario_from_text("sensors: {grade: rough, imu: {gyro_scale: 0.002}}\n", "a.yaml");
-  EXPECT_EQ(rough.sensors.sensors.imu.gyro_scale, 0.002);
-  EXPECT_EQ(rough.sensors.sensors.imu.accelerometer_scale,
+  EXPECT_EQ(rough.sensors.imu.gyro_scale, 0.002);
+  EXPECT_EQ(rough.sensors.imu.accelerometer_scale,
             sensors_of_grade(SensorGrade::rough).imu.accelerometer_scale);
   const Scenario plain = scenario_from_text("seed: 5\n", "a.yaml");
-  EXPECT_EQ(plain.sensors.sensors.imu.gyro_scale, 0);
-  EXPECT_EQ(
-      scenario_from_text("seed: 5\n", "a.yaml", {"sensors.grade=ideal"}).sensors.sensors.imu.gyro_noise_radps,
-      0);
+  EXPECT_EQ(plain.sensors.imu.gyro_scale, 0);
+  EXPECT_EQ(scenario_from_text("seed: 5\n", "a.yaml", {"sensors.grade=ideal"}).sensors.imu.gyro_noise_radps,
+            0);
 }
 
 TEST(Scenario, ARuleIsTheRigsOwnUnderTheKeysBesideIt) {
   const auto rule = [](const char* text) {
-    return scenario_from_text(text, "rule.yaml").perception.pushbroom;
+    return scenario_from_text(text, "rule.yaml").perception.pushbroom();
   };
   EXPECT_EQ(rule("name: a").minimum_edge_sum, tuned_pushbroom("long").minimum_edge_sum);
   EXPECT_EQ(rule("perception: {preset: robust}").minimum_edge_sum, robust_pushbroom().minimum_edge_sum);

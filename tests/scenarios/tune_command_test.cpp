@@ -113,19 +113,20 @@ TEST(TuneCommand, OverRecordingsItsFiguresAreThoseOfTheirEvaluation) {
   const Scenario scenario = load_scenario(fs::path(UNDERSTORY_SOURCE_DIR) / "scenarios/library/forest.yaml");
   const std::vector<fs::path> folders{folder.path() / "1000", folder.path() / "1001"};
   EvaluationOptions options{folders, {}, 1, [](std::int64_t, std::int64_t) {}};
-  options.settings.pushbroom = scenario.perception.pushbroom;
+  options.settings.pushbroom() = scenario.perception.pushbroom();
   const EvaluationSum& sum = evaluate(options).all;
-  const Rates& rates = sum.tallies[our_rule].at_one_pixel();
+  const Rates& rates = sum.tallies[algorithm::our_rule].at_one_pixel();
   const std::unique_ptr<Judge> judge = vision_judge(folders, 1, 2);
   const Figures figures = judge->figures(judge->measure("all", scenario).units);
   EXPECT_GT(rates.recall.value(), 0);
-  EXPECT_EQ(figures, (Figures{rates.precision.value(), rates.recall.value(), rates.f_score(),
-                              found_within(sum.sightings[our_rule], 1).value(),
-                              found_within(sum.sightings[our_rule], 3).value(),
-                              static_cast<double>(sum.hits[our_rule]) / static_cast<double>(sum.frames),
-                              rates.trunk_precision.value()}));
+  EXPECT_EQ(figures,
+            (Figures{rates.precision.value(), rates.recall.value(), rates.f_score(),
+                     found_within(sum.sightings[algorithm::our_rule], 1).value(),
+                     found_within(sum.sightings[algorithm::our_rule], 3).value(),
+                     static_cast<double>(sum.hits[algorithm::our_rule]) / static_cast<double>(sum.frames),
+                     rates.trunk_precision.value()}));
   Scenario blind = scenario;
-  blind.perception.pushbroom.depths_m = {0.2};
+  blind.perception.pushbroom().depths_m = {0.2};
   EXPECT_FALSE(judge->measure("blind", blind).refused.empty());
 }
 

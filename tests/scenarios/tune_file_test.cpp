@@ -15,8 +15,8 @@ TEST_F(TuningTest, ReadsWhatIsTunedForWhat) {
   ASSERT_EQ(tune.space.parameters.size(), 2u);
   EXPECT_TRUE(tune.space.parameters[0].whole);
   EXPECT_TRUE(tune.space.parameters[1].logarithmic);
-  EXPECT_EQ(tune.scenario_point[0], tune.scenario.perception.pushbroom.minimum_edge_sum);
-  EXPECT_EQ(tune.scenario_point[1], tune.scenario.perception.pushbroom.score_limit);
+  EXPECT_EQ(tune.scenario_point[0], tune.scenario.perception.pushbroom().minimum_edge_sum);
+  EXPECT_EQ(tune.scenario_point[1], tune.scenario.perception.pushbroom().score_limit);
   EXPECT_EQ(tune.figures[tune.objective.goals[0].figure], "mean_speed_mps");
   EXPECT_EQ(tune.objective.limits[0].bound, 0.5);
   EXPECT_EQ(tune.training_seeds, (std::vector<std::uint64_t>{1000, 1001, 1002, 1003}));
@@ -45,7 +45,7 @@ TEST_F(TuningTest, RefusesBadParametersInOneLineWithFileLineAndKey) {
            "\nsearch: " + any_search + "\n" + over_flights;
   };
   const BadFile cases[] = {
-      {tuning_text() + "trails: 4\n", "t.yaml:10: trails: unknown key, known: "},
+      {tuning_text() + "trails: 4\n", "t.yaml:10: trails: unknown key"},
       {tuning_text() + "overs: 4\n", "t.yaml:10: overs: unknown key (did you mean over?)"},
       {"parameters: {}\n", "scenario: expected the scenario whose keys are tuned"},
       {"scenario: wood\n", "t.yaml:1: scenario: wood: expected one of the library"},
@@ -56,7 +56,8 @@ TEST_F(TuningTest, RefusesBadParametersInOneLineWithFileLineAndKey) {
       {parameter("course: {from: 0, to: 1}"), "t.yaml:3: parameters.course: expected a numeric key"},
       {parameter("seed: {from: 0, to: 1}"), "t.yaml:3: parameters.seed: expected a numeric key"},
       {parameter("perception.pushbroom.minimum_edge_sum: {from: 100, to: 7000}"),
-       "t.yaml:3: parameters.perception.pushbroom.minimum_edge_sum.to: expected a number from 0 to 6375"},
+       "t.yaml:3: parameters.perception.pushbroom.minimum_edge_sum.to: expected a whole number from 0 to "
+       "6375"},
       {parameter("perception.pushbroom.minimum_edge_sum: {from: 100.5, to: 900}"),
        "minimum_edge_sum.from: expected a whole number"},
       {parameter("perception.pushbroom.score_limit: {from: 0.4, to: 0.1}"),
@@ -65,9 +66,10 @@ TEST_F(TuningTest, RefusesBadParametersInOneLineWithFileLineAndKey) {
        "score_limit: scale: log requires from above 0"},
       {parameter("perception.pushbroom.score_limit: {from: 0.1, to: 0.2, scale: lag}"),
        "score_limit.scale: expected linear | log"},
-      {parameter("perception.pushbroom.score_limit: {from: 0.1}"), "t.yaml:3: to: expected {from: ..., to:"},
+      {parameter("perception.pushbroom.score_limit: {from: 0.1}"),
+       "t.yaml:3: parameters.perception.pushbroom.score_limit.to: expected {from: ..., to:"},
       {parameter("perception.pushbroom.score_limit: [0.1, 0.2]"),
-       "score_limit: expected {from: ..., to: ...}"},
+       "score_limit: expected {from: ..., to: ..., scale"},
       {parameter("perception.pushbroom.score_limit: {values: [0.1]}"),
        "score_limit.values: must be a list of two"},
       {parameter("perception.pushbroom.score_limit: {values: [0.1, 0.1]}"),

@@ -24,7 +24,7 @@ class ClosedForm : public Judge {
   Measured measure(const std::string&, const Scenario& scenario) override {
     if (measured >= stop_after) throw Stopped{};
     ++measured;
-    const PushbroomConfig& rule = scenario.perception.pushbroom;
+    const PushbroomConfig& rule = scenario.perception.pushbroom();
     if (rule.score_limit > 0.35) return {{}, "seed 1000: too much"};
     Measured result;
     for (int i = 0; i < 20; ++i)
@@ -175,8 +175,8 @@ TEST_F(TuningTest, LeavesTablesPlotsAndAConfigThatGoesOverTheScenario) {
   const Tuned tuned = tune(file, training, validation, {.folder = where});
   write_tune_report(where, file, tuned, UNDERSTORY_SOURCE_DIR);
   const Scenario scenario = load_scenario(in_library("forest"), {}, {where / "best.yaml"});
-  EXPECT_EQ(scenario.perception.pushbroom.minimum_edge_sum, tuned.best.training.point[0]);
-  EXPECT_EQ(scenario.perception.pushbroom.score_limit, tuned.best.training.point[1]);
+  EXPECT_EQ(scenario.perception.pushbroom().minimum_edge_sum, tuned.best.training.point[0]);
+  EXPECT_EQ(scenario.perception.pushbroom().score_limit, tuned.best.training.point[1]);
   EXPECT_EQ(scenario.forest.length_m, file.scenario.forest.length_m);
   const std::string summary = content_of(where / "summary.md");
   for (const char* part : {"| figure | as it is | tuned |", "## Pareto front", "## Sensitivity", "McNemar",

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "perception/field_visitor.hpp"
 #include "sim/aircraft/aerodynamics.hpp"
 #include "sim/aircraft/aircraft_config.hpp"
 
@@ -250,12 +251,11 @@ TEST(Aircraft, RefusesWhatCannotBe) {
 }
 
 /// Every number of an airframe, by the visitor that knows them all.
-struct Numbers {
-  std::vector<double> values;
-  void operator()(std::string_view, double& field, double, double, const char*) { values.push_back(field); }
-  void operator()(std::string_view, Vector3d& field, double, double, const char*) {
-    values.insert(values.end(), field.begin(), field.end());
+struct Numbers : FieldVisitor {
+  void numbers(std::string_view, FieldNumbers& numbers, std::string_view) override {
+    values.insert(values.end(), numbers.values.begin(), numbers.values.end());
   }
+  std::vector<double> values;
 };
 
 std::vector<double> numbers_of(Airframe airframe) {

@@ -1,10 +1,8 @@
 #include "tests/support/plain_pushbroom.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
-#include <map>
 
 #include "perception/pushbroom/block_rule.hpp"
 
@@ -93,35 +91,13 @@ GrayView view_of(const std::vector<std::uint8_t>& packed, int width_px, int heig
   return {packed.data(), width_px, width_px, height_px};
 }
 
-namespace {
-
-// The best window of each cell, cells counted from the first column of their disparity's search.
-std::vector<BlockMatch> best_of_cells(const BlockRule& rule, const std::vector<BlockMatch>& windows) {
-  std::map<std::array<int, 3>, BlockMatch> best;  // by row of cells, disparity, cell
-  for (const BlockMatch& match : windows) {
-    const int first = std::max(0, rule.disparities[static_cast<std::size_t>(match.disparity)].disparity_px);
-    const auto [at, is_new] = best.try_emplace(
-        {match.row_px / block_px, match.disparity, (match.column_px - first) / block_px}, match);
-    const double score = static_cast<double>(match.sad) / (match.left_edge_sum + match.right_edge_sum);
-    const BlockMatch& other = at->second;
-    // Doubles tell any two such fractions apart: they differ by more than 1 part in 2e8.
-    if (!is_new && score < static_cast<double>(other.sad) / (other.left_edge_sum + other.right_edge_sum))
-      at->second = match;
-  }
-  std::vector<BlockMatch> matches;
-  for (const auto& [cell, match] : best) matches.push_back(match);
-  return matches;
-}
-
-}  // namespace
-
 std::vector<BlockMatch> plain_matches(const BlockRule& rule, const GrayView& left, const GrayView& right) {
   std::vector<std::uint8_t> left_edges, right_edges;
   edge_map(left, left_edges);
   edge_map(right, right_edges);
   const Images images{left, right, view_of(left_edges, left.width_px, left.height_px),
                       view_of(right_edges, right.width_px, right.height_px)};
-  const int stride = rule.every_pixel ? 1 : rule.stride_px;
+  const int stride = rule.stride_px;
   std::vector<BlockMatch> matches;
   for (int row = 0; row <= rule.last_row_px; row += stride)
     for (std::size_t i = 0; i < rule.disparities.size(); ++i)
@@ -143,7 +119,6 @@ std::vector<BlockMatch> plain_matches(const BlockRule& rule, const GrayView& lef
         if (!scores_below(match.sad, match.left_edge_sum + match.right_edge_sum, one.limit_units)) continue;
         matches.push_back(match);
       }
-  if (rule.every_pixel) matches = best_of_cells(rule, matches);
   std::erase_if(matches, [&](const BlockMatch& match) {
     return (rule.uniqueness && !unique(rule, images, match)) ||
            (rule.horizontal_invariance && repeats(rule, images, match));

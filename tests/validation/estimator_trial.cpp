@@ -154,8 +154,8 @@ Sightings sightings(const FlightTrace& flight, const std::vector<double>& depths
 
 TrialConfig trial_of(const FlightTrace& flight, std::uint64_t sensor_seed) {
   TrialConfig config;
-  config.filter = flight.scenario.estimation.filter;
-  config.sensors = flight.scenario.sensors.sensors;
+  config.filter = flight.scenario.estimation.filter();
+  config.sensors = flight.scenario.sensors;
   config.sensor_seed = sensor_seed;
   return config;
 }
@@ -185,7 +185,7 @@ ErrorVector TrialMoment::error() const {
 
 std::vector<TrialMoment> run_trial(const FlightTrace& flight, const TrialConfig& config) {
   Scenario scenario = flight.scenario;
-  scenario.sensors.sensors = config.sensors;
+  static_cast<SensorsConfig&>(scenario.sensors) = config.sensors;
   scenario.sensors.seed = config.sensor_seed;
   OnboardSensors sensors(scenario);
   FlightClock clock(scenario, config.ground_velocity_unknown ? flight.release_step : 0);

@@ -34,7 +34,7 @@ std::vector<OtherFilter> other_filters(const FilterConfig& flown) {
   std::vector<OtherFilter> others{{"and angle of attack", flown}, {"no sideslip", flown}};
   others.front().filter.angle_of_attack.enabled = true;
   others.back().filter.sideslip.model = SideslipModel::off;
-  others.push_back({"preset windy", load_scenario(forest, {"estimation.preset=windy"}).estimation.filter});
+  others.push_back({"preset windy", load_scenario(forest, {"estimation.preset=windy"}).estimation.filter()});
   return others;
 }
 
@@ -49,7 +49,7 @@ struct FlownCondition {
 /// Speeds of level flight by the flat-plate model, at angles of attack that the stack's follower allows.
 AxisRange level_speeds(const Scenario& scenario) {
   AxisRange range{HUGE_VAL, -HUGE_VAL};
-  const double cap_rad = scenario.autopilot.autopilot.flight_model.maximum_angle_of_attack_rad;
+  const double cap_rad = scenario.autopilot.flight_model.maximum_angle_of_attack_rad;
   for (double speed_mps = 5; speed_mps < 18; speed_mps += 0.05)
     if (straight_trim(scenario.flown_airframe(), speed_mps, 0, cap_rad)) include(range, speed_mps);
   return range;
@@ -231,7 +231,7 @@ FlightTally fly_seeds(Scenario scenario, const std::vector<FilterConfig>& others
     const FlightTrace flight = traced_flight(scenario, "filter");
     tally.outcomes.push_back(flight.result.outcome);
     tally.speed_sum_mps += flight.result.mean_speed_mps;
-    tally.drift.add(drifts_with(scenario.estimation.filter, flight));
+    tally.drift.add(drifts_with(scenario.estimation.filter(), flight));
     for (std::size_t other = 0; other < others.size(); ++other)
       tally.others[other].add(drifts_with(others[other], flight));
   }
@@ -240,7 +240,7 @@ FlightTally fly_seeds(Scenario scenario, const std::vector<FilterConfig>& others
 
 std::vector<Section> mismatch_sections() {
   const Scenario scenario = load_scenario(forest);
-  const std::vector<OtherFilter> others = other_filters(scenario.estimation.filter);
+  const std::vector<OtherFilter> others = other_filters(scenario.estimation.filter());
   const std::vector<FlownCondition> all = fly_all(scenario, others);
   return {success_section(all), map_drift_section(all, others)};
 }

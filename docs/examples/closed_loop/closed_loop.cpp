@@ -21,7 +21,7 @@ int main(int argc, char** argv) try {
   const FlightMachine machine{data / "models"};
   FlightParts parts;
   parts.detector = std::make_unique<PushbroomStereo>(rig_of(scenario, machine.models_folder).rig,
-                                                     scenario.perception.pushbroom);
+                                                     scenario.perception.pushbroom());
   FlightLogger logger;
   Flight flight(scenario, machine, {&logger}, std::move(parts));
   while (!flight.outcome()) {

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "perception/field_visitor.hpp"
+#include "perception/io/text_tree.hpp"
+
+namespace understory {
+
+/// Takes values for the fields from a map of keys. Keys that the map lacks leave their fields alone. Throws
+/// InputError "file:line: key: expected ..., got ..." for a wrong type, for a value out of range, and for
+/// keys that no field has; with Keys::all_required also for a field without a key. `path` stands before the
+/// keys in messages.
+enum class Keys { optional, all_required };
+void read_fields(const TextNode& map, const Fields& fields, const std::string& path = "",
+                 Keys keys = Keys::optional);
+
+template <typename Config>
+void read_config(const TextNode& map, Config& config) {
+  read_fields(map, fields_of(config));
+}
+
+/// " (did you mean NAME?)", of the known name that `word` most likely meant; empty where none is near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
+
+}  // namespace understory
