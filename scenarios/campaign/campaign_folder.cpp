@@ -86,12 +86,6 @@ void require_same(const CampaignFolder& folder, const Campaign& campaign) {
 
 }  // namespace
 
-const std::vector<std::string> campaign_patterns{"campaign.json", "conditions/*.yaml", "flights.csv",
-                                                 "flights.jsonl", "costs.csv",         "summary.md",
-                                                 "campaign.svg",  "report.html",       "slurm.sh"};
-
-const std::vector<std::string> flight_patterns{"flights/*", "tracks/*", "logs/*", "runs/*"};
-
 std::string plain_name(std::string text) {
   for (char& c : text)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 &&
@@ -150,14 +144,9 @@ std::vector<CampaignTask> in_flying_order(const Campaign& campaign) {
   return order;
 }
 
-void prepare_campaign_folder(const CampaignFolder& folder, const Campaign& campaign, bool resume) {
-  if (fs::exists(folder.path / manifest_name)) {
-    if (!resume)
-      throw ScenarioError(
-          fmt::format("{}: holds a campaign already: --resume goes on with it, --out names another folder",
-                      folder.path.string()));
-    require_same(folder, campaign);
-  }
+void prepare_campaign_folder(FolderMark& mark, const CampaignFolder& folder, const Campaign& campaign,
+                             bool resume) {
+  if (mark.goes_on(resume)) require_same(folder, campaign);
   for (const char* part : {"conditions", "flights", "tracks", "logs"})
     prepare_output_folder(folder.path / part);
   for (const Condition& condition : campaign.conditions)
@@ -227,7 +216,7 @@ void write_flight(const CampaignFolder& folder, const Campaign& campaign, const 
   file.row.id = task.id;
   file.row.condition = campaign.conditions[task.condition].name;
   file.row.seed = task.seed;
-  write_whole_file(folder.flight_file(task), to_json(file), Named::by_user);  // as the flight itself
+  write_whole_file(folder.flight_file(task), to_json(file));  // as the flight itself
 }
 
 Collected gather(const CampaignFolder& folder, const Campaign& campaign) {

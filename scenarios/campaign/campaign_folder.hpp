@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scenarios/campaign/flight_row.hpp"
+#include "scenarios/output/folder_mark.hpp"
 #include "scenarios/output/program.hpp"
 
 namespace understory {
@@ -80,13 +81,11 @@ struct CampaignFolder {
   }
 };
 
-/// What a campaign's program writes there itself, by relative path, and what its flights write.
-extern const std::vector<std::string> campaign_patterns, flight_patterns;
-
 /// Makes the folder, or, with `resume`, makes sure that it holds this very campaign, begun by this program.
-/// Throws ScenarioError in one line where it holds a campaign already (without `resume`), another one, or one
-/// of another identity or format, or where it cannot be written.
-void prepare_campaign_folder(const CampaignFolder& folder, const Campaign& campaign, bool resume);
+/// Throws ScenarioError in one line where it holds a campaign already (without `resume`), another one, one of
+/// another identity or format, other files, or where it cannot be written.
+void prepare_campaign_folder(FolderMark& mark, const CampaignFolder& folder, const Campaign& campaign,
+                             bool resume);
 
 /// Throws ScenarioError where the flights of `held`, which the folder holds, began with another identity.
 void require_identity(const CampaignFolder& folder, const Campaign& held, const Identity& identity);

@@ -14,7 +14,7 @@
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/output/folder_claim.hpp"
+#include "scenarios/output/folder_mark.hpp"
 #include "scenarios/output/program.hpp"
 #include "scenarios/output/signals.hpp"
 

@@ -29,7 +29,7 @@ struct BenchArguments : CalibrationArguments {
 template <typename Row>
 void report(const std::vector<Row>& rows, const std::string& json) {
   fmt::print("{}", to_table(rows));
-  if (!json.empty()) write_whole_file(json, to_json(rows), Named::by_user);
+  if (!json.empty()) write_whole_file(json, to_json(rows));
 }
 
 int run_closed_loop_bench(const BenchArguments& arguments) {

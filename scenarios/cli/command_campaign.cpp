@@ -12,7 +12,7 @@
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/flight/flight_identity.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/output/folder_claim.hpp"
+#include "scenarios/output/folder_mark.hpp"
 #include "scenarios/output/progress_line.hpp"
 #include "scenarios/output/signals.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
@@ -40,7 +40,6 @@ struct CampaignArguments {
   bool resume = false;
   bool print_tasks = false;
   bool keeps_runs = false;
-  bool force = false;
 };
 
 /// Of every condition, before anything is flown: a rig that is not there would fail every flight.
@@ -55,20 +54,6 @@ std::vector<Scenario> scenarios_of(const Campaign& campaign, const std::string& 
     }
   }
   return scenarios;
-}
-
-/// A campaign writes into a folder of its own: a new one, an empty one, or a campaign's.
-void claim_campaign_folder(FolderClaim& claim, const CampaignFolder& folder, const Campaign& campaign,
-                           bool force) {
-  if (claim.resumes("campaign.json", campaign_patterns, folder.path, force)) {
-    read_campaign(folder);
-    return;
-  }
-  std::set<std::string> ids;
-  for (const CampaignTask& task : tasks_of(campaign)) ids.insert(task.id);
-  for (const fs::path& file : files_of(folder.path, flight_patterns))
-    if (ids.contains(file.stem().string()) || ids.contains(file.filename().string()))
-      claim.require_own(claim.folder() / file);
 }
 
 void show(ProgressLine& line, const CampaignProgress& progress) {
@@ -148,16 +133,16 @@ int run_campaign(const CampaignArguments& arguments) {
   if (folder.path.string().find('\n') != std::string::npos)  // --print-tasks prints a line for each flight
     throw ScenarioError(fmt::format("{}: the folder's name must not hold line breaks", folder.path.string()));
   require_separate({arguments.junit}, campaign.files);
-  require_outside({arguments.junit}, folder.path, campaign_patterns);
-  require_outside({arguments.junit}, folder.path, flight_patterns);
+  require_outside(arguments.junit, folder.path);
   require_writable(arguments.junit);
-  FolderClaim claim(folder.path, "campaign", folder.path);
-  claim_campaign_folder(claim, folder, campaign, arguments.force);
+  FolderMark mark(folder.path, campaign_results, folder.path);
+  if (fs::exists(folder.path / campaign_results.manifest))
+    read_campaign(folder);  // before anything is opened
   const OpenedRenderer renderer = opened_renderer(arguments.renderer);
   campaign.renderer = word_for(renderer.kind);
   campaign.identity = identity_of(scenarios, data_root() / "models", renderer);
   remove_parts(folder);
-  prepare_campaign_folder(folder, campaign, arguments.resume);
+  prepare_campaign_folder(mark, folder, campaign, arguments.resume);
   if (arguments.print_tasks) return print_tasks(folder, campaign);
 
   const StopSignals stop_signals;
@@ -238,8 +223,6 @@ void add_campaign_command(CommandLine& line) {
                 "with slurm: an option for sbatch, for example --sbatch=--partition=short; repeatable");
   command.flag("--no-wait", arguments->no_wait, "with slurm: return after the job is submitted");
   command.flag("--resume", arguments->resume, "continue the unfinished campaign in the results folder");
-  command.flag("--force", arguments->force,
-               "accept a results folder that holds other files; these are not replaced");
   command.flag(
       "--print-tasks", arguments->print_tasks,
       "print one command per flight instead of flying; after running them, gather the results with collect");

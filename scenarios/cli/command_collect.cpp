@@ -8,7 +8,7 @@
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/output/folder_claim.hpp"
+#include "scenarios/output/folder_mark.hpp"
 
 namespace understory {
 namespace {
@@ -22,16 +22,13 @@ struct GateArguments {
 
 int run_gate(const GateArguments& arguments) {
   for (const std::string& folder : {arguments.baseline, arguments.candidate}) {
-    require_outside({arguments.junit}, folder, campaign_patterns);
-    require_outside({arguments.junit}, folder, flight_patterns);
-    require_separate({arguments.junit}, {std::filesystem::path(folder) / "flights.csv"});
+    require_outside(arguments.junit, folder);
   }
   require_writable(arguments.junit);
   const Comparison comparison =
       compare_campaigns(read_campaign_rows(arguments.baseline), read_campaign_rows(arguments.candidate));
   const GateVerdict verdict = verdict_on(comparison, arguments.rule);
-  if (!arguments.junit.empty())
-    write_whole_file(arguments.junit, gate_junit(comparison, arguments.rule), Named::by_user);
+  if (!arguments.junit.empty()) write_whole_file(arguments.junit, gate_junit(comparison, arguments.rule));
   fmt::print("{}", to_report(comparison, verdict, arguments.rule));
   return verdict.passes() ? exit_goal : exit_not_goal;
 }
@@ -44,7 +41,7 @@ int report(const CampaignFolder& folder, const Campaign& campaign, const Collect
   write_whole_file(folder.path / "summary.md", to_markdown(table));
   const std::string plots = campaign_svg(collected.rows, campaign.conditions);
   if (!plots.empty()) write_whole_file(folder.path / "campaign.svg", plots);
-  if (!junit.empty()) write_whole_file(junit, campaign_junit(collected.rows), Named::by_user);
+  if (!junit.empty()) write_whole_file(junit, campaign_junit(collected.rows));
 
   fmt::print("{}", to_text(table));
   std::size_t not_flown = 0;
@@ -67,9 +64,9 @@ void add_collect_command(CommandLine& line) {
   command.runs([folder] {
     const CampaignFolder results{*folder};
     const Campaign campaign = read_campaign(results);
-    FolderClaim claim(results.path, "campaign", results.path, FolderClaim::Manner::beside_others);
-    claim.adopt(campaign_patterns);
-    claim.require_own(campaign_patterns);
+    FolderMark mark(results.path, campaign_results, results.path, FolderMark::Manner::beside_others);
+    for (const std::string& file : names_of(campaign_results)) mark.require_own(file);
+    mark.add(names_of(campaign_results));
     return report(results, campaign, collect(results, campaign));
   });
 }

@@ -63,7 +63,7 @@ int run_rig(const RigArguments& arguments) {
   require_writable(out);
   const CalibratedRig calibrated = bad_input_if_refused([&] { return read_calibrated_rig(path, options); });
   const RigFigures figures = rig_figures(calibrated.rig, PushbroomConfig());
-  if (!out.empty()) write_whole_file(out, to_svg(rig_plots(calibrated.rig, figures), 2), Named::by_user);
+  if (!out.empty()) write_whole_file(out, to_svg(rig_plots(calibrated.rig, figures), 2));
   fmt::print("{}", to_report(calibrated, figures));
   if (!arguments.out.empty()) fmt::print("  {:<20}{}\n", "picture", arguments.out);
   return 0;

@@ -10,7 +10,7 @@
 #include "scenarios/evaluation/evaluation_report.hpp"
 #include "scenarios/evaluation/evaluation_suite.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/output/folder_claim.hpp"
+#include "scenarios/output/output_folder.hpp"
 #include "scenarios/output/progress_line.hpp"
 
 namespace understory {
@@ -64,8 +64,7 @@ int run_evaluate(EvaluateArguments arguments) {
     out = fs::path("evaluations") / (input.has_filename() ? input : input.parent_path()).stem();
   }
   require_separate({out}, {arguments.inputs.begin(), arguments.inputs.end()});
-  FolderClaim claim(out, "evaluation", out);
-  claim.require_own(evaluation_patterns);
+  OutputFolder output(out, evaluation_results, "", Replace::anything);
   if (is_suite)
     options.folders = record_suite(arguments.inputs[0], out / "recordings", options.jobs, scenario_file,
                                    data_root() / "models");
@@ -81,8 +80,8 @@ int run_evaluate(EvaluateArguments arguments) {
   };
   const Evaluation evaluation = evaluate(options);
   line.clear();
-  write_evaluation(evaluation, out, data_root());
-  claim.remove_stale(evaluation_patterns);
+  write_evaluation(evaluation, output.path(), data_root());
+  output.finish();
   fmt::print("{}\nfiles: {}\n", evaluation_report(evaluation), out.string());
   return exit_goal;
 }

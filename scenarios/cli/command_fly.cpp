@@ -129,17 +129,12 @@ void require_separate_outputs(const FlyArguments& arguments, const fs::path& fol
   std::vector<fs::path> others{scenario_file(arguments.scenario)};
   others.insert(others.end(), arguments.with.begin(), arguments.with.end());
   for (const fs::path& file : rig_files_of(scenario, data_root() / "models")) others.push_back(file);
-  if (!folder.empty())
-    for (const std::string& file : run_patterns) others.push_back(folder / file);
-  require_separate({arguments.row, arguments.track, arguments.junit}, others);
-}
-
-/// What is to be written beside the run folder; within it, it can be once that is there.
-void require_writable_beside(const fs::path& folder, const std::string& file) {
-  if (file.empty()) return;
-  std::error_code ignored;
-  const fs::path above = fs::weakly_canonical(fs::absolute(file), ignored).parent_path();
-  if (folder.empty() || above != fs::weakly_canonical(fs::absolute(folder), ignored)) require_writable(file);
+  const std::vector<fs::path> outputs{arguments.row, arguments.track, arguments.junit};
+  require_separate(outputs, others);
+  for (const fs::path& output : outputs) {
+    require_outside(output, folder);
+    if (path_within(output, folder).empty()) require_writable(output);
+  }
 }
 
 /// The file that --mcap asks for, as one of the flight's observers.
@@ -152,22 +147,10 @@ std::unique_ptr<FlightMcap> mcap_of(const FlightArguments& arguments, FlightLogg
   return mcap;
 }
 
-FlightResult flown(const Scenario& scenario, const FlyOptions& options, std::optional<OutputFolder>& output) {
-  try {
-    FlightResult result = fly(scenario, options);
-    if (output) output->finish();
-    return result;
-  } catch (const LostFilm&) {
-    output->finish();
-    throw;
-  }
-}
-
 int run_fly(const FlyArguments& arguments) {
   const Scenario scenario = scenario_of(arguments);
   FlyOptions options = options_of(arguments);
   options.report = arguments.report;
-  options.track = arguments.track;
   options.video = arguments.video || arguments.report;
   const fs::path folder = folder_of(arguments, scenario);
   if (folder.empty() && (options.video || arguments.mcap))
@@ -175,13 +158,16 @@ int run_fly(const FlyArguments& arguments) {
                                                                                 : options.video ? "video"
                                                                                                 : "mcap"));
   require_separate_outputs(arguments, folder, scenario);
-  for (const std::string& file : {arguments.row, arguments.track, arguments.junit})
-    require_writable_beside(folder, file);
   std::optional<OutputFolder> output;
   if (!folder.empty()) {
-    output.emplace(folder, run_contents(scenario), arguments.force ? Replace::anything : Replace::same);
+    output.emplace(folder, flight_results, scenario_to_text(scenario),
+                   arguments.force ? Replace::anything : Replace::same);
     options.output_folder = output->path();
   }
+  // What an option names within the run's folder appears with it; what lies elsewhere, when the run is there.
+  const auto within = [&](const std::string& file) { return path_within(file, folder); };
+  options.track =
+      within(arguments.track).empty() ? fs::path(arguments.track) : output->path() / within(arguments.track);
   FlightLogger logger;
   const std::unique_ptr<FlightMcap> mcap = mcap_of(arguments, logger, options);
   warn_of(scenario, arguments.quiet);
@@ -189,13 +175,23 @@ int run_fly(const FlyArguments& arguments) {
   options.on_progress = [&](const FlightProgress& progress) { show(line, progress); };
   if (const std::size_t obstacles = course_obstacles(scenario).size(); obstacles > 2000)
     line.show(fmt::format("building a world with {} obstacles", obstacles));
-  const FlightResult result = flown(scenario, options, output);
+  FlightResult result;
+  try {
+    result = fly(scenario, options);
+  } catch (const LostFilm&) {
+    output->finish();
+    throw;
+  }
   line.clear();
   FlightRow row = flown_row(fs::path(arguments.scenario).stem().string(), scenario, result);
   if (!arguments.row.empty()) row.id = fs::path(arguments.row).stem().string();  // as the campaign asked
-  if (!arguments.row.empty())
-    write_whole_file(arguments.row, to_json(FlightFile{row, cost_of(result)}), Named::by_user);
-  if (!arguments.junit.empty()) write_whole_file(arguments.junit, campaign_junit({row}), Named::by_user);
+  const std::vector<std::pair<std::string, std::string>> named{
+      {arguments.row, to_json(FlightFile{row, cost_of(result)})}, {arguments.junit, campaign_junit({row})}};
+  for (const auto& [file, text] : named)
+    if (!within(file).empty()) write_whole_file(output->path() / within(file), text);
+  if (output) output->finish();
+  for (const auto& [file, text] : named)
+    if (!file.empty() && within(file).empty()) write_whole_file(file, text);
   if (!arguments.quiet) {
     fmt::print("{}", to_report(result));
     if (output) fmt::print("  {:<18}{}\n", "files", folder.string());
@@ -256,7 +252,7 @@ int run_record(const RecordArguments& arguments) {
     throw ScenarioError("--mcap is a log of a flight: it excludes --walk and --path");
   const Scenario scenario = scenario_of(arguments);
   FlyOptions options = options_of(arguments);
-  OutputFolder output(arguments.out, recording_contents(scenario),
+  OutputFolder output(arguments.out, flight_results, scenario_to_text(scenario),
                       arguments.force ? Replace::anything : Replace::nothing);
   options.output_folder = output.path();
   const std::string report = record(arguments, scenario, options);

@@ -175,7 +175,7 @@ int run_forest(const ForestArguments& arguments) {
     plots[2].series.push_back(curve_of("measured forest", *measured_figures));
     plots[3].series.push_back(diameters_of("measured forest", measured));
   }
-  write_whole_file(out, to_svg(plots, 2), Named::by_user);
+  write_whole_file(out, to_svg(plots, 2));
   fmt::print("picture: {}\n", arguments.out);
   return exit_goal;
 }

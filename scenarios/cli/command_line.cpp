@@ -8,6 +8,7 @@
 
 #include "perception/io/text_table.hpp"
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/output/result_kinds.hpp"
 
 namespace understory {
 namespace {
@@ -82,7 +83,10 @@ const Command::Added& Command::Added::excludes(const Added& other) const {
 }
 
 Command::Command(CLI::App& app, CommandText text) : app_(app), text_(std::move(text)) {
-  std::string footer = "Example:\n  " + text_.example + "\nExit status:\n";
+  std::string footer = "Example:\n  " + text_.example + "\n";
+  if (const ResultKind* results = results_of(text_.name))
+    footer += fmt::format("Files in the results folder:\n  {}\n", fmt::join(results->patterns, " "));
+  footer += "Exit status:\n";
   for (const auto& [status, meaning] : exit_statuses(text_))
     footer += fmt::format("  {:<10}{}\n", status, meaning);
   footer.pop_back();

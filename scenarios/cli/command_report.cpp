@@ -91,43 +91,25 @@ int told(const fs::path& file, const std::string& warning, bool quiet) {
   return warning.empty() ? exit_goal : exit_not_goal;
 }
 
-std::vector<fs::path> with_folder(const fs::path& folder, const std::vector<std::string>& names) {
-  std::vector<fs::path> files;
-  for (const std::string& name : names) files.push_back(folder / name);
-  return files;
-}
-
-/// Where the result goes, and under which claim: the option's file, or one of that name in the folder.
+/// Where the result goes: the option's file, or one of that name in the folder, then under its mark.
 struct AgainOutput {
   fs::path file;
-  Named named = Named::by_user;
-  std::optional<FolderClaim> claim;
+  std::optional<FolderMark> mark;
 
-  AgainOutput(const AgainArguments& arguments, const char* kind, const char* name,
+  AgainOutput(const AgainArguments& arguments, const ResultKind& kind, const char* name,
               const std::string& baseline = "") {
     const fs::path folder = arguments.folder;
     file = arguments.out.empty() ? folder / name : fs::path(arguments.out);
-    std::vector<fs::path> folders{folder};
-    if (!baseline.empty()) folders.emplace_back(baseline);
-    for (const fs::path& read : folders)
-      for (std::vector<std::string> patterns : {run_patterns, campaign_patterns, flight_patterns}) {
-        std::erase(patterns, name);  // what is made here
-        require_outside({file}, read, patterns);
-        require_separate({file}, with_folder(read, patterns));
-      }
-    std::error_code ignored;
-    const bool is_elsewhere = fs::weakly_canonical(fs::absolute(file), ignored) !=
-                              fs::weakly_canonical(fs::absolute(folder / name), ignored);
-    if (is_elsewhere) return;
-    named = Named::by_us;
+    require_outside(file, folder, name);
+    if (!baseline.empty()) require_outside(file, baseline);
+    if (path_within(file, folder) != name) return;
     // A run must not be replaced while it is flown again: the result would pass for the new one's. A campaign
     // goes on.
-    const bool is_campaign = kind == std::string("campaign");
-    claim.emplace(folder, kind, folder,
-                  is_campaign ? FolderClaim::Manner::beside_others : FolderClaim::Manner::alone);
-    if (is_campaign) claim->adopt(campaign_patterns);
-    claim->require_own(std::vector<std::string>{name});
+    mark.emplace(folder, kind, folder,
+                 kind.grows ? FolderMark::Manner::beside_others : FolderMark::Manner::alone);
+    mark->require_own(name);
   }
+  FolderMark* listed_in() { return mark ? &*mark : nullptr; }
 };
 
 /// Flies the run again and says how `out` came about; the exit status.
@@ -157,12 +139,12 @@ int fly_again(const Scenario& scenario, const AgainArguments& arguments, FlyOpti
 int report_from_log(const ReportArguments& arguments) {
   const fs::path run = arguments.folder;
   scenario_of_run(run);  // or this is no run
-  const AgainOutput output(arguments, "flight", "report.html");
+  AgainOutput output(arguments, flight_results, "report.html");
   require_writable(output.file);
   const FlightLog log = log_of_run(run);
   FlightPageExtras extras{data_root()};
   extras.warning = warning_of_log(log, run);
-  write_whole_file(output.file, flight_page(log, extras), output.named);
+  write_whole_file(output.file, flight_page(log, extras), output.listed_in());
   return told(output.file, extras.warning, arguments.quiet);
 }
 
@@ -174,16 +156,17 @@ int run_report(const ReportArguments& arguments) {
   options.expected_digest = digest_of(run);
   options.report = true;
   options.video = true;
-  const AgainOutput output(arguments, "flight", "report.html");
+  AgainOutput output(arguments, flight_results, "report.html");
   require_writable(output.file);
   // The film, too, is made as a file first: beside the page, or where that is a device.
   const fs::path beside = is_stream(output.file)
                               ? fs::temp_directory_path() / fmt::format("report-{}", getpid())
                               : fs::weakly_canonical(fs::absolute(output.file));
-  const UnfinishedFolder flown(beside, "flight", output.file);
+  const UnfinishedFolder flown(beside, flight_results, output.file);
   options.output_folder = flown.path();
   return fly_again(scenario, arguments, options, output.file, [&] {
-    write_whole_file(output.file, read_file(flown.path() / "report.html", maximum_image_bytes), output.named);
+    write_whole_file(output.file, read_file(flown.path() / "report.html", maximum_image_bytes),
+                     output.listed_in());
   });
 }
 
@@ -191,7 +174,7 @@ int run_report(const ReportArguments& arguments) {
 int report_campaign(const ReportArguments& arguments) {
   const CampaignFolder folder{arguments.folder};
   const Campaign campaign = read_campaign(folder);
-  const AgainOutput output(arguments, "campaign", "report.html", arguments.baseline);
+  AgainOutput output(arguments, campaign_results, "report.html", arguments.baseline);
   const Collected collected = gather(folder, campaign);
   std::optional<GatedCampaign> gated;
   if (!arguments.baseline.empty()) {
@@ -200,7 +183,8 @@ int report_campaign(const ReportArguments& arguments) {
     gated = GatedCampaign{baseline.filename().string(), comparison, verdict_on(comparison)};
   }
   require_writable(output.file);
-  write_whole_file(output.file, campaign_page(folder, campaign, collected, data_root(), gated), output.named);
+  write_whole_file(output.file, campaign_page(folder, campaign, collected, data_root(), gated),
+                   output.listed_in());
   if (!arguments.quiet) fmt::print("{}\n", output.file.string());
   return gated && !gated->verdict.passes() ? exit_not_goal : exit_goal;
 }
@@ -217,18 +201,18 @@ int run_mcap(const McapArguments& arguments) {
   const fs::path run = arguments.folder;
   const Scenario scenario = scenario_of_run(run);
   if (arguments.no_images) {
-    const AgainOutput output(arguments, "flight", "flight.mcap");
+    AgainOutput output(arguments, flight_results, "flight.mcap");
     require_writable(output.file);
     const FlightLog log = log_of_run(run);
-    FlightMcap(log, output.file, arguments.compress, output.named).write_whole_log();
+    FlightMcap(log, output.file, arguments.compress, output.listed_in()).write_whole_log();
     return told(output.file, warning_of_log(log, run), arguments.quiet);
   }
   FlyOptions options;
   options.expected_digest = digest_of(run);
-  const AgainOutput output(arguments, "flight", "flight.mcap");
+  AgainOutput output(arguments, flight_results, "flight.mcap");
   require_writable(output.file);
   FlightLogger logger;
-  FlightMcap mcap(logger.log(), output.file, arguments.compress, output.named);
+  FlightMcap mcap(logger.log(), output.file, arguments.compress, output.listed_in());
   options.logger = &logger;
   options.observers.push_back(&mcap);
   return fly_again(scenario, arguments, options, output.file, [] {});

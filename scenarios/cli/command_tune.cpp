@@ -9,7 +9,7 @@
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/flight/flight_identity.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/output/folder_claim.hpp"
+#include "scenarios/output/folder_mark.hpp"
 #include "scenarios/output/program.hpp"
 #include "scenarios/output/progress_line.hpp"
 #include "scenarios/output/signals.hpp"
@@ -28,7 +28,6 @@ struct TuneArguments {
   RendererKind renderer = RendererKind::osmesa;
   int jobs = 0;  // 0: a core each
   bool resume = false;
-  bool force = false;
 };
 
 struct Judges {
@@ -78,9 +77,7 @@ int run_tune(const TuneArguments& arguments) {
   Judges judges;
   if (file.over == TuningData::recordings)
     judges = bad_input_if_refused([&] { return judges_of(file, arguments, folder); });
-  FolderClaim claim(folder, "tuning", folder);
-  if (!claim.resumes("tune.json", tune_patterns, folder, arguments.force))
-    claim.require_own(std::vector<std::string>{"flown/*", "flown/*/*", "flown/*/*/*"});
+  FolderMark mark(folder, tuning_results, folder);
   const Identity identity = [&] {
     try {
       return identity_of(file, arguments.renderer);
@@ -88,7 +85,7 @@ int run_tune(const TuneArguments& arguments) {
       throw ScenarioError(fmt::format("{}: {}", file.scenario_file.string(), error.what()));
     }
   }();
-  prepare_tune_folder(folder, file, arguments.resume, identity);
+  prepare_tune_folder(mark, folder, file, arguments.resume, identity);
   if (file.over == TuningData::flights) judges = judges_of(file, arguments, folder);
   const StopSignals stop_signals;
   ProgressLine line;
@@ -99,7 +96,6 @@ int run_tune(const TuneArguments& arguments) {
   try {
     const Tuned tuned = tune(file, *judges.training, *judges.validation, options);
     write_tune_report(folder, file, tuned, data_root());
-    claim.remove_stale({"best.yaml", "front/*.yaml"});
     line.clear();
     fmt::print("{}{}", to_text(comparison_table(file, tuned)),
                tuned.keeps_limits ? "" : "no trial keeps the limits\n");
@@ -130,8 +126,6 @@ void add_tune_command(CommandLine& line) {
   add_jobs_option(command, arguments->jobs, "flights or recordings");
   add_renderer_option(command, arguments->renderer);
   command.flag("--resume", arguments->resume, "continue the unfinished tuning in the results folder");
-  command.flag("--force", arguments->force,
-               "accept a results folder that holds other files; these are not replaced");
   command.runs([arguments] { return run_tune(*arguments); });
 }
 

@@ -3,6 +3,7 @@
 
 #include "scenarios/cli/command_line.hpp"
 #include "scenarios/output/program.hpp"
+#include "scenarios/output/result_kinds.hpp"
 
 namespace understory {
 namespace {
@@ -53,6 +54,9 @@ std::string section_of(const Command& command) {
   std::string page =
       fmt::format(".SS {}\n{}.PP\n{}.\n", troff(text.name), synopsis(command), troff(text.purpose));
   for (const OptionText& option : command.options()) page += option_entry(option);
+  if (const ResultKind* results = results_of(text.name))
+    page += fmt::format(".PP\nFiles in the results folder: {}\n",
+                        troff(fmt::format("{}", fmt::join(results->patterns, " "))));
   page += ".PP\nExit status:\n";
   for (const auto& [status, meaning] : exit_statuses(text))
     if (status == "0" || status == "1") page += fmt::format("{}: {}. ", status, troff(meaning));

@@ -175,14 +175,6 @@ std::string depths_text(const DetectionResult& result) {
   return fmt::format("at {} m", fmt::join(texts, ", "));
 }
 
-/// What an earlier run left does not pass for this one's: OutputFolder removes it.
-FolderContents detection_contents() {
-  return {"detection",
-          "",
-          "",
-          {"points.csv", "points.ply", "timings.csv", "map.ply", "overlay.mp4", "overlays/*.png"}};
-}
-
 }  // namespace
 
 DetectionResult run_detection(const DetectionOptions& options) {
@@ -197,7 +189,7 @@ DetectionResult run_detection(const DetectionOptions& options) {
   std::vector<fs::path> read = options.inputs;
   read.push_back(options.rig);
   require_separate({options.output_folder}, read);
-  OutputFolder output(options.output_folder, detection_contents(), Replace::anything);
+  OutputFolder output(options.output_folder, detection_results, "", Replace::anything);
   DetectionResult result = described(camera, detector, config, recording);
   const std::string depths = depths_text(result);
   DetectionPictures pictures(options, recording, output.path());

@@ -145,11 +145,6 @@ std::string evaluation_report(const Evaluation& evaluation) {
   return text;
 }
 
-const std::vector<std::string> evaluation_patterns{"summary.md",    "report.html",          "evaluation.json",
-                                                   "tables/*.csv",  "precision_recall.svg", "response.svg",
-                                                   "heat_map.png",  "heat_map_paper.png",   "first_hits.svg",
-                                                   "obstacles.csv", "distances.svg",        "worst/*.png"};
-
 void write_evaluation(const Evaluation& evaluation, const fs::path& folder, const fs::path& data_root) {
   prepare_output_folder(folder);
   prepare_output_folder(folder / "tables");

@@ -14,9 +14,6 @@ namespace understory {
 /// What was evaluated, and every table, for a terminal.
 std::string evaluation_report(const Evaluation& evaluation);
 
-/// What write_evaluation() may leave, by relative path.
-extern const std::vector<std::string> evaluation_patterns;
-
 /// Into `folder`: summary.md, evaluation.json (every figure), tables/*.csv, obstacles.csv,
 /// precision_recall.svg, distances.svg, response.svg, first_hits.svg, heat_map.png (ours),
 /// heat_map_paper.png, worst/, and report.html, a page of all that; what needs a truth that no recording has

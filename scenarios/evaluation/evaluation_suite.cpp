@@ -185,11 +185,15 @@ std::vector<fs::path> record_suite(const fs::path& file, const fs::path& folder,
   std::size_t failed = all, done = 0, here = 0;
   int failed_with = 0;
   std::string reason;
-  const UnfinishedFolder said(folder / "said", "evaluation", folder);
+  const UnfinishedFolder said(folder / "said", evaluation_results, folder);
   const fs::path processes_said = said.path();
   ProgressLine line;
   ProgramProcesses processes(jobs, [&](std::uint64_t tag, int status, const EndedProcess&) {
-    if (status == 0) write_whole_file(folder / suite[tag].name / identity_name, identities[tag]);
+    if (status == 0) {
+      const fs::path recording = folder / suite[tag].name;
+      FolderMark mark(recording, flight_results, recording);
+      write_whole_file(recording / identity_name, identities[tag], &mark);
+    }
     if (status != 0 && failed == all) {
       failed = static_cast<std::size_t>(tag);
       failed_with = status;
@@ -211,7 +215,6 @@ std::vector<fs::path> record_suite(const fs::path& file, const fs::path& folder,
       line.clear();
       fmt::print("{}: recorded anew: {}\n", folders.back().string(), fault);
     }
-    fs::remove(folders.back() / identity_name, ignored);  // from here on it is no recording of anything
     processes.start(folders.size() - 1, arguments_of(recording, folders.back()),
                     processes_said / recording.name);
   }

@@ -15,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<fs::path> files_below(const fs::path& folder) {
+/// Regular files, links to folders followed.
+std::vector<fs::path> linked_files_below(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
   fs::recursive_directory_iterator entry(folder, fs::directory_options::follow_directory_symlink, error);
@@ -28,7 +29,7 @@ std::vector<fs::path> files_below(const fs::path& folder) {
 
 std::string digest_of_models(const fs::path& folder) {
   std::string all;
-  for (const fs::path& file : files_below(folder))
+  for (const fs::path& file : linked_files_below(folder))
     if (*file.begin() != "rigs") all += file.string() + ' ' + digest_of_file(folder / file) + '\n';
   return digest_of_text(all);
 }
@@ -67,7 +68,7 @@ std::string rig_name_in_identity(const Scenario& scenario) {
 
 std::string digest_of_recording(const fs::path& folder) {
   std::string all;
-  for (const fs::path& file : files_below(folder)) {
+  for (const fs::path& file : linked_files_below(folder)) {
     const bool is_table = file.extension() == ".csv" || file.extension() == ".yaml";
     all += fmt::format("{} {} {}\n", file.string(), fs::file_size(folder / file),
                        is_table ? digest_of_file(folder / file) : "");

@@ -82,7 +82,7 @@ FlightResult fly(const Scenario& scenario, const FlyOptions& options) {
   }
   if (!options.output_folder.empty()) write_run_files(logger.log(), options.output_folder);
   if (!options.track.empty() && result.outcome != Outcome::goal)
-    write_whole_file(options.track, compact_flight(logger.log()), Named::by_user);
+    write_whole_file(options.track, compact_flight(logger.log()));
   if (options.report) write_report(logger.log(), options, film ? &*film : nullptr);
   if (!lost.empty()) throw LostFilm(lost);
   return result;

@@ -7,17 +7,8 @@
 #include "perception/io/hit_files.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/report/table.hpp"
-#include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
-
-const std::vector<std::string> run_patterns{
-    "result.json", "scenario.yaml", "trajectory.csv", "map.ply",   "obstacles.csv", "truth.tum",
-    "flight.log",  "estimate.tum",  "flight.mp4",     "still.png", "flight.mcap",   "report.html"};
-
-FolderContents run_contents(const Scenario& scenario) {
-  return {"flight", "scenario.yaml", scenario_to_text(scenario), run_patterns};
-}
 
 namespace {
 

@@ -16,7 +16,7 @@
 #include <cstring>
 #include <optional>
 
-#include "scenarios/output/folder_claim.hpp"
+#include "scenarios/output/folder_mark.hpp"
 #include "scenarios/output/signals.hpp"
 
 namespace understory {
@@ -100,9 +100,15 @@ int made(const fs::path& part) {
   const auto lock = hold_outputs();
   // The name is this process's own: what bears it was left by another one of the same number.
   std::remove(part.c_str());
-  const int descriptor = open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor >= 0) flock(descriptor, LOCK_EX | LOCK_NB);
-  return descriptor;
+  for (;;) {
+    const int descriptor = open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor < 0) return descriptor;
+    const bool is_taken = flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    struct stat status {};
+    if (!is_taken && fstat(descriptor, &status) == 0 && status.st_nlink > 0) return descriptor;
+    close(descriptor);  // another program cleared it away before it was locked
+    std::remove(part.c_str());
+  }
 }
 
 /// That a file can be made in `folder` and gets a first block.
@@ -118,12 +124,6 @@ std::string host_name() {
   char host[64] = "";
   gethostname(host, sizeof host - 1);
   return host;
-}
-
-/// Also of a process that has ended and that nobody waits for (a zombie): it has no program.
-bool is_gone(int process) {
-  char program = 0;
-  return readlink(fmt::format("/proc/{}/exe", process).c_str(), &program, 1) < 0 && errno == ENOENT;
 }
 
 bool lies_in_unfinished_folder(const fs::path& file) {
@@ -152,15 +152,6 @@ fs::path unfinished_name_of(const fs::path& target, const fs::path& folder) {
   return folder / fmt::format("{}{}{}", unfinished_prefix, target.filename().string(), unfinished_suffix);
 }
 
-bool is_at_work_on(const fs::path& unfinished) {
-  const std::string name = unfinished.filename().string(),
-                    ours = fmt::format("{}{}-", unfinished_prefix, host_name());
-  int process = 0;
-  if (!name.starts_with(ours)) return false;
-  const auto parsed = std::from_chars(name.data() + ours.size(), name.data() + name.size(), process);
-  return parsed.ec == std::errc() && *parsed.ptr == '-' && process != getpid() && !is_gone(process);
-}
-
 void refuse_output(const fs::path& file, int error) {
   if (const std::string lacking = lacking_resource(error); !lacking.empty())
     throw MachineError(fmt::format("{}: {}", file.string(), lacking));
@@ -172,14 +163,15 @@ void refuse_output(const fs::path& file, int error) {
 struct OutputFile::State {
   fs::path name;
   Destination to;
-  FolderClaim* claim = nullptr;  ///< which lists the file, where it is not the user's to name
+  FolderMark* mark = nullptr;
   std::optional<Unfinished> part;
   std::optional<Stream> stream;
 };
 
-OutputFile::OutputFile(fs::path file, Named named) : state_(std::make_unique<State>()) {
+OutputFile::OutputFile(fs::path file, FolderMark* mark) : state_(std::make_unique<State>()) {
   State& state = *state_;
   state.name = std::move(file);
+  state.mark = mark;
   state.to = destination_of(state.name);
   if (state.to.is_stream) {
     std::fflush(stdout);  // what was printed before stands before
@@ -187,9 +179,7 @@ OutputFile::OutputFile(fs::path file, Named named) : state_(std::make_unique<Sta
                              ? fcntl(state.to.descriptor, F_DUPFD_CLOEXEC, 0)
                              : open(state.to.file.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC));
   } else {
-    const bool asks = named == Named::by_us && !lies_in_unfinished_folder(state.to.file);
-    state.claim = asks ? claim_of(state.to.file) : nullptr;
-    if (state.claim != nullptr) state.claim->require_own(state.to.file);
+    if (mark != nullptr) mark->require_own(state.to.file.filename());
     state.part.emplace(unfinished_name_in(state.to.file.parent_path()));
     state.stream.emplace(made(state.part->path()));
   }
@@ -211,16 +201,16 @@ void OutputFile::finish() {
   if (state.part && stat(file.c_str(), &former) == 0)
     chmod(state.part->path().c_str(), former.st_mode & 07777);
   if (lasts) error = state.stream->sync();
-  if (error == 0 && state.claim != nullptr) state.claim->add({file});
   // Named before it is closed: until then its lock says that somebody is at work on it.
-  if (error == 0 && state.part) state.part->become(file);
+  if (error == 0 && state.mark != nullptr) state.mark->add({file.filename()});
+  if (error == 0 && state.part) state.part->rename_to(file);
   if (const int last = state.stream->close(); error == 0) error = last;
   if (error != 0) refuse_output(state.name, error);
   if (lasts) sync_folder(file.parent_path());  // the new name is the folder's
 }
 
-void write_whole_file(const fs::path& file, std::string_view content, Named named) {
-  OutputFile output(file, named);
+void write_whole_file(const fs::path& file, std::string_view content, FolderMark* mark) {
+  OutputFile output(file, mark);
   output.write(content);
   output.finish();
 }
@@ -257,17 +247,13 @@ void require_writable(const fs::path& file) {
 }
 
 void prepare_output_folder(const fs::path& folder) {
-  const std::vector<fs::path> made = make_folders(folder, folder);
-  std::error_code ignored;
-  if (FolderClaim* claim = claim_of(fs::weakly_canonical(folder, ignored))) claim->made_folders(made);
+  make_folders(folder, folder);
   clear_unfinished(folder);
   probe(folder, folder);
 }
 
-namespace {
-
-/// `path` below `folder`; empty where it is not.
 fs::path path_within(const fs::path& path, const fs::path& folder) {
+  if (path.empty() || folder.empty()) return {};
   std::error_code ignored;
   const fs::path whole = fs::weakly_canonical(fs::absolute(path), ignored);
   const fs::path whole_folder = fs::weakly_canonical(fs::absolute(folder), ignored);
@@ -276,11 +262,36 @@ fs::path path_within(const fs::path& path, const fs::path& folder) {
   return relative.empty() || *relative.begin() == ".." ? fs::path() : relative;
 }
 
-[[noreturn]] void refuse_other_use(const fs::path& output, const char* use) {
+void refuse_other_use(const fs::path& output, const char* use) {
   throw ScenarioError(fmt::format("{}: expected an output of its own, {}", output.string(), use));
 }
 
-}  // namespace
+std::optional<std::string> find_below(const fs::path& folder,
+                                      const std::function<bool(const std::string&)>& is_wanted) {
+  std::error_code error, ignored;
+  fs::recursive_directory_iterator entry(folder, error);
+  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+    const fs::path& path = entry->path();
+    if (fs::is_directory(entry->symlink_status(ignored))) {
+      if (fs::exists(path / mark_name, ignored)) entry.disable_recursion_pending();
+    } else if (path != folder / mark_name && !is_unfinished_file_name(path)) {
+      const std::string file = path.lexically_relative(folder).string();
+      if (is_wanted(file)) return file;
+    }
+  }
+  if (error) refuse_output(folder, error.value());
+  return {};
+}
+
+std::vector<std::string> files_below(const fs::path& folder) {
+  std::vector<std::string> files;
+  find_below(folder, [&](const std::string& file) {
+    files.push_back(file);
+    return false;
+  });
+  std::ranges::sort(files);
+  return files;
+}
 
 void require_separate(const std::vector<fs::path>& outputs, const std::vector<fs::path>& others) {
   const auto same = [](const fs::path& one, const fs::path& other) {
@@ -298,15 +309,6 @@ void require_separate(const std::vector<fs::path>& outputs, const std::vector<fs
         refuse_other_use(outputs[i], "this file or folder is read, or holds another result");
     for (std::size_t j = 0; j < i; ++j)
       if (same(outputs[i], outputs[j])) refuse_other_use(outputs[i], "it is given twice");
-  }
-}
-
-void require_outside(const std::vector<fs::path>& outputs, const fs::path& folder,
-                     const std::vector<std::string>& patterns) {
-  for (const fs::path& output : outputs) {
-    const fs::path within = output.empty() ? fs::path() : path_within(output, folder);
-    if (!within.empty() && matches(within, patterns))
-      refuse_other_use(output, "results are read or written there");
   }
 }
 

@@ -2,7 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -11,11 +14,7 @@
 /// The one way files are written.
 namespace understory {
 
-/// Who chose the name of an output file.
-enum class Named {
-  by_us,   ///< in a claimed folder it replaces what the same command wrote, and nothing else (FolderClaim)
-  by_user  ///< an option's value: it replaces whatever has the name
-};
+class FolderMark;
 
 /// A file being written. A regular file, or a new one, appears whole or not at all: it bears another name
 /// until finish(), which returns only when the file would outlive a power cut (in an UnfinishedFolder the
@@ -24,7 +23,9 @@ enum class Named {
 /// ScenarioError where the file cannot be written.
 class OutputFile {
  public:
-  explicit OutputFile(std::filesystem::path file, Named named = Named::by_us);
+  /// `mark`: of the results that it is added to; lists it when it is whole. Throws ScenarioError where a
+  /// file is there that the mark does not list.
+  explicit OutputFile(std::filesystem::path file, FolderMark* mark = nullptr);
   ~OutputFile();
   void write(std::string_view bytes);
   void finish();
@@ -36,7 +37,7 @@ class OutputFile {
 
 /// The same at once.
 void write_whole_file(const std::filesystem::path& file, std::string_view content,
-                      Named named = Named::by_us);
+                      FolderMark* mark = nullptr);
 
 /// Throws what writing would throw, as far as that can be known beforehand; for outputs that end the work,
 /// before it starts. Clears away what killed programs left unfinished beside it. An empty name means no
@@ -51,12 +52,24 @@ void prepare_output_folder(const std::filesystem::path& folder);
 void require_separate(const std::vector<std::filesystem::path>& outputs,
                       const std::vector<std::filesystem::path>& others);
 
-/// Throws ScenarioError where one of `outputs` would be one of the files that `patterns` mean in `folder`.
-void require_outside(const std::vector<std::filesystem::path>& outputs, const std::filesystem::path& folder,
-                     const std::vector<std::string>& patterns);
 /// Throws ScenarioError where `folder` is one of `others` or lies within one.
 void require_not_within(const std::filesystem::path& folder,
                         const std::vector<std::filesystem::path>& others);
+
+/// `path` below `folder`; empty where it is not.
+std::filesystem::path path_within(const std::filesystem::path& path, const std::filesystem::path& folder);
+[[noreturn]] void refuse_other_use(const std::filesystem::path& output, const char* use);
+
+/// The file that marks a folder as one of results (FolderMark).
+inline constexpr const char* mark_name = ".understory";
+
+/// Looks at each file below `folder`, by relative path, but for the mark and what is unfinished; gives the
+/// first that is wanted. Leaves out folders below that have a mark of their own. Throws as writing where one
+/// cannot be looked at.
+std::optional<std::string> find_below(const std::filesystem::path& folder,
+                                      const std::function<bool(const std::string&)>& is_wanted);
+/// All of them, sorted.
+std::vector<std::string> files_below(const std::filesystem::path& folder);
 
 /// Whether the name leads to a device, a FIFO or a descriptor of this process: what is there stays. Throws as
 /// writing.
@@ -70,8 +83,6 @@ bool is_unfinished_file_name(const std::filesystem::path& path);
 std::filesystem::path unfinished_name_in(const std::filesystem::path& folder);
 std::filesystem::path unfinished_name_of(const std::filesystem::path& target,
                                          const std::filesystem::path& folder);
-/// Whether the process that a name of the first kind tells of is alive on this machine.
-bool is_at_work_on(const std::filesystem::path& unfinished);
 
 /// What was written into the folders reaches the disk. Throws as writing does.
 void sync_file_system(const std::filesystem::path& folder);

@@ -37,99 +37,107 @@ fs::path resolved(const fs::path& folder) {
   return path.has_filename() ? path : path.parent_path();
 }
 
-void empty(const fs::path& part) {
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(part, ignored))
-    if (entry.path().filename() != claim_name) fs::remove_all(entry.path(), ignored);
-}
-
-void refuse_to_replace(const fs::path& folder, const fs::path& given, const FolderContents& contents,
-                       Replace replace) {
-  const std::vector<fs::path> held = files_of(folder, contents.patterns);
-  if (held.empty()) return;
-  const auto refuse = [&](const std::string& what) {
-    throw ScenarioError(fmt::format("{}: {}", given.string(), what));
-  };
-  if (replace == Replace::nothing)
-    refuse("holds results already: --force replaces them, --out names another folder");
-  if (replace == Replace::same && fs::is_regular_file(folder / contents.manifest) &&
-      read_file(folder / contents.manifest, maximum_json_bytes) != contents.manifest_text)
-    refuse(fmt::format(
-        "holds results of another configuration ({}): --force replaces them, --out names another folder",
-        contents.manifest));
-}
-
 }  // namespace
 
-UnfinishedFolder::UnfinishedFolder(const fs::path& target, const std::string& kind, const fs::path& name,
+UnfinishedFolder::UnfinishedFolder(const fs::path& target, const ResultKind& kind, const fs::path& name,
                                    bool within) {
   const fs::path above = within ? target : target.parent_path();
   const fs::path part = unfinished_name_of(target, above);
   const auto lock = hold_outputs();
+  clear_unfinished(above);
   std::error_code ignored;
   const bool is_foreign = fs::exists(fs::symlink_status(part, ignored)) &&
-                          !fs::exists(part / claim_name, ignored) &&
+                          !fs::exists(part / mark_name, ignored) &&
                           !(fs::is_directory(part, ignored) && fs::is_empty(part, ignored));
   if (is_foreign)
     throw ScenarioError(fmt::format("{}: understory did not write this folder: move it away", part.string()));
-  claim_.emplace(part, kind, name);
+  mark_.emplace(part, kind, name);
   part_.emplace(part);
-  empty(part);
+  mark_->add({std::string(kind.last)});  // so that the mark goes with the folder, as its last file
 }
 
-bool UnfinishedFolder::become(const fs::path& name, const std::vector<std::string>& patterns) {
-  const auto lock = hold_outputs();
-  claim_->adopt(patterns);
-  claim_->add({});
-  sync_file_system(path());
-  if (std::rename(path().c_str(), name.c_str()) == 0) {
-    part_->keep();
-    sync_folder(name.parent_path());
-    return true;
+UnfinishedFolder::~UnfinishedFolder() {
+  part_.reset();
+  mark_.reset();
+  remove_made_folders();
+}
+
+bool UnfinishedFolder::rename_to(const fs::path& name) {
+  if (std::rename(path().c_str(), name.c_str()) != 0) {
+    if (errno != ENOTEMPTY && errno != EEXIST) refuse_output(name, errno);
+    return false;
   }
-  if (errno != ENOTEMPTY && errno != EEXIST) refuse_output(name, errno);
-  return false;
+  part_->keep();
+  sync_folder(name.parent_path());
+  return true;
 }
 
-OutputFolder::OutputFolder(fs::path folder, FolderContents contents, Replace replace)
-    : folder_(resolved(folder)), contents_(std::move(contents)), replace_(replace) {
+OutputFolder::OutputFolder(fs::path folder, const ResultKind& kind, std::string manifest, Replace replace)
+    : folder_(resolved(folder)),
+      name_(std::move(folder)),
+      kind_(kind),
+      manifest_(std::move(manifest)),
+      replace_(replace) {
   std::error_code ignored;
-  if (fs::exists(folder_, ignored) && !fs::is_directory(folder_, ignored)) refuse_output(folder, ENOTDIR);
-  part_.emplace(folder_, contents_.kind, folder, stands_alone(folder_));
+  if (fs::exists(folder_, ignored) && !fs::is_directory(folder_, ignored)) refuse_output(name_, ENOTDIR);
+  stands_alone_ = stands_alone(folder_);
+  part_.emplace(folder_, kind_, name_, stands_alone_);
   if (fs::exists(folder_, ignored)) {
-    there_.emplace(folder_, contents_.kind, folder);
-    there_->require_own(contents_.patterns);
-    refuse_to_replace(folder_, folder, contents_, replace);
+    if (fs::exists(fs::symlink_status(folder_ / mark_name, ignored))) there_.emplace(folder_, kind_, name_);
+    require_replaceable();
   }
-  if (!contents_.manifest.empty()) write_whole_file(path() / contents_.manifest, contents_.manifest_text);
+  if (!kind_.manifest.empty()) write_whole_file(path() / kind_.manifest, manifest_);
+}
+
+void OutputFolder::require_replaceable() const {
+  const auto refuse = [&](const std::string& reason) {
+    throw ScenarioError(fmt::format("{}: {}", name_.string(), reason));
+  };
+  for (const std::string& file : names_of(kind_))
+    if (fs::is_directory(fs::symlink_status(folder_ / file))) refuse_output(name_ / file, EISDIR);
+  if (!there_) {
+    const auto other = find_below(folder_, [](const std::string&) { return true; });
+    if (other) refuse_other_file(name_ / *other);
+    return;
+  }
+  there_->require_no_other_files();
+  if (there_->files().empty()) return;
+  if (replace_ == Replace::nothing)
+    refuse("holds results already: --force replaces them, --out names another folder");
+  if (replace_ == Replace::same && fs::is_regular_file(folder_ / kind_.manifest) &&
+      read_file(folder_ / kind_.manifest, maximum_json_bytes) != manifest_)
+    refuse(fmt::format(
+        "holds results of another configuration ({}): --force replaces them, --out names another folder",
+        kind_.manifest));
 }
 
 void OutputFolder::finish() {
   const auto lock = hold_outputs();  // no signal comes between
-  const std::vector<fs::path> written = files_of(path(), contents_.patterns);
-  if (!there_ && part_->become(folder_, contents_.patterns)) return;
+  const std::vector<std::string> written = files_below(path());
+  part_->mark().add(written);
   sync_file_system(path());
-  if (!there_) {  // somebody made it meanwhile
-    there_.emplace(folder_, contents_.kind, folder_, FolderClaim::Manner::beside_others);
-    refuse_to_replace(folder_, folder_, contents_, replace_);
+  if (!there_ && !stands_alone_ && part_->rename_to(folder_)) return;
+  if (!there_) {  // it is a mount, or somebody made something there meanwhile
+    require_replaceable();
+    there_.emplace(folder_, kind_, name_);
   }
-  FolderClaim& there = *there_;
-  there.require_own(contents_.patterns);
-  // While it is replaced, the file that says that all is there is not.
-  const fs::path mark = contents_.patterns.front();
-  std::vector<fs::path> files;
-  for (const fs::path& file : written) files.push_back(folder_ / file);
-  there.add(files);
-  if (there.owns(folder_ / mark)) fs::remove(folder_ / mark);
-  const auto place = [&](const fs::path& file) {
+  require_replaceable();
+  place(written);
+}
+
+/// File by file. While they are replaced, the file that says that all are there is not.
+void OutputFolder::place(const std::vector<std::string>& written) {
+  if (there_->files().contains(std::string(kind_.last))) fs::remove(folder_ / kind_.last);
+  there_->keep_only({written.begin(), written.end()});
+  there_->add(written);
+  const auto place_one = [&](const fs::path& file) {
     fs::create_directories((folder_ / file).parent_path());
     fs::rename(path() / file, folder_ / file);
   };
-  for (const fs::path& file : written)
-    if (file != mark) place(file);
-  there.remove_stale(contents_.patterns);
+  for (const std::string& file : written)
+    if (file != kind_.last) place_one(file);
   sync_file_system(folder_);
-  if (std::ranges::find(written, mark) != written.end()) place(mark);
+  if (std::ranges::find(written, kind_.last) != written.end()) place_one(kind_.last);
   sync_folder(folder_);
 }
 

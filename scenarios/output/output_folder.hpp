@@ -3,9 +3,8 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "scenarios/output/folder_claim.hpp"
+#include "scenarios/output/folder_mark.hpp"
 #include "scenarios/output/signals.hpp"
 
 namespace understory {
@@ -14,29 +13,19 @@ namespace understory {
 /// time works on `target`.
 class UnfinishedFolder {
  public:
-  /// `kind`: of what is made. `within`: in the target's folder itself, where nothing can be made beside it.
-  /// Throws ScenarioError, which calls the target by `name`, where another program works on it, or where it
-  /// cannot be written.
-  UnfinishedFolder(const std::filesystem::path& target, const std::string& kind,
+  /// `within`: in the target's folder itself, where nothing can be made beside it. Throws ScenarioError,
+  /// which calls the target by `name`, where another program works on it, or where it cannot be written.
+  UnfinishedFolder(const std::filesystem::path& target, const ResultKind& kind,
                    const std::filesystem::path& name, bool within = false);
+  ~UnfinishedFolder();
   const std::filesystem::path& path() const { return part_->path(); }
-  /// Lists what `patterns` mean, and gives it its name where that is free or an empty folder; false where
-  /// something is in the way. From then on it outlives a power cut.
-  bool become(const std::filesystem::path& name, const std::vector<std::string>& patterns);
+  FolderMark& mark() { return *mark_; }
+  /// Gives it its name, where that is free or an empty folder's; false where something is in the way.
+  bool rename_to(const std::filesystem::path& name);
 
  private:
-  std::optional<FolderClaim> claim_;
+  std::optional<FolderMark> mark_;
   std::optional<Unfinished> part_;
-};
-
-/// What a command may leave in its folder, and of what kind that is (FolderClaim).
-struct FolderContents {
-  std::string kind;
-  std::string manifest;  ///< the file that says how the others came about: scenario.yaml; empty: none
-  std::string manifest_text;
-  /// Everything that may be there, by relative path, with '*': "overlays/*.png". The first says that all is
-  /// there.
-  std::vector<std::string> patterns;
 };
 
 /// What may be replaced in a folder that holds results of that kind already.
@@ -48,12 +37,13 @@ enum class Replace {
 
 /// A folder of results that appear whole or not at all: they are written into an UnfinishedFolder and get
 /// their names in finish(), which returns when they would outlive a power cut. One program at a time writes
-/// into a folder. What is there already and is not of the kind stays.
+/// into a folder. The folder must be new, empty, or hold results of the kind and nothing else.
 class OutputFolder {
  public:
-  /// Throws ScenarioError in one line where the folder cannot be written, is being written by another
-  /// program, or holds files of these names that may not be replaced; MachineError where the disk is full.
-  OutputFolder(std::filesystem::path folder, FolderContents contents, Replace replace);
+  /// `manifest`: the text of the kind's manifest, where it has one. Throws ScenarioError in one line where
+  /// the folder cannot be written, is being written by another program, or may not be replaced; MachineError
+  /// where the disk is full.
+  OutputFolder(std::filesystem::path folder, const ResultKind& kind, std::string manifest, Replace replace);
 
   /// Where to write until then; holds the manifest.
   const std::filesystem::path& path() const { return part_->path(); }
@@ -61,10 +51,15 @@ class OutputFolder {
   void finish();
 
  private:
-  std::filesystem::path folder_;
-  FolderContents contents_;
+  void require_replaceable() const;
+  void place(const std::vector<std::string>& written);
+
+  std::filesystem::path folder_, name_;  ///< links followed; as given
+  const ResultKind& kind_;
+  std::string manifest_;
   Replace replace_;
-  std::optional<FolderClaim> there_;  ///< of the folder that was there already
+  std::optional<FolderMark> there_;  ///< of the folder that was there already
+  bool stands_alone_ = false;
   std::optional<UnfinishedFolder> part_;
 };
 

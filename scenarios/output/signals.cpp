@@ -14,11 +14,9 @@
 #include <set>
 #include <string_view>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/output/folder_claim.hpp"
 #include "scenarios/output/progress_line.hpp"
 
 namespace understory {
@@ -37,11 +35,10 @@ int last_words =
     STDERR_FILENO;  ///< that descriptor as it was at first: readers of files may close it a while
 
 /// Never destroyed: the thread may still look at them while the program ends.
-std::recursive_mutex& door = *new std::recursive_mutex;
+std::recursive_mutex& outputs = *new std::recursive_mutex;
 std::set<fs::path>& unfinished = *new std::set<fs::path>;
 std::set<pid_t>& children = *new std::set<pid_t>;
-std::vector<std::pair<const void*, std::function<void()>>>& calls =
-    *new std::vector<std::pair<const void*, std::function<void()>>>;
+std::vector<fs::path>& made_folders = *new std::vector<fs::path>;  ///< innermost first
 
 void set_actions(void (*handler)(int), Actions& former) {
   struct sigaction action {};
@@ -68,7 +65,7 @@ void say(int descriptor, std::string_view text) {
   int signal = 0;
   while (read(wake_pipe[0], &signal, sizeof signal) != sizeof signal) {
   }
-  door.lock();  // whoever makes or names something from here on waits for ever
+  outputs.lock();  // whoever makes or names something from here on waits for ever
   for (const pid_t child : children) kill(child, SIGHUP);
   for (const pid_t child : children) waitpid(child, nullptr, 0);
   for (const fs::path& path : unfinished) {
@@ -76,7 +73,7 @@ void say(int descriptor, std::string_view text) {
     for (int tries = 0; tries < 100 && fs::exists(fs::symlink_status(path, error)); ++tries)
       remove_unfinished(path);
   }
-  for (auto call = calls.rbegin(); call != calls.rend(); ++call) call->second();
+  remove_made_folders();
   ProgressLine::clear_any();
   const std::string line = fmt::format("understory: stopped by {}\n", name_of(signal));
   if (signal != SIGHUP) say(last_words, line);
@@ -102,16 +99,6 @@ void end_on_signals() {
         std::signal(signal, SIG_DFL);
   });
   std::thread(wait_and_end).detach();
-}
-
-void at_signal(const void* key, std::function<void()> call) {
-  const auto lock = hold_outputs();
-  calls.emplace_back(key, std::move(call));
-}
-
-void forget_at_signal(const void* key) {
-  const auto lock = hold_outputs();
-  std::erase_if(calls, [&](const auto& call) { return call.first == key; });
 }
 
 void ends_with_us(pid_t child) {
@@ -140,10 +127,30 @@ int StopSignals::number() const { return remembered; }
 void remove_unfinished(const fs::path& path) {
   std::error_code error;
   for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
-    if (entry->path().filename() != claim_name &&
+    if (entry->path().filename() != mark_name &&
         fs::remove_all(entry->path(), error) == static_cast<std::uintmax_t>(-1))
       return;
   if (!error || error == std::errc::not_a_directory) fs::remove_all(path, error);
+}
+
+void make_folders(const fs::path& folder, const fs::path& name) {
+  std::vector<fs::path> missing;
+  std::error_code error, ignored;
+  const fs::path whole = fs::absolute(folder).lexically_normal();
+  for (fs::path above = whole.has_filename() ? whole : whole.parent_path();
+       !above.empty() && !fs::exists(above, ignored) && above != above.parent_path();
+       above = above.parent_path())
+    missing.push_back(above);
+  const auto lock = hold_outputs();
+  fs::create_directories(folder, error);
+  if (error) refuse_output(name, error.value());
+  if (!fs::is_directory(folder, ignored)) refuse_output(name, ENOTDIR);
+  made_folders.insert(made_folders.begin(), missing.begin(), missing.end());
+}
+
+void remove_made_folders() {
+  const auto lock = hold_outputs();
+  std::erase_if(made_folders, [](const fs::path& folder) { return ::rmdir(folder.c_str()) == 0; });
 }
 
 Unfinished::Unfinished(fs::path path) : path_(std::move(path)) {
@@ -157,7 +164,7 @@ Unfinished::~Unfinished() {
   if (!is_kept_) remove_unfinished(path_);
 }
 
-void Unfinished::become(const fs::path& name) {
+void Unfinished::rename_to(const fs::path& name) {
   const auto lock = hold_outputs();
   if (std::rename(path_.c_str(), name.c_str()) != 0) refuse_output(name, errno);
   unfinished.erase(path_);
@@ -170,6 +177,6 @@ void Unfinished::keep() {
   is_kept_ = true;
 }
 
-std::unique_lock<std::recursive_mutex> hold_outputs() { return std::unique_lock(door); }
+std::unique_lock<std::recursive_mutex> hold_outputs() { return std::unique_lock(outputs); }
 
 }  // namespace understory

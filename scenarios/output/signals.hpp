@@ -3,7 +3,6 @@
 #include <sys/types.h>
 
 #include <filesystem>
-#include <functional>
 #include <mutex>
 
 /// What becomes of unfinished work when SIGINT, SIGTERM or SIGHUP comes.
@@ -13,11 +12,6 @@ namespace understory {
 /// status 128 and the signal's number. A thread does that, so that nothing has to ask. SIGHUP says nothing,
 /// there is nobody to read it, and stays ignored where it was (nohup).
 void end_on_signals();
-
-/// `call` is made when a signal ends the program, after everything Unfinished is removed: the last one given
-/// first.
-void at_signal(const void* key, std::function<void()> call);
-void forget_at_signal(const void* key);
 
 /// A child process that ends with this one: a signal here hangs it up, and is waited for there.
 void ends_with_us(pid_t child);
@@ -36,8 +30,14 @@ class StopSignals {
   int number() const;  ///< the signal that came; 0: none
 };
 
-/// The list of a folder goes last: until then it says whose the rest is, where that could not be removed.
+/// Removes a file, or a folder with all that is in it. Its mark goes last: until then that says whose the
+/// rest is, where it could not be removed.
 void remove_unfinished(const std::filesystem::path& path);
+
+/// Makes a folder and those above it. Throws as OutputFile, calling the folder by `name`.
+void make_folders(const std::filesystem::path& folder, const std::filesystem::path& name);
+/// Removes the folders that make_folders() made, as far as they are empty: when the work ends early.
+void remove_made_folders();
 
 /// A file or folder that bears another name until it is whole, and is removed where the work ends before: by
 /// an exception, by a signal.
@@ -51,8 +51,8 @@ class Unfinished {
 
   const std::filesystem::path& path() const { return path_; }
   /// Gives it its name, in place of a file of that name. Throws as write_whole_file does.
-  void become(const std::filesystem::path& name);
-  /// Leaves what is there.
+  void rename_to(const std::filesystem::path& name);
+  /// Leaves it where it is.
   void keep();
 
  private:

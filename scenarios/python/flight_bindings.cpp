@@ -340,7 +340,7 @@ py::array_t<double> trajectory_of(const HeldFlight& held) {
 void save_run(const HeldFlight& held, const std::string& folder) {
   const FlightLog& log = held.finished_log();
   require_files(log.scenario);
-  OutputFolder output(folder, run_contents(log.scenario), Replace::nothing);
+  OutputFolder output(folder, flight_results, scenario_to_text(log.scenario), Replace::nothing);
   write_run_files(log, output.path());
   output.finish();
 }

@@ -43,13 +43,6 @@ cv::Mat depth_in_millimetres(const cv::Mat& depth_m) {
   return millimetres;
 }
 
-FolderContents recording_contents(const Scenario& scenario) {
-  FolderContents contents = run_contents(scenario);
-  contents.patterns.insert(contents.patterns.end(),
-                           {"mav0/*/*.csv", "mav0/*/sensor.yaml", "mav0/*/data/*.png"});
-  return contents;
-}
-
 EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario, const CalibratedRig& rig,
                                double expected_s)
     : folder_(folder / "mav0"),

@@ -70,9 +70,6 @@ class EurocRecording : public FlightObserver {
   std::map<std::int64_t, std::string> true_states_, estimates_;  ///< by time: frames come late
 };
 
-/// What a recording leaves in its folder, the run's files included.
-FolderContents recording_contents(const Scenario& scenario);
-
 /// Depth in metres (CV_32FC1) as 16-bit millimetres; 0 where there is nothing within 65.535 m.
 cv::Mat depth_in_millimetres(const cv::Mat& depth_m);
 

@@ -45,8 +45,9 @@ struct FlightMcap::Implementation {
     file.add(topic, t_ns, message.SerializeAsString());
   }
 
-  Implementation(const FlightLog& flight_log, const std::filesystem::path& name, bool compress, Named named)
-      : log(flight_log), file(name, compress, named) {}
+  Implementation(const FlightLog& flight_log, const std::filesystem::path& name, bool compress,
+                 FolderMark* mark)
+      : log(flight_log), file(name, compress, mark) {}
 
   std::uint16_t left_image = channel<foxglove::CompressedImage>("/camera/left/image");
   std::uint16_t right_image = channel<foxglove::CompressedImage>("/camera/right/image");
@@ -196,8 +197,9 @@ void FlightMcap::Implementation::catch_up(std::int64_t until_ns) {
   }
 }
 
-FlightMcap::FlightMcap(const FlightLog& log, const std::filesystem::path& file, bool compress, Named named)
-    : implementation_(std::make_unique<Implementation>(log, file, compress, named)) {}
+FlightMcap::FlightMcap(const FlightLog& log, const std::filesystem::path& file, bool compress,
+                       FolderMark* mark)
+    : implementation_(std::make_unique<Implementation>(log, file, compress, mark)) {}
 
 FlightMcap::~FlightMcap() = default;
 

@@ -18,7 +18,7 @@ class FlightMcap : public FlightObserver {
   /// `log`: of the flight, kept by an observer that is called earlier. `compress`: in zstd. Throws
   /// ScenarioError where the file cannot be made.
   FlightMcap(const FlightLog& log, const std::filesystem::path& file, bool compress,
-             Named named = Named::by_us);
+             FolderMark* mark = nullptr);
   ~FlightMcap() override;
 
   bool needs_images() const override { return true; }

@@ -64,8 +64,8 @@ std::string compressed(const std::string& bytes) {
 
 }  // namespace
 
-McapFile::McapFile(const std::filesystem::path& file, bool compress, Named named)
-    : file_(file, named), compress_(compress) {
+McapFile::McapFile(const std::filesystem::path& file, bool compress, FolderMark* mark)
+    : file_(file, mark), compress_(compress) {
   write(magic);
   write(record(header_record, sized("").append(sized(std::string("understory ") + understory_version))));
 }

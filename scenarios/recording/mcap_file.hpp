@@ -17,7 +17,7 @@ namespace understory {
 class McapFile {
  public:
   /// `compress`: chunks in zstd. Throws ScenarioError where the file cannot be made.
-  McapFile(const std::filesystem::path& file, bool compress, Named named);
+  McapFile(const std::filesystem::path& file, bool compress, FolderMark* mark);
 
   /// A topic of protobuf messages of the type `schema` ("foxglove.Log"), which `descriptors`, a serialised
   /// google.protobuf.FileDescriptorSet, describes. Gives the channel's number.

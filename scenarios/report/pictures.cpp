@@ -40,9 +40,9 @@ void write_at_side(cv::Mat& picture, const std::string& text, bool at_right) {
 
 }  // namespace
 
-void write_picture(const fs::path& file, const cv::Mat& picture, Named named) {
+void write_picture(const fs::path& file, const cv::Mat& picture) {
   const std::vector<unsigned char> bytes = encode_png(picture);
-  write_whole_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, named);
+  write_whole_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 VideoFile::VideoFile(fs::path file, double frames_per_s) : file_(std::move(file)), rate_hz_(frames_per_s) {}

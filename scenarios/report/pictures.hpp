@@ -22,7 +22,7 @@ class VideoWriter;
 namespace understory {
 
 /// A picture as a PNG file, whole or not at all: 8- or 16-bit gray or 8-bit BGR.
-void write_picture(const std::filesystem::path& file, const cv::Mat& picture, Named named = Named::by_us);
+void write_picture(const std::filesystem::path& file, const cv::Mat& picture);
 
 /// H.264 in mp4, which browsers play, in an UnfinishedFolder. Removed where it does not come to finish().
 class VideoFile {

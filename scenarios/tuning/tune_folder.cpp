@@ -12,7 +12,6 @@
 #include "scenarios/campaign/campaign_folder.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
-#include "scenarios/output/folder_claim.hpp"
 #include "scenarios/output/program.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
@@ -70,10 +69,6 @@ Json manifest_of(const TuneFile& file, const Identity& identity) {
 
 }  // namespace
 
-const std::vector<std::string> tune_patterns{
-    "tune.json",  "trials.jsonl", "validation.jsonl", "sensitivity.jsonl", "trials.csv",  "pareto.csv",
-    "summary.md", "tune.svg",     "best.yaml",        "report.html",       "front/*.yaml"};
-
 TrialLog::TrialLog(fs::path file, std::vector<std::string> parameters, std::vector<std::string> figures,
                    Measure measure)
     : file_(std::move(file)),
@@ -121,9 +116,6 @@ void TrialLog::finish() const {
 
 void TrialLog::append(const Trial& trial) {
   const std::string line = line_of(trial, parameters_, figures_);
-  std::error_code ignored;
-  if (FolderClaim* claim = claim_of(fs::weakly_canonical(file_, ignored)))
-    claim->add({fs::weakly_canonical(file_)});
   const int file = open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   const bool is_written = file >= 0 &&
                           write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size()) &&
@@ -133,15 +125,11 @@ void TrialLog::append(const Trial& trial) {
   if (!is_written) refuse_output(file_, reason);
 }
 
-void prepare_tune_folder(const fs::path& folder, const TuneFile& file, bool resume,
+void prepare_tune_folder(FolderMark& mark, const fs::path& folder, const TuneFile& file, bool resume,
                          const Identity& identity) {
   const fs::path manifest_file = folder / "tune.json";
   const Json manifest = manifest_of(file, identity);
-  if (fs::exists(manifest_file)) {
-    if (!resume)
-      throw ScenarioError(
-          fmt::format("{}: holds a tuning already: --resume goes on with it, --out names another folder",
-                      folder.string()));
+  if (mark.goes_on(resume)) {
     const Json held = parse_json(text_if_there(manifest_file).value_or(""));
     if (!held.is_object())
       throw ScenarioError(
@@ -155,9 +143,6 @@ void prepare_tune_folder(const fs::path& folder, const TuneFile& file, bool resu
     return;
   }
   prepare_output_folder(folder);
-  for (const char* log : {"trials.jsonl", "validation.jsonl", "sensitivity.jsonl"})
-    if (fs::exists(folder / log))
-      throw ScenarioError(fmt::format("{}: {}: must not be there in a new folder", folder.string(), log));
   write_whole_file(manifest_file, json_text(manifest, 1) + "\n");
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/output/folder_mark.hpp"
 #include "scenarios/output/program.hpp"
 #include "scenarios/statistics/statistics.hpp"
 #include "scenarios/tuning/judge.hpp"
@@ -53,14 +54,11 @@ class TrialLog {
   std::map<Point, std::size_t> places_;  ///< in evaluated_
 };
 
-/// What a tuning leaves in its folder beside its flights, by relative path.
-extern const std::vector<std::string> tune_patterns;
-
 /// Makes the folder, or, with `resume`, makes sure that it holds this very tuning, begun by this program.
 /// Throws ScenarioError in one line where not, as prepare_campaign_folder does.
 /// `identity`: of what the trials are judged with and on.
-void prepare_tune_folder(const std::filesystem::path& folder, const TuneFile& file, bool resume,
-                         const Identity& identity = {});
+void prepare_tune_folder(FolderMark& mark, const std::filesystem::path& folder, const TuneFile& file,
+                         bool resume, const Identity& identity = {});
 
 /// One parameter alone varied over its range, everything else as the best has it; on training data.
 struct Sensitivity {

@@ -126,29 +126,34 @@ TEST_F(CampaignFile, RefusesBadFilesInOneLineWithFileLineAndKey) {
 
 const char* const small_campaign = "scenario: clear\nseeds: 1..2\n";
 
+void prepare(const CampaignFolder& results, const Campaign& campaign, bool resume) {
+  FolderMark mark(results.path, campaign_results, results.path);
+  prepare_campaign_folder(mark, results, campaign, resume);
+}
+
 TEST_F(CampaignFolders, HoldsOneCampaignAndGoesOnWithNoOther) {
   const CampaignFolder results{folder.path() / "results"};
   const Campaign campaign = campaign_of(small_campaign);
-  prepare_campaign_folder(results, campaign, false);
-  EXPECT_THROW(prepare_campaign_folder(results, campaign, false), ScenarioError);
-  EXPECT_NO_THROW(prepare_campaign_folder(results, campaign, true));
+  prepare(results, campaign, false);
+  EXPECT_THROW(prepare(results, campaign, false), ScenarioError);
+  EXPECT_NO_THROW(prepare(results, campaign, true));
   const Campaign held = read_campaign(results);
   EXPECT_EQ(held.seeds, campaign.seeds);
   EXPECT_EQ(held.conditions[0].scenario_text, campaign.conditions[0].scenario_text);
   for (const char* other : {"scenario: clear\nseeds: 1..3\n", "scenario: forest\nseeds: 1..2\n",
                             "scenario: clear\nseeds: 1..2\ntimeout_s: 3\n",
                             "scenario: clear\nseeds: 1..2\ngrid: {time_limit_s: [20]}\n"})
-    EXPECT_THROW(prepare_campaign_folder(results, campaign_of(other), true), ScenarioError) << other;
+    EXPECT_THROW(prepare(results, campaign_of(other), true), ScenarioError) << other;
   Campaign drawn_otherwise = campaign;
   drawn_otherwise.renderer = "egl";
-  EXPECT_THROW(prepare_campaign_folder(results, drawn_otherwise, true), ScenarioError);
+  EXPECT_THROW(prepare(results, drawn_otherwise, true), ScenarioError);
 }
 
 TEST_F(CampaignFolders, OfAnotherFormatIsRefused) {
   const CampaignFolder results{folder.path()};
   folder.write("campaign.json", "{\"format\": 0, \"name\": \"old\"}");
   EXPECT_THROW(read_campaign(results), ScenarioError);
-  EXPECT_THROW(prepare_campaign_folder(results, campaign_of(small_campaign), true), ScenarioError);
+  EXPECT_THROW(prepare(results, campaign_of(small_campaign), true), ScenarioError);
   folder.write("campaign.json", "{\"form");
   EXPECT_THROW(read_campaign(results), ScenarioError);
   folder.write("flights.csv", "seed,outcome\n1,goal\n");
@@ -173,7 +178,7 @@ FlightRow flown(double clearance_m) {
 TEST_F(CampaignFolders, CollectsWholeFlightsInTheCampaignsOrder) {
   const CampaignFolder results{folder.path() / "results"};
   const Campaign campaign = campaign_of("scenario: clear\nseeds: [9, 1, 5]\n");
-  prepare_campaign_folder(results, campaign, false);
+  prepare(results, campaign, false);
   const std::vector<CampaignTask> tasks = tasks_of(campaign);
   write_flight(results, campaign, tasks[1], {flown(0.5), {1.5, 100}});
   EXPECT_EQ(collect(results, campaign).missing, 2u);

@@ -248,7 +248,7 @@ TEST(Cli, BadScenariosAreNamedByFileLineAndKey) {
   expect_refusal("fly clear --set 'forest={clear_m: 9, clear_m: 9}'",
                  "forest.clear_m: this key is given twice");
   expect_refusal("fly clear --seed x", "seed: expected a whole number");
-  expect_refusal("fly clear --set 'perception.depths_m=[10, 900]' --out " + folder.path.string(),
+  expect_refusal("fly clear --set 'perception.depths_m=[10, 900]' --out " + (folder.path / "out").string(),
                  "perception.depths_m: the rig long cannot look at 900 m");
 }
 

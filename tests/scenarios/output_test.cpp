@@ -5,6 +5,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <map>
+
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/output_folder.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -94,28 +96,21 @@ TEST_F(Output, AnUnwritableFolderIsBadInput) {
   EXPECT_TRUE(fs::is_empty(folder.path() / "new" / "runs"));
 }
 
-FolderContents contents(const std::string& configuration) {
-  return {"flight",
-          "scenario.yaml",
-          configuration,
-          {"result.json", "scenario.yaml", "film.mp4", "pictures/*.png"}};
-}
-
 /// A run of that configuration, as a command leaves it.
 void run_into(const fs::path& folder, const std::string& configuration, Replace replace = Replace::same,
               bool films = false) {
-  OutputFolder output(folder, contents(configuration), replace);
+  OutputFolder output(folder, flight_results, configuration, replace);
   write_whole_file(output.path() / "result.json", configuration + "'s result");
-  if (films) write_whole_file(output.path() / "film.mp4", "moving");
-  fs::create_directories(output.path() / "pictures");
-  write_whole_file(output.path() / "pictures" / "0.png", "still");
+  if (films) write_whole_file(output.path() / "flight.mp4", "moving");
+  fs::create_directories(output.path() / "mav0/cam0/data");
+  write_whole_file(output.path() / "mav0/cam0/data/0.png", "still");
   output.finish();
 }
 
 TEST_F(OutputFolderTest, BearsItsNameOnlyWhenItIsWhole) {
   const fs::path run = folder.path() / "runs" / "a-1";
   {
-    OutputFolder broken_off(run, contents("a"), Replace::same);
+    OutputFolder broken_off(run, flight_results, "a", Replace::same);
     write_whole_file(broken_off.path() / "result.json", "half");
     EXPECT_FALSE(fs::exists(run));
   }
@@ -126,21 +121,91 @@ TEST_F(OutputFolderTest, BearsItsNameOnlyWhenItIsWhole) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path() / "runs"), {}), 1);
 }
 
-TEST_F(OutputFolderTest, TheSameAgainReplacesAllThatWasThereAndNothingElse) {
+TEST_F(OutputFolderTest, TheSameAgainReplacesAllThatWasThere) {
   const fs::path run = folder.path() / "a-1";
   run_into(run, "a", Replace::same, true);
-  folder.write("a-1/notes.txt", "mine");
-  folder.write("a-1/pictures/holiday.jpg", "mine");
+  folder.write("a-1/report.html", "added");
+  FolderMark(run, flight_results, run).add({"report.html"});
   {
-    OutputFolder again(run, contents("a"), Replace::same);
-    EXPECT_TRUE(fs::exists(run / "film.mp4")) << "the former run must stand until the new one is whole";
+    OutputFolder again(run, flight_results, "a", Replace::same);
+    EXPECT_TRUE(fs::exists(run / "flight.mp4")) << "the former run must stand until the new one is whole";
   }
-  EXPECT_TRUE(fs::exists(run / "film.mp4"));
+  EXPECT_TRUE(fs::exists(run / "flight.mp4"));
   run_into(run, "a");
-  EXPECT_FALSE(fs::exists(run / "film.mp4")) << "must not pass for the new run's";
-  EXPECT_EQ(content_of(run / "notes.txt"), "mine");
-  EXPECT_EQ(content_of(run / "pictures/holiday.jpg"), "mine");
+  for (const char* former : {"flight.mp4", "report.html"})
+    EXPECT_FALSE(fs::exists(run / former)) << "must not pass for the new run's";
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
+  folder.write("a-1/flight.mp4", "mine");
+  EXPECT_NE(refusal_of<ScenarioError>([&] { run_into(run, "a"); }), "") << "it is listed no more";
+}
+
+/// In the folder, below it, and in one of its own; before the flight and during it.
+TEST_F(OutputFolderTest, AUsersFileInItIsARefusalAndStays) {
+  const fs::path run = folder.path() / "a-1";
+  for (const char* mine : {"notes.txt", "result.json", "mav0/cam0/data/holiday.jpg", "sub/of/mine"}) {
+    SCOPED_TRACE(mine);
+    fs::remove_all(run);
+    folder.write(fs::path("a-1") / mine, "mine");
+    expect_part(refusal_of<ScenarioError>([&] { run_into(run, "a", Replace::anything); }), mine);
+    fs::remove_all(run);
+    if (mine != std::string("result.json")) {
+      run_into(run, "a");
+      folder.write(fs::path("a-1") / mine, "mine");
+      expect_part(refusal_of<ScenarioError>([&] { run_into(run, "a", Replace::anything); }), mine);
+      EXPECT_EQ(content_of(run / "result.json"), "a's result");
+    }
+    for (const bool had_run : {false, true}) {
+      fs::remove_all(run);
+      if (had_run) run_into(run, "a");
+      OutputFolder meanwhile(run, flight_results, "a", Replace::anything);
+      folder.write(fs::path("a-1") / mine, "mine");
+      if (had_run && mine == std::string("result.json")) continue;  // it is the run's
+      expect_part(refusal_of<ScenarioError>([&] { meanwhile.finish(); }), mine);
+    }
+    EXPECT_EQ(content_of(run / mine), "mine");
+  }
+}
+
+TEST_F(OutputFolderTest, ResultsOfTheirOwnBelowStay) {
+  const fs::path evaluation = folder.path() / "evaluation";
+  run_into(evaluation / "recordings" / "a", "a");
+  for (const char* text : {"first", "second"}) {
+    OutputFolder output(evaluation, evaluation_results, "", Replace::anything);
+    write_whole_file(output.path() / "summary.md", text);
+    output.finish();
+    EXPECT_EQ(content_of(evaluation / "summary.md"), text);
+  }
+  EXPECT_EQ(content_of(evaluation / "recordings/a/result.json"), "a's result");
+}
+
+TEST_F(OutputFolderTest, OneKindOfResultsIsInAFolder) {
+  run_into(folder.path() / "a", "a");
+  const fs::path run = folder.path() / "a";
+  expect_part(refusal_of<ScenarioError>([&] { FolderMark(run, campaign_results, run); }),
+              "results of another kind (flight)");
+  expect_part(refusal_of<ScenarioError>([&] { OutputFolder(run, detection_results, "", Replace::anything); }),
+              "results of another kind (flight)");
+}
+
+TEST_F(OutputFolderTest, ResultsThatGrowGoOnWithoutTheirHiddenFile) {
+  const fs::path campaign = folder.path() / "c";
+  folder.write("c/campaign.json", "{}");
+  folder.write("c/summary.md", "ours");
+  folder.write("c/notes.txt", "mine");
+  {
+    FolderMark copied(campaign, campaign_results, campaign);
+    EXPECT_TRUE(copied.goes_on(true));
+    EXPECT_TRUE(copied.files().contains("summary.md"));
+    EXPECT_FALSE(copied.files().contains("notes.txt"));
+    expect_part(refusal_of<ScenarioError>([&] { copied.goes_on(false); }),
+                "holds a campaign already: --resume");
+  }
+  fs::remove_all(campaign);
+  folder.write("c/notes.txt", "mine");
+  expect_part(
+      refusal_of<ScenarioError>([&] { FolderMark(campaign, campaign_results, campaign).goes_on(true); }),
+      "c/notes.txt");
+  EXPECT_EQ(std::distance(fs::directory_iterator(campaign), {}), 1);
 }
 
 TEST_F(OutputFolderTest, AnotherConfigurationIsKeptUnlessForced) {
@@ -156,19 +221,10 @@ TEST_F(OutputFolderTest, AnotherConfigurationIsKeptUnlessForced) {
   EXPECT_EQ(content_of(run / "scenario.yaml"), "b");
 }
 
-TEST_F(OutputFolderTest, WhatNobodySaysIsOursIsNeverReplaced) {
-  folder.write("mine/result.json", "precious");
-  expect_part(refusal_of<ScenarioError>([&] { run_into(folder.path() / "mine", "a", Replace::anything); }),
-              "mine/result.json");
-  EXPECT_EQ(content_of(folder.path() / "mine/result.json"), "precious");
+TEST_F(OutputFolderTest, WhatStandsBesideIsNeverReplaced) {
   folder.write("new.part/thesis.tex", "precious");
-  folder.write("new/lock", "precious");
   run_into(folder.path() / "new", "a");
   EXPECT_EQ(content_of(folder.path() / "new.part/thesis.tex"), "precious");
-  EXPECT_EQ(content_of(folder.path() / "new/lock"), "precious");
-  folder.write("notes/notes.txt", "mine");
-  run_into(folder.path() / "notes", "a");
-  EXPECT_EQ(content_of(folder.path() / "notes/notes.txt"), "mine");
   EXPECT_NE(refusal_of<ScenarioError>([&] { run_into(folder.write("file", ""), "a"); }), "");
 }
 
@@ -176,35 +232,53 @@ TEST_F(OutputFolderTest, OneProgramAtATimeWritesIntoAFolder) {
   for (const bool exists : {false, true}) {
     SCOPED_TRACE(exists);
     const fs::path run = folder.path() / "a-1";
-    OutputFolder first(run, contents("a"), Replace::same);
+    OutputFolder first(run, flight_results, "a", Replace::same);
     expect_part(refusal_of<ScenarioError>([&] { run_into(run, "a"); }), "another understory writes there");
     EXPECT_TRUE(fs::exists(first.path() / "scenario.yaml"));
     first.finish();
   }
 }
 
-TEST_F(OutputFolderTest, AClaimLeavesNothingBehind) {
+TEST_F(OutputFolderTest, AMarkThatListsNothingLeavesNothingBehind) {
   const fs::path fresh = folder.path() / "new";
-  { const FolderClaim claim(fresh, "flight", fresh); }
+  { const FolderMark mark(fresh, flight_results, fresh); }
   EXPECT_FALSE(fs::exists(fresh));
   fs::create_directory(fresh);
-  { const FolderClaim claim(fresh, "flight", fresh); }
+  { const FolderMark mark(fresh, flight_results, fresh); }
   EXPECT_TRUE(fs::is_empty(fresh));
 }
 
 TEST_F(OutputFolderTest, WhatAKilledProgramLeftIsClearedAway) {
   const fs::path run = folder.path() / "a-1";
   if (const pid_t child = fork(); child == 0) {
-    const OutputFolder broken_off(run, contents("b"), Replace::same);
-    write_whole_file(broken_off.path() / "film.mp4", "half");
+    const OutputFolder broken_off(run, flight_results, "b", Replace::same);
+    write_whole_file(broken_off.path() / "flight.mp4", "half");
     _exit(0);  // as a kill would: nothing is cleared away
   } else {
     waitpid(child, nullptr, 0);
   }
   EXPECT_FALSE(fs::is_empty(folder.path()));
   run_into(run, "a");
-  EXPECT_FALSE(fs::exists(run / "film.mp4"));
+  EXPECT_FALSE(fs::exists(run / "flight.mp4"));
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
+}
+
+/// By the part of its name that the pages have in full: "worst" of "worst/*.png".
+TEST(ResultKinds, PagesNameEveryFile) {
+  const std::map<const ResultKind*, std::vector<const char*>> pages{
+      {&flight_results, {"scenarios", "record", "viewers"}},
+      {&campaign_results, {"campaigns"}},
+      {&tuning_results, {"tuning"}},
+      {&evaluation_results, {"evaluate"}},
+      {&detection_results, {"detect"}}};
+  for (const auto& [kind, names] : pages) {
+    std::string text;
+    for (const char* name : names)
+      text += content_of(fs::path(UNDERSTORY_SOURCE_DIR) / "docs" / (name + std::string(".md")));
+    for (const std::string& pattern : kind->patterns)
+      EXPECT_NE(text.find(pattern.substr(0, pattern.find_first_of("/*"))), std::string::npos)
+          << kind->name << ": " << pattern;
+  }
 }
 
 TEST_F(OutputFolderTest, FollowsALinkAndKeepsIt) {

@@ -160,11 +160,12 @@ TEST_F(TuningTest, AFolderGoesOnOnlyWithItsOwnTuning) {
   const TuneFile file = load(tuning_text());
   const fs::path where = folder.path() / "r";
   const Identity llvmpipe{{"renderer", "llvmpipe"}};
-  prepare_tune_folder(where, file, false, llvmpipe);
-  EXPECT_THROW(prepare_tune_folder(where, file, false, llvmpipe), ScenarioError);
-  EXPECT_NO_THROW(prepare_tune_folder(where, file, true, llvmpipe));
-  EXPECT_THROW(prepare_tune_folder(where, file, true, {{"renderer", "a GPU"}}), ScenarioError);
-  EXPECT_THROW(prepare_tune_folder(where, load(tuning_text() + "timeout_s: 9\n"), true, llvmpipe),
+  FolderMark mark(where, tuning_results, where);
+  prepare_tune_folder(mark, where, file, false, llvmpipe);
+  EXPECT_THROW(prepare_tune_folder(mark, where, file, false, llvmpipe), ScenarioError);
+  EXPECT_NO_THROW(prepare_tune_folder(mark, where, file, true, llvmpipe));
+  EXPECT_THROW(prepare_tune_folder(mark, where, file, true, {{"renderer", "a GPU"}}), ScenarioError);
+  EXPECT_THROW(prepare_tune_folder(mark, where, load(tuning_text() + "timeout_s: 9\n"), true, llvmpipe),
                ScenarioError);
 }
 
