@@ -10,5 +10,5 @@ endif()
 file(CONFIGURE OUTPUT ${OUTPUT} CONTENT [[
 #include "scenarios/output/program.hpp"
 
-const char* const understory::understory_commit = "@COMMIT@";
+const char* const understory::commit_of_this_build = "@COMMIT@";
 ]] @ONLY)

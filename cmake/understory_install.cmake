@@ -39,7 +39,7 @@ set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/understory)
 set_target_properties(perception_io PROPERTIES EXPORT_NAME perception)
 set_target_properties(perception PROPERTIES EXPORT_NAME detection)
 set_target_properties(understory_plugin PROPERTIES EXPORT_NAME plugin)
-install(TARGETS understory_plugin understory_settings opencv_core_parts opencv_file_parts perception_types pushbroom_kernel perception
+install(TARGETS understory_plugin understory_options understory_settings opencv_core_parts opencv_file_parts perception_types pushbroom_kernel perception
                 picture_codecs perception_text perception_io estimation_types estimation
         EXPORT understory-targets)
 install(EXPORT understory-targets NAMESPACE understory:: DESTINATION ${package_folder})
@@ -54,7 +54,10 @@ if(UNDERSTORY_SIM AND NOT UNDERSTORY_SANITIZE)
 endif()
 install(DIRECTORY perception estimation planning sim scenarios DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/understory
         FILES_MATCHING PATTERN "*.hpp" PATTERN node_modules EXCLUDE PATTERN python EXCLUDE)
-install(FILES ${PROJECT_BINARY_DIR}/generated/understory_header_hash.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/understory)
+install(DIRECTORY ${PROJECT_BINARY_DIR}/plugin_headers/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/understory/plugin)
+foreach(folder understory understory/plugin)
+  install(FILES ${PROJECT_BINARY_DIR}/generated/understory_header_hash.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder})
+endforeach()
 install(FILES cmake/understory_plugin.cmake DESTINATION ${package_folder})
 configure_package_config_file(cmake/understory-config.cmake.in understory-config.cmake
                               INSTALL_DESTINATION ${package_folder})

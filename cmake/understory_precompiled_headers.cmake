@@ -2,7 +2,7 @@
 # same: the preset tsan builds the stack without (CMAKE_DISABLE_PRECOMPILE_HEADERS).
 set(common_headers
   <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <limits> <map> <memory> <numbers> <optional>
-  <random> <span> <sstream> <stdexcept> <string> <string_view> <utility> <vector> <Eigen/Geometry>)
+  <random> <span> <sstream> <stdexcept> <string> <string_view> <utility> <vector> <Eigen/Geometry> <fmt/format.h> <opencv2/core.hpp>)
 
 # precompiled_headers(NAME LIBRARIES target ... HEADERS <header> ...): a target whose headers others take over.
 function(precompiled_headers name)
@@ -19,17 +19,10 @@ function(take_common_headers folder)
   list(REMOVE_ITEM targets "" ${take_EXCEPT})
   foreach(target IN LISTS targets)
     get_target_property(type ${target} TYPE)
-    if(type STREQUAL STATIC_LIBRARY AND target IN_LIST reads_scenarios)
-      target_precompile_headers(${target} REUSE_FROM understory_scenario_headers)
-    elseif(type STREQUAL STATIC_LIBRARY)
+    if(type STREQUAL STATIC_LIBRARY)
       target_precompile_headers(${target} REUSE_FROM understory_headers)
     endif()
   endforeach()
 endfunction()
 
-precompiled_headers(understory_headers LIBRARIES Eigen3::Eigen HEADERS ${common_headers})
-# What reads scenarios shares their header, too, which is most of what is left to read there.
-set(scenario_headers ${common_headers} ${PROJECT_SOURCE_DIR}/scenarios/scenario/scenario_io.hpp)
-precompiled_headers(understory_scenario_headers LIBRARIES Eigen3::Eigen opencv_core_parts HEADERS ${scenario_headers})
-set(reads_scenarios scenarios scenarios_campaign scenarios_campaign_reports scenarios_detection scenarios_evaluation
-    scenarios_evaluation_reports scenarios_logs scenarios_rig scenarios_scenario scenarios_tuning)
+precompiled_headers(understory_headers LIBRARIES Eigen3::Eigen opencv_core_parts HEADERS ${common_headers})

@@ -13,6 +13,7 @@
 #include "scenarios/output/program.hpp"
 #include "scenarios/output/progress_line.hpp"
 #include "scenarios/report/table.hpp"
+#include "scenarios/scenario/scenario.hpp"
 #include "sim/render/renderer_kind.hpp"
 
 namespace understory {

@@ -101,7 +101,7 @@ struct AgainOutput {
     const fs::path folder = arguments.folder;
     file = arguments.out.empty() ? folder / name : fs::path(arguments.out);
     require_outside(file, folder, name);
-    if (!baseline.empty()) require_outside(file, baseline);
+    if (!baseline.empty()) require_outside(file, baseline, name);
     if (path_within(file, folder) != name) return;
     // A run must not be replaced while it is flown again: the result would pass for the new one's. A campaign
     // goes on.

@@ -109,6 +109,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   repair_surroundings();
+  understory_commit = commit_of_this_build;
   std::signal(SIGABRT, [](int) { std::_Exit(exit_machine_failed); });  // an assertion has already said why
   try {
     require_stack();

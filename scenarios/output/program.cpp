@@ -39,6 +39,7 @@ namespace {
 }  // namespace
 
 const char* const understory_version = UNDERSTORY_VERSION;
+const char* understory_commit = "unknown";
 
 std::string digest_of_text(std::string_view text) {
   return fmt::format("{:016x}", std::hash<std::string_view>{}(text));

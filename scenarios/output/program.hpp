@@ -16,8 +16,10 @@ namespace understory {
 
 extern const char* const understory_version;  ///< "0.1.0"
 /// What it was built from: "a1b2c3d4e5", "-dirty" behind it where files were changed since; "unknown" where
-/// there was no git.
-extern const char* const understory_commit;
+/// there was no git, and in programs of others. main() and the Python module set it to the second, which they
+/// alone are linked with.
+extern const char* understory_commit;
+extern const char* const commit_of_this_build;
 
 /// Of the program's file. Equal programs give equal results.
 std::string program_digest();

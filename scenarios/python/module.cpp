@@ -4,6 +4,7 @@
 
 PYBIND11_MODULE(_understory, module) {
   using namespace understory;
+  understory_commit = commit_of_this_build;
   module.attr("__version__") = understory_version;
   py::register_exception<InputError>(module, "InputError", PyExc_ValueError);
   py::register_exception<MachineError>(module, "MachineError", PyExc_RuntimeError);

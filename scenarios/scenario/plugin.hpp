@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "planning/manoeuvre.hpp"
 #include "scenarios/parts/parts.hpp"
 #include "scenarios/scenario/scenario.hpp"
 #include "understory_header_hash.hpp"
