@@ -14,9 +14,7 @@ if(UNDERSTORY_SIM)
   install(TARGETS understory_evolution LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/understory)
 endif()
 install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/understory)
-foreach(folder library campaigns evaluations tunings paths)
-  install(DIRECTORY scenarios/${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/understory/scenarios)
-endforeach()
+install(DIRECTORY scenarios/library DESTINATION ${CMAKE_INSTALL_DATADIR}/understory/scenarios)
 install(FILES scenarios/report/page/built/page.html
         DESTINATION ${CMAKE_INSTALL_DATADIR}/understory/scenarios/report/page/built)
 

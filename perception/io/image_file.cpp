@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "perception/io/calibration_formats.hpp"
+#include "perception/io/machine_limits.hpp"
 #include "perception/io/picture_codecs.hpp"
 #include "perception/io/png_codec.hpp"
 #include "perception/io/text_file.hpp"

@@ -7,6 +7,7 @@
 
 #include "perception/io/calibration_file.hpp"
 #include "perception/io/image_file.hpp"
+#include "perception/io/machine_limits.hpp"
 #include "perception/io/text_file.hpp"
 #include "perception/io/text_table.hpp"
 

@@ -17,17 +17,6 @@ struct MachineError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What the machine lacks where a call ended with this errno: memory, descriptors, a limit on the size of
-/// files. In words, with the limit; empty where it is none of these.
-std::string lacking_resource(int error);
-/// What it lacks at this moment, for libraries that do not say why they failed.
-std::string lacking_resource();
-/// Throws MachineError where this process may not map `bytes` more.
-void require_address_space(std::size_t bytes, const std::string& work);
-
-/// Throws MachineError where this thread's stack is too small to fly, draw and call Python on.
-void require_stack();
-
 /// Throws InputError "place: key: expected", always one line of at most a few hundred characters, whatever
 /// bytes the file had for a key or a value. An empty `key` leaves itself out.
 [[noreturn]] void refuse_input(const std::string& place, const std::string& key, const std::string& expected);

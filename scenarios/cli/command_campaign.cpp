@@ -208,7 +208,7 @@ void add_campaign_command(CommandLine& line) {
        "a flight could not be flown"});
   command
       .text("file", "FILE", arguments->file,
-            "campaign file, or a name in scenarios/campaigns (docs/campaigns.md)")
+            "campaign file, or a name in scenarios/library/campaigns (docs/campaigns.md)")
       .required();
   command.text("--out", "FOLDER", arguments->out, "results folder (default: results/NAME)");
   add_with_option(command, arguments->with);

@@ -96,7 +96,7 @@ void add_evaluate_command(CommandLine& line) {
        "understory evaluate recordings/forest --out evaluations/forest"});
   command.texts("INPUT", "FILE", arguments->inputs,
                 "folders written by record, in EuRoC layout; or one evaluation file, or its name in "
-                "scenarios/evaluations",
+                "scenarios/library/evaluations",
                 1);
   add_vision_options(command, arguments->vision);
   add_plugin_option(command);

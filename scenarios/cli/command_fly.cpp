@@ -223,7 +223,7 @@ std::string report_of(const Carried& carried) {
                      carried.frames);
 }
 
-/// As given, or in the source tree from any working directory: scenarios/paths/level.tum.
+/// As given, or in the source tree from any working directory: scenarios/library/paths/level.tum.
 fs::path path_file(const fs::path& given) {
   std::error_code ignored;
   const fs::path in_root = data_root() / given;

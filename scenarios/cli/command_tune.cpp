@@ -120,7 +120,8 @@ void add_tune_command(CommandLine& line) {
        "the search is complete; best.yaml holds the best values, unless the scenario's own values are as "
        "good"});
   command
-      .text("file", "FILE", arguments->file, "tuning file, or a name in scenarios/tunings (docs/tuning.md)")
+      .text("file", "FILE", arguments->file,
+            "tuning file, or a name in scenarios/library/tunings (docs/tuning.md)")
       .required();
   command.text("--out", "FOLDER", arguments->out, "results folder (default: results/tune-NAME)");
   add_jobs_option(command, arguments->jobs, "flights or recordings");

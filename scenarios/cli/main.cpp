@@ -12,6 +12,7 @@
 #include <new>
 #include <system_error>
 
+#include "perception/io/machine_limits.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/output/errors.hpp"

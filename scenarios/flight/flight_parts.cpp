@@ -1,3 +1,4 @@
+#include "perception/io/machine_limits.hpp"
 #include "scenarios/flight/flight.hpp"
 
 #include <fmt/format.h>

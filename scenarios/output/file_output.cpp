@@ -16,6 +16,7 @@
 #include <cstring>
 #include <optional>
 
+#include "perception/io/machine_limits.hpp"
 #include "scenarios/output/folder_mark.hpp"
 #include "scenarios/output/signals.hpp"
 

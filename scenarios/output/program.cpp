@@ -20,6 +20,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "perception/io/machine_limits.hpp"
 #include "scenarios/output/errors.hpp"
 #include "scenarios/output/signals.hpp"
 

@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include "perception/io/machine_limits.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/progress_line.hpp"
 

@@ -63,7 +63,7 @@ fs::path library_file(const std::string& argument, const char* folder, const cha
   const fs::path in_root = data_root() / argument;  // scenarios/library/forest.yaml, from any folder
   if (fs::is_regular_file(in_root, ignored)) return in_root;
   const bool is_name = argument.find('/') == std::string::npos && !argument.ends_with(".yaml");
-  const fs::path library = data_root() / "scenarios" / folder, named = library / (argument + ".yaml");
+  const fs::path library = data_root() / "scenarios/library" / folder, named = library / (argument + ".yaml");
   if (is_name && fs::exists(named, ignored)) return named;
   if (is_folder) throw ScenarioError(fmt::format("{}: must be a {} file, is a folder", argument, noun));
   if (!is_name) throw ScenarioError(fmt::format("{}: cannot read this {} file", argument, noun));
@@ -72,9 +72,9 @@ fs::path library_file(const std::string& argument, const char* folder, const cha
                                   noun, fmt::join(names, ", "), did_you_mean(argument, names)));
 }
 
-std::vector<std::string> scenario_names() { return yaml_names(data_root() / "scenarios" / "library"); }
+std::vector<std::string> scenario_names() { return yaml_names(data_root() / "scenarios/library"); }
 
-fs::path scenario_file(const std::string& argument) { return library_file(argument, "library", "scenario"); }
+fs::path scenario_file(const std::string& argument) { return library_file(argument, "", "scenario"); }
 
 std::vector<std::string> rig_names() { return yaml_names(data_root() / "models" / "rigs"); }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "estimation/filter_config.hpp"
 #include "planning/manoeuvre.hpp"
 #include "scenarios/parts/parts.hpp"
 #include "scenarios/scenario/scenario.hpp"

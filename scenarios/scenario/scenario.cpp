@@ -1,6 +1,11 @@
 #include "scenarios/scenario/scenario.hpp"
 
+#include "estimation/filter_config.hpp"
+
 namespace understory {
+
+FilterConfig& EstimationSection::filter() { return sources.of<FilterConfig>("filter"); }
+const FilterConfig& EstimationSection::filter() const { return sources.of<FilterConfig>("filter"); }
 
 void visit_fields(FieldVisitor& visit, ComputeConfig& config) {
   visit("enabled", config.enabled,

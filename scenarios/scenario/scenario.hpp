@@ -10,8 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "estimation/dead_reckoning.hpp"
-#include "estimation/filter_config.hpp"
 #include "perception/perception_config.hpp"
 #include "planning/airframe.hpp"
 #include "planning/autopilot_config.hpp"
@@ -28,6 +26,7 @@
 namespace understory {
 
 class FieldVisitor;
+struct FilterConfig;
 
 enum class FilterPreset { tuned, original, windy };  ///< which numbers estimation.filter starts from
 enum class PlanningPreset { thorough, economical };  ///< how often, and with how much search, plans are made
@@ -98,8 +97,8 @@ struct EstimationSection {
   FilterPreset preset = FilterPreset::tuned;
   PartConfigs sources = parts().state_sources.configs();
 
-  FilterConfig& filter() { return sources.of<FilterConfig>("filter"); }
-  const FilterConfig& filter() const { return sources.of<FilterConfig>("filter"); }
+  FilterConfig& filter();
+  const FilterConfig& filter() const;
 };
 
 struct AutopilotSection : AutopilotConfig {

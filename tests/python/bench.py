@@ -16,7 +16,7 @@ import numpy as np
 
 import understory
 from tests.python.support import program
-from understory.gym import FlightEnv, VectorEnv
+from understory.gym import FlightEnv
 
 CAMERAS = {"scenario": "forest"}
 BARE = {"observe": ("imu", "airspeed", "altitude", "gravity"), "act": "control", "step": "control", "record": False}
@@ -36,24 +36,6 @@ def python_loop_s(seed):
     while flight.step("camera"):
         pass
     return time.perf_counter() - begin
-
-
-def steps_per_s(vector, count, seed):
-    vector.reset(seed=seed)
-    actions = np.zeros(vector.action_space.shape)
-    begin = time.perf_counter()
-    for _ in range(count):
-        vector.step(actions)
-    return vector.num_envs * count / (time.perf_counter() - begin)
-
-
-def _serve(pipe):
-    env = FlightEnv(**CAMERAS)
-    while True:
-        order, given = pipe.recv()
-        if order == "close":
-            return
-        pipe.send(env.reset(seed=given) if order == "reset" else env.step(given))
 
 
 def _stepping(barrier, seconds, seed):
@@ -77,35 +59,6 @@ def side_by_side_s(count, seed):
     for process in processes:
         process.join()
     return slowest
-
-
-class PipePool:
-    """The yardstick: the same workers, with observations pickled through pipes."""
-
-    def __init__(self, count):
-        context = multiprocessing.get_context("spawn")
-        self.pipes, self.num_envs = [], count
-        for _ in range(count):
-            ours, theirs = context.Pipe()
-            context.Process(target=_serve, args=(theirs,), daemon=True).start()
-            self.pipes.append(ours)
-        self.action_space = np.zeros((count, 2))
-
-    def ask(self, order, given):
-        for index, pipe in enumerate(self.pipes):
-            pipe.send((order, given[index]))
-        answers = [pipe.recv() for pipe in self.pipes]
-        return {name: np.stack([answer[0][name] for answer in answers]) for name in answers[0][0]}
-
-    def reset(self, seed):
-        return self.ask("reset", [seed + index for index in range(self.num_envs)])
-
-    def step(self, actions):
-        return self.ask("step", actions)
-
-    def close(self):
-        for pipe in self.pipes:
-            pipe.send(("close", None))
 
 
 def control_steps_per_s(scenario):
@@ -152,15 +105,8 @@ def main():
 
     show("stepping forest at camera rate, speed against the program's",
          by_turns(lambda turn: native_loop_s(1000 + turn), lambda turn: python_loop_s(1000 + turn), 7), 3)
-    one, two, pool = VectorEnv(1, CAMERAS), VectorEnv(2, CAMERAS), PipePool(2)
     show("two environments with cameras side by side, a process each, against one",
          by_turns(lambda turn: 2 * side_by_side_s(1, 1000 + turn), lambda turn: side_by_side_s(2, 1000 + turn), 5))
-    show("VectorEnv of two, which waits for the slower, against one of one",
-         by_turns(lambda turn: steps_per_s(two, 120, 1000 + turn), lambda turn: steps_per_s(one, 120, 1000 + turn), 5))
-    show("VectorEnv of two against two over pipes and pickle, with cameras",
-         by_turns(lambda turn: steps_per_s(two, 120, 1000 + turn), lambda turn: steps_per_s(pool, 120, 1000 + turn), 5))
-    for closing in (one, two, pool):
-        closing.close()
     for scenario in ("clear", "forest"):
         show(f"control steps a second, one core, {scenario}",
              statistics.median([control_steps_per_s(scenario) for _ in range(3)]), 0)

@@ -1,16 +1,13 @@
 """The environments keep Gymnasium's contract: what its check_env asks for, asked here without it."""
 
 import copy
-import multiprocessing
-import os
 import pickle
-import signal
 import unittest
 
 import numpy as np
 
 from tests.python.support import SHORT, InFolder, native
-from understory.gym import OBSERVATIONS, AutoresetMode, FlightEnv, VectorEnv
+from understory.gym import OBSERVATIONS, FlightEnv
 
 CHEAP = {"scenario": "forest", "set": SHORT, "observe": ("imu", "gravity", "map"), "detector": "true_depth"}
 ALL = {"scenario": "forest", "set": SHORT, "observe": OBSERVATIONS, "render_mode": "rgb_array"}
@@ -141,89 +138,6 @@ class Contract(InFolder):
 
         gymnasium.register_envs(understory)
         check_env(gymnasium.make("understory/Forest-v0").unwrapped)
-
-
-class Vector(InFolder):
-    def test_next_step_resets_in_the_step_after_the_end(self):
-        with VectorEnv(2, CHEAP) as env:
-            self.assertEqual(env.metadata["autoreset_mode"], AutoresetMode("NextStep"))
-            observation, infos = env.reset(seed=1003)
-            self.assertEqual(infos["flight_seed"].tolist(), [1003, 1004])
-            self.assertTrue(env.observation_space.contains(observation))
-            ended = np.zeros(2, bool)
-            for _ in range(600):
-                before = observation
-                observation, rewards, terminated, truncated, infos = env.step(np.zeros((2, 2)))
-                self.assertFalse(shares(before, observation))
-                if ended.any():
-                    self.assertEqual(infos["_t_s"].tolist(), ended.tolist())
-                    self.assertEqual(rewards[ended].tolist(), [0.0] * int(ended.sum()))
-                    break
-                ended = terminated | truncated
-            self.assertTrue(ended.any())
-
-    def test_batches_equal_single_environments(self):
-        alone = FlightEnv(**CHEAP)
-        expected = [alone.reset(seed=1004)[0]] + [alone.step([0.1, 0.0])[0] for _ in range(20)]
-        with VectorEnv(2, CHEAP) as env:
-            seen = [env.reset(seed=1003)[0]] + [env.step(np.full((2, 2), [0.1, 0.0]))[0] for _ in range(20)]
-        for batch, one in zip(seen, expected):
-            self.assertTrue(same({name: array[1] for name, array in batch.items()}, one))
-
-    def test_same_step_gives_the_last_observation_apart(self):
-        with VectorEnv(1, CHEAP, "SameStep") as env:
-            env.reset(seed=1003)
-            while True:
-                observation, _, terminated, truncated, infos = env.step(np.zeros((1, 2)))
-                if terminated[0] or truncated[0]:
-                    break
-            self.assertIn("outcome", infos["final_info"][0])
-            self.assertFalse(same(infos["final_obs"][0], {name: array[0] for name, array in observation.items()}))
-            env.step(np.zeros((1, 2)))
-
-    def test_disabled_resets_what_is_asked_for(self):
-        with VectorEnv(2, CHEAP, AutoresetMode.DISABLED) as env:
-            env.reset(seed=1003)
-            ended = np.zeros(2, bool)
-            while not ended.any():
-                observation, _, terminated, truncated, _ = env.step(np.zeros((2, 2)))
-                ended = terminated | truncated
-            with self.assertRaisesRegex(RuntimeError, "reset_mask"):
-                env.step(np.zeros((2, 2)))
-            after, _ = env.reset(options={"reset_mask": ended})
-            for index in range(2):
-                kept = same({n: a[index] for n, a in after.items()}, {n: a[index] for n, a in observation.items()})
-                self.assertEqual(kept, not ended[index])
-            env.step(np.zeros((2, 2)))
-
-    def test_a_worker_that_dies_is_replaced_and_its_episode_truncated(self):
-        with VectorEnv(2, CHEAP) as env:
-            env.reset(seed=1003)
-            os.kill(env._workers[1][0].pid, signal.SIGKILL)
-            _, _, terminated, truncated, infos = env.step(np.zeros((2, 2)))
-            self.assertEqual((terminated.tolist(), truncated.tolist()), ([False, False], [False, True]))
-            self.assertIn("status -9", infos["worker_died"][1])
-            _, _, _, truncated, infos = env.step(np.zeros((2, 2)))
-            self.assertEqual((truncated.tolist(), infos["_flight_seed"].tolist()), ([False, False], [False, True]))
-            env.step(np.zeros((2, 2)))
-
-    def test_views_are_the_memory_itself_where_asked_for(self):
-        with VectorEnv(1, CHEAP, copy=False) as env:
-            first, _ = env.reset(seed=1003)
-            second, *_ = env.step(np.zeros((1, 2)))
-            self.assertTrue(shares(first, second))
-            del first, second
-
-    def test_closing_leaves_no_process_and_no_shared_memory(self):
-        env = VectorEnv(2, CHEAP)
-        env.reset(seed=1)
-        processes = [worker[0] for worker in env._workers]
-        files = set(os.listdir("/dev/shm")) if os.path.isdir("/dev/shm") else set()
-        env.close()
-        env.close()
-        self.assertFalse(any(process.is_alive() for process in processes))
-        self.assertEqual(multiprocessing.active_children(), [])
-        self.assertEqual(files, set(os.listdir("/dev/shm")) if os.path.isdir("/dev/shm") else set())
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ import numpy as np
 
 import understory
 from tests.python.support import SHORT, InFolder
-from understory.gym import FlightEnv, VectorEnv
+from understory.gym import FlightEnv
 
 InputError, MachineError = understory.InputError, understory.MachineError
 
@@ -179,9 +179,7 @@ WRONG = [
     ("action out of bounds", lambda: begun().step([0, 2]), ValueError, "within"),
     ("action that is not finite", lambda: begun().step([np.nan, 0]), ValueError, "within"),
     ("unknown option", lambda: env().reset(options={"sed": 1}), ValueError, "sed"),
-    ("no environments", lambda: VectorEnv(0), ValueError, "at least 1"),
-    ("unknown autoreset mode", lambda: VectorEnv(1, {}, "Sometimes"), ValueError, "Sometimes"),
-    ("wrong settings of workers", lambda: VectorEnv(1, {"scenario": "forrest"}), InputError, "did you mean"),
+    ("a wrong setting", lambda: FlightEnv("forrest"), InputError, "did you mean"),
     # files
     ("a folder that is no campaign", lambda: understory.Campaign("/tmp"), FileNotFoundError, "flights.csv"),
     ("a campaign that is none", lambda: understory.campaign({"scenario": "forest"}, "never"), understory.CommandFailed,
@@ -210,28 +208,6 @@ class WrongUses(unittest.TestCase):
         for _ in range(2):
             with self.assertRaisesRegex(MachineError, "hit_dtype"):
                 one.run()
-
-    def test_vector_environments_are_asked_in_order(self):
-        with VectorEnv(2, {"scenario": "clear", "set": SHORT, "observe": ("imu",)}) as vector:
-            for use, words in (
-                (lambda: vector.step(np.zeros((2, 2))), "before reset"),
-                (lambda: vector.reset(seed=[1]), "one number or 2"),
-                (lambda: vector.reset(options={"reset_mask": [1, 0]}), "2 booleans"),
-            ):
-                with self.assertRaisesRegex((RuntimeError, ValueError), words):
-                    use()
-            vector.reset(seed=1)
-            with self.assertRaisesRegex(ValueError, "shape"):
-                vector.step(np.zeros(2))
-            with self.assertRaisesRegex(ValueError, "within"):
-                vector.step(np.array([[0, 0], [0, np.nan]]))
-            with self.assertRaisesRegex(RuntimeError, "save: "):
-                vector.save(0, "/proc/nowhere/never.yaml")
-            _, _, _, truncated, infos = vector.step(np.zeros((2, 2)))  # none of these has ended an episode
-            self.assertEqual((truncated.tolist(), infos), ([False, False], {}))
-        with self.assertRaisesRegex(RuntimeError, "closed"):
-            vector.reset()
-
 
 class Reentrance(unittest.TestCase):
     def test_a_part_does_not_step_its_own_flight(self):
@@ -273,15 +249,6 @@ class OtherProcesses(InFolder):
         )
         ended = self.python(code)
         self.assertEqual(ended.stdout, "0\n", ended.stderr)
-
-    def test_a_script_on_standard_input_has_environments(self):
-        code = (
-            "from understory.gym import VectorEnv\n"
-            "with VectorEnv(2, {'scenario': 'clear', 'observe': ('course',)}) as envs:\n"
-            "    print(envs.reset(seed=1)[0]['course'].shape)\n"
-        )
-        ended = subprocess.run([sys.executable, "-"], input=code, capture_output=True, text=True)
-        self.assertEqual(ended.stdout, "(2, 2)\n", ended.stderr)
 
     def test_a_flight_may_be_dropped_on_another_thread(self):
         for dropped in ("threading.Thread(target=box.clear)", "threading.Thread(target=gc.collect)"):
@@ -347,34 +314,14 @@ class OtherProcesses(InFolder):
     def test_a_program_that_ends_in_the_middle_of_flights_ends(self):
         code = (
             "import understory\n"
-            "from understory.gym import VectorEnv\n"
-            "if __name__ == '__main__':\n"
-            "    flight = understory.Flight('forest'); flight.step('camera')\n"
-            "    vector = VectorEnv(1, {'scenario': 'clear', 'observe': ('imu',)}); vector.reset(seed=1)\n"
+            "from understory.gym import FlightEnv\n"
+            "flight = understory.Flight('forest'); flight.step('camera')\n"
+            "env = FlightEnv('clear', observe=('imu',)); env.reset(seed=1)\n"
         )
         file = self.folder / "ends.py"
         file.write_text(code)
         ended = subprocess.run([sys.executable, file], capture_output=True, text=True)
         self.assertEqual((ended.returncode, ended.stderr), (0, ""))
-
-    def test_the_keyboard_interrupts_environments_and_leaves_no_process(self):
-        file = self.folder / "interrupted.py"
-        file.write_text(
-            "import multiprocessing, os, signal, threading\n"
-            "import numpy as np\n"
-            "from understory.gym import VectorEnv\n"
-            "if __name__ == '__main__':\n"
-            "    vector = VectorEnv(2, {'scenario': 'clear', 'observe': ('imu',)})\n"
-            "    vector.reset(seed=1)\n"
-            "    threading.Timer(1.0, lambda: os.killpg(0, signal.SIGINT)).start()\n"
-            "    try:\n"
-            "        while True: vector.step(np.zeros((2, 2)))\n"
-            "    except KeyboardInterrupt: print('interrupted', multiprocessing.active_children())\n"
-            "    try: vector.step(np.zeros((2, 2)))\n"
-            "    except RuntimeError as error: print(error)\n"
-        )
-        ended = subprocess.run([sys.executable, file], capture_output=True, text=True, start_new_session=True)
-        self.assertEqual(ended.stdout, "interrupted []\nthe environments are closed\n", ended.stderr)
 
     def test_the_data_folder_can_be_named(self):
         surroundings = {**os.environ, "UNDERSTORY_ROOT": "/proc/nowhere"}

@@ -95,7 +95,7 @@ TEST(SmoothPath, StraightAtConstantSpeedItStaysSo) {
 
 /// What the IMU is told of the shipped weave, integrated, is the weave.
 TEST(SmoothPath, RatesAndForcesAreThePathsOwn) {
-  const SmoothPath path(read_path(root / "scenarios/paths/banked.tum"));
+  const SmoothPath path(read_path(root / "scenarios/library/paths/banked.tum"));
   expect_felt_path(
       [&](std::int64_t t_ns) { return carried_truth([&](double t_s) { return path.at(t_s); }, t_ns, 9.81); },
       2e-3);
@@ -161,7 +161,7 @@ TEST(Follow, TheShippedPathIsWhereItSays) {
   const TemporaryFolder folder;
   const Scenario scenario = library_scenario("forest", {"seed=1003", "cameras.rate_hz=2"});
   const Carried carried =
-      follow_recorded(scenario, read_path(root / "scenarios/paths/level.tum"), into(folder.path()));
+      follow_recorded(scenario, read_path(root / "scenarios/library/paths/level.tum"), into(folder.path()));
   EXPECT_EQ(carried.frames, 14);
   EXPECT_NEAR(carried.carried_m, 80, 0.01);
   EXPECT_FALSE(fs::exists(folder.path() / "mav0/estimate0"));

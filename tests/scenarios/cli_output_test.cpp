@@ -130,7 +130,7 @@ TEST(CliOutput, NoCommandWritesIntoAFolderThatAnotherWritesInto) {
   const TemporaryFolder folder;
   const std::string in_folder = "cd " + folder.path().string() + " && ";
   ASSERT_EQ(understory("record clear --set forest.length_m=1 --quiet --out rec", in_folder).status, 0);
-  const std::string campaign = "campaign " UNDERSTORY_SOURCE_DIR "/scenarios/campaigns/gate.yaml";
+  const std::string campaign = "campaign " UNDERSTORY_SOURCE_DIR "/scenarios/library/campaigns/gate.yaml";
   folder.write("tune.yaml",
                "scenario: clear\nparameters: {autopilot.flight_model.cruise_speed_mps: {from: 9, to: 12}}\n"
                "objective: {maximize: progress}\nsearch: {method: random, trials: 1}\n"

@@ -207,7 +207,8 @@ TEST(Objects, AlongTheBankedPathAreThoseThatRaysMeet) {
   const Scenario scenario =
       library_scenario("forest", {"seed=1003", "cameras.rate_hz=2", "cameras.view_distance_m=200"});
   EXPECT_EQ(
-      follow_recorded(scenario, read_path(root / "scenarios/paths/banked.tum"), into(folder.path())).frames,
+      follow_recorded(scenario, read_path(root / "scenarios/library/paths/banked.tum"), into(folder.path()))
+          .frames,
       14);
   const StereoRig rig = read_calibrated_rig(folder.path(), {}).rig;
   const auto objects = read_objects(folder.path() / "mav0/objects0/objects.csv");

@@ -41,7 +41,7 @@ TEST(RecordCommand, TwoRecordingsOfAWoodHoldTheSameBytes) {
   const fs::path one = folder.path() / "one", other = folder.path() / "other";
   for (const fs::path& kept : {one, other}) {
     const auto outcome = understory(
-        "record woods --seed 1007 --path scenarios/paths/level.tum --set "
+        "record woods --seed 1007 --path scenarios/library/paths/level.tum --set "
         "cameras.rate_hz=2 --out " +
         kept.string());
     EXPECT_EQ(outcome.status, 0) << outcome.text;
@@ -68,8 +68,9 @@ TEST(RecordCommand, WrongArgumentsAreBadInput) {
   expect_refusal("record forest --height 2" + out, "--height requires --walk");
   expect_refusal("record forest --walk --set forest.square_metres_per_tree=4" + out, "straight lane");
   expect_refusal("record forest --path nowhere.tum" + out, "nowhere.tum: cannot read this file");
-  expect_refusal("record forest --path scenarios/paths/level.tum --walk" + out, "--path and --walk exclude");
-  expect_refusal("record forest --path scenarios/paths/level.tum --height 2" + out,
+  expect_refusal("record forest --path scenarios/library/paths/level.tum --walk" + out,
+                 "--path and --walk exclude");
+  expect_refusal("record forest --path scenarios/library/paths/level.tum --height 2" + out,
                  "--height requires --walk");
   expect_refusal("record forest --set rig=none" + out, "rig: must be a name");
   expect_refusal("record forest --out /proc/none", "/proc/none");

@@ -22,7 +22,6 @@ import _understory
 from .flight import load_scenario, save_scenario
 from .parts import load_plugin
 from .spaces import Box, Dict, checked_actions
-from .vector_env import AutoresetMode, VectorEnv, WorkerDied
 
 try:
     import gymnasium
@@ -32,7 +31,7 @@ except ImportError:
     gymnasium = None
     _Base = object
 
-__all__ = ["AutoresetMode", "FlightEnv", "VectorEnv", "WorkerDied"]
+__all__ = ["FlightEnv"]
 
 OBSERVATIONS = ("images", "imu", "airspeed", "altitude", "gravity", "course", "hits", "map", "depth")
 MAXIMUM_BANK_RAD = 1.2
@@ -49,7 +48,7 @@ class FlightEnv(_Base):
     scenario: a file, or a name of the library. set: keys over its own.
     detector, state_source: names of parts, objects are not accepted. Where nothing is observed that needs a detector,
         there is none; else it is the scenario's own. The planner makes no plans.
-    plugins: files of parts that names may mean; each worker of a VectorEnv loads them, too.
+    plugins: files of parts that names may mean.
     observe: any of
         images    uint8 (2, rows, columns): the newest pair, left and right;
         imu       float32 (n, 6): angular rate (rad/s) and specific force (m/s^2) in body axes, the newest n samples,

@@ -89,11 +89,3 @@ def checked_actions(given: Any, shape: tuple[int, ...], name: str) -> np.ndarray
     if not np.abs(values).max() <= 1:
         raise ValueError(f"{name}: must lie within -1 and 1, got {values.tolist()}")
     return values
-
-
-def batched(space: Any, count: int) -> Any:
-    """The space of `count` values of a space, along a new first axis."""
-    if isinstance(space, Dict):
-        return Dict({name: batched(one, count) for name, one in space.items()})
-    stack = (count,) + (1,) * len(space.shape)
-    return Box(np.tile(space.low, stack), np.tile(space.high, stack), (count, *space.shape), space.dtype)
