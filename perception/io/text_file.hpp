@@ -7,20 +7,20 @@
 
 namespace understory {
 
-/// What a person gave cannot be used. One line "file:line: key: what was expected", or "--set a.b=3: ...".
+/// The user's input cannot be used. One line "file:line: key: what was expected", or "--set a.b=3: ...".
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The machine failed us: a full disk, a missing library, no more memory.
+/// The machine failed: a full disk, a missing library, no more memory.
 struct MachineError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What the machine lacks where a call ended with this errno: memory, descriptors, a limit on the size of
-/// files. In words, with the limit; empty where it is none of these.
+/// In words, the resource that the machine lacks if a call failed with this errno: memory, descriptors, or
+/// size of files, with its limit; empty for any other errno.
 std::string lacking_resource(int error);
-/// What it lacks at this moment, for libraries that do not say why they failed.
+/// The resource that it lacks at this moment, for libraries that do not report why they failed.
 std::string lacking_resource();
 /// Throws MachineError where this process may not map `bytes` more.
 void require_address_space(std::size_t bytes, const std::string& work);
@@ -29,13 +29,13 @@ void require_address_space(std::size_t bytes, const std::string& work);
 void require_stack();
 
 /// Throws InputError "place: key: expected", always one line of at most a few hundred characters, whatever
-/// bytes the file had for a key or a value. An empty `key` leaves itself out.
+/// bytes the file had for a key or a value. An empty `key` is left out.
 [[noreturn]] void refuse_input(const std::string& place, const std::string& key, const std::string& expected);
 
 /// "file:line"; lines count from 1.
 std::string place_in(const std::string& file, int line);
 
-/// How much of a file its reader takes at most. A parser should not be fed a picture or a device without end.
+/// The largest file that a reader accepts. A parser should not get a picture or an endless device.
 constexpr std::size_t maximum_keyed_bytes = std::size_t{1} << 20;  ///< scenarios, calibrations
 constexpr std::size_t maximum_json_bytes = std::size_t{16} << 20;
 constexpr std::size_t maximum_table_bytes = std::size_t{256} << 20;  ///< poses, lists of images, rows
