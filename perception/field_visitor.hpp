@@ -17,8 +17,8 @@
 ///   void visit_fields(FieldVisitor& visit, Config& config) {
 ///     visit("depth_m", config.depth_m, 0.1, 1000.0, "meaning | source | unit");
 ///   }
-/// Source and unit may be left out. No type of a single folder is used here, so that each folder may include
-/// it.
+/// Source and unit may be left out. Every folder may include this header, since it uses no folder's own
+/// types.
 namespace understory {
 
 class FieldVisitor;

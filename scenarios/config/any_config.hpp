@@ -31,8 +31,8 @@ class TypedConfig : public AnyConfig {
 
 inline void visit_fields(FieldVisitor& visit, AnyConfig& config) { config.visit(visit); }
 
-/// Throws std::invalid_argument where what is written of these keys cannot be read again: a name that is no
-/// plain word or stands twice, a value outside of its bounds. `part` begins the message.
+/// Throws std::invalid_argument if these keys, once written, could not be read again: a name that is not a
+/// plain word or is there twice, a value outside of its bounds. `part` begins the message.
 void require_sound_keys(const std::string& part, const AnyConfig& keys);
 
 /// The configurations of all parts of a kind that have keys, by the parts' names. Copies are deep.

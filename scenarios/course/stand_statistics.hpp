@@ -25,7 +25,7 @@ std::vector<double> ripley_l_minus_r(const Stand& stand);
 /// 35, 445) with Donnelly's correction for edges (1978): below 1 for clusters. NaN for fewer than two stems.
 double clark_evans_index(const Stand& stand);
 
-/// What is said of a forest, over several stands of it.
+/// Figures of a forest, over several stands of it.
 struct StandFigures {
   int stands = 0;
   std::int64_t stems = 0;
