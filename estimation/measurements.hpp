@@ -74,8 +74,7 @@ Measurement<2> ground_displacement(const State& now, const State& earlier, const
 class RestWindow {
  public:
   RestWindow(const RestConfig& config, double gravity_mps2) : config_(config), gravity_mps2_(gravity_mps2) {}
-  /// Whether the aircraft is at rest, this sample included. False while the samples are too few for a
-  /// variance.
+  /// Whether the aircraft is at rest, this sample included. False if samples are too few for a variance.
   bool rests_with(const ImuSample& sample);
   /// The mean of the window's samples, at the time of the newest.
   const ImuSample& mean() const { return mean_; }

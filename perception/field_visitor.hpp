@@ -17,8 +17,7 @@
 ///   void visit_fields(FieldVisitor& visit, Config& config) {
 ///     visit("depth_m", config.depth_m, 0.1, 1000.0, "meaning | source | unit");
 ///   }
-/// Source and unit may be left out. Every folder may include this header, since it uses no folder's own
-/// types.
+/// Source and unit may be left out. No folder's own types are used here, so each folder may include it.
 namespace understory {
 
 class FieldVisitor;

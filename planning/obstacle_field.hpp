@@ -10,8 +10,9 @@
 
 namespace understory {
 
-/// The remembered points for the planner: upright columns in a horizontal grid. It gives the free distance to
-/// a wing in a given attitude. It is rebuilt for each replan. A search needs about ten thousand distances.
+/// The remembered points for the planner: upright columns in a horizontal grid. They give the free distance
+/// to a wing in a given attitude. The field is rebuilt for each replan. A search needs about ten thousand
+/// distances.
 class ObstacleField {
  public:
   struct Column {

@@ -61,7 +61,7 @@ struct Plan {
 };
 
 /// How the replans of a flight were answered. straight + solved + kept + fallback is their number. `own` has
-/// the counts that one planner alone knows, by name; they stand in result.json.
+/// the counts of one planner alone, by name; result.json has them.
 struct PlannerCounts {
   std::vector<std::pair<std::string, std::int64_t>> own;
   std::int64_t replans = 0;

@@ -16,7 +16,7 @@ struct PlanRequest {
   FlightState start;                       ///< where the aircraft will be at t_ns
   std::int64_t t_ns = 0;                   ///< when the plan takes effect
   std::vector<ObstaclePoint> points = {};  ///< obstacle points that the map trusts
-  /// distance flown until now; a point may have drifted for the distance flown since its distance_flown_m
+  /// distance flown until now; the excess over a point's own distance_flown_m is how far it may have drifted
   double distance_flown_m = 0;
   /// Whether, since the last plan, a point has come that may change it according to concerns(). If not, a
   /// planner may keep its plan without a search.
@@ -35,7 +35,7 @@ class Planner {
   virtual Plan plan(const PlanRequest& request) = 0;
 
   /// Whether `point`, which the map did not hold when `plan` was made, may change the plan. The autopilot
-  /// then asks for a new plan at the next opportunity, instead of at the end of the period.
+  /// then requests a new plan at the next opportunity, instead of at the end of the period.
   virtual bool concerns(const ObstaclePoint& /*point*/, const Plan& /*plan*/) const { return true; }
 
   /// How the plans came about. A planner counts what applies to it; all other counts stay zero.

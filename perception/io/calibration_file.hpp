@@ -24,13 +24,13 @@ struct CalibrationOptions {
 /// - a folder of such files: one matrix each (M1.xml, D1.xml, R1.xml, P1.xml, M2.xml ...), or intrinsics.yml
 ///   and extrinsics.yml,
 /// - a EuRoC/ASL folder (mav0, or the folder above it): cam0/sensor.yaml (left) and cam1/sensor.yaml (right);
-///   the detection depth if cam0's file has one (read_euroc_calibration). The rig is named after its file or
-///   folder. The pose in the body: a rig file's own mounting; EuRoC's T_BS, whose body is the file's own (the
-///   IMU, x up); OpenCV's files define no body, so the raw left camera is at its origin and looks along its x
-///   axis. The returned rig fits a detector (the detection depth's disparity lies in the images) and a
-///   Rectifier. Throws InputError, one line "file[:line]: key: what was expected", if anything is missing, of
-///   a wrong type, not finite or out of range, if the images' size is needed and unknown or contradictory,
-///   and if no rectified pair results. No content of a file causes another exception.
+///   the detection depth if cam0's file has one (read_euroc_calibration).
+/// The rig is named after its file or folder. The pose in the body: a rig file's own mounting; EuRoC's T_BS,
+/// whose body is the file's own (the IMU, x up); OpenCV's files define no body, so the raw left camera is at
+/// its origin and looks along its x axis. The returned rig fits a detector (the detection depth's disparity
+/// lies in the images) and a Rectifier. Throws InputError, one line "file[:line]: key: what was expected", if
+/// anything is missing, of a wrong type, not finite or out of range, if the images' size is needed and
+/// unknown or contradictory, and if no rectified pair results. No content of a file causes another exception.
 CalibratedRig read_calibrated_rig(const std::filesystem::path& path, const CalibrationOptions& options);
 
 /// Reads a rig from YAML. Every key is required, and no others are allowed: name, width_px, height_px,

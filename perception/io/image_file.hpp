@@ -5,7 +5,7 @@
 
 namespace understory {
 
-/// Whether the name ends as an image's does (png, jpg, jpeg, bmp, tif, tiff, pgm), whatever the case.
+/// Whether the name ends as an image's does (png, jpg, jpeg, bmp, tif, tiff, pgm), in any case.
 bool is_image_name(const std::filesystem::path& file);
 
 /// Whether it ends as a video's does (mp4, m4v, mov, mkv, avi, webm, mpg, mpeg, ogv). By name, because FFmpeg

@@ -39,7 +39,7 @@ class StrictMap {
 
   TextNode map_;
   std::string prefix_;
-  std::vector<std::string> known_;  // in the order asked for
+  std::vector<std::string> known_;  // in the order of the calls
 };
 
 }  // namespace understory

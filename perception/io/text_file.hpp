@@ -28,8 +28,8 @@ void require_address_space(std::size_t bytes, const std::string& work);
 /// Throws MachineError where this thread's stack is too small to fly, draw and call Python on.
 void require_stack();
 
-/// Throws InputError "place: key: expected", always one line of at most a few hundred characters, whatever
-/// bytes the file had for a key or a value. An empty `key` is left out.
+/// Throws InputError "place: key: expected", always one line of at most a few hundred characters, for any
+/// bytes of a key or a value. An empty `key` is left out.
 [[noreturn]] void refuse_input(const std::string& place, const std::string& key, const std::string& expected);
 
 /// "file:line"; lines count from 1.

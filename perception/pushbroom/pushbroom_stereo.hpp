@@ -42,7 +42,7 @@ class PushbroomStereo : public ObstacleDetector {
   const std::vector<StereoHit>& detect(const StereoFrame& frame) override;
 
   int depth_count() const { return static_cast<int>(depths_.size()); }
-  /// Depth of the whole disparity used: where hits are put. Near, not equal to, the depth asked for.
+  /// Depth of the whole disparity used, which hits get. Near, not equal to, the requested depth.
   double detection_depth_m(int depth = 0) const { return depths_[static_cast<std::size_t>(depth)].depth_m; }
   DepthInterval one_pixel_interval(int depth = 0) const {
     return depths_[static_cast<std::size_t>(depth)].interval;

@@ -8,7 +8,7 @@
 
 #include "perception/field_visitor.hpp"
 
-/// Configurations whose type only their owner knows: those of plug-ins.
+/// Configurations whose type only their own part has: those of plug-ins.
 namespace understory {
 
 /// A config struct with visit_fields(), its type erased.
@@ -62,7 +62,7 @@ class PartConfigs {
     return nullptr;
   }
 
-  /// That of one of our parts, whose type the caller knows.
+  /// The configuration of one of our parts, whose type the caller knows.
   template <typename Config>
   const Config& of(std::string_view name) const {
     return static_cast<const TypedConfig<Config>&>(*find(name)).config;

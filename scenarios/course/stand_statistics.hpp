@@ -13,7 +13,7 @@ struct Stand {
   std::vector<double> diameters_m;  ///< at 1.3 m height
 };
 
-/// Distances at which Ripley's K is asked for, m.
+/// Distances at which Ripley's K is computed, m.
 inline constexpr double ripley_radii_m[]{0.5, 1, 1.5, 2, 3, 4, 5, 6, 8, 10};
 
 /// Ripley's L(r) - r at these distances (Ripley 1977, J. R. Stat. Soc. B 39, 172), with the translation

@@ -7,8 +7,9 @@
 
 namespace understory {
 
-/// Records what a suite's file asks for, `jobs` at once, each with `understory record` into FOLDER/NAME-SEED;
-/// recordings that exist already are kept. Returns the recordings' folders, in the file's order. The file:
+/// Makes the recordings of a suite's file, `jobs` at once, each with `understory record` into
+/// FOLDER/NAME-SEED; recordings that exist already are kept. Returns the recordings' folders, in the file's
+/// order. The file:
 ///
 ///  recordings:
 ///  - {name: level, scenario: forest, seeds: 1..5, path: ../paths/level.tum, set: {world.bark_contrast: 0.2}}

@@ -37,7 +37,7 @@ class ObstacleSightings {
   /// `objects`: the recording's. The baseline gives the rig's centre from its left camera.
   ObstacleSightings(std::vector<RecordedObject> objects, double baseline_m);
 
-  /// One frame: its expected blocks at one pixel and the hits. Frames without a pose are passed over.
+  /// One frame: its expected blocks at one pixel and the hits. Frames without a pose are skipped.
   void add(const EvaluationFrame& frame, const DetectionGrid& grid,
            const std::vector<ExpectedBlock>& expected, const std::vector<StereoHit>& hits);
   /// Those that were passed: the path comes nearest to them before its end. In the objects' order. Branches

@@ -51,8 +51,8 @@ class ClearanceField {
   std::vector<Group> groups_;
 };
 
-/// A detected or remembered point this near to an obstacle's surface stands for it, m: what stereo at 10 m
-/// and the estimate's drift leave open.
+/// A detected or remembered point this near to an obstacle's surface belongs to it, m: the uncertainty of
+/// stereo at 10 m and of the estimate's drift.
 constexpr double belongs_within_m = 0.5;
 bool belongs_to(const Eigen::Vector3d& point_world, const Obstacle& obstacle);
 

@@ -40,7 +40,7 @@ std::string difference_of(const Identity& one, const Identity& other);
 /// The model of this machine's processor, as its kernel calls it; empty if unknown.
 std::string processor_model();
 /// Repairs faults of a process's environment that main() cannot report: opens closed standard descriptors,
-/// handles SIGCHLD that the parent ignored, ignores SIGXFSZ, so that a write fails instead.
+/// sets SIGCHLD to its default, and ignores SIGXFSZ, so that a write fails instead.
 void repair_surroundings();
 
 /// A process that has ended.

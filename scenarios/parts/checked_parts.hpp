@@ -18,7 +18,7 @@ inline constexpr std::size_t maximum_obstacles = 20'000;
 std::unique_ptr<ObstacleDetector> checked(const DetectorPart& part, const FlightContext& context);
 /// States must be finite, and their times must not go back.
 std::unique_ptr<StateSource> checked(const StateSourcePart& part, const FlightContext& context);
-/// A plan must take effect when it was asked to, and have finite points, the first at 0 s, in order of time.
+/// A plan must take effect at the requested time, and have finite points, the first at 0 s, in order of time.
 std::unique_ptr<Planner> checked(const PlannerPart& part, const PlannerPartContext& context);
 /// The course's obstacles, which must be finite, at most maximum_obstacles, each with a positive radius or
 /// box.

@@ -97,8 +97,8 @@ Value taken(const py::handle& given, const char* name, const char* what) {
   }
 }
 
-/// Whether the newest exception of Python that was told on this thread came from the keyboard; forgets it.
-/// The flight then ended with an error that is none of the part's.
+/// Whether the newest exception of Python on this thread came from the keyboard (Ctrl-C); clears this. The
+/// flight then ended with an error that the part did not cause.
 bool was_interrupted();
 
 // What the module holds, a file each.

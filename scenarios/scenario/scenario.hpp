@@ -150,7 +150,7 @@ struct Scenario {
   EstimationSection estimation;
   AutopilotSection autopilot = planning_of(PlanningPreset::economical);
 
-  /// The mission as the stack knows it.
+  /// The mission as the stack gets it.
   Mission mission() const {
     return {0,
             goal_x_m(),

@@ -110,7 +110,7 @@ struct SurvivalStep {
 /// A step at 0, then one wherever a subject ended.
 struct SurvivalCurve {
   std::vector<SurvivalStep> steps;
-  double last_at = 0;  ///< nobody was watched beyond: the curve says nothing there
+  double last_at = 0;  ///< nobody was watched beyond: the curve ends there
 };
 
 /// The share that gets beyond each distance (Kaplan & Meier 1958, J. Am. Stat. Assoc. 53), with Greenwood's

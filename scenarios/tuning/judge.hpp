@@ -59,7 +59,7 @@ bool matters_on_recordings(std::string_view key);
 
 /// Runs a scenario's pushbroom detector over every `every`-th frame of recordings, which it holds in memory
 /// (0.55 MB a frame), `threads` recordings at a time; the result does not depend on that. A scenario whose
-/// depths the rig cannot look at is refused. Throws ScenarioError where a folder cannot be read, has no true
+/// depths the rig cannot show is refused. Throws ScenarioError where a folder cannot be read, has no true
 /// depth, or another rig than the first.
 std::unique_ptr<Judge> vision_judge(const std::vector<std::filesystem::path>& folders, int every,
                                     int threads);

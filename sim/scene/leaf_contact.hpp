@@ -10,7 +10,7 @@ namespace understory {
 
 /// A box that may touch leaves: its place at its middle, and half of its size.
 struct WingBox {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< in the frame of the card it is compared with
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< in the frame of what it is compared with
   Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
 };
 
