@@ -36,7 +36,7 @@ class RunDigest {
 /// How a flight ended.
 enum class Outcome {
   goal,           ///< passed the goal plane
-  collision,      ///< touched an obstacle (MuJoCo's own contact)
+  collision,      ///< touched an obstacle (MuJoCo's own contact), or leaves if these end the flight
   ground,         ///< touched the ground
   out_of_bounds,  ///< left the altitude band after climbing into it, or the course's sides
   time            ///< ran out of simulated time

@@ -29,8 +29,7 @@ struct Parameter {
 };
 
 /// The value at a share (0 .. 1, clamped) of the parameter's range or of its list; rounded to six
-/// significant digits, so that written and tried values are equal, and to whole numbers if the parameter is
-/// whole.
+/// significant digits, so that written and tried values are equal; whole parameters get whole numbers.
 double value_at(const Parameter& parameter, double share);
 
 /// The list, or `steps` (>= 2) values spread over the range; each once.
