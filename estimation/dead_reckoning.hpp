@@ -22,7 +22,7 @@ void visit_fields(FieldVisitor& visit, DeadReckoningConfig& config);
 /// rest. Without wind, sideslip or any correction, so all errors grow; the covariance stays zero.
 class DeadReckoning : public StateSource {
  public:
-  /// Of the filter's configuration only the start is used.
+  /// Uses only the start and the launch threshold of the filter's configuration.
   DeadReckoning(const DeadReckoningConfig& config, const FilterConfig& filter);
 
   void on(const Sample& sample) override;

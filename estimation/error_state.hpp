@@ -26,7 +26,7 @@ struct Measurement {
 /// would move the aircraft relative to its own map.
 enum class FrameGain {
   held,  ///< neither position nor heading; roll and pitch, which gravity observes, may be corrected
-  free,  ///< all of it, as in a textbook
+  free,  ///< all of the pose, as in a textbook filter
 };
 
 /// Adds an error to the estimate (not to its covariance). The attitude's error is a body-frame rotation

@@ -19,12 +19,12 @@ enum class Aid { airspeed, sideslip, angle_of_attack, altitude, heading, gps, re
 inline constexpr int aid_count = 7;
 
 /// Error-state Kalman filter (order of State::covariance), driven by the IMU. On the catapult it finds roll
-/// and pitch, learns the gyro bias and the barometer's offset, and holds its place. The stroke is integrated
-/// from rest. In flight it is corrected by pitot, lateral and normal specific force, barometer, magnetometer,
-/// GPS and obstacles seen twice, each through a gate. Samples with a value that is not finite are ignored,
-/// and so are IMU samples that are not newer than the last. Values beyond full scale are clamped. Long gaps
-/// are integrated as DistrustConfig::longest_gap_s. Nothing here throws, and nothing allocates after the
-/// first second. The error-state form and the angular_rate variant follow docs/sources.md [4] and [5].
+/// and pitch, estimates gyro bias and barometer offset, and keeps its position. It integrates the stroke from
+/// rest. In flight it is corrected by pitot, lateral and normal specific force, barometer, magnetometer, GPS
+/// and obstacles seen twice, each through a gate. Samples with a value that is not finite are ignored, and so
+/// are IMU samples that are not newer than the last. Values beyond full scale are clamped. Long gaps are
+/// integrated as DistrustConfig::longest_gap_s. Nothing here throws, and nothing allocates after the first
+/// second. The error-state form and the angular_rate variant follow docs/sources.md [4] and [5].
 class Filter : public StateSource {
  public:
   explicit Filter(const FilterConfig& config);
@@ -58,12 +58,12 @@ class Filter : public StateSource {
   void take_rates(const ImuSample& sample, double dt_s);
   void on_catapult(const ImuSample& sample, double dt_s);
   void settle(double dt_s);
-  /// Gravity and the gyro's bias, from the mean of so many samples.
+  /// Corrects the attitude by gravity, and the gyro's bias. `mean`: of `samples` samples.
   void correct_at_rest(const ImuSample& mean, double dt_s, double samples);
   void in_flight(const ImuSample& sample);
   void launch(std::int64_t t_ns);
   ProcessNoise process_noise(const InertialStep& step) const;
-  /// Corrects where the aid's gate admits the measurement.
+  /// Corrects if the aid's gate admits the measurement.
   template <int M>
   bool fuse(Aid aid, const Measurement<M>& measurement, std::int64_t t_ns);
   /// Corrects with the mean innovation of FilterConfig::force_samples calls.
@@ -88,7 +88,7 @@ class Filter : public StateSource {
     double innovation = 0;
     int samples = 0;
   };
-  ForceSum lateral_force_, normal_force_;  ///< since they last corrected
+  ForceSum lateral_force_, normal_force_;  ///< since the last correction
 };
 
 }  // namespace understory

@@ -66,8 +66,8 @@ void visit_fields(FieldVisitor& visit, AngleOfAttackConfig& config);
 
 /// The barometer measures world z plus an offset. The offset is a state; it is observed on the catapult,
 /// where the altitude is known. The propeller's suction lowers the static pressure in proportion to the
-/// thrust, so that the barometer reads too high by metres per newton: another state, where wash_sigma_m_per_n
-/// is not zero.
+/// thrust, so that the barometer reads too high by metres per newton: another state, if wash_sigma_m_per_n is
+/// not zero.
 struct AltitudeConfig {
   double sigma_m = 0.31;
   double offset_sigma_m = 0.3;
@@ -132,7 +132,7 @@ struct StartConfig {
   double gyro_bias_sigma_radps = 0.0087;
 };
 
-/// The states beside the base's twelve, each a switch.
+/// The states beside the basic twelve. Each kind can be switched on or off.
 struct ExtraStatesConfig {
   bool accelerometer_bias = true;
   double accelerometer_bias_sigma_mps2 = 0.05;
@@ -192,8 +192,8 @@ struct FilterConfig {
 /// The original's filter (docs/sources.md [2], config/plane.cfg): the paper's 12 states, gyro 0.5
 /// deg/s and accelerometer 0.2 m/s^2 of process noise, variances 15 (airspeed), 5 (v_y = 0) and 5
 /// (altimeter), initial sigma 0.15 m/s, 3 deg, 0.5 m and 1 m. Every correction moves the position, as in a
-/// textbook. Without catapult knowledge it had none of the rest either; the rest is kept, as the simulated
-/// launch gives no other initial velocity.
+/// textbook. The original did not know the catapult and so had no corrections at rest. They are kept here,
+/// because nothing else gives the initial velocity of the simulated launch.
 FilterConfig original_filter();
 
 /// For moving air: with wind and gust as states. Its numbers come from flights with 3 m/s of wind and Dryden

@@ -11,8 +11,8 @@ double chi_square_quantile(double probability, int degrees);
 
 /// What happens to a sensor that has disagreed for longer than the patience.
 enum class Distrust {
-  believe,  ///< it is no outlier: it is used until it agrees again, so that a wrong estimate can be
-            ///< corrected
+  believe,  ///< it is right: its measurements are used until they agree again, so that a wrong estimate can
+            ///< be corrected
   exclude,  ///< it is faulty: ignored until it has agreed for as long; the covariance grows meanwhile
 };
 

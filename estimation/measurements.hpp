@@ -10,7 +10,7 @@
 namespace understory {
 
 /// The estimated velocity through the air, body axes: velocity over ground minus wind and gust (both level).
-/// Pitot, winglets and wing feel it.
+/// Pitot, winglets and wing respond to it.
 struct AirVelocity {
   Eigen::Vector3d body_mps = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, 3, error_states> jacobian = Eigen::Matrix<double, 3, error_states>::Zero();
@@ -45,13 +45,13 @@ class AltitudeDrift {
   double variance_m2_ = 0;
 };
 
-/// What the barometer reads too high: its offset, and what the propeller takes from the static pressure.
+/// By how much the barometer reads too high: its offset, and the effect of the propeller's suction.
 double barometer_excess_m(const State& state, double thrust_n);
 
 Measurement<1> altitude(const State& state, const BarometerSample& sample, double thrust_n,
                         const AltitudeConfig& config);
 
-/// Horizontal strength of the field under the estimated attitude, microtesla.
+/// Horizontal strength of the field for the estimated attitude, microtesla.
 double horizontal_field_ut(const State& state, const MagnetometerSample& sample);
 
 /// Innovation: by how much the aircraft's heading is left (counter-clockwise) of the estimate, rad, in (-pi,
@@ -69,14 +69,14 @@ Measurement<3> ground_velocity(const State& now, const State& then, const GpsSam
 Measurement<2> ground_displacement(const State& now, const State& earlier, const State& later,
                                    const ResightingSample& sample);
 
-/// The newest IMU samples before the launch. The aircraft rests where they hardly vary and their means are a
-/// gyro's bias and gravity. A constant bias is no motion.
+/// The newest IMU samples before the launch. The aircraft is at rest if they hardly vary and their means fit
+/// gyro bias and gravity. A constant bias is no motion.
 class RestWindow {
  public:
   RestWindow(const RestConfig& config, double gravity_mps2) : config_(config), gravity_mps2_(gravity_mps2) {}
-  /// Whether the aircraft rests, this sample included. Never in the first samples, which tell no variance.
+  /// Whether the aircraft is at rest, this sample included. False if samples are too few for a variance.
   bool rests_with(const ImuSample& sample);
-  /// The window's mean at its newest time.
+  /// The mean of the window's samples, at the time of the newest.
   const ImuSample& mean() const { return mean_; }
   double size() const { return static_cast<double>(samples_.size()); }
 
@@ -90,7 +90,7 @@ class RestWindow {
 Measurement<3> zero_velocity(const State& state, const RestConfig& config);
 Measurement<3> known_position(const State& state, const Eigen::Vector3d& position_world_m,
                               const RestConfig& config);
-/// `sigma_mps2`: of the force that was measured.
+/// `sigma_mps2`: standard deviation of the measured force.
 Measurement<3> gravity_direction(const State& state, const Eigen::Vector3d& specific_force_body_mps2,
                                  double gravity_mps2, double sigma_mps2);
 /// At rest a gyro reading is the gyro's bias. `sigma_radps`: noise of one reading.

@@ -33,8 +33,8 @@ struct ProcessNoise {
 /// (the same, gyro bias, accelerometer bias).
 inline constexpr int motion_rows = 9, moving_columns = 15;
 
-/// Derivatives of the motion after one step: by the state before, by the rotation vector of the step, by the
-/// velocity increment of the step.
+/// Derivatives of the motion after one step with respect to the state before it, to the rotation vector of
+/// the step, and to the velocity increment of the step.
 struct StepDerivatives {
   Eigen::Matrix<double, motion_rows, moving_columns> state;
   Eigen::Matrix<double, motion_rows, 3> rotation;

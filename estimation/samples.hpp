@@ -49,7 +49,7 @@ struct ThrustSample {
 };
 
 /// An obstacle seen at one depth and, later, at a nearer one: how far its place in the odometry frame has
-/// moved in between, level. The aircraft's estimate has drifted by the opposite.
+/// moved in between, horizontally. The aircraft's estimate has drifted by the opposite.
 struct ResightingSample {
   std::int64_t t_ns = 0;                                          ///< of the second sighting
   std::int64_t earlier_ns = 0;                                    ///< of the first
@@ -57,7 +57,7 @@ struct ResightingSample {
   Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Identity();    ///< of the errors of vision
 };
 
-/// Any of them.
+/// A sample of any kind.
 using Sample = std::variant<ImuSample, PitotSample, BarometerSample, MagnetometerSample, GpsSample,
                             ResightingSample, ThrustSample>;
 

@@ -12,12 +12,12 @@
 #include <utility>
 #include <vector>
 
-/// How the fields of a configuration are named, once for everybody who reads, writes, checks or lists them.
-/// Each struct has a function beside it,
+/// Names the fields of a configuration once, for all code that reads, writes, checks or lists them. Each
+/// struct has a function beside it,
 ///   void visit_fields(FieldVisitor& visit, Config& config) {
 ///     visit("depth_m", config.depth_m, 0.1, 1000.0, "meaning | source | unit");
 ///   }
-/// Source and unit may be left out. No folder's own types stand here, so that each folder may include it.
+/// Source and unit may be left out. No folder's own types are used here, so each folder may include it.
 namespace understory {
 
 class FieldVisitor;
@@ -38,12 +38,12 @@ struct FieldNumbers {
 /// A list of structs.
 struct FieldList {
   std::size_t size = 0;
-  std::function<void(std::size_t size)> resize;  ///< to so many entries at their defaults
-  std::function<void(FieldVisitor& visit, std::size_t entry)> visit;  ///< from `size` on: a default entry
+  std::function<void(std::size_t size)> resize;  ///< to `size` entries with default values
+  std::function<void(FieldVisitor& visit, std::size_t entry)> visit;  ///< entry >= `size`: a default entry
 };
 
-/// One function for each kind of field; it does nothing where a visitor leaves it as it is. Plug-ins meet the
-/// program's visitors through this class.
+/// One function for each kind of field; by default it does nothing, but group() visits the fields. Plug-ins
+/// use the program's visitors through it.
 class FieldVisitor {
  public:
   using Shape = FieldNumbers::Shape;
@@ -55,13 +55,13 @@ class FieldVisitor {
   virtual void choice(std::string_view /*name*/, std::size_t& /*chosen*/,
                       const std::vector<std::string>& /*words*/, std::string_view /*meaning*/) {}
   virtual void numbers(std::string_view /*name*/, FieldNumbers& /*numbers*/, std::string_view /*meaning*/) {}
-  /// From 0 to `maximum`. A search leaves it alone: it names draws of random numbers.
+  /// From 0 to `maximum`. A search does not vary it, because it only selects random numbers.
   virtual void seed(std::string_view /*name*/, std::uint64_t& /*value*/, std::uint64_t /*maximum*/,
                     std::string_view /*meaning*/) {}
   /// One word or more.
   virtual void words(std::string_view /*name*/, std::vector<std::string>& /*values*/,
                      std::string_view /*meaning*/) {}
-  /// Keys as they are written, for those whose names only the struct's owner knows (perception/io/text_tree).
+  /// Keys as written in the file, if only the struct's owner knows their names (perception/io/text_tree).
   virtual void tree(std::string_view /*name*/, TextNode& /*value*/, std::string_view /*meaning*/) {}
   virtual void group(std::string_view /*name*/, const Fields& fields) { fields(*this); }
   virtual void list(std::string_view /*name*/, const FieldList& /*list*/) {}

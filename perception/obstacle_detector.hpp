@@ -7,7 +7,7 @@
 
 namespace understory {
 
-/// Turns a stereo pair into hits. Implementations keep no clock and may keep buffers and memory of earlier
+/// Turns a stereo pair into hits. Implementations use no clock and may keep buffers and memory of earlier
 /// frames.
 class ObstacleDetector {
  public:

@@ -42,8 +42,8 @@ struct PushbroomConfig {
   double isolation_radius_m = 1.0;
 };
 
-/// The paper's rule as the original's code has it: its hits, their order and their scores, wherever the
-/// original stays inside the images. Hits lie half a pixel up and left of its points.
+/// The paper's rule as in the original's code: the same hits, order and scores, where that code stays inside
+/// the images. Hits lie half a pixel up and left of its points.
 PushbroomConfig original_pushbroom();
 /// Uniqueness instead of the invariance filter, gentler thresholds, 3 points within 1 m: on rendered forests
 /// its precision is 0.94 where the paper's thresholds give 0.37 (computed with one prototype;
@@ -103,7 +103,7 @@ enum class SgbmPaths { three, five, eight };
 inline constexpr std::array<std::pair<std::string_view, SgbmPaths>, 3> sgbm_paths_names{
     {{"three", SgbmPaths::three}, {"five", SgbmPaths::five}, {"eight", SgbmPaths::eight}}};
 
-/// OpenCV's StereoSGBM (Hirschmueller 2008). The paper flew none: the search is StereoBM's above, the rest
+/// OpenCV's StereoSGBM (Hirschmueller 2008). Not in the paper: the search range is StereoBM's above, the rest
 /// the values that OpenCV's documentation of cv::StereoSGBM and its sample stereo_match.cpp suggest.
 struct StereoSgbmConfig {
   int window_px = 5;
@@ -152,7 +152,7 @@ void visit_fields(FieldVisitor& visit, LocalMapConfig& config);
 /// How two sightings of an obstacle, at a far and at a near depth, measure the drift of the odometry.
 struct ResightingsConfig {
   bool enabled = false;
-  std::vector<double> depths_m;  ///< the detector's depths; the autopilot's composition sets them, no key
+  std::vector<double> depths_m;  ///< the detector's depths; not a key, set by autopilot_config_of()
   double cluster_m = 2.0;
   int minimum_hits = 8;
   double settle_s = 0.04;

@@ -37,10 +37,10 @@ struct CalibratedRig {
   std::optional<StereoCalibration> calibration;
 };
 
-/// The rectified pair that `calibration` describes, asked to look at `detection_depth_m`: focal length,
-/// baseline and principal points from the projections, the camera's pose turned by the left rectification.
-/// Throws std::runtime_error where the projections are no rectified pair (unequal focal lengths or rows, no
-/// positive baseline).
+/// The rectified pair that `calibration` describes, with `detection_depth_m`: focal length, baseline and
+/// principal points from the projections, the camera's pose turned by the left rectification. Throws
+/// std::runtime_error where the projections are no rectified pair (unequal focal lengths or rows, no positive
+/// baseline).
 StereoRig rectified_rig(const StereoCalibration& calibration, double detection_depth_m);
 
 }  // namespace understory

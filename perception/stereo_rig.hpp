@@ -33,7 +33,7 @@ struct StereoRig {
   double center_right_x_px = 0;
   double center_y_px = 0;
   double detection_depth_m =
-      0;  ///< the depth the detector is asked to look at; it uses the nearest whole disparity
+      0;  ///< the requested detection depth; the detector uses the nearest whole disparity
   Eigen::Isometry3d T_body_camera =
       Eigen::Isometry3d::Identity();  ///< camera coordinates into body coordinates
 

@@ -17,14 +17,13 @@
 
 namespace understory {
 
-/// The flight stack composed: what would run on the aircraft. It knows the airframe, its rig and the mission.
-/// `detector` tells it what is around it, `state_source` where it is, `planner` which way to go. All three
-/// must outlive it.
+/// The flight stack composed: the part of this program that would run on the aircraft. `detector` detects
+/// obstacles, `state_source` estimates the state, `planner` plans the path. All three must outlive it.
 class Autopilot {
  public:
   Autopilot(const AutopilotConfig& config, const Airframe& airframe, const StereoRig& rig,
             ObstacleDetector& detector, StateSource& state_source, Planner& planner);
-  /// From now on `pilot` flies, which must outlive this; no plans are made.
+  /// From now on `pilot`, which must outlive this, gives the controls; no plans are made.
   void hand_over(Pilot& pilot) { pilot_ = &pilot; }
 
   void on(const Sample& sample);
@@ -60,9 +59,9 @@ class Autopilot {
   Plan plan_;       ///< in force
   Plan next_plan_;  ///< computed, takes effect at next_plan_due_ns_
   std::int64_t next_plan_due_ns_ = -1;
-  std::int64_t planned_ns_ = 0;  ///< when the newest plan was asked for
+  std::int64_t planned_ns_ = 0;  ///< when the newest plan was requested
   bool plan_outdated_ = true;    ///< something new lies near it
-  std::int64_t launch_ns_ = -1;  ///< when the catapult was felt; -1 before
+  std::int64_t launch_ns_ = -1;  ///< when the launch was detected; -1 before
   int strong_samples_ = 0;
 };
 

@@ -9,9 +9,8 @@
 namespace understory {
 
 /// Where the aircraft is and how it moves through the air, in wind axes: the state of the reduced model that
-/// plans are made with. Angles follow the house's body frame (x forward, y left, z up): a positive bank has
-/// the right wing down and turns to the right, so that the heading (counted from world x towards world y)
-/// falls.
+/// plans are made with. Angles follow our body frame (x forward, y left, z up): a positive bank has the right
+/// wing down and turns to the right, so that the heading (counted from world x towards world y) falls.
 struct FlightState {
   Eigen::Vector3d position_world = Eigen::Vector3d::Zero();
   Eigen::Vector2d wind_world_mps = Eigen::Vector2d::Zero();  ///< of the air, which carries all of it along
@@ -25,7 +24,7 @@ struct FlightState {
   double yaw_rate_radps = 0;  ///< about body z
 };
 
-/// What is asked of the aircraft: the two controls of the planner's space.
+/// The command to the aircraft: the two controls of the planner's space.
 struct FlightCommand {
   double bank_rad = 0;
   double climb_mps = 0;
@@ -46,7 +45,7 @@ class FlightModel {
   double commanded_angle_of_attack_rad(const FlightState& state, double climb_mps) const {
     return commanded_angle_of_attack_rad(state, climb_mps, Attitude(state));
   }
-  /// The roll rate about the velocity that takes out the bank error, within what the elevons can give.
+  /// The roll rate about the velocity that removes the bank error, within the limits of the elevons.
   double commanded_roll_rate_radps(const FlightState& state, double bank_rad) const;
   double commanded_thrust_n(const FlightState& state) const;
   /// Roll moment per radian of differential deflection (left down, right up) at this speed.
@@ -61,7 +60,7 @@ class FlightModel {
     return path_pitch_rate_radps(state, Attitude(state));
   }
 
-  /// The highest speed up to 20 m/s that full thrust holds in level flight; 0 where it holds none.
+  /// The highest speed up to 20 m/s that full thrust holds in level flight; 0 if there is none.
   double fastest_level_mps() const;
 
   const Airframe& airframe() const { return airframe_; }
@@ -85,19 +84,19 @@ class FlightModel {
   double level_thrust_n_;
 };
 
-/// Direction of the velocity over ground, from world x towards world y: the heading where there is no wind.
+/// Direction of the velocity over ground, from world x towards world y: the heading if there is no wind.
 double course_rad(const FlightState& state);
 /// Unit vector from the centre to the left wing tip, world frame.
 Eigen::Vector3d left_wing_direction_world(const FlightState& state);
 /// Unit vector of the velocity through the air, world frame.
 Eigen::Vector3d flight_direction_world(const FlightState& state);
 
-/// The same aircraft in the model's words; the velocity is that over ground, as an estimator gives it.
+/// The state of this aircraft in the reduced model; the velocity is over ground, as an estimator gives it.
 FlightState flight_state(const Eigen::Isometry3d& T_world_body, const Eigen::Vector3d& velocity_body_mps,
                          const Eigen::Vector3d& angular_rate_body_radps,
                          const Eigen::Vector2d& wind_world_mps = Eigen::Vector2d::Zero());
-/// The estimate as it is, in its wind and gust. A gust passes, but not within what is planned ahead: at
-/// flight height some 50 m of air are alike (MIL-F-8785C).
+/// The same from the estimate, with its wind and gust. The gust is taken as constant over the planning
+/// horizon: at flight height, the air changes little within some 50 m (MIL-F-8785C).
 FlightState flight_state(const State& state);
 
 }  // namespace understory

@@ -41,7 +41,7 @@ double band_clearance_m(const FlightTask& task, const FlightState& state);
 /// Distance made good along the course since the plan's start.
 double progress_m(const FlightTask& task, const Eigen::Vector3d& position_world);
 
-/// A clearance beyond this one changes no decision and no cost, where `minimum_clearance_m` is required.
+/// A clearance beyond this one changes no decision and no cost if `minimum_clearance_m` is required.
 double maximum_clearance_m(const TrajectoryConfig& config, double minimum_clearance_m);
 
 /// A manoeuvre flown in the model to the horizon.
@@ -53,7 +53,7 @@ struct Rollout {
       3.0;  ///< the same, or the distance to the altitude band's limits where that is less
   bool reached_horizon = false;   ///< false: came nearer than `minimum_clearance_m` or left the band before
   double free_until_s = 0;        ///< time at which it came too near, or its whole length
-  std::vector<PlanPoint> points;  ///< filled where asked for
+  std::vector<PlanPoint> points;  ///< filled if requested
 };
 
 /// Flies `manoeuvre` from `start` in the model. Stops where the clearance falls below `minimum_clearance_m`,
@@ -65,7 +65,7 @@ Rollout fly_out(const FlightTask& task, const FlightState& start, const Manoeuvr
 
 struct ImprovedManoeuvre {
   Manoeuvre manoeuvre;
-  double cost = 0;  ///< of its rollout; infinite where that does not reach the horizon
+  double cost = 0;  ///< of its rollout; infinite if that does not reach the horizon
 };
 
 /// The cheapest variant found that reaches the horizon with `minimum_clearance_m`; `manoeuvre` itself where
@@ -124,7 +124,7 @@ class FlightPlaces {
   std::vector<std::size_t> numbers() const;
 
   std::vector<FlightPlace> places_;
-  mutable std::vector<Ranked> ranked_;  ///< room to work in, kept
+  mutable std::vector<Ranked> ranked_;  ///< scratch memory
 };
 
 }  // namespace understory

@@ -25,7 +25,7 @@ using TreeMaker =
 
 /// The cheapest manoeuvre found whose rollout reaches the horizon without touching an obstacle, or nothing.
 /// Some commands are drawn near those of `hint`, the plan in force (may be empty). Repeats exactly for equal
-/// arguments, whatever was searched before: `seed` seeds every generator of the search.
+/// arguments, independent of earlier searches: `seed` seeds every generator of the search.
 std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightState& start,
                                           const Manoeuvre& hint, const ManoeuvreSearchConfig& config,
                                           std::uint64_t seed, TreeMaker tree);
@@ -33,7 +33,7 @@ std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightSt
 /// The predicted aircraft at a node of the tree.
 const FlightState& flight_of(const ompl::base::State* state);
 
-/// SST (Li, Littlefield & Bekris 2016) grows cheap ways.
+/// SST (Li, Littlefield & Bekris 2016) grows low-cost paths.
 std::shared_ptr<ompl::base::Planner> sst_tree(const std::shared_ptr<ompl::control::SpaceInformation>& space,
                                               const ManoeuvreSearchConfig& config, std::uint32_t seed);
 /// RRT (LaValle & Kuffner 2001) grows from the node nearest to a random state, whatever its cost.

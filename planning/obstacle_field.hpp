@@ -10,9 +10,9 @@
 
 namespace understory {
 
-/// The remembered points for the planner: upright columns in a horizontal grid, which answer the free
-/// distance to a wing in a given attitude. It is rebuilt for each replan. A search asks about ten thousand
-/// times.
+/// The remembered points for the planner: upright columns in a horizontal grid. They give the free distance
+/// to a wing in a given attitude. The field is rebuilt for each replan. A search needs about ten thousand
+/// distances.
 class ObstacleField {
  public:
   struct Column {
@@ -21,8 +21,8 @@ class ObstacleField {
     double radius_m;  ///< half a cell and the points' uncertainty
   };
 
-  /// Heights of `points` are above the ground. `maximum_asked_m`: the maximum clearance that will be asked
-  /// for. A smaller one is cheaper.
+  /// Heights of `points` are above the ground. `maximum_asked_m`: the maximum clearance that will be
+  /// requested. A smaller one is cheaper.
   ObstacleField(const ObstacleFieldConfig& config, const std::vector<ObstaclePoint>& points,
                 double distance_flown_m, double maximum_asked_m = 3.0);
 

@@ -12,7 +12,7 @@ class Pilot {
  public:
   virtual ~Pilot() = default;
   /// The controls from t_ns on, until the next call one control step later. Elevons and thrust must lie
-  /// within the airframe's limits. On the catapult nobody asks: surfaces are neutral there.
+  /// within the airframe's limits. It is not called on the catapult: surfaces are neutral there.
   virtual Controls controls(std::int64_t t_ns, const State& state) = 0;
 };
 

@@ -13,9 +13,8 @@
 
 namespace understory {
 
-/// What the mission asks for: fly along `heading_rad` until past the goal plane, inside the band and the
-/// sides. Known before the flight, so it may be told to the stack. World frame of the estimator, origin at
-/// the launch.
+/// The mission: fly along `heading_rad` until past the goal plane, inside the band and the sides. Known
+/// before the flight, so it may be told to the stack. World frame of the estimator, origin at the launch.
 struct Mission {
   double heading_rad = 0;           ///< from world x towards world y
   double goal_distance_m = 75;      ///< of the goal plane, along the heading
@@ -53,16 +52,16 @@ constexpr std::string_view word_for(PlanOrigin origin) {
 }
 
 struct Plan {
-  std::int64_t t_ns = 0;  ///< the moment its first point stands for
+  std::int64_t t_ns = 0;  ///< the time of its first point
   PlanOrigin origin = PlanOrigin::straight;
   std::vector<PlanPoint> points;  ///< evenly spaced in time; empty before the first replan
-  /// Minimum free distance from the wing to what the planner knew of, negative where the plan leads through
-  /// it; +infinity where it is no less than the comfortable clearance, beyond which nobody asks.
+  /// Minimum free distance from the wing to the obstacles that the planner knew of, negative if the plan
+  /// leads through one; +infinity if it is at least the comfortable clearance.
   double clearance_m = std::numeric_limits<double>::infinity();
 };
 
 /// How the replans of a flight were answered. straight + solved + kept + fallback is their number. `own` has
-/// the counts that one planner alone knows, by name; they stand in result.json.
+/// the counts of one planner alone, by name; result.json has them.
 struct PlannerCounts {
   std::vector<std::pair<std::string, std::int64_t>> own;
   std::int64_t replans = 0;

@@ -6,14 +6,14 @@
 
 namespace understory {
 
-/// A library of manoeuvres made before the flight, of which the one with the largest clearance is flown
-/// (after Barry, Florence & Tedrake 2018). Straight on where that is safe; else the manoeuvre in force, as
-/// long as that is safe.
+/// Uses a library of manoeuvres made before the flight (after Barry, Florence & Tedrake 2018). Flies straight
+/// on if that is safe; else the manoeuvre in force if that is safe; else the manoeuvre with the largest
+/// clearance.
 std::unique_ptr<Planner> library_planner(const PlannerContext& context,
                                          const ManoeuvreLibraryConfig& library);
 
-/// Straight on towards the goal at the cruise altitude, through everything: the least that any planner must
-/// improve on.
+/// Straight on towards the goal at the cruise altitude, through everything: the baseline that any planner
+/// must beat.
 std::unique_ptr<Planner> straight_planner(const PlannerContext& context);
 
 }  // namespace understory

@@ -9,7 +9,7 @@
 
 namespace understory {
 
-/// Takes values for the fields from a map of keys. Keys that the map lacks leave their fields alone. Throws
+/// Takes values for the fields from a map of keys. Fields without a key in the map keep their values. Throws
 /// InputError "file:line: key: expected ..., got ..." for a wrong type, for a value out of range, and for
 /// keys that no field has; with Keys::all_required also for a field without a key. `path` stands before the
 /// keys in messages.
@@ -22,7 +22,7 @@ void read_config(const TextNode& map, Config& config) {
   read_fields(map, fields_of(config));
 }
 
-/// " (did you mean NAME?)", of the known name that `word` most likely meant; empty where none is near.
+/// " (did you mean NAME?)", with the known name that is most similar to `word`; empty if none is similar.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace understory

@@ -12,7 +12,7 @@ namespace understory {
 /// One frame's hits, and which frame that was.
 struct FrameHits {
   std::int64_t frame = 0;  ///< counted from 0
-  std::int64_t t_ns = 0;   ///< 0 throughout where the images have no times
+  std::int64_t t_ns = 0;   ///< 0 throughout if the images have no times
   std::vector<StereoHit> hits;
 };
 

@@ -5,18 +5,18 @@
 
 namespace understory {
 
-/// Whether the name ends as an image's does (png, jpg, jpeg, bmp, tif, tiff, pgm), whatever the case.
+/// Whether the name ends as an image's does (png, jpg, jpeg, bmp, tif, tiff, pgm), in any case.
 bool is_image_name(const std::filesystem::path& file);
 
 /// Whether it ends as a video's does (mp4, m4v, mov, mkv, avi, webm, mpg, mpeg, ogv). By name, because FFmpeg
 /// takes anything for a video: it renders plain text as one.
 bool is_video_name(const std::filesystem::path& file);
 
-/// Reads a gray image of the depth CV_8U (CV_8UC1) or CV_16U, never converting: matching 16-bit or coloured
-/// pictures at 8-bit gray's thresholds would only look like working. Throws InputError "file: expected ...,
-/// found ..." where the file is missing, larger than 256 MiB, no image of the kinds above, damaged, of
-/// another kind, or (told from its header, before its pixels are read) wider or higher than 8192 px. The
-/// image libraries may print to stderr.
+/// Reads a gray image of the depth CV_8U (CV_8UC1) or CV_16U, without conversion: thresholds for 8-bit gray
+/// would give wrong matches on converted pictures. Throws InputError "file: expected ..., found ..." where
+/// the file is missing, larger than 256 MiB, no image of the kinds above, damaged, of another kind, or (told
+/// from its header, before its pixels are read) wider or higher than 8192 px. The image libraries may print
+/// to stderr.
 cv::Mat read_gray_image(const std::filesystem::path& file, int depth = CV_8U);
 
 }  // namespace understory

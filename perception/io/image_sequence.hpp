@@ -20,7 +20,7 @@ struct StereoFiles {
 struct ImageSequence {
   std::vector<StereoFiles> pairs;
   bool timed = false;         ///< t_ns is the recorder's clock and increases strictly; otherwise all are 0
-  std::int64_t unpaired = 0;  ///< images left out, since the other camera took none at their moment
+  std::int64_t unpaired = 0;  ///< images left out, because the other camera took none at that moment
 };
 
 /// The pairs of a EuRoC/ASL data set: images that both cameras' data.csv list at the same nanosecond. Throws
@@ -52,8 +52,8 @@ std::vector<EurocImage> parse_euroc_images(std::string_view text, const std::str
 /// Alphabetical order, but digits within names by the number they write: img_9 comes before img_10.
 bool comes_before(std::string_view a, std::string_view b);
 
-/// The time that a name without its ending writes: 16 digits or more are nanoseconds, digits with a decimal
-/// point are seconds. Nothing for any other name.
+/// The time that a file name without its extension states: 16 digits or more are nanoseconds, digits with a
+/// decimal point are seconds. Nothing for any other name.
 std::optional<std::int64_t> time_in_name(std::string_view stem);
 
 /// A name of one list that has no partner in the other.
@@ -63,9 +63,9 @@ struct LoneName {
 };
 
 /// The names of two cameras' images, each list sorted by comes_before: nothing where the n-th names belong
-/// together for every n, otherwise the first name that stands alone. They belong together where equal, or
-/// where the last number in them is equal, or where both lists count on by one from name to name and have no
-/// number in common.
+/// together for every n, otherwise the first name that stands alone. They belong together if they are equal,
+/// if their last numbers are equal, or if in both lists the numbers increase by one from name to name and
+/// none is in both.
 std::optional<LoneName> first_unpaired(const std::vector<std::string>& first,
                                        const std::vector<std::string>& second);
 

@@ -8,13 +8,13 @@
 
 namespace understory {
 
-/// All that this project asks of OpenCV's imgcodecs and videoio. The two bring two hundred shared libraries
-/// along, whose loading costs more than all other preparation of a flight: the program opens them only when
-/// it first meets a film or a picture that is no PNG (png_codec.hpp, scenarios/cli/late_picture_codecs.cpp,
-/// docs/decisions/014).
+/// All that this project uses of OpenCV's imgcodecs and videoio. These depend on two hundred shared
+/// libraries, and loading them takes longer than all other preparation of a flight. So the program loads them
+/// only when it first needs a film or a picture that is not PNG (png_codec.hpp,
+/// scenarios/cli/late_picture_codecs.cpp, docs/decisions/014).
 struct PictureCodecs {
-  /// The image that these bytes hold, as it was stored; empty where they hold none or a damaged one. Throws
-  /// cv::Exception where OpenCV refuses them. May print to stderr, as the film functions do.
+  /// The image that these bytes hold, as it was stored; empty if they hold none or a damaged one. Throws
+  /// cv::Exception if OpenCV refuses them. May print to stderr, as the film functions do.
   cv::Mat (*decode)(const std::string& bytes);
   /// The picture as a JPEG file.
   std::vector<unsigned char> (*encode_jpeg)(const cv::Mat& picture);
@@ -24,8 +24,8 @@ struct PictureCodecs {
   std::unique_ptr<cv::VideoWriter> (*write_film)(const std::string& file, double frames_per_s, cv::Size size);
 };
 
-/// Whoever links perception_io has the one in picture_codecs.cpp, which links OpenCV's libraries, unless the
-/// program brings a definition of its own. Throws what that definition says.
+/// perception_io defines it in picture_codecs.cpp, which links OpenCV's libraries, unless the program has a
+/// definition of its own. Throws what that definition states.
 const PictureCodecs& picture_codecs();
 
 }  // namespace understory

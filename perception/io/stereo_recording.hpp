@@ -17,15 +17,15 @@ class VideoCapture;
 namespace understory {
 
 /// A video whose pictures hold the left image in their left half and the right image in their right half.
-/// Colour becomes gray, as video codecs know no other (a gray one comes back as it was). Not copyable.
+/// Colour is converted to gray: video codecs store colour only (gray is restored unchanged). Not copyable.
 class SideBySideVideo {
  public:
   /// Throws InputError "file: expected ..." where there is nothing to decode or the width is odd.
   explicit SideBySideVideo(const std::filesystem::path& file);
   ~SideBySideVideo();
 
-  /// The next pair; t_ns counts from the video's start at its rate. False at the end. The images stay the
-  /// caller's.
+  /// The next pair; t_ns counts from the video's start at its rate. False at the end. The images belong to
+  /// the caller.
   bool read(StereoFrame& frame);
 
   double rate_hz() const { return rate_hz_; }

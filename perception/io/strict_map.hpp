@@ -7,11 +7,11 @@
 
 namespace understory {
 
-/// One map of a file, read key by key; says where it went wrong. Every function throws InputError
-/// where the key is missing, mistyped or out of range.
+/// Reads one map of a file key by key and reports the place of an error. Every function throws InputError if
+/// the key is missing, mistyped or out of range.
 class StrictMap {
  public:
-  /// `prefix`: how the map itself is called in messages, "T_BS." for instance. Throws where `map` is no map.
+  /// `prefix`: name of the map in messages, for example "T_BS.". Throws if `map` is not a map.
   explicit StrictMap(TextNode map, std::string prefix = "");
 
   bool has(const std::string& key) const { return find_child(map_, key) != nullptr; }
@@ -21,14 +21,14 @@ class StrictMap {
   int whole(const std::string& key, int minimum, int maximum);
   /// A list of numbers, `count` of them.
   std::vector<double> numbers(const std::string& key, std::size_t count, double minimum, double maximum);
-  /// How many values the list has; 0 where it is none or missing.
+  /// How many values the list has; 0 if it is missing or not a list.
   std::size_t length(const std::string& key) const;
   StrictMap map(const std::string& key);
-  /// What the value calls itself: "opencv-matrix".
+  /// The value's type tag: "opencv-matrix".
   std::string type(const std::string& key) { return take(key).type; }
 
-  /// To be called once every known key was asked for. `harmless`: keys that may stand in a file of others,
-  /// since they change nothing: " E F Q ".
+  /// Throws if the map has a key that was not read; call it after all known keys were read. `harmless`: keys
+  /// that other programs' files may have besides, because they change nothing: " E F Q ".
   void refuse_others(std::string_view harmless = "") const;
 
   [[noreturn]] void fail(const std::string& key, const std::string& expected) const;
@@ -39,7 +39,7 @@ class StrictMap {
 
   TextNode map_;
   std::string prefix_;
-  std::vector<std::string> known_;  // in the order asked for
+  std::vector<std::string> known_;  // in the order of the calls
 };
 
 }  // namespace understory

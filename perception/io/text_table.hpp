@@ -19,26 +19,26 @@ struct TableLine {
   std::vector<std::string_view> cells;
 };
 
-/// How a table parts its cells: at every comma, or at runs of blanks.
+/// How a table separates its cells: at every comma, or at runs of blanks.
 enum class CellsParted { by_commas, by_blanks };
 
-/// The lines that hold anything; those that start with '#' are comments. Takes line ends of any system, and
-/// cells in quotation marks, with commas and line ends within (RFC 4180); two marks within stay two.
-/// `comments`: takes those before the first line, whole. Throws InputError, with `name` for the file, at more
-/// than 16 million cells, and at a quotation mark out of place.
+/// The lines that are not empty; those that start with '#' are comments. Takes line ends of any system, and
+/// cells in quotation marks, with commas and line ends within (RFC 4180); doubled marks within stay doubled.
+/// `comments`: gets the comments before the first line, each as one cell. Throws InputError, with `name` for
+/// the file, at more than 16 million cells, and at a quotation mark out of place.
 std::vector<TableLine> table_lines(std::string_view text, CellsParted parted, const std::string& name,
                                    std::vector<TableLine>* comments = nullptr);
 
-/// A column that a table must have: the names that it may bear and the units that these may state, in lower
-/// case, parted by '|'. "timestamp|t" and "ns|s".
+/// A column that a table must have: the names that it may have and the units that these may state, in lower
+/// case, separated by '|'. "timestamp|t" and "ns|s".
 struct Column {
   std::string_view names, units = "";
-  bool is_optional = false;  ///< where it is missing its cells are empty
+  bool is_optional = false;  ///< if it is missing its cells are empty
 };
 
 /// The lines of a table that may name its columns, in its first line or in a comment above the first line of
-/// values: each with the cells of `columns` alone, in their order. Without names that order is the table's
-/// own, and lines are as table_lines() gives them.
+/// values: each with the cells of `columns` alone, in their order. If the table has no names, its columns
+/// keep their order, and lines are as table_lines() gives them.
 struct NamedTable {
   std::vector<std::string> names;  ///< of `columns`, as the table has them: "timestamp[ns]"; empty: none
   std::vector<TableLine> lines;
@@ -49,8 +49,8 @@ struct NamedTable {
 NamedTable named_table(std::string_view text, CellsParted parted, const std::string& name,
                        std::span<const Column> columns);
 
-/// The whole of `text` as a number, a plus before it or not; nothing where it is none, does not fit, or is
-/// not finite. Whatever the locale.
+/// The whole of `text` as a number, with or without a plus; nothing if it is not a number, does not fit, or
+/// is not finite. Independent of the locale.
 template <typename Number = double>
 std::optional<Number> number_in(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);  // from_chars takes none

@@ -6,9 +6,8 @@
 
 namespace understory {
 
-/// Keys and values as written, before anybody knows what the keys mean: the common ground of YAML, OpenCV's
-/// XML and --set arguments. read_fields() takes typed values out of it; StrictMap does for calibrations
-/// of other programs.
+/// Keys and values as written, not yet interpreted: the common form of YAML, OpenCV's XML and --set
+/// arguments. read_fields() takes typed values out of it; StrictMap does for calibrations of other programs.
 struct TextNode {
   enum class Kind { nothing, scalar, list, map };
   Kind kind = Kind::nothing;

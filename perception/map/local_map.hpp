@@ -77,16 +77,15 @@ class LocalMap {
   void insert(const std::vector<StereoHit>& hits, const Eigen::Isometry3d& T_world_camera, std::int64_t t_ns,
               double distance_flown_m);
 
-  /// Forgets points older than max_age_s at t_ns, and points more than passed_m behind the aircraft. Behind
-  /// is measured along body x laid level: a bank does not change it, and neither does the nose's height, so a
-  /// point abreast of a wing stays whatever the attitude. With the nose straight up or down only age counts.
+  /// Forgets points older than max_age_s at t_ns, and points more than passed_m behind the aircraft. This
+  /// distance is measured along the horizontal projection of body x. So neither bank nor pitch changes it,
+  /// and a point abreast of a wing stays at any attitude. With the nose straight up or down only age counts.
   void forget_passed(const Eigen::Isometry3d& T_world_body, std::int64_t t_ns);
 
   /// Every remembered point, in order of first sighting.
   const std::vector<ObstaclePoint>& points() const { return points_; }
-  /// Those with company: min_neighbours other points within neighbour_radius_m, from whatever frames, and
-  /// where seen_again is on, support from a second frame. Computed at each call, about 0.6 ms at
-  /// 5,000 points.
+  /// The points with min_neighbours other points within neighbour_radius_m, from any frames, and, if
+  /// seen_again is on, support from a second frame. Computed at each call, about 0.6 ms at 5,000 points.
   std::vector<ObstaclePoint> trusted_points() const;
 
  private:

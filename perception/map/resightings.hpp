@@ -9,27 +9,26 @@
 
 namespace understory {
 
-/// One obstacle, placed twice by the same estimate.
+/// One obstacle, located twice by the same estimate.
 struct Resighting {
   std::int64_t t_ns = 0;                                          ///< mean moment of the nearer sighting
   std::int64_t earlier_ns = 0;                                    ///< and of the farther
-  Eigen::Vector2d discrepancy_world_m = Eigen::Vector2d::Zero();  ///< nearer place less farther, level
+  Eigen::Vector2d discrepancy_world_m = Eigen::Vector2d::Zero();  ///< nearer place less farther, horizontal
   Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Identity();
 };
 
 /// The displacement measurement that a pushbroom with several depths gives (docs/sources.md [15]): an
-/// obstacle crosses the farther depth, then a nearer one; by as much as the second place misses the first,
-/// the estimate has drifted meanwhile. Trunks and posts stand upright, so only the level part counts. Hits of
-/// one depth are gathered in clusters, whose mean place over the crossing leaves little of the depth
-/// interval.
+/// obstacle crosses the farther depth, then a nearer one; the difference of the two places is the drift of
+/// the estimate in between. Trunks and posts are upright, so only the horizontal part counts. Hits of one
+/// depth are gathered in clusters, whose mean place over the crossing leaves little of the depth interval.
 class Resightings {
  public:
-  /// Nothing comes out with fewer than two depths. A hit belongs to the nearest.
+  /// Without at least two depths there are no results. A hit belongs to the nearest depth.
   explicit Resightings(const ResightingsConfig& config);
 
   /// One frame's hits. The pose is that of the left camera at the image's moment.
   void insert(const std::vector<StereoHit>& hits, const Eigen::Isometry3d& T_world_camera, std::int64_t t_ns);
-  /// What was completed by the last insert.
+  /// The resightings completed by the last insert().
   const std::vector<Resighting>& completed() const { return completed_; }
 
  private:

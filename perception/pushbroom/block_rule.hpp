@@ -61,7 +61,7 @@ struct BlockRule {
   int minimum_disparity_px = 0, maximum_disparity_px = 0;  ///< range searched, widened to hold the disparity
   double uniqueness_ratio = 2;
 
-  bool neighbours = false;  ///< whether matches say how well the disparities one pixel away would do
+  bool neighbours = false;  ///< whether matches have the SAD at the disparities one pixel away
 };
 
 /// A block of the left image that passed.
@@ -70,7 +70,7 @@ struct BlockMatch {
   int disparity = 0;              ///< index into BlockRule::disparities
   int sad = 0;
   int left_edge_sum = 0, right_edge_sum = 0;
-  /// SAD at the disparity one pixel less and more; -1 where nobody asked or the block there leaves the image.
+  /// SAD at the disparity one pixel less and more; -1 if not requested (neighbours) or outside the image.
   int sad_below = -1, sad_above = -1;
 };
 
@@ -86,7 +86,7 @@ struct EdgeColumns {
 };
 EdgeColumns edge_columns(const BlockRule& rule);
 
-/// The columns of the images that have a part in the answer: left_first_px .. left_last_px - 1 of the left.
+/// The columns of the images that affect the result: left_first_px .. left_last_px - 1 of the left.
 struct ReadColumns {
   int left_first_px = 0, left_last_px = 0, right_first_px = 0, right_last_px = 0;
 };
@@ -95,7 +95,7 @@ ReadColumns read_columns(const BlockRule& rule);
 /// Rows at which blocks may begin: 0 .. this - 1.
 int row_count(const BlockRule& rule);
 
-/// The rule itself. Asserts that it makes sense: images of at least one block, disparities inside them, a
+/// Returns the rule. Asserts that it is valid: images of at least one block, disparities inside them, a
 /// stride.
 const BlockRule& sound(const BlockRule& rule);
 

@@ -52,7 +52,7 @@ HWY_INLINE ByteVector difference(ByteVector a, ByteVector b) {
   return hn::Or(hn::SaturatedSub(a, b), hn::SaturatedSub(b, a));
 }
 
-// Sums of five columns: those from the columns 2 i and 2 i + 1 on, where even[i] and odd[i] hold these.
+// Sums of five columns, beginning at columns 2 i and 2 i + 1; even[i] and odd[i] hold these two columns.
 struct WindowSums {
   WordVector even, odd;
 };

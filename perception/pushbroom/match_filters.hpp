@@ -9,12 +9,12 @@
 namespace understory {
 
 /// Drops matches whose left block also matches a right block of the window around its place at infinity. A
-/// window that leaves the image counts as similar: nothing can be said there.
+/// window that leaves the image counts as similar, because it cannot be tested.
 class SelfSimilarityFilter {
  public:
   SelfSimilarityFilter(const SelfSimilarityWindow& window, int infinity_px);
 
-  /// `right_edges` is the right image's edge map. The matches left keep their order.
+  /// `right_edges` is the right image's edge map. The remaining matches keep their order.
   void drop_similar(const GrayView& left, const GrayView& right, const GrayView& right_edges,
                     std::vector<BlockMatch>& matches);
 

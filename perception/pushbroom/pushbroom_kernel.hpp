@@ -9,13 +9,14 @@
 namespace understory {
 
 /// Looks at the blocks of a grid: one block every stride_px, the paper's way. Finds those whose edges and
-/// score pass, filters aside.
+/// score pass, without the filters.
 class StripSearch {
  public:
   explicit StripSearch(const BlockRule& rule);
 
   /// Appends the matches of the blocks that begin at row_px, by disparity, then column. `from_afar`: see
-  /// PushbroomKernel::search. Where `right_edges` is given, the right image's edges go there, five rows.
+  /// PushbroomKernel::search. If `right_edges` is given, five rows of the right image's edges are written
+  /// there.
   void search(const GrayView& left, const GrayView& right, int row_px, bool from_afar, EdgeMap* right_edges,
               std::vector<BlockMatch>& matches);
 
@@ -39,7 +40,7 @@ class StripSearch {
 
 /// Finds the blocks that pass a rule: pointer and stride in, whole numbers out, no image library. The same
 /// matches, bit for bit, on every instruction set. Owns the buffers it needs: for several threads, one kernel
-/// each, over strips of their own. Allocates nothing once it has seen as many matches as it will.
+/// each, over strips of their own. Allocates only if there are more matches than ever before.
 class PushbroomKernel {
  public:
   /// Asserts that the rule is sound.
@@ -49,9 +50,8 @@ class PushbroomKernel {
   int strip_count() const;
 
   /// The matches of the strips first_strip .. last_strip - 1, by strip, then disparity, then column. The
-  /// images have the rule's size. Rows are asked for before they are needed where the images come
-  /// `from_afar`, out of no cache; where they were just written, that would cost a twentieth more. The answer
-  /// holds until the next call.
+  /// images have the rule's size. With `from_afar` the images are in no cache, so rows are prefetched; for
+  /// images that were just written, that would take 5 % longer. The answer holds until the next call.
   const std::vector<BlockMatch>& search(const GrayView& left, const GrayView& right, int first_strip,
                                         int last_strip, bool from_afar = true);
 

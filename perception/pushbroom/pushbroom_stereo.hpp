@@ -13,17 +13,17 @@
 
 namespace understory {
 
-/// The depths that the rule states: depths_m, or where disparities_px lie. Empty: the rig's own.
+/// The depths that the rule states: depths_m, or those of disparities_px. Empty: the rig's own depth.
 std::vector<double> stated_depths_m(const PushbroomConfig& config, const StereoRig& rig);
 
-/// Why the rule cannot look through this rig, in one line that begins with the key at fault ("threads:
-/// expected 1 to 64, found 0"): a number out of its range, as many thresholds as neither none nor depths, a
-/// depth out of the images' sight (StereoRig::can_look_at). Empty where it can.
+/// Why the rule cannot be used with this rig, in one line that begins with the key at fault ("threads:
+/// expected 1 to 64, found 0"): a number out of its range, a list of thresholds that is neither empty nor as
+/// long as the depths, a depth that the images cannot show (StereoRig::can_look_at). Empty if it can.
 std::string fault_of(const PushbroomConfig& config, const StereoRig& rig);
 
-/// Puts into `kept` the hits that have company: at least `minimum_points` of the same frame, itself included,
-/// within `radius_m` (camera frame). Order is kept. The original's avoidance counted a point with 3
-/// within 1.0 m.
+/// Puts into `kept` the hits that have at least `minimum_points` hits of the same frame, itself included,
+/// within `radius_m` (camera frame). Order is kept. The original's avoidance counted a point with 3 within
+/// 1.0 m.
 void without_isolated(const std::vector<StereoHit>& hits, int minimum_points, double radius_m,
                       std::vector<StereoHit>& kept);
 
@@ -32,17 +32,17 @@ void without_isolated(const std::vector<StereoHit>& hits, int minimum_points, do
 /// number of threads. Detection disparities and infinity come from the rig.
 class PushbroomStereo : public ObstacleDetector {
  public:
-  /// Throws std::invalid_argument with fault_of's line where there is one.
+  /// Throws std::invalid_argument with fault_of's line if there is one.
   PushbroomStereo(const StereoRig& rig, const PushbroomConfig& config);
-  /// Takes pairs as they come from the rig. Raw ones are rectified to the nearest pixel on the way, as far as
-  /// the rule looks, which equals Rectifier and then detection; they must be at least ByteRemap::chunk_px
-  /// wide.
+  /// Takes pairs as they come from the rig. Raw ones are rectified to the nearest pixel, only in the part
+  /// that the rule uses; hits equal those of Rectifier and then detection. Raw images must be at least
+  /// ByteRemap::chunk_px wide.
   PushbroomStereo(const CalibratedRig& rig, const PushbroomConfig& config);
 
   const std::vector<StereoHit>& detect(const StereoFrame& frame) override;
 
   int depth_count() const { return static_cast<int>(depths_.size()); }
-  /// Depth of the whole disparity used: where hits are put. Near, not equal to, the depth asked for.
+  /// Depth of the whole disparity used, which hits get. Near, not equal to, the requested depth.
   double detection_depth_m(int depth = 0) const { return depths_[static_cast<std::size_t>(depth)].depth_m; }
   DepthInterval one_pixel_interval(int depth = 0) const {
     return depths_[static_cast<std::size_t>(depth)].interval;

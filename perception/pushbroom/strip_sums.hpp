@@ -7,10 +7,9 @@
 #include "perception/gray_view.hpp"
 #include "perception/pushbroom/block_rule.hpp"
 
-/// The detector's inner loops in portable SIMD (Highway, dispatched at run time): everything that must be
-/// looked at for every pixel of a strip of block rows. All of it is exact: what is computed equals
-/// block_rule.hpp's arithmetic bit for bit on every instruction set, except that candidates are a superset,
-/// still to be tested exactly.
+/// The detector's inner loops in portable SIMD (Highway, dispatched at run time): everything that is computed
+/// for every pixel of a strip of block rows. All of it is exact: results equal block_rule.hpp's arithmetic
+/// bit for bit on every instruction set, except that candidates are a superset, still to be tested exactly.
 namespace understory {
 
 /// Loads run up to this far past a row's last column, and one column before its first.
@@ -52,9 +51,9 @@ class EdgeMap {
 };
 
 /// Edge sums of every 5x5 block of a strip: sums[u] = sum of the edge map over (u .. u + 4, v .. v + 4), for
-/// the columns first_px <= u <= last_px - 5 (others up to over_read_px beyond hold anything). `width_px` is
-/// the image's, whose outermost columns mirror. Where `edges` is given, the strip's rows of the edge map go
-/// there, from row_px on, columns first_px .. last_px - 1.
+/// the columns first_px <= u <= last_px - 5 (others up to over_read_px beyond are undefined). `width_px` is
+/// the image's, whose outermost columns mirror. If `edges` is given, the strip's rows of the edge map are
+/// written there, from row_px on, columns first_px .. last_px - 1.
 void strip_edge_sums(const StripRows& rows, int first_px, int last_px, int width_px,
                      std::vector<std::uint16_t>& column_scratch, std::uint16_t* sums, EdgeMap* edges,
                      int row_px);
@@ -71,8 +70,8 @@ inline std::uint8_t outermost_edge(const std::uint8_t* above, const std::uint8_t
       std::clamp(4 * (above[inner_px] + below[inner_px]) - 8 * here[column_px], 0, 255));
 }
 
-/// What a candidate must pass. limit_share is the score limit in 1/16384, rounded up; any_score lets every
-/// score pass (limits too large for 16 bits).
+/// The test that a candidate must pass. limit_share is the score limit in 1/16384, rounded up; any_score lets
+/// every score pass (limits too large for 16 bits).
 struct CandidateTest {
   int minimum_edge_sum = 0;
   std::uint16_t limit_share = 0;
@@ -82,12 +81,12 @@ CandidateTest candidate_test(int minimum_edge_sum, std::int64_t limit_units);
 
 /// Compares the left strip from column left_px with the right one from column right_px, over `count` columns.
 /// column_sads[x] is the SAD of column x over the five rows, at most 255; sads[x] the sum of the five columns
-/// from x on, so exact unless one of them is 255, and then too small.
+/// from x on, which is exact unless one of them is 255; then it may be too small.
 void strip_sads(const StripRows& left, int left_px, const StripRows& right, int right_px, int count,
                 std::uint8_t* column_sads, std::uint16_t* sads);
 
 /// Sets bit x of `candidates` where block x may pass `test`: both edge sums do, and the score does or nearly
-/// does. Bits from `count` - 4 on hold anything.
+/// does. Bits from `count` - 4 on are undefined.
 void find_candidates(const std::uint16_t* sads, const std::uint16_t* left_sums,
                      const std::uint16_t* right_sums, int count, const CandidateTest& test,
                      std::uint64_t* candidates);

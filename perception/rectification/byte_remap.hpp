@@ -8,9 +8,9 @@
 
 namespace understory {
 
-/// A fixed rearrangement of the pixels of an 8-bit image, as rectification to the nearest pixel is one. What
-/// cv::remap does pixel by pixel, done 32 at a time with byte shuffles: neighbours in the output lie near
-/// each other in the source, so that a few loads hold them all. Equal to cv::remap bit for bit.
+/// A fixed rearrangement of the pixels of an 8-bit image, for example rectification to the nearest pixel. It
+/// does what cv::remap does, but for 32 pixels at a time with byte shuffles: neighbours in the output lie
+/// near each other in the source, so that a few loads hold them all. Equal to cv::remap bit for bit.
 class ByteRemap {
  public:
   static constexpr int half_px = 16;                                  ///< what a load holds
@@ -18,15 +18,15 @@ class ByteRemap {
   static constexpr int chunk_loads = 4;                               ///< two for each half
   static constexpr std::uint8_t second_load = 0x80, as_it_is = 0xFF;  ///< in indices
 
-  /// What rows are made from.
+  /// Tables from which apply() makes rows.
   struct Tables {
     int first_column_px = 0, last_column_px = 0;  ///< of the output
     int chunks = 0;                               ///< in a row; the last one ends with the last column
-    // Two loads for each half of a chunk, whether it needs them or not: a number that varies costs more in
-    // wrongly foreseen branches. The first of the left and of the right half come first.
+    // Two loads for each half of a chunk, whether it needs them or not: a varying number would cost more in
+    // mispredicted branches. The first of the left and of the right half come first.
     std::vector<std::int32_t> offsets;    ///< of each load in the source
     AlignedVector<std::uint8_t> indices;  ///< of each pixel: 0 .. 15 in the first load, or plus second_load
-    // What some halves need beyond that is added afterwards.
+    // Further loads that some halves need are added afterwards.
     std::vector<std::int32_t> more_offsets;
     std::vector<std::uint8_t> more_indices;             ///< in that load; as_it_is; or second_load for 0
     std::vector<std::int32_t> more_columns, more_rows;  ///< of the output, where each one's half begins

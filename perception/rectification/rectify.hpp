@@ -25,9 +25,8 @@ class Rectifier {
  public:
   Rectifier(const StereoCalibration& calibration, Interpolation interpolation);
 
-  /// `raw`: CV_8UC1 images of the calibration's size; a breach asserts. The images returned are the
-  /// rectifier's own buffers: they hold until the next call. Pixels whose source lies outside the raw image
-  /// are 0.
+  /// `raw`: CV_8UC1 images of the calibration's size (asserted). The images returned are the rectifier's own
+  /// buffers: they hold until the next call. Pixels whose source lies outside the raw image are 0.
   StereoFrame rectify(const StereoFrame& raw);
 
  private:
@@ -43,7 +42,7 @@ class Rectifier {
   Eye left_, right_;
 };
 
-/// Gives raw pairs, rectified to the nearest pixel, to a detector that knows rectified ones only.
+/// Gives raw pairs, rectified to the nearest pixel, to a detector that takes rectified ones only.
 class RectifyingDetector : public ObstacleDetector {
  public:
   RectifyingDetector(const StereoCalibration& calibration, std::unique_ptr<ObstacleDetector> detector)

@@ -12,7 +12,7 @@
 
 namespace understory {
 
-/// What one thing costs for one pair, over all pairs and rounds.
+/// What one algorithm costs for one pair, over all pairs and rounds.
 struct BenchRow {
   std::string name;
   int threads = 1;
@@ -39,11 +39,11 @@ struct ClosedLoopRow {
   int processes = 1;  ///< side by side
   int flights = 0;
   double pairs_per_s = 0;          ///< stereo pairs, of all processes together, per second
-  double cpu_per_simulated_s = 0;  ///< seconds of a core per simulated second: hardly minds other load
+  double cpu_per_simulated_s = 0;  ///< seconds of a core per simulated second: other load hardly changes it
   double simulated_per_s = 0;  ///< simulated seconds, of all processes together, per second: real time is 1
   /// Of the flights' own wall time, by stage and "other"; they add up to 1.
   std::vector<std::pair<std::string, double>> shares;
-  double peak_memory_mb = 0;  ///< of the greediest flight
+  double peak_memory_mb = 0;  ///< of the flight that needs most
   std::string yardstick;      ///< name of the row it is measured against; empty for a yardstick itself
   double ratio = 0;           ///< elapsed time per simulated second over the yardstick's; 0 for a yardstick
   double render_ms = 0;       ///< mean wall time of rendering a stereo pair
@@ -54,7 +54,7 @@ struct ClosedLoopRow {
 ClosedLoopRow closed_loop_row(const std::string& name, int processes, const std::vector<TimedFlight>& flights,
                               double elapsed_s, const ClosedLoopRow* yardstick);
 
-/// What a flight's result.json tells. Throws MachineError where it cannot be read.
+/// The figures of a flight's result.json. Throws MachineError if it cannot be read.
 TimedFlight timed_flight(const std::filesystem::path& result_file);
 
 /// A table for a person, and the same as a JSON list of rows.
@@ -63,12 +63,12 @@ std::string to_json(const std::vector<BenchRow>& rows);
 std::string to_table(const std::vector<ClosedLoopRow>& rows);
 std::string to_json(const std::vector<ClosedLoopRow>& rows);
 
-/// Something to time on the pair of this number.
+/// An algorithm to time: run(i) runs it on pair i.
 struct BenchCase {
   std::string name;
   int threads = 1;
   std::string yardstick;  ///< name of the case it is measured against; empty for a yardstick itself
-  int every_rounds = 1;   ///< slow ones sit most rounds out
+  int every_rounds = 1;   ///< slow ones skip most rounds
   std::function<void(std::size_t)> run;
 };
 
@@ -79,30 +79,30 @@ struct BenchPairs {
 
 BenchPairs bench_pairs(const CalibratedRig& rig, const std::vector<StereoFrame>& frames);
 
-/// OpenCV's yardsticks, then the detector's ways; a yardstick stands before what is measured against it.
+/// OpenCV's yardsticks, then the detector's variants; a yardstick comes before the cases measured against it.
 /// `pairs` must outlive the cases. Sets OpenCV to one thread.
 std::vector<BenchCase> bench_cases(const CalibratedRig& rig, const BenchPairs& pairs);
 
-/// Times OpenCV's remap, StereoBM and StereoSGBM and the detector's ways on `frames` (as the rig delivers
-/// them: raw where it has raw cameras), all in one run, taking turns round by round, so that what else the
-/// machine does falls on all alike. In its turn each goes over all pairs a few times, the first untimed: a
-/// pair comes back after all others, from the outer caches. Slow yardsticks sit most of the `rounds` out.
-/// OpenCV runs on one thread.
+/// Times OpenCV's remap, StereoBM and StereoSGBM and the detector's variants on `frames` (as the rig delivers
+/// them: raw where it has raw cameras), all in one run, taking turns round by round, so that other load
+/// affects all alike. In its turn each goes over all pairs a few times, the first untimed: a pair is used
+/// again after all others, so it comes from the outer caches. Slow yardsticks skip most `rounds`. OpenCV runs
+/// on one thread.
 std::vector<BenchRow> bench_detectors(const CalibratedRig& rig, const std::vector<StereoFrame>& frames,
                                       int rounds, const std::function<void(int round)>& on_round);
 
 struct ClosedLoopBenchOptions {
-  /// Each flown one at a time, then two side by side; the first also with ten times the trees, far and wide.
+  /// Each is flown alone, then two side by side; the first also with ten times the trees, spread wider.
   std::vector<std::filesystem::path> scenarios;
   std::uint64_t first_seed = 1000, last_seed = 1003;
   std::vector<std::string> arguments;  ///< of every flight: --set, --renderer
   std::function<void(const std::string& what)> on_progress = [](const std::string&) {};
 };
 
-/// Times whole flights, a process each, in the machine's own time: only rows of one run on an idle machine
-/// mean anything together. A flight with ten times the trees is as long and as dense as its yardstick: the
-/// forest reaches 200 m to either side instead of 20. Throws ScenarioError where a flight refuses its input,
-/// MachineError where one breaks.
+/// Times whole flights, a process each, in wall time: only rows of one run on an idle machine can be
+/// compared. A flight with ten times the trees is as long and as dense as its yardstick: the forest reaches
+/// 200 m to either side instead of 20. Throws ScenarioError if a flight refuses its input, MachineError if
+/// one fails.
 std::vector<ClosedLoopRow> bench_closed_loop(const ClosedLoopBenchOptions& options);
 
 /// Pairs as a flight through a forest gives them, rendered by ray casting without any simulator: trunks from

@@ -26,22 +26,22 @@ using FindScenario = std::function<std::filesystem::path(const std::string&)>;
 ///     timeout_s: 300                    # optional, 1 .. 86400
 ///     name: speed                       # optional; otherwise the file's
 ///
-/// `over` goes over every condition without changing its name: campaigns that differ in it alone can be
-/// compared by the gate. `on_condition` is told of each condition read. Throws ScenarioError in one line,
-/// "file:line: key: expected
-/// ...": an unknown key, no seeds, a seed or a condition twice, whatever a scenario refuses.
+/// `over` changes keys of every condition but not its name, so that the gate can compare campaigns that
+/// differ in it alone. `on_condition` is called for each condition read. Throws ScenarioError in one line,
+/// "file:line: key: expected ...": an unknown key, no seeds, a seed or a condition twice, or any error of a
+/// scenario.
 Campaign load_campaign(const std::filesystem::path& file, const FindScenario& find_scenario,
                        const std::vector<ConfigNode>& over = {},
                        const std::function<void(std::size_t done, std::size_t of)>& on_condition = {});
 
-/// The scenario that `word`, given under a key of `top`, means: a file beside `file`, or whatever the command
-/// line would find. Throws ScenarioError, beginning with the key and its line.
+/// The scenario that `word`, given under a key of `top`, means: a file beside `file`, or the file that the
+/// command line would find. Throws ScenarioError, beginning with the key and its line.
 std::filesystem::path scenario_beside(const std::filesystem::path& file, const ConfigNode& top,
                                       const std::string& key, const std::string& word,
                                       const FindScenario& find_scenario);
 
-/// What the file calls itself: the name that `top` has, else its file's. Throws ScenarioError where that is
-/// no plain word.
+/// `name` if `top` has the key "name", else the file's name without its ending. Throws ScenarioError if
+/// `name` is not a plain name.
 std::string name_or_stem(const std::string& name, const ConfigNode& top, const std::filesystem::path& file);
 
 /// The seeds under a key of `top`: "1..200", "7", or a list of such things. Throws ScenarioError where there

@@ -24,8 +24,8 @@ struct Condition {
   std::vector<std::pair<std::string, std::string>> grid;  ///< keys of the grid and its values, in its order
 };
 
-/// What tells a condition from others, for people: "forest, blind, raw=true"; without its scenario where a
-/// title bears that already, and without one key of the grid.
+/// What distinguishes a condition, in words: "forest, blind, raw=true"; without its scenario if that is
+/// titled_scenario, and without the grid's key `but_for`.
 std::string words_of(const Condition& condition, const std::string& titled_scenario,
                      std::string_view but_for = "");
 
@@ -61,12 +61,12 @@ std::vector<CampaignTask> in_flying_order(const Campaign& campaign);
 ///     conditions/NAME.yaml   each condition's effective scenario
 ///     flights/ID.json        a flight's file, there once it is over; written whole or not at all
 ///     tracks/ID.track        a lost flight for the page: compact_flight() of flight_page.hpp
-///     logs/ID.txt            what a flight that was not flown said on standard error
+///     logs/ID.txt standard error of a flight that failed to run
 ///     flights.csv .jsonl     every row, in the campaign's order
 ///     costs.csv              wall time and memory
 ///
-/// A flight's file is all that says that it is over, so nothing has to be undone after a kill or a power cut,
-/// and two programs that fly the same flight write the same.
+/// Only a flight's file tells that the flight is over, so nothing has to be undone after a kill or a power
+/// cut, and two programs that fly the same flight write the same.
 struct CampaignFolder {
   std::filesystem::path path;
   std::filesystem::path condition_file(const Condition& condition) const {
@@ -81,7 +81,7 @@ struct CampaignFolder {
   }
 };
 
-/// Makes the folder, or, with `resume`, makes sure that it holds this very campaign, begun by this program.
+/// Makes the folder, or, with `resume`, checks that it holds this very campaign, begun by this program.
 /// Throws ScenarioError in one line where it holds a campaign already (without `resume`), another one, one of
 /// another identity or format, other files, or where it cannot be written.
 void prepare_campaign_folder(FolderMark& mark, const CampaignFolder& folder, const Campaign& campaign,
@@ -108,7 +108,7 @@ std::optional<FlightFile> read_flight(const CampaignFolder& folder, const Campai
 void write_flight(const CampaignFolder& folder, const Campaign& campaign, const CampaignTask& task,
                   FlightFile file);
 
-/// What is there.
+/// The results that are there.
 struct Collected {
   std::vector<FlightRow> rows;    ///< in the campaign's order
   std::vector<FlightCost> costs;  ///< of the rows

@@ -9,9 +9,9 @@
 
 namespace understory {
 
-/// A campaign to be gated against another one.
+/// A campaign's comparison with its baseline, and the gate's verdict.
 struct GatedCampaign {
-  std::string baseline;  ///< name of the scenario
+  std::string baseline;  ///< name of the baseline's folder
   Comparison comparison;
   GateVerdict verdict;
 };

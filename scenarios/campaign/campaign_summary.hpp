@@ -10,7 +10,7 @@
 
 namespace understory {
 
-/// What the flights of one condition came to. Flights that failed to run enter nothing but `failed_to_run`.
+/// The results of the flights of one condition. Flights that failed to run count in `failed_to_run` alone.
 struct ConditionSummary {
   std::string condition;
   int flown = 0;
@@ -25,7 +25,7 @@ struct ConditionSummary {
   SurvivalCurve survival;  ///< over true progress, m
 };
 
-/// The distance that a flight says something about, in m of progress: to its end, or, censored, to its goal.
+/// The distance over which a flight was observed, in m of progress: to its end, or, censored, to its goal.
 Lifetime lifetime_of(const FlightRow& row);
 
 /// The rows of each condition, conditions in order of appearance.
@@ -35,21 +35,21 @@ std::vector<std::vector<FlightRow>> rows_by_condition(const std::vector<FlightRo
 std::vector<ConditionSummary> summarise(const std::vector<FlightRow>& rows);
 
 /// A row per condition; to_text or to_markdown prints it. `median m`: the distance by which half the flights
-/// have ended, "> 75" where more than half got that far; `OMPL %`: replans with an obstacle ahead flown on
-/// OMPL's answer.
+/// have ended, "> 75" where more than half got that far; `OMPL %`: share of the replans with an obstacle
+/// ahead that use a manoeuvre that OMPL found.
 Table summary_table(const std::vector<ConditionSummary>& summaries);
 
-// Plots know a row's scenario, overrides and grid by its condition; a row without one stands for itself.
+// Plots take a row's scenario, overrides and grid from its condition, or the condition's name alone.
 
-/// Share of flights that reached the goal, with 95 % Wilson bars, over the speed asked (m/s). A series for
-/// all that else distinguishes conditions; those that differ in nothing but the speed are joined by a line.
-/// Points are set a little apart sideways where series share a speed.
+/// Share of flights that reached the goal, with 95 % Wilson bars, over the speed asked (m/s). Conditions that
+/// differ in nothing but the speed form a series, joined by a line. Points are set a little apart sideways
+/// where series share a speed.
 LinePlot success_over_speed(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions);
 
 /// The same over trees per hectare.
 LinePlot success_over_density(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions);
 
-/// The same side by side: a place per condition, which bears its name.
+/// The same side by side: a place per condition, with its name.
 LinePlot success_by_condition(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions);
 
 /// Share of flights that get beyond each distance (m of progress): Kaplan and Meier's steps with 95 % bands,
@@ -57,8 +57,8 @@ LinePlot success_by_condition(const std::vector<FlightRow>& rows, const std::vec
 std::vector<LinePlot> survival_curves(const std::vector<FlightRow>& rows,
                                       const std::vector<Condition>& conditions);
 
-/// One SVG: success over speed and over density, each where conditions differ in nothing else, or else by
-/// condition; then survival. Flights that failed to run enter nothing. Empty where none was flown.
+/// One SVG: success over speed and over density, each if conditions differ in nothing else, or else by
+/// condition; then survival. Flights that failed to run are left out. Empty if none was flown.
 std::string campaign_svg(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions);
 
 }  // namespace understory

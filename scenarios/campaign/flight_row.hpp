@@ -41,7 +41,7 @@ struct FlightRow : FlightMeasures {
   bool reached_goal() const { return flown() && outcome == "goal"; }
 };
 
-/// What a flight took on its machine: kept beside its row, since no two runs agree on it.
+/// What a flight took on its machine: kept apart from its row, because it differs from run to run.
 struct FlightCost {
   double wall_s = 0;
   double peak_memory_mb = 0;  ///< 10^6 bytes, resident
@@ -59,14 +59,14 @@ FlightRow flown_row(const std::string& condition, const Scenario& scenario, cons
 /// The columns of a row in their order, with unit and meaning.
 std::vector<Key> flight_row_columns();
 
-/// One line of JSON without its newline; numbers in full precision, null where there is nothing to say.
+/// One line of JSON without its newline; numbers in full precision, null for missing values.
 std::string to_json_line(const FlightRow& row);
 
 /// A flight's file as JSON, and back: nothing where the text is not whole, or of another format.
 std::string to_json(const FlightFile& file);
 std::optional<FlightFile> flight_file_from_json(const std::string& text);
 
-/// CSV with a header and a row per flight, six digits a number, empty where there is nothing to say.
+/// CSV with a header and a row per flight, six digits a number, empty for missing values.
 std::string to_csv(const std::vector<FlightRow>& rows);
 /// Reads it back. Throws ScenarioError, naming `name` and the line, where the columns are of another version
 /// or a row is not whole.

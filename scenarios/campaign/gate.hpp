@@ -29,17 +29,17 @@ struct MetricComparison {
 
 /// Pairs of one condition, or of all.
 struct ConditionComparison {
-  std::string condition;          ///< "all" where it is all of them
+  std::string condition;          ///< "all" for all of them
   std::vector<FlightPair> pairs;  ///< by seed
   PairedOutcomes goals;           ///< of pairs both flown; first: baseline, second: candidate
   double p = 1;                   ///< McNemar's, that both succeed alike
   Interval difference;            ///< 95 %, of the share of goals: candidate less baseline
   std::vector<MetricComparison> metrics;
-  int bit_for_bit = 0;  ///< pairs with the same digest: nothing that a flight can feel has changed
+  int bit_for_bit = 0;  ///< pairs with the same digest: nothing that affects a flight has changed
 };
 
-/// Two campaigns, paired by condition and seed. A flight that failed to run on either side enters no figure:
-/// a program that broke says nothing about how well it avoids trees. It is listed instead.
+/// Two campaigns, paired by condition and seed. A flight that failed to run on either side counts in no
+/// figure: a program that failed says nothing about how well it avoids trees. It is listed instead.
 struct Comparison {
   std::vector<ConditionComparison> conditions;  ///< those with a pair, in the baseline's order
   ConditionComparison all;
@@ -47,8 +47,8 @@ struct Comparison {
   std::vector<FlightRow> added;            ///< in the candidate only
   std::vector<FlightRow> baseline_failed;  ///< failed to run, in either set, paired or not
   std::vector<FlightRow> candidate_failed;
-  /// Conditions of one name that were asked another speed, density or goal: their difference is not the
-  /// program's alone.
+  /// Conditions of one name with another speed, density or goal in the two sets: their difference is not due
+  /// to the program alone.
   std::vector<std::string> altered;
   /// "A in the baseline, B in the candidate", where flights of a pair were drawn by different renderers.
   std::string drawn_differently;
@@ -63,19 +63,18 @@ struct GateRule {
 
 /// Whether a change may pass.
 ///
-/// It may not where
-/// - in any condition the share of goals, over the pairs both flown, fell by more than max_drop. What counts
-/// is
-///   what was measured, not what it proves: p and interval are printed beside it. A rule on p would let any
-///   drop pass that is measured with few enough seeds, and one on the interval's end would fail nearly every
-///   change. So the number of seeds decides how often chance trips it: where a share r of n pairs changes
-///   outcome either way, the drop deviates by sqrt(r / n), 3 points for 100 seeds of which a tenth change;
-///   then one change in 20 that is worth nothing loses more than 5. Flights repeat bit for bit: an unchanged
-///   program never trips it;
+/// It may not if
+/// - in any condition the share of goals, over the pairs both flown, fell by more than max_drop. The rule
+///   uses the measured drop, not its significance: p and interval are printed beside it. A rule on p would
+///   let any drop pass that is measured with few enough seeds, and one on the interval's end would fail
+///   nearly every change. So the number of seeds decides how often chance fails a change: if a share r of n
+///   pairs changes outcome either way, the drop has a deviation of sqrt(r / n), 3 points for 100 seeds of
+///   which a tenth change; then one in 20 changes without effect loses more than 5 points. Flights repeat bit
+///   for bit, so an unchanged program never fails;
 /// - a flight of the candidate failed to run: crashed, hung, was killed or refused;
 /// - a flight of the baseline is missing in the candidate: else dropping the hard seeds would pass;
 /// - no flight of the two campaigns could be compared.
-/// The overall share cannot fall by more than max_drop where no condition's does, and is not asked.
+/// The overall share cannot fall by more than max_drop if no condition's does, so it is not tested.
 /// Conditions and seeds that only the candidate has decide nothing, nor do flights that failed in the
 /// baseline.
 struct GateVerdict {
@@ -98,15 +97,14 @@ std::string to_report(const Comparison& comparison, const GateVerdict& verdict, 
 /// Flights as JUnit XML, which every CI server shows: a test suite per condition, in order of appearance, a
 /// test case per flight; classname: the condition, name: the seed, time: simulated seconds. Each suite has
 /// the program's version as a property. What XML 1.0 cannot hold (control characters, broken UTF-8) is
-/// written as '?'.
-
-/// A flight that did not reach its goal is a <failure>, one that failed to run an <error>.
+/// written as '?'. A flight that did not reach its goal is a <failure>, one that failed to run an <error>.
 std::string campaign_junit(const std::vector<FlightRow>& rows);
 
-/// What the gate saw: a flight that reached its goal in the baseline and does not any more is a <failure>;
-/// one that failed to run or is missing in the candidate an <error>; flights only the candidate has pass. A
-/// suite "gate" has a test case per condition, which fails where it lost more than the rule allows. A server
-/// that calls a build broken for any <failure> is stricter than the gate, whose exit status is its verdict.
+/// The gate's comparison: a flight that reached its goal in the baseline and does not any more is a
+/// <failure>; one that failed to run or is missing in the candidate an <error>; flights only the candidate
+/// has pass. A suite "gate" has a test case per condition, which fails where it lost more than the rule
+/// allows. A server that calls a build broken for any <failure> is stricter than the gate, whose exit status
+/// is its verdict.
 std::string gate_junit(const Comparison& comparison, const GateRule& rule = {});
 
 }  // namespace understory

@@ -25,9 +25,9 @@ void add_with_option(Command& command, std::vector<std::string>& with);
 void add_vision_options(Command& command, VisionConfigSources& sources);
 /// --renderer, as every command that draws has it.
 void add_renderer_option(Command& command, RendererKind& renderer);
-/// --jobs, how many of `what` at a time; 0 where it is not given.
+/// --jobs, how many of `what` at a time; 0 if it is not given.
 void add_jobs_option(Command& command, int& jobs, const std::string& what);
-/// `jobs`, or one a core where that is 0.
+/// `jobs`, or one a core if that is 0.
 int jobs_or_cores(int jobs);
 
 /// --unit, --size and --depth, as every command that reads a calibration has them.
@@ -37,7 +37,7 @@ struct CalibrationArguments {
   std::optional<double> depth_m;  ///< nothing: the rig's own
 };
 void add_calibration_options(Command& command, CalibrationArguments& arguments);
-/// What they mean. Throws ScenarioError where they mean nothing.
+/// The options that they state. Throws ScenarioError if they are invalid.
 CalibrationOptions calibration_options(const CalibrationArguments& arguments);
 
 }  // namespace understory

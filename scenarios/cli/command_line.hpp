@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-/// The command line: what each command takes, read with CLI11, which stays behind this header since its own
+/// The command line: what each command takes, read with CLI11, which this header does not include, because it
 /// compiles slowly.
 namespace CLI {
 class App;
@@ -20,7 +20,7 @@ class Option;
 
 namespace understory {
 
-/// How every command ends; where a signal stopped it, with 128 and the signal's number (130: SIGINT, 143:
+/// How every command ends; if a signal stopped it, with 128 and the signal's number (130: SIGINT, 143:
 /// SIGTERM).
 enum ExitStatus { exit_goal = 0, exit_not_goal = 1, exit_bad_input = 2, exit_machine_failed = 3 };
 
@@ -29,21 +29,21 @@ struct OptionText {
   std::string name;         ///< "--out"; "INPUT" for an argument without a dash
   std::string placeholder;  ///< FILE, FOLDER, SCENARIO, RIG, a|b ...: what completion offers; empty: a flag
   std::string meaning;
-  std::string standard = {};            ///< its value where it is not given; empty: nothing to show
+  std::string standard = {};            ///< its default value; empty: nothing to show
   std::vector<std::string> words = {};  ///< all that may be given; empty: anything
   bool required = false;
 };
 
-/// A command as they show it.
+/// A command as help, manual and completion show it.
 struct CommandText {
   std::string name, purpose;
   std::string example;           ///< a line that works
-  std::string success = "done";  ///< what status 0 says
-  std::string failure = {};      ///< what status 1 says; empty: the command never ends so
+  std::string success = "done";  ///< meaning of status 0
+  std::string failure = {};      ///< meaning of status 1; empty: the command never ends so
 };
 
-/// One command: its options, what it does. Every option refuses an empty value. What an option names must
-/// outlive the parsing.
+/// One command: its options, what it does. Every option refuses an empty value. The variable that an option
+/// sets must outlive the parsing.
 class Command {
  public:
   Command(CLI::App& app, CommandText text);
@@ -55,7 +55,7 @@ class Command {
     OptionText& text;
     const Added& required() const;
     const Added& excludes(const Added& other) const;
-    /// Refused without the other.
+    /// The option is refused without the other.
     const Added& needs(const Added& other) const;
   };
 
@@ -93,7 +93,7 @@ class Command {
   bool hidden() const { return hidden_; }
   /// Keeps the command out of help, manual and completion.
   void hide();
-  /// Arguments that mean nothing are no error.
+  /// Unknown arguments are no error.
   void takes_anything();
 
  private:
@@ -111,15 +111,15 @@ class Command {
 /// The program's commands.
 class CommandLine {
  public:
-  /// `version`: asked for when somebody wants to know.
+  /// `version`: called when the version is to be printed.
   explicit CommandLine(std::function<std::string()> version);
   ~CommandLine();
 
   Command& add(CommandText text);
   const std::deque<Command>& commands() const { return commands_; }
 
-  /// Reads the arguments and runs the command they name; its status. Throws ScenarioError in one line where
-  /// they mean nothing.
+  /// Reads the arguments and runs the command they name; its status. Throws ScenarioError in one line if they
+  /// are invalid.
   int run(int argc, char** argv);
 
  private:

@@ -31,13 +31,12 @@ void add_keys_command(CommandLine& line);
 void add_forest_command(CommandLine& line);
 void add_plugin_command(CommandLine& line);
 
-/// Prints what a campaign came to and leaves summary.md and campaign.svg in its folder, and with a name of a
-/// file there JUnit XML. Gives the exit status: 0 where every flight was flown, whatever its outcome; 1 where
-/// one was not.
+/// Prints a campaign's results, writes summary.md and campaign.svg into its folder, and JUnit XML if a file
+/// `junit` is given. Returns the exit status: 0 if every flight was flown, with any outcome; else 1.
 int report(const CampaignFolder& folder, const Campaign& campaign, const Collected& collected,
            const std::filesystem::path& junit = {});
 
-/// OpenGL's name for what draws by default, or why nothing does.
+/// OpenGL's name of the default renderer, or why there is none.
 std::string renderer_of_this_machine();
 
 }  // namespace understory

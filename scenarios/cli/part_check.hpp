@@ -7,7 +7,7 @@
 
 namespace understory {
 
-/// What one check of one part came to.
+/// The result of one check of one part.
 struct PartCheck {
   std::string part;   ///< "detector 'mine'"
   std::string check;  ///< "equal inputs give equal outputs"
@@ -22,7 +22,7 @@ struct PartCheckOptions {
   std::function<void(const std::string&)> on_progress = [](const std::string&) {};
 };
 
-/// Tests parts of every kind alone and in flights. What breaks an interface's promises is a fault, never an
+/// Tests parts of every kind alone and in flights. A violation of an interface's rules is a fault, never an
 /// exception; a call that does not return ends the process (checked_parts.hpp).
 std::vector<PartCheck> check_parts(const PartCheckOptions& options);
 

@@ -8,7 +8,7 @@
 
 #include "perception/field_visitor.hpp"
 
-/// Configurations whose type only their owner knows: those of plug-ins.
+/// Configurations whose type only their own part has: those of plug-ins.
 namespace understory {
 
 /// A config struct with visit_fields(), its type erased.
@@ -31,8 +31,8 @@ class TypedConfig : public AnyConfig {
 
 inline void visit_fields(FieldVisitor& visit, AnyConfig& config) { config.visit(visit); }
 
-/// Throws std::invalid_argument where what is written of these keys cannot be read again: a name that is no
-/// plain word or stands twice, a value outside of its bounds. `part` begins the message.
+/// Throws std::invalid_argument if these keys, once written, could not be read again: a name that is not a
+/// plain word or is there twice, a value outside of its bounds. `part` begins the message.
 void require_sound_keys(const std::string& part, const AnyConfig& keys);
 
 /// The configurations of all parts of a kind that have keys, by the parts' names. Copies are deep.
@@ -62,7 +62,7 @@ class PartConfigs {
     return nullptr;
   }
 
-  /// That of one of our parts, whose type the caller knows.
+  /// The configuration of one of our parts, whose type the caller knows.
   template <typename Config>
   const Config& of(std::string_view name) const {
     return static_cast<const TypedConfig<Config>&>(*find(name)).config;

@@ -34,8 +34,8 @@ class QuietStandardError {
   int kept_;
 };
 
-/// Gives back what `read` gives. What perception's readers refuse is bad input to this program, and theirs is
-/// the one line about it: whatever the libraries beneath them print is left out.
+/// Returns the result of `read`. Input that perception's readers refuse is bad input to this program. Their
+/// error is the only line about it: output of the libraries beneath them is suppressed.
 template <typename Read>
 auto bad_input_if_refused(Read&& read) {
   try {

@@ -27,7 +27,7 @@ ConfigNode under_keys(ConfigNode value, std::string keys);
 /// Keys with their values as text, in order: "a.b.c", entries of lists of maps "faults[0].at_s".
 using FlatKeys = std::vector<std::pair<std::string, std::string>>;
 
-/// Those of a YAML text whose top is a map; `name` stands for its file in messages.
+/// The keys of a YAML text whose top is a map; `name` stands for its file in messages.
 FlatKeys flat_keys(const std::string& text, const std::string& name);
 /// "-" where there is no such key.
 std::string value_in(const FlatKeys& keys, std::string_view key);

@@ -42,7 +42,7 @@ struct ForestConfig {
 
 void visit_fields(FieldVisitor& visit, ForestConfig& config);
 
-/// The obstacles of a course. Of a forest's trunks it may say what is known of each tree, in their order.
+/// The obstacles of a course. `known` may have measured values of each tree of a forest, in order.
 struct Planted {
   std::vector<Obstacle> obstacles;
   std::vector<KnownTree> known = {};
@@ -62,7 +62,7 @@ inline constexpr std::array<std::pair<std::string_view, ObstacleTexture>, 3> obs
      {"windows", ObstacleTexture::windows},
      {"litter", ObstacleTexture::litter}}};
 
-/// An obstacle of a scenario's own list. It stands on any course beside what the course has.
+/// An obstacle of a scenario's own list. It stands on any course in addition to the course's own obstacles.
 struct ListedObstacle {
   std::string name = "obstacle";
   ListedShape shape = ListedShape::box;

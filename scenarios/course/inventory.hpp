@@ -15,27 +15,27 @@ namespace understory {
 struct Stem {
   Eigen::Vector2d place_m = Eigen::Vector2d::Zero();
   double diameter_m = 0;
-  KnownTree known;  ///< what the file says beside; a lean's direction in the file's coordinates
+  KnownTree known;  ///< what else the file states; a lean's direction in the file's coordinates
 };
 
 /// Stems of a CSV table. Its first line names the columns: x_m, y_m and diameter_m are needed; height_m,
 /// lean_rad with lean_toward_rad (the direction of the top, counter-clockwise from x), and kind (oak, beech,
-/// birch, pine, spruce) are taken where they stand, a cell may be empty; other columns are passed over.
-/// Throws InputError "name:line: ..." at the first cell that is none of that.
+/// birch, pine, spruce) are read if present, and their cells may be empty; other columns are ignored. Throws
+/// InputError "name:line: ..." at the first invalid cell.
 std::vector<Stem> stems_in_text(std::string_view text, const std::string& name);
 
 /// The stems of `config.trees_file` that are at least config.thinnest_stem_m thick. Throws ScenarioError in
 /// one line where the file cannot be found or read.
 std::vector<Stem> stems_of(const ForestConfig& config);
 
-/// The stems that stand on the course, in the launch frame: upright where the file knows no lean. Trunks are
-/// as high as config.trunk_height_m and ordered by x; leans are in the launch frame.
+/// The stems that stand on the course, in the launch frame: upright if the file states no lean. Trunks are as
+/// high as config.trunk_height_m and ordered by x; leans are in the launch frame.
 struct PlacedStems : Planted {
   Eigen::Vector2d launch_m{0, 0};  ///< in the file's coordinates
   double heading_rad = 0;
 };
 
-/// Where the launch's place or heading are not given, the seed draws them so that the course's rectangle lies
+/// If the launch's place or heading are not given, the seed draws them so that the course's rectangle lies
 /// within that of all stems. Throws ScenarioError where no such place is found.
 PlacedStems place_stems(const std::vector<Stem>& stems, const ForestConfig& config, std::uint64_t seed);
 

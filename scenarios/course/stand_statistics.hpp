@@ -13,7 +13,7 @@ struct Stand {
   std::vector<double> diameters_m;  ///< at 1.3 m height
 };
 
-/// Distances at which Ripley's K is asked for, m.
+/// Distances at which Ripley's K is computed, m.
 inline constexpr double ripley_radii_m[]{0.5, 1, 1.5, 2, 3, 4, 5, 6, 8, 10};
 
 /// Ripley's L(r) - r at these distances (Ripley 1977, J. R. Stat. Soc. B 39, 172), with the translation
@@ -25,7 +25,7 @@ std::vector<double> ripley_l_minus_r(const Stand& stand);
 /// 35, 445) with Donnelly's correction for edges (1978): below 1 for clusters. NaN for fewer than two stems.
 double clark_evans_index(const Stand& stand);
 
-/// What is said of a forest, over several stands of it.
+/// Figures of a forest, over several stands of it.
 struct StandFigures {
   int stands = 0;
   std::int64_t stems = 0;

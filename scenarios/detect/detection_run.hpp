@@ -48,7 +48,7 @@ struct DetectionResult {
   std::vector<Depth> depths;
   int last_row_px = 0;
   std::vector<FrameRecord> frames;
-  std::int64_t frames_expected = 0;  ///< said by the input; a video's container may say too many
+  std::int64_t frames_expected = 0;  ///< stated by the input; a video's container may state too many
   std::int64_t unpaired_images = 0;
   std::optional<std::int64_t> remembered_points;  ///< where there were poses
   std::string files;                              ///< what was written
@@ -56,9 +56,9 @@ struct DetectionResult {
 
 /// Runs the flight's detector over a recording and writes into the output folder: points.csv and points.ply
 /// (hits_to_csv, hits_to_ply), timings.csv (frame,t_ns,hits,rectify_ms,detect_ms,in_map), overlays/000000.png
-/// ... or overlay.mp4, and with poses map.ply (points_to_ply: every point ever remembered). What an earlier
-/// run left there under these names goes first; every file appears whole or not at all. Throws ScenarioError
-/// in one line at input that does not fit, MachineError where the disk is full.
+/// ... or overlay.mp4, and with poses map.ply (points_to_ply: every point ever remembered). Files of an
+/// earlier run with these names are removed first; every file appears whole or not at all. Throws
+/// ScenarioError in one line at input that does not fit, MachineError where the disk is full.
 DetectionResult run_detection(const DetectionOptions& options);
 
 /// One screen for a person.

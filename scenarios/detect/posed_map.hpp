@@ -14,8 +14,8 @@ class PosedMap {
  public:
   explicit PosedMap(const LocalMapConfig& config) : map_(config) {}
 
-  /// Takes in one frame's hits, taken at t_ns. What counts as passed is told by where the camera looks, since
-  /// a recorded body's axes may point anywhere (EuRoC's x points up).
+  /// Takes in one frame's hits, taken at t_ns. The camera's viewing direction decides which points count as
+  /// passed, since a recorded body's axes may point anywhere (EuRoC's x points up).
   void insert(const std::vector<StereoHit>& hits, const Eigen::Isometry3d& T_world_camera,
               std::int64_t t_ns) {
     if (moved_) distance_flown_m_ += (T_world_camera.translation() - camera_world_).norm();

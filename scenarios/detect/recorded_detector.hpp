@@ -14,7 +14,7 @@ namespace understory {
 /// truth.
 class RecordedDetector {
  public:
-  /// `name`: of the part, whose keys are in `config`. Throws ScenarioError where it looks at no images.
+  /// `name`: of the part, whose keys are in `config`. Throws ScenarioError if it uses no images.
   RecordedDetector(const VisionConfig& config, const std::string& name, const StereoRig& rig);
   RecordedDetector(const RecordedDetector&) = delete;
   RecordedDetector& operator=(const RecordedDetector&) = delete;

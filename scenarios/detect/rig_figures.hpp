@@ -14,8 +14,8 @@ struct RigFigures {
   double left_field_of_view_rad = 0;  ///< horizontal, from edge to edge of the rectified image
   double right_field_of_view_rad = 0;
   double vertical_field_of_view_rad = 0;
-  int detection_disparity_px = 0;  ///< the whole disparity nearest to the depth asked for
-  double detection_depth_m = 0;    ///< where it lies
+  int detection_disparity_px = 0;  ///< the whole disparity nearest to the requested depth
+  double detection_depth_m = 0;    ///< its depth
   DepthInterval one_pixel;         ///< one pixel of disparity to either side
   int window_first_px = 0;         ///< the invariance filter searches the right image from column
   int window_last_px = 0;          ///<   u_left - window_last_px to u_left - window_first_px

@@ -11,13 +11,13 @@
 namespace understory {
 
 /// An algorithm's name and its folder, which has a file for each pair, named as the left image: PFM, or PNG
-/// of 16 bits in 1/256 px (KITTI's). Of several recordings it has a folder for each, named as theirs.
+/// of 16 bits in 1/256 px (KITTI's). For several recordings it has a folder for each, of the same name.
 struct DisparityFolder {
   std::string name;
   std::filesystem::path folder;
 };
 
-/// "NAME=FOLDER". Throws ScenarioError where it is not that.
+/// Reads "NAME=FOLDER". Throws ScenarioError if it is not that.
 DisparityFolder disparity_folder_of(const std::string& argument);
 
 /// The disparities of the pair of this time: CV_32FC1, u_left - u_right in px of the rectified left image, 0

@@ -15,9 +15,8 @@
 
 namespace understory {
 
-/// What is evaluated, and against what: `pushbroom` is the detector's parameter set, `map` the one of the
-/// evaluations with memory, `compute` the aircraft's computer, for what it finds at its own pace, `enabled`
-/// or not.
+/// What is evaluated, and how: `pushbroom` is the detector's parameter set, `map` the one of the evaluations
+/// with memory, `compute` the aircraft's computer, for results at its own pace, even if not `enabled`.
 struct EvaluationSettings : VisionConfig {
   int every = 1;                                  ///< every n-th frame only
   std::vector<std::string> more_detectors = {};   ///< further ones, by the names of their parts
@@ -25,8 +24,8 @@ struct EvaluationSettings : VisionConfig {
 };
 
 /// The algorithms that every evaluation has; the first four have to be computed, and so have those that
-/// follow all six: the settings' detectors, then their disparities. All look at the same depths, detectors of
-/// one's own where they like.
+/// follow all six: the settings' detectors, then their disparities. All look at the same depths, except
+/// detectors of plug-ins, which choose their own.
 namespace algorithm {
 enum Index : std::size_t { our_rule, the_papers_rule, stereo_bm, stereo_sgbm, true_depth, at_random };
 }
@@ -53,10 +52,10 @@ struct InvarianceRow {
   std::string parameters;
   bool filter = false;
   std::int64_t hits = 0;
-  Rates rates = {};  ///< of nothing where there is no true depth
+  Rates rates = {};  ///< empty if there is no true depth
 };
 
-/// What one recording says, or some of them together.
+/// The results of one recording, or of some of them together.
 struct EvaluationSum {
   std::string name;  ///< of the scene; "all"
   std::int64_t frames = 0, recordings = 0;
@@ -77,7 +76,7 @@ struct EvaluationSum {
   void add(const EvaluationSum& other);
 };
 
-/// Whether a computer has to compute the algorithm of this place.
+/// Whether the algorithm with this index has to be computed.
 constexpr bool is_computed(std::size_t algorithm) {
   return algorithm < computed_count || algorithm >= algorithm_count;
 }
@@ -88,7 +87,7 @@ struct WorstFrame {
   int false_hits = 0;
 };
 
-/// All that one recording says.
+/// All results of one recording.
 struct RecordingEvaluation {
   std::filesystem::path folder;
   StereoRig rig;

@@ -12,8 +12,8 @@
 
 namespace understory {
 
-/// A EuRoC/ASL folder as `understory record` leaves it (docs/record.md), or as others do: then without true
-/// depth, objects and estimates.
+/// A EuRoC/ASL folder as `understory record` leaves it (docs/record.md), or as other programs do: then
+/// without true depth, objects and estimates.
 class EvaluationRecording {
  public:
   /// Reads all but the images. Throws ScenarioError, one line that names the file, where something there
@@ -43,7 +43,7 @@ class EvaluationRecording {
   bool has_depth_ = false;
 };
 
-/// Whether recordings of both can be looked at with one configuration.
+/// Whether recordings of both rigs can be evaluated with one configuration.
 bool is_same_rig(const StereoRig& one, const StereoRig& other);
 
 /// objects.csv. `name` stands for the file in messages. Throws std::runtime_error "name:line: expected ...".

@@ -16,9 +16,9 @@ std::string evaluation_report(const Evaluation& evaluation);
 
 /// Into `folder`: summary.md, evaluation.json (every figure), tables/*.csv, obstacles.csv,
 /// precision_recall.svg, distances.svg, response.svg, first_hits.svg, heat_map.png (ours),
-/// heat_map_paper.png, worst/, and report.html, a page of all that; what needs a truth that no recording has
-/// is left out. `data_root` holds scenarios/report/page. Throws ScenarioError or MachineError where it cannot
-/// be written.
+/// heat_map_paper.png, worst/, and report.html, a page of all that; files that need a truth that no recording
+/// has are left out. `data_root` holds scenarios/report/page. Throws ScenarioError or MachineError where it
+/// cannot be written.
 void write_evaluation(const Evaluation& evaluation, const std::filesystem::path& folder,
                       const std::filesystem::path& data_root);
 
@@ -29,11 +29,11 @@ struct EvaluationTable {
   Table table;        ///< cells are plain numbers or words; units stand in the head
 };
 
-/// All that the recordings allow to say, in the order in which people read it: against the paper's figures,
+/// All tables that the recordings allow, in the order in which people read them: against the paper's figures,
 /// all algorithms, scenes, obstacles passed, parts, false hits, invariance.
 std::vector<EvaluationTable> evaluation_tables(const Evaluation& evaluation);
 
-/// A line per obstacle passed: what each became under our rule.
+/// A line per obstacle passed: how our rule detected it.
 Table obstacles_table(const Evaluation& evaluation);
 
 /// Where in the image true positives, false positives and due blocks lie, side by side, each as bright as its

@@ -10,38 +10,38 @@
 
 namespace understory {
 
-/// What became of one obstacle that was passed.
+/// How one obstacle that was passed had been detected.
 struct ObstacleSighting {
   int object = 0;
   double miss_m = 0;  ///< minimum distance from the path of the rig's centre to the surface
-  /// Straight on, from where it came into view at the depth, a wing would touch it.
+  /// On a straight path from where it came into view at the depth, a wing would touch it.
   bool on_the_path = false;
   /// Of all frames: blocks of 5x5 px that showed it to both eyes within half a pixel of a depth looked at.
   int blocks_in_view = 0;
   int hits = 0;            ///< true positives within one pixel, before it was passed
   double first_hit_m = 0;  ///< its depth at the first of them; 0: never
   double third_hit_m = 0;  ///< and at the third, when it counts as found (the original's avoidance: 3)
-  /// Nothing could give three hits: hidden, or not in view.
+  /// No detector could have three hits: hidden, or not in view.
   bool hidden() const { return blocks_in_view < 3; }
   bool found() const { return hits >= 3; }
 };
 
-/// Those of `sightings` that the path came within `reach_m` of, in view at a depth looked at: how many, and
-/// how many were found. `hidden`, where asked for: the others.
+/// Of the obstacles that the path came within `reach_m` of and that were not hidden: how many, and how many
+/// were found. The number of hidden ones is added to `hidden`, if given.
 Share found_within(const std::vector<ObstacleSighting>& sightings, double reach_m,
                    std::int64_t* hidden = nullptr);
 
 /// Gathers an algorithm's sightings along one recording, frame by frame.
 class ObstacleSightings {
  public:
-  /// `objects`: the recording's. The baseline tells the rig's centre from its left camera.
+  /// `objects`: the recording's. The baseline gives the rig's centre from its left camera.
   ObstacleSightings(std::vector<RecordedObject> objects, double baseline_m);
 
-  /// One frame: its expected blocks at one pixel and the hits. Frames without a pose are passed over.
+  /// One frame: its expected blocks at one pixel and the hits. Frames without a pose are skipped.
   void add(const EvaluationFrame& frame, const DetectionGrid& grid,
            const std::vector<ExpectedBlock>& expected, const std::vector<StereoHit>& hits);
   /// Those that were passed: the path comes nearest to them before its end. In the objects' order. Branches
-  /// are left out: who flies round a tree's trunk needs them seldom.
+  /// are left out: they seldom matter to an aircraft that avoids the trunk.
   std::vector<ObstacleSighting> passed() const;
 
  private:
@@ -57,7 +57,7 @@ class ObstacleSightings {
   std::map<int, Gathered> gathered_;
 };
 
-/// What became of the obstacles where an algorithm looks only as often as the aircraft's computer lets it.
+/// The sightings of an algorithm that processes only as many frames as the aircraft's computer allows.
 struct PacedResult {
   std::int64_t frames = 0;
   std::vector<ObstacleSighting> sightings;

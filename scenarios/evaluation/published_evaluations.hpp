@@ -46,9 +46,9 @@ class PublishedEvaluations {
  public:
   PublishedEvaluations(const StereoRig& rig, const DetectionGrid& grid, const LocalMapConfig& map);
 
-  /// Every frame: carries the hits in the map, as in flight, along where the flight believed to be.
+  /// Every frame: carries the hits in the map, as in flight, along the flight's estimated poses.
   void remember(const EvaluationFrame& frame, const std::vector<StereoHit>& hits);
-  /// Frames on which StereoBM was run: `depth_m` is what it said (CV_32FC1, 0 where nothing), after remember.
+  /// Frames on which StereoBM was run: `depth_m` is its result (CV_32FC1, 0 where nothing), after remember().
   void compare(const EvaluationFrame& frame, const std::vector<StereoHit>& hits, const cv::Mat& depth_m);
 
   const PublishedScores& scores() const { return scores_; }

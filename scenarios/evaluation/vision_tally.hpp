@@ -12,8 +12,8 @@
 namespace understory {
 
 /// A detector's precision (hits that are true) and recall (expected blocks that were hit). In woods many true
-/// hits lie on leaves and on the ground, which flatters the precision: trunk precision leaves those out and
-/// counts true hits on obstacles over them and all false ones.
+/// hits lie on leaves and on the ground, which flatters the precision: trunk precision leaves those out: it
+/// is true hits on obstacles over these and all false hits.
 struct Rates {
   Share precision, recall, trunk_precision = {};
 
@@ -35,12 +35,12 @@ inline constexpr std::array<const char*, tolerance_count> tolerance_names{"0.25 
 using DueBlocks = std::array<std::vector<ExpectedBlock>, tolerance_count>;
 DueBlocks due_blocks(const TrueImages& truth, const DetectionGrid& grid);
 
-/// Whether the truth in a hit's block bears it out, at each tolerance. Ground counts: it is there.
+/// Whether the truth in a hit's block confirms it, at each tolerance. Ground counts as true.
 std::array<bool, tolerance_count> true_within(const StereoHit& hit, const TrueImages& truth,
                                               const DetectionGrid& grid);
 
 /// What a false hit lies on: "sky", "ground", "trunk, nearer", "edge of trunk" (its block holds an obstacle
-/// and something at least a metre farther). `kinds`: by object number; "surface" where nobody says.
+/// and something at least a metre farther). `kinds`: by object number; "surface" if unknown.
 std::string lies_on(const StereoHit& hit, const TrueImages& truth, const std::map<int, std::string>& kinds);
 
 /// Counts a hit that is true or not at one pixel in both precisions.

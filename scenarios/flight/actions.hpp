@@ -6,7 +6,7 @@
 
 #include "planning/pilot.hpp"
 
-/// The controls of a flight as a table, so that whatever flew it can be flown again bit for bit.
+/// The controls of a flight as a table, so that any flight can be flown again bit for bit.
 namespace understory {
 
 /// Controls in force from a moment on.
@@ -19,8 +19,8 @@ struct Action {
 /// many digits as it has.
 std::string actions_text(const std::vector<Action>& actions);
 
-/// Reads it back. `name` stands for the file in messages. Throws InputError "name:line: expected ..." where a
-/// line is none, or is not later than the one before it.
+/// Reads it back. `name` stands for the file in messages. Throws InputError "name:line: expected ..." if a
+/// line is not an action, or is not later than the one before it.
 std::vector<Action> parse_actions(const std::string& text, const std::string& name);
 
 /// Flies a table: the newest action that is not later. Before the first, surfaces are neutral.

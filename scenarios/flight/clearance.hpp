@@ -37,8 +37,7 @@ Eigen::Vector3d nearest_place(const Eigen::Vector3d& point_world, const Obstacle
 double clearance_m(const Eigen::Isometry3d& T_world_body, const Airframe& airframe,
                    const std::vector<Obstacle>& obstacles);
 
-/// The same from obstacles that stand: those far away are passed over by the trees, or dozens, that they
-/// belong to.
+/// The same for obstacles that do not move: those far away are skipped in groups, by tree or by the dozen.
 class ClearanceField {
  public:
   explicit ClearanceField(std::vector<Obstacle> obstacles);
@@ -52,8 +51,8 @@ class ClearanceField {
   std::vector<Group> groups_;
 };
 
-/// A detected or remembered point this near to an obstacle's surface stands for it, m: what stereo at 10 m
-/// and the estimate's drift leave open.
+/// A detected or remembered point this near to an obstacle's surface belongs to it, m: the uncertainty of
+/// stereo at 10 m and of the estimate's drift.
 constexpr double belongs_within_m = 0.5;
 bool belongs_to(const Eigen::Vector3d& point_world, const Obstacle& obstacle);
 

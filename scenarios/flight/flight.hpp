@@ -27,7 +27,7 @@ namespace understory {
 
 class Flight;
 
-/// Observes a flight: a record, a film, a data set, a page. It can ask the flight for everything at each call
+/// Observes a flight: a record, a film, a data set, a page. It can read everything of the flight at each call
 /// and cannot change it.
 class FlightObserver {
  public:
@@ -63,9 +63,10 @@ struct FlightParts {
   std::unique_ptr<Pilot> pilot = nullptr;
 };
 
-/// A flight that one can hold, step and ask. Its scenario alone decides it; observers and other flights in
-/// this process, earlier or open now, have no effect. Flights may be open side by side on one thread, with
-/// one renderer: MuJoCo's OpenGL functions are one per process, and the other renderer is refused.
+/// A flight that a program can hold, step and read. Its scenario alone decides it; observers and other
+/// flights in this process, earlier or open now, have no effect. Flights may be open side by side on one
+/// thread, with one renderer: MuJoCo's OpenGL functions are one per process, and the other renderer is
+/// refused.
 class Flight {
  public:
   /// Starts on the catapult, before the first step. Observers are called in their order and must outlive the
@@ -105,7 +106,7 @@ class Flight {
   const StereoFrame& frame() const { return frame_; }
   const std::vector<StereoHit>& hits() const { return autopilot_.hits(); }  ///< in that frame
   const State& state() const { return autopilot_.state(); }
-  /// Whether the autopilot has felt the launch and gives controls, or takes them from a pilot.
+  /// Whether the autopilot has detected the launch and gives controls, or takes them from a pilot.
   bool in_flight() const { return autopilot_.in_flight(clock_.t_ns()); }
   State state_at(std::int64_t t_ns) const { return parts_.state_source->state_at(t_ns); }
   const LocalMap& map() const { return autopilot_.map(); }
@@ -163,7 +164,7 @@ std::unique_ptr<StereoCameras> cameras_of(const Scenario& scenario, const World&
 /// underground.
 Aircraft aircraft_of(const Scenario& scenario, const World& world);
 
-/// What turns pairs into hits. ScenarioError where the rig cannot look at the depths asked for. All arguments
+/// The detector. ScenarioError if the rig cannot show the depths that the detector compares. All arguments
 /// must outlive it.
 std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const CalibratedRig& rig,
                                               const std::vector<Obstacle>& obstacles,
@@ -174,11 +175,10 @@ std::unique_ptr<StateSource> state_source_of(const Scenario& scenario, const Cal
                                              const std::vector<Obstacle>& obstacles,
                                              const TruthHistory& history);
 
-/// What decides the way.
+/// The planner.
 std::unique_ptr<Planner> planner_of(const Scenario& scenario);
 
-/// Flies the actions of autopilot.actions; null where that is empty. ScenarioError where the file cannot be
-/// read.
+/// Flies the actions of autopilot.actions; null if that is empty. ScenarioError if the file cannot be read.
 std::unique_ptr<Pilot> pilot_of(const Scenario& scenario);
 
 AutopilotConfig autopilot_config_of(const Scenario& scenario, const StereoRig& rig);

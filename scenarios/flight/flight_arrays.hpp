@@ -12,8 +12,8 @@ enum class PageDetail {
   compact      ///< the last two seconds, and the way there: below 30 kB in base64
 };
 
-/// What a page draws of a flight, thinned to fit: its arrays, and in `facts` the charts of them, the obstacle
-/// that was touched and how much was left out.
+/// Adds what a page draws of a flight, thinned to fit: its arrays, and in `facts` the charts of them, the
+/// obstacle that was touched and how much was left out.
 void add_flight(const FlightLog& log, const FlightStory& story, PageDetail detail, PageArrays& arrays,
                 nlohmann::ordered_json& facts);
 

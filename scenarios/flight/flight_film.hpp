@@ -18,7 +18,7 @@ namespace understory {
 
 /// flight.mp4: the left camera's image with the paper's overlay and the plan beside a chase view of half the
 /// sharpness, words in a strip below, in real time, 30 pictures a second. The last half second of a lost
-/// flight shows every frame, four times slower, and the last picture stands for a second, the impact marked.
+/// flight shows every frame, four times slower, and the last picture stays for a second, the impact marked.
 /// still.png: the picture with the most detections.
 class FlightFilm : public FlightObserver {
  public:

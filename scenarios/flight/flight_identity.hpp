@@ -18,16 +18,16 @@ struct OpenedRenderer {
 /// Opens a renderer: from now on this process draws with it. Throws MachineError where it cannot be opened.
 OpenedRenderer opened_renderer(RendererKind asked);
 
-/// Of flights that this program, as it is loaded, would fly: its file, the libraries it has mapped (the
+/// The identity of flights of this program as it is loaded: its file, the libraries it has mapped (the
 /// renderer's too), the renderer's name, all of the models folder but its rigs, and each scenario's rig.
 /// Throws ScenarioError where a rig is missing.
 Identity identity_of(const std::vector<Scenario>& scenarios, const std::filesystem::path& models_folder,
                      const OpenedRenderer& renderer);
 
-/// The name of a scenario's rig there.
+/// The name of a scenario's rig in an identity.
 std::string rig_name_in_identity(const Scenario& scenario);
 
-/// Of everything in a recording's folder: names and sizes of its files, contents of its tables.
+/// Digest of everything in a recording's folder: names and sizes of its files, contents of its tables.
 std::string digest_of_recording(const std::filesystem::path& folder);
 
 }  // namespace understory

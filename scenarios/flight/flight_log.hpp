@@ -20,8 +20,8 @@
 
 namespace understory {
 
-/// One moment of a flight: what is, what the aircraft believes, what it commands. `odometry` is the frame of
-/// the estimate, in which the map lies; without drift it is the world.
+/// One moment of a flight: the truth, the estimate and the commands. `odometry` is the frame of the estimate,
+/// in which the map lies; without drift it is the world.
 struct LogMoment {
   std::int64_t t_ns = 0;
   Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();  ///< true, as the next five
@@ -48,11 +48,11 @@ struct LogFrame {
 
 inline constexpr std::int64_t still_there_ns = std::numeric_limits<std::int64_t>::max();
 
-/// A point of the map, for as long as it lay where it lay. A point that is seen again elsewhere is another.
+/// A point of the map, for as long as it did not move. Seen again elsewhere it becomes another LogPoint.
 struct LogPoint {
   ObstaclePoint point;  ///< in the odometry frame
-  /// Where it lies beside the true obstacles: the odometry frame drifts, so placed by the true pose at which
-  /// it was seen.
+  /// Its place relative to the true obstacles: computed with the true pose at which it was seen, because the
+  /// odometry frame drifts.
   Eigen::Vector3d true_position_world = Eigen::Vector3d::Zero();
   std::int64_t from_ns = 0, to_ns = still_there_ns;
 };
@@ -78,7 +78,7 @@ struct FlightLog {
   std::vector<Eigen::Vector3d> hits_camera;  ///< left camera's frame, of all frames
   std::vector<LogPoint> points;              ///< in order of from_ns
   std::vector<LogPlan> plans;
-  Touch touch;  ///< distance between estimated and true position at the end of the flight
+  Touch touch;  ///< what the aircraft touches at the end of the flight
   FlightResult result;
 };
 
@@ -91,8 +91,8 @@ double bank_rad(const Eigen::Isometry3d& T_world_body);
 Eigen::Vector3d position_error_m(const LogMoment& moment);
 
 /// The log as the file flight.log of a run: numbers in steps of 0.1 mm, 1e-6 of a turn and so on, compressed.
-/// What is read back is the log but for that rounding and the rig, which comes from the scenario. Reading
-/// throws ScenarioError in one line where the file is none, is cut short or is another version's.
+/// The log that is read back is the same except for that rounding and the rig, which comes from the scenario.
+/// Reading throws ScenarioError in one line if the file is not a log, is cut short or is another version's.
 std::string to_bytes(const FlightLog& log);
 FlightLog flight_log_from_bytes(const std::string& bytes, const std::string& name,
                                 const std::filesystem::path& models_folder);

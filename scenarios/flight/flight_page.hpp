@@ -12,7 +12,7 @@ namespace understory {
 /// What a page adds to a flight that has ended.
 struct FlightPageExtras {
   std::filesystem::path data_root;       ///< holds models/ and scenarios/
-  std::string warning = {};              ///< stands above everything else; empty: nothing to warn of
+  std::string warning = {};              ///< shown above everything else; empty: no warning
   std::filesystem::path film = {};       ///< flight.mp4; empty: none
   std::vector<float> film_times_s = {};  ///< of its pictures
   cv::Mat last_picture = {};             ///< of the film
@@ -27,8 +27,8 @@ std::string flight_page(const FlightLog& log, const FlightPageExtras& extras);
 /// the rest in outline.
 std::string compact_flight(const FlightLog& log);
 
-/// The arguments of `understory fly` that fly a scenario: a library's name, seed and settings, or, where
-/// those do not make the same scenario, a file scenario.yaml.
+/// The arguments of `understory fly` that fly a scenario: a library's name, seed and settings, or, if those
+/// do not make the same scenario, a file scenario.yaml.
 std::string arguments_that_fly(const Scenario& scenario, const std::filesystem::path& data_root);
 
 }  // namespace understory

@@ -36,14 +36,14 @@ class RunDigest {
 /// How a flight ended.
 enum class Outcome {
   goal,           ///< passed the goal plane
-  collision,      ///< touched an obstacle (MuJoCo's own contact)
+  collision,      ///< touched an obstacle (MuJoCo's own contact), or leaves if these end the flight
   ground,         ///< touched the ground
   out_of_bounds,  ///< left the altitude band after climbing into it, or the course's sides
   time            ///< ran out of simulated time
 };
 
 std::string_view word_for(Outcome outcome);
-/// Empty where no outcome is called so.
+/// Empty if no outcome has this name.
 std::optional<Outcome> outcome_named(std::string_view word);
 
 /// Wall time of one stage of the loop, for people. It decides nothing.
@@ -160,7 +160,7 @@ extern const char* const trajectory_columns;
 /// As indented JSON text, versions of program and libraries included.
 std::string to_json(const FlightResult& result);
 
-/// Reads it back, the timings apart. Throws ScenarioError, naming `name`, where the text is no result.
+/// Reads it back, except the timings. Throws ScenarioError, naming `name`, if the text is not a result.
 FlightResult result_from_json(const std::string& text, const std::string& name);
 
 /// What a person reads of a result, line by line: a heading and words.

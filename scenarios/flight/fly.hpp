@@ -33,7 +33,7 @@ struct FlyOptions {
   std::filesystem::path track;                   ///< compact_flight() of a lost flight; empty: none
   std::string expected_digest;                   ///< another one is a warning in the report; empty: any
   RendererKind renderer = RendererKind::osmesa;  ///< the machine's: not part of the scenario
-  FlightLogger* logger = nullptr;                ///< keeps the log for other observers; null: nobody asks
+  FlightLogger* logger = nullptr;                ///< keeps the log for other observers; null: not needed
   std::vector<FlightObserver*> observers;        ///< beside the logger
   std::function<void(const FlightProgress&)> on_progress;  ///< ten times per simulated second; may be empty
 };
@@ -43,7 +43,7 @@ struct LostFilm : MachineError {
   using MachineError::MachineError;
 };
 
-/// What a page says where its flight is another than the run's; empty where it is the same or nobody knows.
+/// The warning of a page if its flight is not the run's; empty if it is the same or this is unknown.
 std::string warning_of_digest(const FlightResult& result, const std::string& expected_digest);
 
 /// Flies a scenario once and leaves its files (run_files.hpp). Throws

@@ -40,7 +40,7 @@ class FlightClock {
   bool gps() const { return gps_enabled_ && step_ % gps_steps_ == 0; }
   bool camera() const { return step_ % camera_steps_ == 0; }
   bool replan() const { return step_ % replan_steps_ == 0; }
-  /// End of the next frame's exposure, where one ends now.
+  /// End of the next frame's exposure, if one ends now.
   std::int64_t next_camera_t_ns() const { return time_of_step_ns(step_ + camera_steps_); }
 
  private:

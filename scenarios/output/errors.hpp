@@ -6,13 +6,13 @@
 
 #include "perception/io/text_file.hpp"
 
-/// How a command ends that did not get to its end. Each is one line on standard error.
+/// Errors that end a command early. Each is one line on standard error.
 namespace understory {
 
 /// Bad input from a person: where (file:line, an option), the key, what was expected. Exit status 2.
 using ScenarioError = InputError;
 
-// MachineError (perception/io/text_file.hpp): the machine failed us. Exit status 3.
+// MachineError (perception/io/text_file.hpp): the machine failed. Exit status 3.
 
 /// A signal came. Exit status 128 and its number.
 struct Stopped : std::runtime_error {

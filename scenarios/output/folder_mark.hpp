@@ -18,12 +18,12 @@ class FolderMark {
  public:
   enum class Manner {
     alone,         ///< no other program may write there meanwhile
-    beside_others  ///< adds a file or two, whoever else is at work
+    beside_others  ///< adds a file or two, even while other programs write
   };
 
-  /// Makes folder and mark where there are none. Lists the results of a kind that grows where only their mark
-  /// is missing: copies often lack hidden files. Throws ScenarioError, which calls the folder by `name`,
-  /// where another program writes there, it cannot be written, or it is marked as results of another kind.
+  /// Makes folder and mark where there are none. If results of a kind that grows lack only their mark, lists
+  /// them anew: copies often lack hidden files. Throws ScenarioError, which calls the folder by `name`, if
+  /// another program writes there, it cannot be written, or it is marked as results of another kind.
   FolderMark(const std::filesystem::path& folder, const ResultKind& kind, const std::filesystem::path& name,
              Manner manner = Manner::alone);
   /// Removes a mark that it made and that lists nothing, and folders that were made for it.
@@ -32,18 +32,19 @@ class FolderMark {
   FolderMark& operator=(const FolderMark&) = delete;
 
   const std::set<std::string>& files() const { return files_; }
-  /// Throws ScenarioError, which names one, where there are files that the mark does not list. A folder below
-  /// with a mark of its own is left to that.
+  /// Throws ScenarioError, which names one, if there are files that the mark does not list. Folders below
+  /// with a mark of their own are left out.
   void require_no_other_files() const;
   /// For results that grow: whether they were begun, which their manifest tells. Lists the kind's names.
-  /// Throws ScenarioError where they were begun and nobody asked to go on (`resume`), or where the folder
-  /// is new to us and holds other files.
+  /// Throws ScenarioError if they were begun and nobody asked to go on (`resume`), or if another file is
+  /// there that is not listed. Conditions of a campaign that was killed before its manifest was written may
+  /// be there.
   bool goes_on(bool resume);
   /// Throws ScenarioError where the file, by relative path, is there and is not listed.
   void require_own(const std::string& file) const;
   /// Lists files that will be written now, or that were.
   void add(const std::vector<std::string>& files);
-  /// Removes what is listed and not among `kept` from folder and list.
+  /// Removes the listed files that are not in `kept` from folder and list.
   void keep_only(const std::set<std::string>& kept);
 
  private:
@@ -62,7 +63,7 @@ class FolderMark {
 /// Throws ScenarioError: the file is the user's.
 [[noreturn]] void refuse_other_file(const std::filesystem::path& file);
 
-/// Removes what programs left unfinished in `folder` that are alive no more.
+/// Removes unfinished files and folders in `folder` of programs that no longer run.
 void clear_unfinished(const std::filesystem::path& folder);
 
 }  // namespace understory

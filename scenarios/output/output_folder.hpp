@@ -9,18 +9,18 @@
 
 namespace understory {
 
-/// A folder for what is not finished: made empty, gone with this object, whatever is in it. One program at a
-/// time works on `target`.
+/// A folder for unfinished results: made empty, and removed with all its content when this object ends. One
+/// program at a time works on `target`.
 class UnfinishedFolder {
  public:
-  /// `within`: in the target's folder itself, where nothing can be made beside it. Throws ScenarioError,
-  /// which calls the target by `name`, where another program works on it, or where it cannot be written.
+  /// `within`: it is made in the target, because nothing can be made beside that. Throws ScenarioError, which
+  /// calls the target by `name`, if another program works on it, or where it cannot be written.
   UnfinishedFolder(const std::filesystem::path& target, const ResultKind& kind,
                    const std::filesystem::path& name, bool within = false);
   ~UnfinishedFolder();
   const std::filesystem::path& path() const { return part_->path(); }
   FolderMark& mark() { return *mark_; }
-  /// Gives it its name, where that is free or an empty folder's; false where something is in the way.
+  /// Renames it to `name`, if that is free or an empty folder; false if something is in the way.
   bool rename_to(const std::filesystem::path& name);
 
  private:
@@ -45,9 +45,9 @@ class OutputFolder {
   /// where the disk is full.
   OutputFolder(std::filesystem::path folder, const ResultKind& kind, std::string manifest, Replace replace);
 
-  /// Where to write until then; holds the manifest.
+  /// Where to write until finish(); holds the manifest.
   const std::filesystem::path& path() const { return part_->path(); }
-  /// Puts what was written into the place of what was there.
+  /// Replaces the results that were there by what was written.
   void finish();
 
  private:

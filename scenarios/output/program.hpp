@@ -11,22 +11,22 @@
 #include <utility>
 #include <vector>
 
-/// This very program.
+/// This very program: its version, its identity and processes that run it.
 namespace understory {
 
 extern const char* const understory_version;  ///< "0.1.0"
-/// What it was built from: "a1b2c3d4e5", "-dirty" behind it where files were changed since; "unknown" where
-/// there was no git, and in programs of others. main() and the Python module set it to the second, which they
-/// alone are linked with.
+/// The commit it was built from: "a1b2c3d4e5", with "-dirty" if files were changed since; "unknown" without
+/// git and in other programs. main() and the Python module set it to commit_of_this_build, which they alone
+/// link.
 extern const char* understory_commit;
 extern const char* const commit_of_this_build;
 
-/// Of the program's file. Equal programs give equal results.
+/// Digest of the program's file. Equal programs give equal results.
 std::string program_digest();
-/// Of the shared libraries that this process has mapped, by their files' contents: others may give other
+/// Digest of the contents of the shared libraries that this process has mapped: others may give other
 /// results.
 std::string mapped_libraries_digest();
-/// Of bytes; of a file's contents, or of nothing where it cannot be read.
+/// Digest of bytes; of a file's contents, or of nothing if it cannot be read.
 std::string digest_of_text(std::string_view text);
 std::string digest_of_file(const std::filesystem::path& file);
 /// What decides flights beside their scenarios: names ("program", "libraries", "models", "rig long") with a
@@ -37,10 +37,10 @@ using Identity = std::vector<std::pair<std::string, std::string>>;
 /// The first name whose digest differs, or which only one has; empty where both are equal.
 std::string difference_of(const Identity& one, const Identity& other);
 
-/// The model of this machine's processor, as its kernel calls it; empty where it does not.
+/// The model of this machine's processor, as its kernel calls it; empty if unknown.
 std::string processor_model();
-/// What goes wrong with a process's surroundings before main() can complain: standard descriptors that are
-/// not open, SIGCHLD ignored by the parent, SIGXFSZ, which would kill where a write can fail.
+/// Repairs faults of a process's environment that main() cannot report: opens closed standard descriptors,
+/// sets SIGCHLD to its default, and ignores SIGXFSZ, so that a write fails instead.
 void repair_surroundings();
 
 /// A process that has ended.
@@ -51,16 +51,16 @@ struct EndedProcess {
   double peak_memory_mb = 0;  ///< 10^6 bytes, resident
 };
 
-/// Starts this program with `arguments` (without the program's name), in a process group of its own: Ctrl-C
-/// is ours to answer. `at_our_end`: the signal that it gets then. `log`: takes its standard error, its output
-/// goes nowhere; empty: both are ours. Throws MachineError where it cannot be started.
+/// Starts this program with `arguments` (without the program's name), in a process group of its own, so that
+/// Ctrl-C reaches us alone. `at_our_end`: the signal that it gets when we end. `log`: takes its standard
+/// error, its output is discarded; empty: it has ours. Throws MachineError if it cannot be started.
 pid_t start_this_program(const std::vector<std::string>& arguments, int at_our_end,
                          const std::filesystem::path& log = {});
 
 /// What a program said last on its standard error, which `log` took: without the program's name.
 std::string last_line_of(const std::filesystem::path& log);
 
-/// Waits for `pid`, or with -1 for any child; with WNOHANG in `options` only looks: pid 0 where it runs yet.
+/// Waits for `pid`, or with -1 for any child; WNOHANG in `options` only checks: pid 0 while it runs.
 EndedProcess wait_for_process(pid_t pid, int options = 0);
 
 /// Runs copies of this very program, a few at a time, so that a flight that crashes or hangs ends its own

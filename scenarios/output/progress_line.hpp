@@ -6,22 +6,22 @@
 
 namespace understory {
 
-/// How far the work is: one line of standard output, written over and over on a terminal and gone with this
-/// object. Elsewhere a line each half minute.
+/// How far the work is: one line of standard output, rewritten on a terminal and removed with this object.
+/// Elsewhere a line each half minute.
 class ProgressLine {
  public:
-  /// `shown`: false says nothing anywhere (--quiet).
+  /// `shown`: false prints nothing at all (--quiet).
   explicit ProgressLine(bool shown = true);
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// `text`: how far it is, at most ten times a second. `done` since this line began, `left`: parts of one
-  /// kind, for an estimate of the time left; none without them.
+  /// `text`: how far it is, at most ten times a second. `done` parts since this line began and `left` parts
+  /// give an estimate of the time left; none if `done` is 0.
   void show(const std::string& text, std::size_t done = 0, std::size_t left = 0);
-  /// Until the next show().
+  /// Removes the line until the next show().
   void clear();
-  /// Whatever line stands on the terminal, when the program ends without warning.
+  /// Removes any progress line from the terminal, when the program ends without warning.
   static void clear_any();
 
  private:

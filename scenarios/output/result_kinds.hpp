@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-/// What commands leave in their folders. Help and manual show this table; tests hold commands and pages to
-/// it.
+/// The files that commands leave in their folders. Help and manual show this table; tests compare commands
+/// and pages with it.
 namespace understory {
 
 /// One kind of results, all in one folder.
@@ -17,7 +17,7 @@ struct ResultKind {
   std::string_view manifest;
   /// The file that says that all are there.
   std::string_view last;
-  bool grows = false;  ///< a later command goes on with it, where the manifest is there
+  bool grows = false;  ///< a later command continues it, if the manifest is there
   /// Relative paths of all that may be there, with '*' for a part of a name.
   std::vector<std::string> patterns;
   std::vector<std::string> added = {};  ///< names that report and mcap add
@@ -32,12 +32,12 @@ const ResultKind* results_of(std::string_view command);
 /// The patterns that are whole names.
 std::vector<std::string> names_of(const ResultKind& kind);
 
-/// Throws ScenarioError where `output` would be one of the files in `folder` that results of any kind may
-/// have there, but for those called `allowed`. An empty output is none.
+/// Throws ScenarioError if `output` is one of the files that results of any kind may have in `folder`, except
+/// those called `allowed`. An empty output: none.
 void require_outside(const std::filesystem::path& output, const std::filesystem::path& folder,
                      std::string_view allowed = "");
 
-/// Every file below `folder` that a pattern means, by relative path, sorted.
+/// Every file below `folder` that matches a pattern, by relative path, sorted.
 std::vector<std::string> files_of(const std::filesystem::path& folder, const ResultKind& kind);
 
 }  // namespace understory

@@ -9,16 +9,16 @@
 namespace understory {
 
 /// From now on a signal ends the program at once, wherever it is: one line, every Unfinished removed, exit
-/// status 128 and the signal's number. A thread does that, so that nothing has to ask. SIGHUP says nothing,
-/// there is nobody to read it, and stays ignored where it was (nohup).
+/// status 128 and the signal's number. A thread does that, so that no code has to poll. SIGHUP prints no
+/// line, because nobody can read it, and stays ignored if it was (nohup).
 void end_on_signals();
 
-/// A child process that ends with this one: a signal here hangs it up, and is waited for there.
+/// A child process that ends with this one: after a signal here it gets SIGHUP, and its end is waited for.
 void ends_with_us(pid_t child);
 void has_ended(pid_t child);
 
-/// While it lives, the signals end nothing: they are remembered, for work that must come to an end of its
-/// own. One at a time counts, the outermost.
+/// While it lives, the signals do not end the program; they are remembered, for work that ends by itself. If
+/// several live, the outermost counts.
 class StopSignals {
  public:
   StopSignals();
@@ -30,8 +30,8 @@ class StopSignals {
   int number() const;  ///< the signal that came; 0: none
 };
 
-/// Removes a file, or a folder with all that is in it. Its mark goes last: until then that says whose the
-/// rest is, where it could not be removed.
+/// Removes a file, or a folder with all that is in it. Its mark is removed last: if something else cannot be
+/// removed, the mark still shows whose it is.
 void remove_unfinished(const std::filesystem::path& path);
 
 /// Makes a folder and those above it. Throws as OutputFile, calling the folder by `name`.
@@ -39,8 +39,8 @@ void make_folders(const std::filesystem::path& folder, const std::filesystem::pa
 /// Removes the folders that make_folders() made, as far as they are empty: when the work ends early.
 void remove_made_folders();
 
-/// A file or folder that bears another name until it is whole, and is removed where the work ends before: by
-/// an exception, by a signal.
+/// A file or folder that has another name until it is whole, and is removed if the work ends before: by an
+/// exception or by a signal.
 class Unfinished {
  public:
   /// Nothing is made yet.
@@ -60,8 +60,8 @@ class Unfinished {
   bool is_kept_ = false;
 };
 
-/// Whoever holds it may make and name unfinished things, and have the last word on standard error. A signal
-/// takes it for good.
+/// The lock for making and renaming unfinished files and for the last line on standard error. A signal takes
+/// it for good.
 std::unique_lock<std::recursive_mutex> hold_outputs();
 
 }  // namespace understory

@@ -17,9 +17,8 @@
 #include "scenarios/config/any_config.hpp"
 #include "scenarios/course/courses.hpp"
 
-/// The parts that a scenario chooses by name: what detects obstacles, what says where the aircraft is, what
-/// decides its way, and what stands in its way. Ours and those of plug-ins are registered in the same way,
-/// with their keys.
+/// The parts that a scenario chooses by name: detector, state source, planner, and course. Ours and those of
+/// plug-ins are registered in the same way, with their keys.
 namespace understory {
 
 class TruthHistory;
@@ -37,7 +36,7 @@ struct Part {
   std::shared_ptr<const AnyConfig> defaults = nullptr;  ///< its own keys, below its name; null: none
   std::string plugin = "";                              ///< file that it came from; empty: ours
 
-  // What others ask of a detector before it is made; other kinds leave it as it is.
+  // Properties of a detector that are needed before it is made; parts of other kinds keep the defaults.
   bool needs_images = true;  ///< images that nobody needs are not rendered
   /// Time that one pair costs the measuring machine (docs/thesis.md), before perception.compute.factor.
   std::function<double(const PerceptionSection&)> cost_s = nullptr;

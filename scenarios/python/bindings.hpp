@@ -34,8 +34,8 @@ struct PointRecord {
   std::int32_t sightings;
 };
 
-/// Tells numpy of both. Numpy is imported when it is needed first: it takes two thirds of the time to import
-/// this.
+/// Registers both with numpy. Numpy is imported when it is needed first: it takes two thirds of the time to
+/// import this.
 void register_records();
 
 py::array_t<HitRecord> array_of(const std::vector<StereoHit>& hits);
@@ -43,7 +43,7 @@ py::array_t<PointRecord> array_of(const std::vector<ObstaclePoint>& points);
 /// An image as a read-only array that keeps it alive: no copy is made.
 py::array array_of(const cv::Mat& image);
 
-/// Lives as long as the part of an object: what its factory made of ours refers to its flight.
+/// Lives as long as a Python object's part. Our parts made for it refer to its flight and check it.
 using Life = std::shared_ptr<const char>;
 
 /// Objects of Python as parts. They call Python with its lock held. Throw std::runtime_error, one line, where
@@ -61,8 +61,8 @@ std::string told(py::error_already_set& error);
 /// Prints the traceback; throws the line as std::runtime_error.
 [[noreturn]] void throw_as_ours(py::error_already_set& error);
 
-/// Python ends a thread that wants its lock while the interpreter ends, by unwinding its frames. What ours
-/// hold would want the lock, too: such a thread waits here until the process has ended.
+/// If a thread requests Python's lock while the interpreter ends, Python ends the thread by unwinding its
+/// frames. Our destructors would request it, too, so such a thread waits here until the process has ended.
 template <typename Function>
 auto or_wait_for_the_end(Function&& function) {
   try {
@@ -87,7 +87,7 @@ auto in_python(Function&& function) {
   });
 }
 
-/// Throws TypeError in one line where it is no such value: "plan(): must be a Plan, got NoneType".
+/// Throws TypeError in one line if it is not such a value: "plan(): must be a Plan, got NoneType".
 template <typename Value>
 Value taken(const py::handle& given, const char* name, const char* what) {
   try {
@@ -97,8 +97,8 @@ Value taken(const py::handle& given, const char* name, const char* what) {
   }
 }
 
-/// Whether the newest exception of Python that was told on this thread came from the keyboard; forgets it.
-/// The flight then ended with an error that is none of the part's.
+/// Whether the newest exception of Python on this thread came from the keyboard (Ctrl-C); clears this. The
+/// flight then ended with an error that the part did not cause.
 bool was_interrupted();
 
 // What the module holds, a file each.
@@ -107,7 +107,7 @@ void bind_parts(py::module_& module);  ///< parts written in Python
 void bind_scenario(py::module_& module);
 void bind_flight(py::module_& module);
 
-/// Throws where a file with the scenario's text would not fly again: a part was made by this program alone.
+/// Throws if the scenario's text could not be flown again, because no file defines one of its parts.
 void require_files(const Scenario& scenario);
 
 }  // namespace understory

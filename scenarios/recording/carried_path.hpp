@@ -20,8 +20,8 @@ namespace understory {
 /// not increase, or two poses need more than 100 m/s or a quarter turn.
 std::vector<TimedPose> read_path(const std::filesystem::path& file);
 
-/// Those at least 0.05 s apart, with both ends, because files round positions: a tenth of a millimetre at 200
-/// Hz is 8 m/s^2.
+/// The poses at least 0.05 s apart, with both ends, because files round positions: a tenth of a millimetre at
+/// 200 Hz is 8 m/s^2.
 std::vector<TimedPose> thinned(const std::vector<TimedPose>& poses);
 
 /// A smooth path through given poses: natural cubic splines (de Boor, A Practical Guide to Splines, 1978,
@@ -47,8 +47,8 @@ class SmoothPath {
 /// The pose of a carried body after a time, s. At least twice differentiable.
 using CarriedPose = std::function<Eigen::Isometry3d(double t_s)>;
 
-/// What is true of it at t_ns: pose, and from it by central differences (over 0.2 ms) velocity, rates and
-/// specific force. The pose is asked for a little before and after that moment, too.
+/// The truth of a carried body at t_ns: pose, and from it by central differences (over 0.2 ms) velocity,
+/// rates and specific force. pose_at is also called for times shortly before and after t_ns.
 Truth carried_truth(const CarriedPose& pose_at, std::int64_t t_ns, double gravity_mps2);
 
 /// The cameras carried past obstacles, as the paper's ground data were taken.
@@ -67,9 +67,9 @@ struct WalkPath {
   std::array<double, 4> phases_rad = {};  ///< of the sways
 };
 
-/// Along the lane nearest to the middle that keeps shoulders clear of all obstacles, from 10 m before the
-/// first of them. The sway's phases come from the scenario's seed. Throws ScenarioError where no lane within
-/// the course is free.
+/// A path along the lane nearest to the middle that keeps shoulders clear of all obstacles, from 10 m before
+/// the first of them. The sway's phases come from the scenario's seed. Throws ScenarioError where no lane
+/// within the course is free.
 WalkPath walk_path(const WalkConfig& config, const Scenario& scenario, const StereoRig& rig,
                    const std::vector<Obstacle>& obstacles);
 

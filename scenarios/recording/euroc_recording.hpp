@@ -18,7 +18,7 @@
 
 namespace understory {
 
-/// Keeps images, IMU samples and the truth in the EuRoC/ASL layout: <folder>/mav0 (docs/record.md). Images
+/// Records images, IMU samples and the truth in the EuRoC/ASL layout: <folder>/mav0 (docs/record.md). Images
 /// are written as they come, the tables by finish().
 class EurocRecording : public FlightObserver {
  public:
@@ -30,17 +30,17 @@ class EurocRecording : public FlightObserver {
   EurocRecording(const EurocRecording&) = delete;
   EurocRecording& operator=(const EurocRecording&) = delete;
 
-  // Of a flight:
+  // For a flight:
   bool needs_images() const override { return true; }
   void on_frame(const Flight& flight) override;
   void on_step(const Flight& flight) override;
 
-  // Of cameras that are carried:
+  // For cameras that are carried:
   /// To be called at every physics step, before its images.
   void observe(const Truth& truth);
   void add(const ImuSample& sample);
-  /// Within a second of its moment. `cameras`, those that took it, draw the true depth and the objects.
-  /// Throws MachineError where the disk is full.
+  /// To be called within a second of the frame's time. `cameras`, which took it, draw the true depth and the
+  /// objects. Throws MachineError where the disk is full.
   void add(const StereoFrame& frame, const StereoCameras& cameras);
 
   /// Throws ScenarioError where there is no frame.

@@ -35,13 +35,13 @@ std::array<RecordedCamera, 2> recorded_cameras(const CalibratedRig& rig);
 /// looks, as read_euroc_calibration takes them.
 std::string camera_sensor_text(const RecordedCamera& camera, const StereoRig& rig, int rate_hz);
 enum class Side { left, right };
-/// That of the depth images, which are of a rectified camera whatever the images are.
+/// The sensor.yaml of the depth images, which are always those of a rectified camera.
 std::string depth_sensor_text(const StereoRig& rig, int rate_hz, Side side);
-/// That of the images of objects, which are of the same camera.
+/// The sensor.yaml of the images of objects, which are of the same camera.
 std::string objects_sensor_text(const StereoRig& rig, int rate_hz);
 /// imu0/sensor.yaml: noise per root hertz; the random walks are 0 where the scenario has them off.
 std::string imu_sensor_text(const ImuConfig& config, int rate_hz);
-/// Of the body's states, true or estimated.
+/// The sensor.yaml of the body's states, true or estimated.
 std::string state_sensor_text(const std::string& comment);
 
 /// First lines and lines of the data.csv files. Nanoseconds, SI; quaternion w x y z, body into world.

@@ -20,7 +20,7 @@ class PointCloud;
 class Pose;
 }  // namespace foxglove
 
-/// What the flight knows, as Foxglove's messages have it. Times are simulated ones.
+/// A flight's data as Foxglove's messages. Times are simulated ones.
 namespace understory {
 
 void set_time(google::protobuf::Timestamp* timestamp, std::int64_t t_ns);
@@ -37,7 +37,7 @@ std::vector<Eigen::Vector3d> surface_points(const std::vector<Obstacle>& obstacl
 
 foxglove::CameraCalibration calibration_of(const CalibratedRig& rig, bool is_left, std::int64_t t_ns);
 
-/// Of a camera as its images come, in the body: a raw one is turned against the rectified pair.
+/// The pose in the body of the camera that gives the images: a raw one is turned against the rectified pair.
 Eigen::Isometry3d camera_pose(const CalibratedRig& rig, bool is_left);
 
 /// As PNG.

@@ -33,12 +33,12 @@ struct RecordedWalk {
   Carried carried;
 };
 
-/// Carries them past the scenario's obstacles on foot. Ends at the goal plane or after time_limit_s. Throws
-/// as walk_path and EurocRecording do.
+/// Carries cameras and IMU past the scenario's obstacles on foot. Ends at the goal plane or after
+/// time_limit_s. Throws as walk_path and EurocRecording do.
 RecordedWalk walk_recorded(const Scenario& scenario, const WalkConfig& config, const FlyOptions& options);
 
-/// Carries them along `poses` of read_path, smoothly, from the first to the last, whatever stands there. Time
-/// starts with the first pose; time_limit_s does not count. Throws as EurocRecording does.
+/// Carries cameras and IMU along `poses` of read_path, smoothly, from the first to the last, regardless of
+/// obstacles. Time starts with the first pose; time_limit_s does not count. Throws as EurocRecording does.
 Carried follow_recorded(const Scenario& scenario, const std::vector<TimedPose>& poses,
                         const FlyOptions& options);
 

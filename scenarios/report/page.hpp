@@ -43,7 +43,7 @@ struct PageContent {
   PageArrays arrays;
   std::string film;   ///< bytes of an mp4; empty: none
   std::string still;  ///< bytes of a JPEG; empty: none
-  /// Parts that are read when somebody asks for them: a name and bytes of packed_part().
+  /// Parts that the page reads on demand: a name and bytes of packed_part().
   std::vector<std::pair<std::string, std::string>> parts;
 };
 

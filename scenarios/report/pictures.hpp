@@ -24,7 +24,7 @@ namespace understory {
 /// A picture as a PNG file, whole or not at all: 8- or 16-bit gray or 8-bit BGR.
 void write_picture(const std::filesystem::path& file, const cv::Mat& picture);
 
-/// H.264 in mp4, which browsers play, in an UnfinishedFolder. Removed where it does not come to finish().
+/// H.264 in mp4, which browsers play, in an UnfinishedFolder. Removed if finish() is not reached.
 class VideoFile {
  public:
   VideoFile(std::filesystem::path file, double frames_per_s);
@@ -60,8 +60,8 @@ struct OverlayMoment {
 /// altitude in feet at the right; the plan is a green line. BGR 8-bit.
 cv::Mat draw_overlay(const OverlayMoment& moment, const StereoRig& rig, int scale);
 
-/// Along the lower edge, as large as the picture's width has room for, where it is shown at half its size,
-/// too.
+/// Writes along the lower edge, as large as the picture's width allows, to be legible at half the picture's
+/// size.
 void write_caption(cv::Mat& picture, const std::string& text);
 
 /// A cross in a ring, for what went wrong there.

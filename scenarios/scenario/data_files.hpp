@@ -15,7 +15,7 @@ std::filesystem::path rig_path(const std::string& argument);
 std::filesystem::path scenario_file(const std::string& argument);
 /// The same of a file in another folder of scenarios/: library_file("gate", "campaigns", "campaign").
 std::filesystem::path library_file(const std::string& argument, const char* folder, const char* noun);
-/// The names that either may be given as.
+/// The names of all rigs, and of all scenarios.
 std::vector<std::string> rig_names();
 std::vector<std::string> scenario_names();
 

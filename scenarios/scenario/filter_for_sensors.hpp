@@ -5,9 +5,9 @@
 
 namespace understory {
 
-/// `filter`, whose numbers hold for sensors of the nominal grade, told how much worse or better `sensors`
-/// are: noises, biases, scale errors, vibration, and the barometer's error in the propeller's suction.
-/// Nominal sensors change nothing.
+/// `filter`, whose numbers hold for sensors of the nominal grade, adapted to the errors of `sensors`: noises,
+/// biases, scale errors, vibration, and the barometer's error in the propeller's suction. Nominal sensors
+/// change nothing.
 FilterConfig filter_for_sensors(FilterConfig filter, const SensorsConfig& sensors);
 
 }  // namespace understory

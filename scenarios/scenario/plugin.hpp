@@ -56,7 +56,7 @@ struct Plugin {
 };
 
 /// Loads the plug-in and adds its parts to parts(); one that has been loaded is not loaded again. `asked_by`
-/// begins the message: "a.yaml:3: plugins". Throws ScenarioError, one line that names the file: it is not
+/// begins the message: "a.yaml:3: plugins". Throws ScenarioError, one line that names the file, if it is not
 /// there, is not a shared library, lacks a symbol, is not a plug-in, was built for something else (what, and
 /// what is needed), adds a part whose name is taken, or has changed since this process loaded it.
 const Plugin& load_plugin(const std::filesystem::path& file, const std::string& asked_by);
@@ -65,7 +65,7 @@ const Plugin& load_plugin(const std::filesystem::path& file, const std::string& 
 /// beside or below it that it imported. Throws ScenarioError, one line that names file and line.
 using PythonLoader = std::vector<std::string> (*)(const std::string& file, const std::string& text,
                                                   Parts& parts);
-/// Set by the Python module. Null: Python is not there yet; the first plug-in that ends in .py opens it.
+/// Set by the Python module. Null: Python is not loaded yet; the first plug-in that ends in .py loads it.
 PythonLoader& python_loader();
 
 /// The files of --plugin, which every scenario that is read then loads.

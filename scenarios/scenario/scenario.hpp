@@ -114,8 +114,8 @@ AutopilotSection planning_of(PlanningPreset preset);
 
 inline constexpr std::uint64_t maximum_seed = std::uint64_t{1} << 32;
 
-/// A file that a flight reads beside its scenario: a plug-in (docs/integrate.md), what such a one imports, or
-/// what another key names.
+/// A file that a flight reads beside its scenario: a plug-in (docs/integrate.md), a file that a plug-in
+/// imports, or a file that another key names.
 struct FileConfig {
   std::string file;
   std::string hash;
@@ -133,7 +133,7 @@ struct Scenario {
   Eigen::Vector3d wind_world_mps = Eigen::Vector3d::Zero();
   WindConfig wind;
   BandConfig band;
-  ForestConfig forest;  ///< of all courses: its length and its sides
+  ForestConfig forest;  ///< its length and its sides hold for all courses
   PartConfigs courses = parts().courses.configs();
   std::vector<ListedObstacle> obstacles;
   LaunchConfig launch;
@@ -149,7 +149,7 @@ struct Scenario {
   EstimationSection estimation;
   AutopilotSection autopilot = planning_of(PlanningPreset::economical);
 
-  /// The mission as the stack knows it.
+  /// The mission as the stack gets it.
   Mission mission() const {
     return {0,
             goal_x_m(),
@@ -160,7 +160,7 @@ struct Scenario {
   }
   /// The simulator's airframe, mismatch included. The stack never sees it.
   Airframe flown_airframe() const { return mismatched(airframe, mismatch); }
-  /// Where the trees stand that wind.shelter_factor is about.
+  /// Where the trees stand to which wind.shelter_factor applies.
   ForestStand stand() const {
     if (course != "forest") return {};
     return {forest.clear_m, goal_x_m(), forest.half_width_m, forest.trunk_height_m};
@@ -173,7 +173,7 @@ struct Scenario {
     return config;
   }
   double goal_x_m() const { return forest.clear_m + forest.length_m; }
-  /// Where a flight goes on: beyond its sides and behind it a flight has left the course.
+  /// The course's ground. Beyond its sides and behind it a flight has left the course.
   Eigen::AlignedBox2d course_rectangle() const {
     return {Eigen::Vector2d(-forest.half_width_m, -forest.half_width_m),
             Eigen::Vector2d(goal_x_m(), forest.half_width_m)};

@@ -19,10 +19,10 @@ CalibratedRig rig_of(const Scenario& scenario, const std::filesystem::path& mode
 std::vector<std::filesystem::path> rig_files_of(const Scenario& scenario,
                                                 const std::filesystem::path& models_folder);
 
-/// What is read of a rig that is a file: that file, with `raw` its calibration, too.
+/// The files that are read for a rig given as a file: that file, and with `raw` its calibration.
 std::vector<std::filesystem::path> files_of_rig(const std::filesystem::path& file, bool raw);
 
-/// Throws ScenarioError, one line, where the rule cannot look through the rig (fault_of). The line names the
+/// Throws ScenarioError, one line, if the rule cannot be used with the rig (fault_of). The line names the
 /// keys as the user writes them: `depths_key`, and the section of all others.
 void check_depths(const PushbroomConfig& rule, const StereoRig& rig, const std::string& depths_key,
                   const std::string& section);

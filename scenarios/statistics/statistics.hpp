@@ -21,7 +21,7 @@ struct Share {
     of += other.of;
     with += other.with;
   }
-  /// 0 .. 1; 0 of nothing.
+  /// 0 .. 1; 0 if `of` is 0.
   double value() const { return of > 0 ? static_cast<double>(with) / static_cast<double>(of) : 0; }
 };
 
@@ -90,11 +90,11 @@ struct BootstrapEstimate {
 /// Stat. Assoc. 82; Efron & Tibshirani 1993, An Introduction to the Bootstrap, 14.3), acceleration by
 /// jackknife. For a paired comparison the sample is the pairs' differences. Fewer than two values say nothing
 /// about their spread: the interval is -infinity .. infinity. Where all values are the same the
-/// interval is that value: it knows only what was seen. Below about 15 values it is narrower than it says.
+/// interval is that value: it knows only what was seen. Below about 15 values it is too narrow.
 BootstrapEstimate bootstrap(std::span<const double> sample, const Statistic& statistic = mean_of,
                             const BootstrapOptions& options = {});
 
-/// How far (long, ...) one subject was watched, and whether it ended there or was last seen well: censored.
+/// How far (long, ...) one subject was watched, and whether it ended there; if not, it is censored there.
 struct Lifetime {
   double at = 0;
   bool ended = false;
@@ -110,14 +110,14 @@ struct SurvivalStep {
 /// A step at 0, then one wherever a subject ended.
 struct SurvivalCurve {
   std::vector<SurvivalStep> steps;
-  double last_at = 0;  ///< nobody was watched beyond: the curve says nothing there
+  double last_at = 0;  ///< nobody was watched beyond: the curve ends there
 };
 
 /// The share that gets beyond each distance (Kaplan & Meier 1958, J. Am. Stat. Assoc. 53), with Greenwood's
 /// variance and the interval of log(-log share) (Kalbfleisch & Prentice 1980), which stays within 0 and 1.
-/// Who is censored where another ends counts as at risk there. Where those formulas say nothing: before the
-/// first ending the interval is Wilson's for n of n, and after the last subject has ended it reaches from 0
-/// to the end of the step before. Without lifetimes: one step, 0 .. 1.
+/// A subject censored where another ends counts as at risk there. Where those formulas are undefined: before
+/// the first ending the interval is Wilson's for n of n, and after the last subject has ended it reaches from
+/// 0 to the end of the step before. Without lifetimes: one step, 0 .. 1.
 SurvivalCurve kaplan_meier(const std::vector<Lifetime>& lifetimes);
 
 /// The shortest distance by which half have ended; nothing where more than half got through.

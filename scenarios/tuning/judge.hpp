@@ -23,14 +23,14 @@ struct Measured {
   std::string refused = {};        ///< why nothing was measured, one line; empty where it was
 };
 
-/// Measures scenarios on some data. The same scenario comes out the same every time.
+/// Measures scenarios on some data. The same scenario always gives the same result.
 class Judge {
  public:
   virtual ~Judge() = default;
-  /// `name`: letters, digits and '-', of this scenario alone. Throws Stopped, and MachineError where the
+  /// `name`: letters, digits and '-', unique to this scenario. Throws Stopped, and MachineError where the
   /// machine fails.
   virtual Measured measure(const std::string& name, const Scenario& scenario) = 0;
-  /// Of some units (one or more, some perhaps twice) together, in the order of the figures' names.
+  /// The figures of some units (one or more, some perhaps twice) together, in the order of their names.
   virtual Figures figures(std::span<const Counts> units) const = 0;
 };
 
@@ -47,7 +47,7 @@ struct FlightJudgeConfig {
 extern const std::vector<std::string> flight_figure_names;
 
 /// Flies a scenario with every seed. Counts of a flight: at the goal (0 or 1), then the other figures. A
-/// scenario of which a flight failed to run is refused; a flight that somebody killed is the machine's
+/// scenario is refused if one of its flights failed to run; a flight that somebody killed is the machine's
 /// failure.
 std::unique_ptr<Judge> flight_judge(FlightJudgeConfig config);
 
@@ -58,9 +58,9 @@ extern const std::vector<std::string> vision_figure_names;
 bool matters_on_recordings(std::string_view key);
 
 /// Runs a scenario's pushbroom detector over every `every`-th frame of recordings, which it holds in memory
-/// (0.55 MB a frame), `threads` recordings at a time; what comes out does not depend on that. A scenario
-/// whose depths the rig cannot look at is refused. Throws ScenarioError where a folder cannot be read, has no
-/// true depth, or another rig than the first.
+/// (0.55 MB a frame), `threads` recordings at a time; the result does not depend on that. A scenario whose
+/// depths the rig cannot show is refused. Throws ScenarioError where a folder cannot be read, has no true
+/// depth, or another rig than the first.
 std::unique_ptr<Judge> vision_judge(const std::vector<std::filesystem::path>& folders, int every,
                                     int threads);
 

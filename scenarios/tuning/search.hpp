@@ -23,13 +23,13 @@ struct Parameter {
   std::string key;
   bool whole = false;               ///< whole numbers only
   double from = 0, to = 1;          ///< the range's ends, both included
-  bool logarithmic = false;         ///< as many values to a factor, not to a difference; from > 0
+  bool logarithmic = false;         ///< equal factors, not differences, have as many values; from > 0
   int steps = 0;                    ///< of a grid over the range; 0: not said
   std::vector<double> values = {};  ///< instead of a range, if any
 };
 
 /// The value at a share (0 .. 1, clamped) of the parameter's range or of its list; rounded to six
-/// significant digits, so that what is written is what was tried, and to whole numbers where those are asked.
+/// significant digits, so that written and tried values are equal; whole parameters get whole numbers.
 double value_at(const Parameter& parameter, double share);
 
 /// The list, or `steps` (>= 2) values spread over the range; each once.
@@ -38,7 +38,7 @@ std::vector<double> spread_values(const Parameter& parameter, int steps);
 /// What is searched.
 struct Space {
   std::vector<Parameter> parameters;
-  /// Of every list of which an entry is tuned, all entries as the scenario has them: lists are written whole.
+  /// All entries, as in the scenario, of every list with a tuned entry: lists are written whole.
   std::map<std::string, std::vector<double>> lists = {};
 };
 
@@ -69,7 +69,7 @@ struct SearchConfig {
 
 void visit_fields(FieldVisitor& visit, SearchConfig& search);
 
-/// Measures one point. Whatever it throws ends the search and comes out of it.
+/// Measures one point. An exception from it ends the search and is passed on.
 using Evaluate = std::function<Figures(const Point&)>;
 
 /// Calls `evaluate` `trials` times, one point after the other. The sequence of points depends on nothing but
@@ -87,7 +87,7 @@ void search_by_cma_es(const Space& space, const Objective& objective, const Sear
 void search_by_nsga2(const Space& space, const Objective& objective, const SearchConfig& config,
                      const Evaluate& evaluate);
 
-/// Both, as the module hands them over.
+/// Both methods, as their module provides them.
 struct EvolutionMethods {
   using Method = void (*)(const Space&, const Objective&, const SearchConfig&, const Evaluate&);
   Method cma_es, nsga2;

@@ -19,8 +19,8 @@ struct NumericKey {
   double value = 0;  ///< in this scenario
 };
 
-/// Every number of a scenario in the order of its keys, seeds apart: a seed is nothing to be good at. Entries
-/// of lists are there as far as the scenario has them.
+/// Every number of a scenario in the order of its keys, except seeds, which are not to be tuned. Of a list,
+/// the entries that the scenario has.
 std::vector<NumericKey> numeric_keys(const Scenario& scenario);
 
 enum class TuningData { recordings, flights };
@@ -38,7 +38,7 @@ struct TuneFile {
   SearchConfig search;
   TuningData over = TuningData::recordings;
   std::vector<std::filesystem::path> training_folders, validation_folders;  ///< over recordings
-  int every = 1;  ///< over recordings: of so many frames one is looked at, on both sides
+  int every = 1;  ///< over recordings: every n-th frame is used, in training and validation
   std::vector<std::uint64_t> training_seeds, validation_seeds;  ///< over flights
   double timeout_s = 300;                                       ///< of a flight, wall time
 };
@@ -61,8 +61,8 @@ struct TuneFile {
 ///     name: forest                     # optional; otherwise the file's
 ///
 /// Throws ScenarioError in one line, "file:line: key: expected ...": an unknown key, a parameter that is no
-/// number of the scenario or goes beyond its bounds, an unknown figure, data on both sides, whatever the
-/// scenario refuses.
+/// number of the scenario or goes beyond its bounds, an unknown figure, data in both training and validation,
+/// any error of the scenario.
 TuneFile load_tune_file(const std::filesystem::path& file, const FindScenario& find_scenario);
 
 }  // namespace understory

@@ -10,8 +10,8 @@
 
 namespace understory {
 
-/// Whether the search found anything better than the scenario as it is, on training data; taken for granted
-/// where there are several goals.
+/// Whether the search found anything better than the scenario as it is, on training data; always true if
+/// there are several goals.
 bool gains(const TuneFile& file, const Tuned& tuned);
 
 /// The scenario as it is and tuned, on training and on validation data: a row a figure.
@@ -27,8 +27,8 @@ void write_tune_report(const std::filesystem::path& folder, const TuneFile& file
                        const std::filesystem::path& data_root);
 
 /// The first goal's figure over the figure it is traded against (the next goal's, else a limit's): every
-/// trial, the front, the scenario as it is, the tuned one; on both sides. Where there is nothing to trade,
-/// the goal's figure over the trials.
+/// trial, the front, the scenario as it is, the tuned one; on training and validation data. If there is
+/// nothing to trade, the goal's figure over the trials.
 LinePlot pareto_plot(const TuneFile& file, const Tuned& tuned);
 
 /// A panel for each parameter: goals and limited figures as it alone varies.

@@ -15,7 +15,7 @@
 
 namespace understory {
 
-/// A configuration and what it was measured to be.
+/// A configuration and its measured figures.
 struct Trial {
   int number = 0;
   Point point;
@@ -23,9 +23,9 @@ struct Trial {
   std::string refused;  ///< why, one line
 };
 
-/// Trials in their order, each a line of a JSON Lines file on disk before the next begins. Evaluating again
-/// what the file holds gives what it holds: a search that is repeated with the same arguments goes on where
-/// it was stopped.
+/// Trials in their order, each a line of a JSON Lines file on disk before the next begins. Evaluating a point
+/// again gives what the file holds: a search that is repeated with the same arguments goes on where it was
+/// stopped.
 class TrialLog {
  public:
   using Measure = std::function<Trial(int number, const Point&)>;  ///< sets figures or refused
@@ -54,9 +54,9 @@ class TrialLog {
   std::map<Point, std::size_t> places_;  ///< in evaluated_
 };
 
-/// Makes the folder, or, with `resume`, makes sure that it holds this very tuning, begun by this program.
-/// Throws ScenarioError in one line where not, as prepare_campaign_folder does.
-/// `identity`: of what the trials are judged with and on.
+/// Makes the folder, or, with `resume`, checks that it holds this very tuning, begun by this program. Throws
+/// ScenarioError in one line if not, as prepare_campaign_folder does. `identity`: of what the trials are
+/// judged with and on.
 void prepare_tune_folder(FolderMark& mark, const std::filesystem::path& folder, const TuneFile& file,
                          bool resume, const Identity& identity = {});
 
@@ -66,7 +66,7 @@ struct Sensitivity {
   std::vector<Figures> figures;
 };
 
-/// One configuration on both sides. `number` 0: the scenario as it is.
+/// One configuration on training and validation data. `number` 0: the scenario as it is.
 struct JudgedTrial {
   Trial training;
   Trial validation;
@@ -93,7 +93,7 @@ struct Tuned {
 
 inline constexpr std::size_t maximum_front = 20;
 
-/// How far it is.
+/// How far a tuning is.
 struct TuneProgress {
   std::string part;  ///< "trial", "validation", "sensitivity"
   std::size_t done = 0, of = 0;
@@ -108,9 +108,9 @@ struct TuneOptions {
   std::function<void(const TuneProgress&)> on_progress = [](const TuneProgress&) {};
 };
 
-/// Searches on training data, then measures what came out on validation data, then varies each parameter.
-/// What the folder's logs hold is not measured again. Throws Stopped where `stop_asked`, ScenarioError where
-/// the logs are another tuning's or every trial was refused.
+/// Searches on training data, then measures the results on validation data, then varies each parameter. What
+/// the folder's logs hold is not measured again. Throws Stopped if `stop_asked`, ScenarioError if the logs
+/// are another tuning's or every trial was refused.
 Tuned tune(const TuneFile& file, Judge& training, Judge& validation, const TuneOptions& options);
 
 /// Flights only: which seeds reached the goal; first: the scenario, second: the tuned one.

@@ -19,7 +19,7 @@ enum class Contact { none, ground, obstacle };
 
 /// What the aircraft touches, by MuJoCo's own contacts at one step.
 struct Touch {
-  Contact with = Contact::none;  ///< an obstacle goes before the ground
+  Contact with = Contact::none;  ///< an obstacle has priority over the ground
   std::string part = {};         ///< of the aircraft, as its model names it: "left_wing_outer"
   Eigen::Vector3d position_world = Eigen::Vector3d::Zero();
 };
@@ -31,7 +31,7 @@ struct AircraftPart {
   Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
 };
 
-/// What the aircraft looks like, elevons apart, and what of it collides, in its body frame, m.
+/// The visible shape of the aircraft without its elevons, and its parts that collide, in its body frame, m.
 struct AircraftShape {
   std::vector<Eigen::Vector3d> vertices_body;
   std::vector<Eigen::Vector3i> faces;
@@ -49,9 +49,9 @@ class Aircraft {
  public:
   /// Keeps a reference to the model. The launch rail points along world x; the release point is the world's
   /// (0, 0). Throws std::runtime_error where the rail would begin underground. The time step is the model's
-  /// (1/1200 s from build_world; tests of convergence set others, whole numbers of hertz). `pooled` are the
-  /// obstacles of a model with pooled geoms (build_world), none else: the pieces of its trees take turns in
-  /// the pool. Such a model serves one aircraft.
+  /// (1/1200 s from build_world; tests of convergence set others, whole numbers of hertz). `pooled`: the
+  /// obstacles of a model with pooled geoms (build_world), for which the pieces of its trees take turns;
+  /// empty for other models. Such a model serves one aircraft.
   Aircraft(mjModel_& model, const Airframe& airframe, const LaunchConfig& launch, Wind wind,
            const ActuatorsConfig& actuators = {}, const std::vector<Obstacle>& pooled = {});
   /// In a steady wind.
@@ -59,9 +59,9 @@ class Aircraft {
            const Eigen::Vector3d& wind_world_mps)
       : Aircraft(model, airframe, launch, Wind(wind_world_mps)) {}
 
-  /// Advances one physics step. Controls act one input delay later, cut to the airframe's limits.
-  /// While on the rail the body follows the rail whatever the controls. Kinematics and contacts in data()
-  /// belong to the new moment afterwards. Throws std::logic_error on controls that are not finite.
+  /// Advances one physics step. Controls act one input delay later, limited to the airframe's range. On the
+  /// rail the body follows the rail, regardless of the controls. Afterwards kinematics and contacts in data()
+  /// are those of the new moment. Throws std::logic_error on controls that are not finite.
   void step(const Controls& controls);
 
   /// The acceleration in truth() is the mean over the step just taken.

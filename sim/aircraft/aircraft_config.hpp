@@ -21,8 +21,8 @@ void visit_fields(FieldVisitor& visit, LaunchConfig& config);
 
 /// Dynamics between a command and its effect on the air. The identified model has none (its airframe answers
 /// one input delay later, at once and in full), so every part is off by default, at 0. The flight record
-/// cannot separate delay from lag (docs/flight_model.md), so the values in the comments are typical and none
-/// is fitted.
+/// cannot separate delay from lag (docs/flight_model.md), so the values in the keys' meanings are typical and
+/// none is fitted.
 struct ActuatorsConfig {
   double elevon_time_s = 0;
   double elevon_rate_radps = 0;
@@ -61,7 +61,7 @@ struct GustConfig {
 
 void visit_fields(FieldVisitor& visit, GustConfig& config);
 
-/// Wind beside the mean. Everything is off by default.
+/// Wind in addition to the mean. Everything is off by default.
 struct WindConfig {
   double reference_height_m = 6.096;
   double roughness_m = 0;

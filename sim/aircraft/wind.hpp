@@ -57,7 +57,7 @@ class Wind {
  public:
   /// Steady and the same everywhere.
   explicit Wind(const Eigen::Vector3d& mean_world_mps);
-  /// The mean is that at the reference height. Turbulence draws from `seed`, and only where it is on.
+  /// The mean is that at the reference height. Turbulence draws from `seed`, and only if it is on.
   Wind(const Eigen::Vector3d& mean_world_mps, const WindConfig& config, const ForestStand& stand,
        std::uint64_t seed);
 
@@ -65,8 +65,8 @@ class Wind {
   void advance(std::int64_t t_ns, double step_s, const Eigen::Vector3d& position_world,
                const Eigen::Vector3d& velocity_world_mps);
 
-  /// The wind now. Only where the aircraft is does it have a meaning: turbulence and gust are known along the
-  /// flight alone.
+  /// The wind now. It is valid only at the aircraft's place: turbulence and gust are known along the flight
+  /// alone.
   Eigen::Vector3d at(const Eigen::Vector3d& position_world) const;
 
  private:

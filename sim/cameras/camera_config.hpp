@@ -31,7 +31,7 @@ struct CameraConfig {
 
   std::int64_t exposure_ns() const { return std::llround(exposure_s * 1e9); }
   std::int64_t right_delay_ns() const { return std::llround(right_delay_s * 1e9); }
-  /// From the moment a frame bears, the middle of the left image's exposure, to the end of the right one's.
+  /// From a frame's time, the middle of the left image's exposure, to the end of the right image's exposure.
   std::int64_t exposure_lag_ns() const { return exposure_ns() / 2 + right_delay_ns(); }
 };
 

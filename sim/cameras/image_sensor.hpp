@@ -37,7 +37,7 @@ class PixelResponse {
   /// `falloff`: of each eye, CV_32FC1 of the images' size, 1 at full brightness; may be empty for none.
   PixelResponse(const CameraConfig& config, std::array<cv::Mat, 2> falloff, std::uint64_t seed);
   /// Changes the image in place, CV_8UC1; rounds to the nearest gray level, clamped to 0 .. 255. Does nothing
-  /// where light and gain are 1 and neither falloff nor shot noise is asked for. eye: 0 left, 1 right.
+  /// if light and gain are 1 and there is neither falloff nor shot noise. eye: 0 left, 1 right.
   void apply(int eye, cv::Mat& gray);
 
  private:

@@ -38,14 +38,14 @@ class StereoCameras {
                 RendererKind renderer = RendererKind::osmesa);
   ~StereoCameras();
 
-  /// Where the body is, at every physics step: what an image that takes time is made of.
+  /// Takes the body's pose at every physics step. Images with an exposure time are made of these poses.
   void observe(const Eigen::Isometry3d& T_world_body, std::int64_t t_ns);
-  /// Both images, gray 8-bit with noise, with the body there and the exposure's end now, at t_ns; the frame's
-  /// own time lies CameraConfig::exposure_lag_ns() before.
+  /// Both images, gray 8-bit with noise, with the body at this pose and the exposure's end at t_ns; the
+  /// frame's own time is CameraConfig::exposure_lag_ns() earlier.
   StereoFrame capture(const Eigen::Isometry3d& T_world_body, std::int64_t t_ns);
-  /// Depth in the left image, rectified, with the body there: CV_32FC1, metres along the optical axis.
+  /// Depth in the left image, rectified, with the body at this pose: CV_32FC1, metres along the optical axis.
   cv::Mat depth(const Eigen::Isometry3d& T_world_body) const;
-  /// What is where in the left image, rectified, with the body there: the same depth, and the objects.
+  /// The true view of the left image, rectified, with the body at this pose: the same depth, and the objects.
   TrueView true_view(const Eigen::Isometry3d& T_world_body) const;
   /// What chase_eye() sees, BGR 8-bit. Of `truth` it takes the pose and the elevons.
   cv::Mat chase_view(const Truth& truth, int width_px, int height_px) const;

@@ -15,9 +15,9 @@ namespace understory {
 /// camera.
 class StereoOptics {
  public:
-  /// `raw`: absent, the images are the rectified pair that `rig` describes and the views are the images.
-  /// Present, they are those of the raw cameras before rectification, distorted and turned; `rig` is then
-  /// rectified_rig(*raw). Throws std::runtime_error where no raw pixel has a ray.
+  /// Without `raw` the images are the rectified pair that `rig` describes, and the views are the images. With
+  /// `raw` they are those of the raw cameras before rectification, distorted and turned; `rig` is then
+  /// rectified_rig(*raw). Throws std::runtime_error if no raw pixel has a ray.
   StereoOptics(const StereoRig& rig, const CameraConfig& config,
                const std::optional<StereoCalibration>& raw = std::nullopt);
 

@@ -33,7 +33,7 @@ Function as_function(void* address) {
   return reinterpret_cast<Function>(address);
 }
 
-// From the OpenGL specification: the headers are not needed for so few.
+// From the OpenGL specification: so few constants do not need the headers.
 constexpr unsigned gl_rgba = 0x1908;
 constexpr unsigned gl_unsigned_byte = 0x1401;
 constexpr unsigned gl_framebuffer = 0x8D40;
@@ -44,16 +44,16 @@ constexpr unsigned gl_framebuffer = 0x8D40;
 std::unique_ptr<OffscreenBackend> osmesa_backend();
 
 enum class EglDevice {
-  gpu,     ///< hardware or nothing
-  any_one  ///< hardware where there is some, otherwise Mesa's software
+  gpu,     ///< hardware only
+  any_one  ///< hardware if there is some, otherwise Mesa's software
 };
 
 /// A context of EGL, drawing into framebuffer objects. Throws std::runtime_error in one line, naming the
 /// Debian packages, where library, device or context cannot be had. The process keeps to its first device.
 std::unique_ptr<OffscreenBackend> egl_backend(EglDevice device);
 
-/// False where no EGL could find a GPU that this user may open: asked of the kernel's device files, so that
-/// libEGL need not be opened to know.
+/// False if EGL cannot find a GPU that this user may open. It checks the kernel's device files, so that
+/// libEGL need not be opened for this.
 bool has_gpu_device_file();
 
 }  // namespace understory

@@ -14,8 +14,8 @@ namespace understory {
 struct OffscreenOptions {
   RendererKind renderer = RendererKind::osmesa;
   /// Threads llvmpipe rasterises with beside the caller's; 0: none. A campaign runs one process a core, so
-  /// more threads would only compete. An LP_NUM_THREADS in the environment wins. The images do not depend on
-  /// it.
+  /// more threads would only compete. LP_NUM_THREADS in the environment has priority. The images do not
+  /// depend on it.
   int raster_threads = 0;
 };
 
@@ -45,7 +45,7 @@ class OffscreenContext {
   void* function(const char* name) const { return backend_->function(name); }
   /// OpenGL's name of the framebuffer drawn into; 0: the context's own.
   unsigned framebuffer() const { return backend_->framebuffer(); }
-  /// Clears what calls of OpenGL left behind: "OpenGL error 0x502", or empty.
+  /// Returns and clears the errors of earlier OpenGL calls: "OpenGL error 0x502", or empty.
   std::string take_errors() const;
   /// Which library draws: osmesa or egl.
   RendererKind kind() const { return backend_->kind(); }

@@ -13,12 +13,12 @@
 namespace understory {
 
 /// Draws the model's scenery through pinhole eyes, offscreen. Not thread safe; create and use on one thread.
-/// Where it is destroyed on another one, its OpenGL context waits for the next renderer of its own thread.
+/// If it is destroyed on another thread, its OpenGL context is kept until its own thread makes a renderer.
 class SceneRenderer {
  public:
   /// Keeps a reference to the model. The size is that of the first picture; others may follow. Throws
-  /// std::runtime_error in one line where no GL library can be loaded. With `woods` these are drawn as the
-  /// scenery, and of the model only the aircraft.
+  /// std::runtime_error in one line where no GL library can be loaded. With `woods` the scenery is the woods,
+  /// and only the aircraft is drawn from the model.
   SceneRenderer(const mjModel_& model, double view_distance_m, int width_px, int height_px,
                 RendererKind renderer, const WoodsMesh* woods = nullptr);
   ~SceneRenderer();

@@ -8,8 +8,8 @@
 
 namespace understory {
 
-/// Things sorted into square cells of the ground by their place. Who makes the cells as wide as anything
-/// reaches finds all that is within reach of a place in its cell and in the eight around it.
+/// Things sorted into square cells of the ground by their place. If cells are as wide as the reach of any
+/// thing, all things within reach of a place are in its cell and in the eight around it.
 template <typename Thing>
 class GroundCells {
  public:

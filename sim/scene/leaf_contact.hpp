@@ -10,14 +10,14 @@ namespace understory {
 
 /// A box that may touch leaves: its place at its middle, and half of its size.
 struct WingBox {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< in the frame of what it is held against
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< in the frame of what it is compared with
   Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
 };
 
 /// Whether a box and a drawn square of leaves have a point in common, both in one frame.
 bool overlaps(const WingBox& box, const LeafCard& card);
 
-/// The drawn leaves of a wood, ready to be asked at every physics step whether the wing touches them.
+/// The drawn leaves of a wood, prepared for a test at every physics step whether the wing touches them.
 class LeafContact {
  public:
   /// `boxes`: of the aircraft, in its body frame.

@@ -10,7 +10,7 @@
 
 namespace understory {
 
-/// Smooth noise of place, -1 .. 1, the same for the same place and seed.
+/// Smooth noise over the place, -1 .. 1, the same for the same place and seed.
 double noise_at(const Eigen::Vector2d& place, std::uint32_t seed);
 
 /// A flat picture of leaves: its middle, and from there half of its width and of its height.
@@ -19,7 +19,7 @@ struct Card {
   LeafPicture picture = LeafPicture::leaves;
 };
 
-/// Fills a WoodsMesh with tubes and cards, part by part. Light is worked out here, once: sun and sky by the
+/// Fills a WoodsMesh with tubes and cards, part by part. Light is computed here, once: sun and sky by the
 /// surface's direction, patches of sun by the place.
 class MeshBuilder {
  public:
@@ -37,7 +37,7 @@ class MeshBuilder {
   void end_part() { mesh.parts.push_back(part_); }
   WoodsPart& part() { return part_; }
 
-  /// Adds what `add` adds, as a range.
+  /// Calls `add` and returns the indices that it added as a range.
   template <typename Add>
   WoodsRange range_of(Add&& add) {
     WoodsRange range{static_cast<std::uint32_t>(mesh.indices.size())};
@@ -71,7 +71,7 @@ class MeshBuilder {
   WoodsPart part_;
 };
 
-/// A tree beyond the course that nobody can reach: a stem of few sides and large squares of leaves.
+/// A tree beyond the course, out of the aircraft's reach: a stem of few sides and large squares of leaves.
 void add_far_tree(MeshBuilder& builder, const Tree& tree, double radius_m, const Eigen::Vector2d& place,
                   const WoodsConfig& config, std::uint16_t number);
 

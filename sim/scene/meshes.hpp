@@ -20,7 +20,7 @@ struct TrunkMesh {
 /// Maximum distance between the drawn outline and the colliding one, m.
 constexpr double silhouette_tolerance_m = 0.0065;
 
-/// A prism (closed, but for a foot on the ground) whose silhouette stays within the tolerance of the
+/// A prism (closed, except for a foot on the ground) whose silhouette stays within the tolerance of the
 /// obstacle's: 6 sides for a thin post, 8 or 10 for trunks. The bark goes round a whole number of times, so
 /// that it has no seam, and is about as large as on a tile of `tile_width_m` x `tile_height_m`.
 TrunkMesh trunk_mesh(const Obstacle& obstacle, double tile_width_m, double tile_height_m);

@@ -14,14 +14,14 @@ namespace understory {
 enum class TreeKind { oak, beech, birch, pine, spruce };
 inline constexpr std::array<std::string_view, 5> tree_kind_names{"oak", "beech", "birch", "pine", "spruce"};
 
-/// What is measured of a tree; what is not is drawn.
+/// The measured values of a tree; unknown ones are drawn at random.
 struct KnownTree {
   double height_m = 0;                  ///< of the whole tree; 0: unknown
   std::optional<Eigen::Vector2d> lean;  ///< horizontal displacement per metre of height; nothing: unknown
   std::optional<TreeKind> kind;
 };
 
-/// A grown tree: what its drawing needs beside its obstacles.
+/// A grown tree: the data that its rendering needs besides its obstacles.
 struct Tree {
   TreeKind kind = TreeKind::oak;
   std::size_t first = 0;  ///< of its obstacles, the trunk's pieces from the foot up before the branches
@@ -42,7 +42,7 @@ struct Wood {
 
 /// Numbers in images of objects of a wood. Each tree has one for its trunk, its branches and its leaves; the
 /// plants of the ground, the fallen logs and what stands beyond the course have one each; then come the
-/// obstacles that stand alone, in their order. Before them stand nothing and the ground, as everywhere.
+/// obstacles that stand alone, in their order. The first two are nothing and the ground, as everywhere.
 struct WoodsNumbers {
   std::size_t trees = 0;
 
@@ -55,8 +55,8 @@ struct WoodsNumbers {
   std::size_t alone(std::size_t number) const { return trunk(trees) + 3 + number; }
 };
 
-/// The look, with what its keys leave open drawn from the seed: nothing is left open afterwards. `config` is
-/// as the keys say, not drawn before.
+/// The look, with all values that its keys leave open drawn at random from the seed. `config` is as the keys
+/// state it, not drawn before.
 WoodsConfig drawn(WoodsConfig config, std::uint64_t seed);
 
 /// Grows a tree where each trunk stands (`config` from drawn(); `known` is empty or as long as `trunks`): a

@@ -25,7 +25,7 @@ struct DeleteData {
 using ModelPointer = std::unique_ptr<mjModel_, DeleteModel>;
 using DataPointer = std::unique_ptr<mjData_, DeleteData>;
 
-/// MuJoCo refuses a model or cannot go on with it: the numbers of an aircraft or a world make no sense
+/// MuJoCo refuses a model or cannot continue with it: the numbers of an aircraft or a world do not fit
 /// together.
 struct SimulationError : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -45,15 +45,15 @@ struct World {
   std::shared_ptr<WoodsMesh> woods = nullptr;  ///< what is drawn of woods; the cameras paint its textures
 };
 
-/// Capsules of a world of woods that collide at a time: those nearest to the aircraft, which moves them
-/// there. A wood has thousands of pieces, and MuJoCo checks every pair of geoms.
+/// Number of capsules that can collide at a time in a world of woods. The aircraft moves them to the pieces
+/// of trees nearest to it. A wood has thousands of pieces, and MuJoCo checks every pair of geoms.
 inline constexpr int pooled_geoms = 64;
 
 /// Composes models/airframe/delta_wing.xml with the obstacles and compiles it. Throws std::runtime_error,
 /// naming the file, where MuJoCo refuses it. Mass and inertia come from `airframe`. With scenery `woods` the
 /// model has the pooled geoms "pool_<number>" and no scenery: sim/render/woods_pass draws it. `course`
 /// (corners in world axes, m) is where the aircraft may fly: stems and thickets of the far wood, which
-/// nothing can hit, keep out of it. Where it is empty they stand anywhere but among the trees.
+/// nothing can hit, keep out of it. If it is empty they stand anywhere but among the trees.
 World build_world(const std::filesystem::path& models_folder, const Airframe& airframe,
                   const std::vector<Obstacle>& obstacles, const WorldConfig& config,
                   const std::vector<Tree>& trees = {}, const Eigen::AlignedBox2d& course = {});

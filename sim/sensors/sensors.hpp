@@ -9,13 +9,13 @@
 
 namespace understory {
 
-/// Every sensor draws the constants of the flight from its seed when it is built. Then it returns one sample
-/// for each truth. The same seed and truths give the same samples.
+/// Every sensor draws its constant errors for the flight from its seed when it is built. Then it returns one
+/// sample for each truth. The same seed and truths give the same samples.
 class Imu {
  public:
   Imu(const ImuConfig& config, std::uint64_t seed);
   ImuSample measure(const Truth& truth);
-  /// The constants of the flight, for scoring; wandering errors come on top.
+  /// The constant errors of the flight, for scoring; wandering errors are added to them.
   const Eigen::Vector3d& gyro_bias_radps() const { return gyro_bias_radps_; }
   const Eigen::Vector3d& accelerometer_bias_mps2() const { return accelerometer_bias_mps2_; }
 

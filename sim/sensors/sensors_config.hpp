@@ -98,7 +98,7 @@ struct GpsConfig {
 
 void visit_fields(FieldVisitor& visit, GpsConfig& config);
 
-/// Rates must divide 1200 Hz (divides_physics_rate; whoever loads a scenario checks).
+/// Rates must divide 1200 Hz (checked when a scenario is loaded).
 struct SensorsConfig {
   int imu_rate_hz = 200;
   int pitot_rate_hz = 50;
@@ -114,8 +114,8 @@ struct SensorsConfig {
 
 void visit_fields(FieldVisitor& visit, SensorsConfig& config);
 
-/// Quality of a scenario's sensors (`sensors.grade`); keys given beside it win. docs/sensors.md gives each
-/// number and its source. GPS is off in every grade.
+/// Quality of a scenario's sensors (`sensors.grade`); keys given beside it have priority. docs/sensors.md
+/// gives each number and its source. GPS is off in every grade.
 enum class SensorGrade {
   ideal,     ///< no errors at all; ranges, rates and delays stay
   nominal,   ///< white noise and constants only: the defaults of the structs
