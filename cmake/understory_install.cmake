@@ -70,7 +70,7 @@ if(understory_has_python)
   install(TARGETS understory_python LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/understory)
   install(DIRECTORY scenarios/python/understory DESTINATION ${python_packages} FILES_MATCHING PATTERN "*.py" PATTERN py.typed
           PATTERN __pycache__ EXCLUDE)
-  install(FILES scenarios/python/_understory.pyi DESTINATION ${python_packages})
+  install(FILES ${PROJECT_BINARY_DIR}/python/_understory.pyi DESTINATION ${python_packages} OPTIONAL)
 endif()
 
 # All that is installed: what `./run build` and `./run fly` build.

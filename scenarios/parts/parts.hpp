@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -34,7 +35,9 @@ struct Part {
   std::string meaning;  ///< one sentence, for lists
   std::function<Made(const Context&)> make;
   std::shared_ptr<const AnyConfig> defaults = nullptr;  ///< its own keys, below its name; null: none
-  std::string plugin = "";                              ///< file that it came from; empty: ours
+  /// What contradicts what among its keys: "window_px: must be an odd number"; empty: nothing.
+  std::function<std::string(const AnyConfig&, const Scenario&)> fault = nullptr;
+  std::string plugin = "";  ///< file that it came from; empty: ours
 
   // Properties of a detector that are needed before it is made; parts of other kinds keep the defaults.
   bool needs_images = true;  ///< images that nobody needs are not rendered
@@ -99,10 +102,16 @@ class PartList {
     }
     return parts_.emplace_back(std::move(part));
   }
-  /// Adds a part with keys of its own: `defaults` has a visit_fields(), the keys stand below the part's name.
+  /// Adds a part with keys of its own: `defaults` has a visit_fields(), and the keys are below the part's
+  /// name. `fault`: see Part.
   template <typename Config>
-  One& add(One part, Config defaults) {
+  One& add(One part, Config defaults,
+           std::function<std::string(const std::type_identity_t<Config>&, const Scenario&)> fault = nullptr) {
     part.defaults = std::make_shared<const TypedConfig<Config>>(std::move(defaults));
+    if (fault)
+      part.fault = [fault](const AnyConfig& config, const Scenario& scenario) {
+        return fault(static_cast<const TypedConfig<Config>&>(config).config, scenario);
+      };
     return add(std::move(part));
   }
   /// Null where there is none of this name.

@@ -360,11 +360,12 @@ void bind_flight(py::module_& module) {
            })
       .def("advance_control", [](HeldFlight& self) { return self.advance(Until::control); })
       .def("advance_camera", [](HeldFlight& self) { return self.advance(Until::camera); })
-      .def("tell", &HeldFlight::tell)
-      .def("command", &HeldFlight::command)
+      .def("tell", &HeldFlight::tell, py::arg("left_elevon_rad"), py::arg("right_elevon_rad"),
+           py::arg("thrust_n"))
+      .def("command", &HeldFlight::command, py::arg("bank_rad"), py::arg("climb_mps"))
       .def("flown_actions", &HeldFlight::flown_actions)
-      .def("observation", &HeldFlight::observation)
-      .def("draw_images", &HeldFlight::draw_images)
+      .def("observation", &HeldFlight::observation, py::arg("imu_rows"))
+      .def("draw_images", &HeldFlight::draw_images, py::arg("draws"))
       .def_property_readonly("frames", &HeldFlight::frames)
       .def_property_readonly("scenario", [](const HeldFlight& self) { return self.flight().scenario(); })
       .def_property_readonly("rig", [](const HeldFlight& self) { return self.flight().rig().rig; })
@@ -407,7 +408,7 @@ void bind_flight(py::module_& module) {
       .def_property_readonly("result", result_of)
       .def_property_readonly("trajectory", trajectory_of)
       .def("page", [](const HeldFlight& self) { return flight_page(self.finished_log(), {data_root()}); })
-      .def("save_run", save_run);
+      .def("save_run", save_run, py::arg("folder"));
 }
 
 }  // namespace understory

@@ -234,34 +234,6 @@ std::vector<std::string> load_python_file(const std::string& file, const std::st
 }
 
 void bind_contexts(py::module_& module) {
-  py::class_<PartContext>(module, "PartContext")
-      .def_readonly("rig", &PartContext::rig)
-      .def_readonly("config", &PartContext::config)
-      .def_readonly("seed", &PartContext::seed)
-      .def_property_readonly("obstacles", [](const PartContext& self) { return self.there().obstacles; })
-      .def("make_detector",
-           [](const PartContext& self, const std::string& name) {
-             return Native<ObstacleDetector>{part_named(parts().detectors, name).make(self.there()),
-                                             self.life};
-           })
-      .def("make_state_source", [](const PartContext& self, const std::string& name) {
-        return Native<StateSource>{part_named(parts().state_sources, name).make(self.there()), self.life};
-      });
-  py::class_<PlanningContext>(module, "PlanningContext")
-      .def_readonly("config", &PlanningContext::keys)
-      .def_readonly("seed", &PlanningContext::seed)
-      .def_property_readonly(
-          "minimum_clearance_m",
-          [](const PlanningContext& self) { return self.config.trajectory.minimum_clearance_m; })
-      .def_property_readonly(
-          "comfortable_clearance_m",
-          [](const PlanningContext& self) { return self.config.trajectory.comfortable_clearance_m; })
-      .def("fly", &PlanningContext::fly, py::arg("request"), py::arg("commands"))
-      .def("make_planner", [](const PlanningContext& self, const std::string& name) {
-        if (self.context == nullptr)
-          throw std::runtime_error("the context can only make parts while this part is made");
-        return Native<Planner>{part_named(parts().planners, name).make(*self.context), self.life};
-      });
   py::class_<Native<ObstacleDetector>>(module, "Detector")
       .def("detect", [](Native<ObstacleDetector>& self, const StereoFrame& frame) {
         return array_of((*self).detect(frame));
@@ -279,13 +251,46 @@ void bind_contexts(py::module_& module) {
              point.position_world = position_world;
              return (*self).concerns(point, plan);
            });
+  py::class_<PartContext>(
+      module, "PartContext",
+      "What a detector or a state source is made from; it makes others only during that call.")
+      .def_readonly("rig", &PartContext::rig)
+      .def_readonly("config", &PartContext::config)
+      .def_readonly("seed", &PartContext::seed)
+      .def_property_readonly("obstacles", [](const PartContext& self) { return self.there().obstacles; })
+      .def("make_detector",
+           [](const PartContext& self, const std::string& name) {
+             return Native<ObstacleDetector>{part_named(parts().detectors, name).make(self.there()),
+                                             self.life};
+           })
+      .def("make_state_source", [](const PartContext& self, const std::string& name) {
+        return Native<StateSource>{part_named(parts().state_sources, name).make(self.there()), self.life};
+      });
+  py::class_<PlanningContext>(module, "PlanningContext",
+                              "What a planner is made from; it judges manoeuvres as long as it lives.")
+      .def_readonly("config", &PlanningContext::keys)
+      .def_readonly("seed", &PlanningContext::seed)
+      .def_property_readonly(
+          "minimum_clearance_m",
+          [](const PlanningContext& self) { return self.config.trajectory.minimum_clearance_m; })
+      .def_property_readonly(
+          "comfortable_clearance_m",
+          [](const PlanningContext& self) { return self.config.trajectory.comfortable_clearance_m; })
+      .def("fly", &PlanningContext::fly, py::arg("request"), py::arg("commands"))
+      .def("make_planner", [](const PlanningContext& self, const std::string& name) {
+        if (self.context == nullptr)
+          throw std::runtime_error("the context can only make parts while this part is made");
+        return Native<Planner>{part_named(parts().planners, name).make(*self.context), self.life};
+      });
 }
 
 }  // namespace
 
 void bind_parts(py::module_& module) {
   bind_contexts(module);
-  py::class_<PythonKey>(module, "Key")
+  py::class_<PythonKey>(
+      module, "Key",
+      "A key of a part of your own: bool, whole number, number or word, by the type of its value.")
       .def(py::init([](const std::string& name, bool value, const std::string& meaning) {
              return PythonKey{name, value, 0, 0, meaning};
            }),

@@ -37,7 +37,7 @@ cv::Mat image_of(const py::array& array, const char* name) {
 }
 
 void bind_samples(py::module_& module) {
-  py::class_<ImuSample>(module, "ImuSample")
+  py::class_<ImuSample>(module, "ImuSample", "Angular rate and acceleration minus gravity, body axes.")
       .def_readonly("t_ns", &ImuSample::t_ns)
       .def_readonly("angular_rate_body_radps", &ImuSample::angular_rate_body_radps)
       .def_readonly("specific_force_body_mps2", &ImuSample::specific_force_body_mps2);
@@ -50,14 +50,15 @@ void bind_samples(py::module_& module) {
   py::class_<MagnetometerSample>(module, "MagnetometerSample")
       .def_readonly("t_ns", &MagnetometerSample::t_ns)
       .def_readonly("field_body_ut", &MagnetometerSample::field_body_ut);
-  py::class_<GpsSample>(module, "GpsSample")
+  py::class_<GpsSample>(module, "GpsSample", "A fix, which arrives late: t_ns is the moment of measurement.")
       .def_readonly("t_ns", &GpsSample::t_ns)
       .def_readonly("position_world_m", &GpsSample::position_world_m)
       .def_readonly("velocity_world_mps", &GpsSample::velocity_world_mps);
-  py::class_<ThrustSample>(module, "ThrustSample")
+  py::class_<ThrustSample>(module, "ThrustSample", "The thrust commanded from t_ns on.")
       .def_readonly("t_ns", &ThrustSample::t_ns)
       .def_readonly("thrust_n", &ThrustSample::thrust_n);
-  py::class_<ResightingSample>(module, "ResightingSample")
+  py::class_<ResightingSample>(module, "ResightingSample",
+                               "An obstacle seen again nearer: how far its place has moved in between.")
       .def_readonly("t_ns", &ResightingSample::t_ns)
       .def_readonly("earlier_ns", &ResightingSample::earlier_ns)
       .def_readonly("discrepancy_world_m", &ResightingSample::discrepancy_world_m)
@@ -65,7 +66,9 @@ void bind_samples(py::module_& module) {
 }
 
 void bind_states(py::module_& module) {
-  py::class_<State> state(module, "State");
+  py::class_<State> state(
+      module, "State",
+      "The aircraft as an estimator believes it to be. Its world frame drifts slowly against the true one.");
   state.def(py::init<>())
       .def("copy", [](const State& self) { return State(self); })
       .def_readwrite("t_ns", &State::t_ns)
@@ -79,7 +82,7 @@ void bind_states(py::module_& module) {
       .def_property_readonly("covariance",
                              [](const State& self) -> Eigen::MatrixXd { return self.covariance; });
   add_pose(state);
-  py::class_<Truth> truth(module, "Truth");
+  py::class_<Truth> truth(module, "Truth", "The true state.");
   truth.def_readonly("t_ns", &Truth::t_ns)
       .def_readonly("velocity_world_mps", &Truth::velocity_world_mps)
       .def_readonly("angular_rate_body_radps", &Truth::angular_rate_body_radps)
@@ -89,7 +92,7 @@ void bind_states(py::module_& module) {
       .def_readonly("right_elevon_rad", &Truth::right_elevon_rad)
       .def_readonly("thrust_n", &Truth::thrust_n);
   add_pose(truth);
-  py::class_<Controls>(module, "Controls")
+  py::class_<Controls>(module, "Controls", "Elevons (trailing edge up positive) and thrust.")
       .def(py::init([](double left_elevon_rad, double right_elevon_rad, double thrust_n) {
              return Controls{left_elevon_rad, right_elevon_rad, thrust_n};
            }),
@@ -100,7 +103,9 @@ void bind_states(py::module_& module) {
 }
 
 void bind_vision(py::module_& module) {
-  py::class_<StereoRig>(module, "StereoRig")
+  py::class_<StereoRig>(
+      module, "StereoRig",
+      "A rectified pair. Pixel (0, 0) is the centre of the top left one; disparity is u_left - u_right.")
       .def_readonly("name", &StereoRig::name)
       .def_readonly("width_px", &StereoRig::width_px)
       .def_readonly("height_px", &StereoRig::height_px)
@@ -115,7 +120,8 @@ void bind_vision(py::module_& module) {
           "T_body_camera", [](const StereoRig& rig) -> Eigen::Matrix4d { return rig.T_body_camera.matrix(); })
       .def("disparity_px", py::vectorize(&StereoRig::disparity_px), py::arg("depth_m"))
       .def("depth_m", py::vectorize(&StereoRig::depth_m), py::arg("disparity_px"));
-  py::class_<StereoFrame>(module, "StereoFrame")
+  py::class_<StereoFrame>(module, "StereoFrame",
+                          "A pair: uint8, (rows, columns); arrays cannot be written to.")
       .def(py::init([](const py::array& left, const py::array& right, std::int64_t t_ns) {
              StereoFrame frame{t_ns, image_of(left, "left"), image_of(right, "right")};
              if (frame.left.size() != frame.right.size())
@@ -149,14 +155,19 @@ py::array_t<double> points_of(const Plan& plan) {
 }
 
 void bind_planning(py::module_& module) {
-  py::class_<FlightState>(module, "FlightState")
+  py::class_<FlightState>(
+      module, "FlightState",
+      "Where a plan starts: heights are above the ground, angles are those of the velocity through the air.")
       .def_readonly("position_world_m", &FlightState::position_world)
       .def_readonly("wind_world_mps", &FlightState::wind_world_mps)
       .def_readonly("speed_mps", &FlightState::speed_mps)
       .def_readonly("heading_rad", &FlightState::heading_rad)
       .def_readonly("climb_angle_rad", &FlightState::climb_angle_rad)
       .def_readonly("bank_rad", &FlightState::bank_rad);
-  py::class_<Plan>(module, "Plan")
+  py::class_<Plan>(module, "Plan",
+                   "points: rows of t_s, x, y, z (m), speed_mps, heading, climb angle, bank, commanded bank "
+                   "(rad), commanded climb (m/s). origin: straight, solved, kept or fallback. clearance_m: "
+                   "least free distance, inf if nothing is near.")
       .def_readonly("t_ns", &Plan::t_ns)
       .def_readonly("clearance_m", &Plan::clearance_m)
       .def_property_readonly("origin", [](const Plan& plan) { return std::string(word_for(plan.origin)); })

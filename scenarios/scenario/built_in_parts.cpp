@@ -1,5 +1,7 @@
 #include "scenarios/parts/parts.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "estimation/dead_reckoning.hpp"
@@ -10,6 +12,7 @@
 #include "planning/avoidance_planner.hpp"
 #include "planning/planners.hpp"
 #include "scenarios/course/inventory.hpp"
+#include "scenarios/parts/checked_parts.hpp"
 #include "scenarios/parts/oracles.hpp"
 #include "scenarios/scenario/scenario.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
@@ -45,6 +48,38 @@ std::unique_ptr<ObstacleDetector> full_stereo_of(const FlightContext& context) {
   return std::make_unique<RectifyingDetector>(*context.rig.calibration, std::move(detector));
 }
 
+std::string stereo_bm_fault(const StereoBmConfig& config, const Scenario&) {
+  if (config.window_px % 2 == 0) return "window_px: must be an odd number";
+  if (config.prefilter_size_px % 2 == 0) return "prefilter_size_px: must be an odd number";
+  return config.disparities % 16 == 0 ? "" : "disparities: must be a multiple of 16";
+}
+
+std::string stereo_sgbm_fault(const StereoSgbmConfig& config, const Scenario&) {
+  if (config.window_px % 2 == 0) return "window_px: must be an odd number";
+  if (config.disparities % 16 != 0) return "disparities: must be a multiple of 16";
+  return config.smoothness_1 < config.smoothness_2 ? "" : "smoothness_1: must be less than smoothness_2";
+}
+
+std::string goalposts_fault(const GoalpostsConfig& config, const Scenario&) {
+  return config.pass_minimum_m <= config.pass_maximum_m
+             ? ""
+             : "pass_minimum_m: must be at most goalposts.pass_maximum_m";
+}
+
+double palings_of(const FenceConfig& fence, double goal_x_m) {
+  const double fences = std::max(0.0, std::ceil((goal_x_m - fence.first_across_m) / fence.across_apart_m));
+  const double across_m = fences * 2 * (fence.reach_m - 0.5 * fence.opening_m);
+  return (across_m + std::max(0.0, goal_x_m - fence.first_across_m)) / fence.spacing_m;
+}
+
+std::string fence_fault(const FenceConfig& config, const Scenario& scenario) {
+  const double palings = palings_of(config, scenario.goal_x_m());
+  if (scenario.course == "fence" && palings > maximum_obstacles)
+    return fmt::format("spacing_m: a fence may have at most {} palings, this one would have about {:.0f}",
+                       maximum_obstacles, palings);
+  return config.opening_m < 2 * config.reach_m ? "" : "opening_m: must be less than twice fence.reach_m";
+}
+
 void add_detectors(PartList<DetectorPart>& detectors) {
   detectors.add({.name = "pushbroom",
                  .meaning = "pushbroom stereo at the depths of perception.depths_m",
@@ -56,12 +91,12 @@ void add_detectors(PartList<DetectorPart>& detectors) {
                  .meaning = "OpenCV's block matcher over all depths",
                  .make = full_stereo_of<StereoBmConfig>,
                  .cost_s = [](const PerceptionSection& section) { return section.compute.stereo_bm_s; }},
-                StereoBmConfig());
+                StereoBmConfig(), stereo_bm_fault);
   detectors.add({.name = "stereo_sgbm",
                  .meaning = "OpenCV's semi-global matcher over all depths",
                  .make = full_stereo_of<StereoSgbmConfig>,
                  .cost_s = [](const PerceptionSection& section) { return section.compute.stereo_sgbm_s; }},
-                StereoSgbmConfig());
+                StereoSgbmConfig(), stereo_sgbm_fault);
   detectors.add({.name = "true_depth",
                  .meaning = "exact depth from the simulator, at the rig's detection depth",
                  .make =
@@ -139,7 +174,7 @@ void add_courses(PartList<CoursePart>& courses) {
                    [](const CourseContext& context) {
                      return Planted{goalposts(own_config<GoalpostsConfig>(context), context.seed)};
                    }},
-              GoalpostsConfig());
+              GoalpostsConfig(), goalposts_fault);
   courses.add(
       {.name = "clear", .meaning = "no obstacles", .make = [](const CourseContext&) { return Planted{}; }});
   courses.add({.name = "windows",
@@ -155,7 +190,7 @@ void add_courses(PartList<CoursePart>& courses) {
                    [](const CourseContext& context) {
                      return Planted{fence(own_config<FenceConfig>(context), context.scenario.goal_x_m())};
                    }},
-              FenceConfig());
+              FenceConfig(), fence_fault);
 }
 
 Parts built_in_parts() {

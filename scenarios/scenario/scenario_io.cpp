@@ -34,12 +34,6 @@ bool is_plain_word(const std::string& name) {
          std::all_of(name.begin(), name.end(), is_plain);
 }
 
-double palings_of(const FenceConfig& fence, double goal_x_m) {
-  const double fences = std::max(0.0, std::ceil((goal_x_m - fence.first_across_m) / fence.across_apart_m));
-  const double across_m = fences * 2 * (fence.reach_m - 0.5 * fence.opening_m);
-  return (across_m + std::max(0.0, goal_x_m - fence.first_across_m)) / fence.spacing_m;
-}
-
 /// Conditions on a scenario's own list of obstacles.
 template <typename Expect>
 void check_obstacles(const std::vector<ListedObstacle>& obstacles, Expect&& expect) {
@@ -71,10 +65,16 @@ void check_counts(const Scenario& scenario, Expect&& expect) {
          fmt::format("forest.square_metres_per_tree: a forest may have at most {} trees, this one would have "
                      "about {:.0f} (length_m, half_width_m)",
                      maximum_obstacles, trees));
-  const double palings = palings_of(scenario.courses.of<FenceConfig>("fence"), scenario.goal_x_m());
-  expect(scenario.course != "fence" || palings <= maximum_obstacles,
-         fmt::format("fence.spacing_m: a fence may have at most {} palings, this one would have about {:.0f}",
-                     maximum_obstacles, palings));
+}
+
+/// Conditions between keys of a part, which are at `place`.
+template <typename List, typename Expect>
+void check_parts(const List& list, const PartConfigs& configs, const std::string& place,
+                 const Scenario& scenario, Expect&& expect) {
+  for (const auto& part : list.all()) {
+    const std::string fault = part.fault ? part.fault(*configs.find(part.name), scenario) : "";
+    expect(fault.empty(), place + part.name + "." + fault);
+  }
 }
 
 /// Conditions between several keys.
@@ -98,15 +98,10 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
                      "(models/airframe/delta_wing.xml)",
                      Airframe().span_m));
   check_counts(scenario, expect);
-  const GoalpostsConfig& goalposts = scenario.courses.of<GoalpostsConfig>("goalposts");
-  expect(goalposts.pass_minimum_m <= goalposts.pass_maximum_m,
-         "goalposts.pass_minimum_m: must be at most goalposts.pass_maximum_m");
   expect(
       scenario.world.scenery == Scenery::plain || scenario.course == "forest" || scenario.course == "clear",
       "world.scenery: woods requires the course forest or clear");
   check_obstacles(scenario.obstacles, expect);
-  const FenceConfig& fence = scenario.courses.of<FenceConfig>("fence");
-  expect(fence.opening_m < 2 * fence.reach_m, "fence.opening_m: must be less than twice fence.reach_m");
   expect(scenario.actuators.pitch_speed_mps == 0 ||
              scenario.actuators.pitch_speed_mps > scenario.actuators.thrust_speed_mps,
          "actuators.pitch_speed_mps: must be 0 or more than actuators.thrust_speed_mps");
@@ -121,17 +116,10 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
   for (const auto& [key, rate_hz] : rates_hz)
     expect(physics_rate_hz % rate_hz == 0, fmt::format("{}rate_hz: must divide 1200", key));
   const PerceptionSection& perception = scenario.perception;
-  const StereoBmConfig& bm = perception.detectors.of<StereoBmConfig>("stereo_bm");
-  const StereoSgbmConfig& sgbm = perception.detectors.of<StereoSgbmConfig>("stereo_sgbm");
-  const std::pair<const char*, int> odd_numbers[] = {{"stereo_bm.window_px", bm.window_px},
-                                                     {"stereo_sgbm.window_px", sgbm.window_px},
-                                                     {"stereo_bm.prefilter_size_px", bm.prefilter_size_px}};
-  for (const auto& [key, number] : odd_numbers)
-    expect(number % 2 == 1, fmt::format("perception.{}: must be an odd number", key));
-  expect(bm.disparities % 16 == 0, "perception.stereo_bm.disparities: must be a multiple of 16");
-  expect(sgbm.disparities % 16 == 0, "perception.stereo_sgbm.disparities: must be a multiple of 16");
-  expect(sgbm.smoothness_1 < sgbm.smoothness_2,
-         "perception.stereo_sgbm.smoothness_1: must be less than smoothness_2");
+  check_parts(parts().detectors, perception.detectors, "perception.", scenario, expect);
+  check_parts(parts().state_sources, scenario.estimation.sources, "estimation.", scenario, expect);
+  check_parts(parts().planners, scenario.autopilot.planners, "autopilot.", scenario, expect);
+  check_parts(parts().courses, scenario.courses, "", scenario, expect);
   expect(perception.full_stereo.minimum_depth_m < perception.full_stereo.maximum_depth_m,
          "perception.full_stereo.minimum_depth_m: must be less than maximum_depth_m");
   // The estimator remembers its state for a second and accepts frames up to half a second old.

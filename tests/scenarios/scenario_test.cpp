@@ -23,6 +23,7 @@ const fs::path models = fs::path(UNDERSTORY_SOURCE_DIR) / "models";
 TEST(Scenario, EveryLibraryFileLoadsAndSurvivesARoundTrip) {
   int count = 0;
   for (const auto& entry : fs::directory_iterator(library)) {
+    if (entry.is_directory()) continue;
     const Scenario scenario = load_scenario(entry.path());
     const std::string text = scenario_to_text(scenario);
     EXPECT_EQ(scenario_to_text(scenario_from_text(text, "again.yaml")), text) << entry.path();
@@ -103,6 +104,7 @@ TEST(Scenario, TwoOfTheLibraryDifferOnlyInWhatTheirCommentsSay) {
   const FlatKeys forest = flat_keys(scenario_to_text(load_scenario(library / "forest.yaml")), "forest");
   int compared = 0;
   for (const auto& entry : fs::directory_iterator(library)) {
+    if (entry.is_directory()) continue;
     const std::string name = entry.path().stem().string(), text = content_of(entry.path());
     if (load_scenario(entry.path()).course != "forest") continue;
     ++compared;
