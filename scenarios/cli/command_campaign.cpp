@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <memory>
-#include <set>
 
 #include "scenarios/campaign/campaign_file.hpp"
 #include "scenarios/campaign/campaign_folder.hpp"

@@ -65,8 +65,7 @@ void add_collect_command(CommandLine& line) {
     const CampaignFolder results{*folder};
     const Campaign campaign = read_campaign(results);
     FolderMark mark(results.path, campaign_results, results.path, FolderMark::Manner::beside_others);
-    for (const std::string& file : names_of(campaign_results)) mark.require_own(file);
-    mark.add(names_of(campaign_results));
+    mark.add_names();
     return report(results, campaign, collect(results, campaign));
   });
 }

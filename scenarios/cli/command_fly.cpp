@@ -13,7 +13,6 @@
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/flight/flight_logger.hpp"
 #include "scenarios/flight/fly.hpp"
-#include "scenarios/flight/run_files.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/output_folder.hpp"
 #include "scenarios/output/progress_line.hpp"
@@ -133,7 +132,9 @@ void require_separate_outputs(const FlyArguments& arguments, const fs::path& fol
   require_separate(outputs, others);
   for (const fs::path& output : outputs) {
     require_outside(output, folder);
-    if (path_within(output, folder).empty()) require_writable(output);
+    const fs::path within = path_within(output, folder);
+    if (within.empty()) require_writable(output);
+    if (within.has_parent_path()) refuse_other_use(output, "the run has no such folder");
   }
 }
 
@@ -165,9 +166,11 @@ int run_fly(const FlyArguments& arguments) {
     options.output_folder = output->path();
   }
   // What an option names within the run's folder appears with it; what lies elsewhere, when the run is there.
-  const auto within = [&](const std::string& file) { return path_within(file, folder); };
-  options.track =
-      within(arguments.track).empty() ? fs::path(arguments.track) : output->path() / within(arguments.track);
+  const auto placed = [&](const fs::path& file) {
+    const fs::path within = path_within(file, folder);
+    return within.empty() ? file : output->path() / within;
+  };
+  options.track = placed(arguments.track);
   FlightLogger logger;
   const std::unique_ptr<FlightMcap> mcap = mcap_of(arguments, logger, options);
   warn_of(scenario, arguments.quiet);
@@ -185,13 +188,14 @@ int run_fly(const FlyArguments& arguments) {
   line.clear();
   FlightRow row = flown_row(fs::path(arguments.scenario).stem().string(), scenario, result);
   if (!arguments.row.empty()) row.id = fs::path(arguments.row).stem().string();  // as the campaign asked
-  const std::vector<std::pair<std::string, std::string>> named{
-      {arguments.row, to_json(FlightFile{row, cost_of(result)})}, {arguments.junit, campaign_junit({row})}};
+  std::vector<std::pair<std::string, std::string>> named;
+  if (!arguments.row.empty()) named.emplace_back(arguments.row, to_json(FlightFile{row, cost_of(result)}));
+  if (!arguments.junit.empty()) named.emplace_back(arguments.junit, campaign_junit({row}));
   for (const auto& [file, text] : named)
-    if (!within(file).empty()) write_whole_file(output->path() / within(file), text);
+    if (placed(file) != file) write_whole_file(placed(file), text);
   if (output) output->finish();
   for (const auto& [file, text] : named)
-    if (!file.empty() && within(file).empty()) write_whole_file(file, text);
+    if (placed(file) == file) write_whole_file(file, text);
   if (!arguments.quiet) {
     fmt::print("{}", to_report(result));
     if (output) fmt::print("  {:<18}{}\n", "files", folder.string());

@@ -14,7 +14,6 @@
 #include "scenarios/flight/flight_logger.hpp"
 #include "scenarios/flight/flight_page.hpp"
 #include "scenarios/flight/fly.hpp"
-#include "scenarios/flight/run_files.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/output_folder.hpp"
 #include "scenarios/output/progress_line.hpp"

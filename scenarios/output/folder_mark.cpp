@@ -138,11 +138,7 @@ void FolderMark::read(const ResultKind& kind) {
       files_.insert(listed);
   }
   if (begin < text.size()) append("\n");  // torn by a power cut
-  if (!files_.empty() || !kind.grows || !fs::exists(folder_ / kind.manifest)) return;
-  std::string lines;
-  for (const std::string& one : files_of(folder_, kind)) lines += fmt::format("{} {}\n", kind.name, one);
-  append(lines);
-  read(kind);
+  if (files_.empty() && kind.grows && fs::exists(folder_ / kind.manifest)) list(files_of(folder_, kind));
 }
 
 void FolderMark::append(const std::string& lines) {
@@ -176,8 +172,7 @@ bool FolderMark::goes_on(bool resume) {
     return !was_begun || !file.starts_with("conditions/");
   });
   if (other) refuse_other_file(name_ / *other);
-  for (const std::string& file : names_of(kind_)) require_own(file);
-  add(names_of(kind_));
+  add_names();
   return is_there;
 }
 
@@ -187,13 +182,23 @@ void FolderMark::require_own(const std::string& file) const {
     refuse_other_file(name_ / file);
 }
 
-void FolderMark::add(const std::vector<std::string>& files) {
-  const auto hold = hold_outputs();
+void FolderMark::add_names() {
+  const std::vector<std::string> names = names_of(kind_);
+  for (const std::string& file : names) require_own(file);
+  add(names);
+}
+
+bool FolderMark::list(const std::vector<std::string>& files) {
   std::string lines;
   for (const std::string& file : files)
     if (files_.insert(file).second) lines += fmt::format("{} {}\n", kind_.name, file);
-  if (lines.empty()) return;
-  append(lines);
+  if (!lines.empty()) append(lines);
+  return !lines.empty();
+}
+
+void FolderMark::add(const std::vector<std::string>& files) {
+  const auto hold = hold_outputs();
+  if (!list(files)) return;
   fdatasync(file_);  // whoever finds a file after a power cut must find whose it is
   if (unlisted_) unlisted_->keep();
   unlisted_.reset();

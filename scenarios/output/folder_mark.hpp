@@ -44,6 +44,8 @@ class FolderMark {
   void require_own(const std::string& file) const;
   /// Lists files that will be written now, or that were.
   void add(const std::vector<std::string>& files);
+  /// Lists the kind's names. Throws as require_own() does.
+  void add_names();
   /// Removes the listed files that are not in `kept` from folder and list.
   void keep_only(const std::set<std::string>& kept);
 
@@ -51,6 +53,7 @@ class FolderMark {
   bool opens(Manner manner);
   void read(const ResultKind& kind);
   void append(const std::string& lines);
+  bool list(const std::vector<std::string>& files);  ///< whether one of them was not listed yet
 
   std::filesystem::path folder_;  ///< canonical
   std::filesystem::path name_;

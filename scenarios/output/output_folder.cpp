@@ -117,10 +117,7 @@ void OutputFolder::finish() {
   part_->mark().add(written);
   sync_file_system(path());
   if (!there_ && !stands_alone_ && part_->rename_to(folder_)) return;
-  if (!there_) {  // it is a mount, or somebody made something there meanwhile
-    require_replaceable();
-    there_.emplace(folder_, kind_, name_);
-  }
+  if (!there_) there_.emplace(folder_, kind_, name_);  // it is a mount, or somebody made something there
   require_replaceable();
   place(written);
 }

@@ -41,7 +41,7 @@ const ResultKind tuning_results{
     .grows = true,
     .patterns = {"tune.json", "trials.jsonl", "validation.jsonl", "sensitivity.jsonl", "trials.csv",
                  "pareto.csv", "summary.md", "tune.svg", "best.yaml", "report.html", "front/*.yaml",
-                 "flown/*/*/*/*"}};
+                 "flown/*/*/*"}};
 
 const ResultKind evaluation_results{
     .name = "evaluation",

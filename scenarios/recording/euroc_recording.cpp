@@ -9,7 +9,6 @@
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/named_seed.hpp"
 #include "scenarios/flight/flight.hpp"
-#include "scenarios/flight/run_files.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/report/pictures.hpp"
 #include "scenarios/scenario/scenario_io.hpp"

@@ -10,7 +10,6 @@
 #include "estimation/state.hpp"
 #include "perception/stereo_frame.hpp"
 #include "scenarios/flight/flight.hpp"
-#include "scenarios/output/output_folder.hpp"
 #include "scenarios/recording/euroc_texts.hpp"
 #include "scenarios/scenario/scenario.hpp"
 #include "sim/aircraft/truth.hpp"

@@ -7,7 +7,6 @@
 #include "scenarios/config/named_seed.hpp"
 #include "scenarios/flight/flight.hpp"
 #include "scenarios/flight/onboard_sensors.hpp"
-#include "scenarios/flight/run_files.hpp"
 #include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/recording/carried_path.hpp"
 #include "scenarios/recording/euroc_recording.hpp"

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "estimation/dead_reckoning.hpp"
 #include "estimation/filter.hpp"
@@ -66,14 +67,11 @@ std::string goalposts_fault(const GoalpostsConfig& config, const Scenario&) {
              : "pass_minimum_m: must be at most goalposts.pass_maximum_m";
 }
 
-double palings_of(const FenceConfig& fence, double goal_x_m) {
-  const double fences = std::max(0.0, std::ceil((goal_x_m - fence.first_across_m) / fence.across_apart_m));
-  const double across_m = fences * 2 * (fence.reach_m - 0.5 * fence.opening_m);
-  return (across_m + std::max(0.0, goal_x_m - fence.first_across_m)) / fence.spacing_m;
-}
-
 std::string fence_fault(const FenceConfig& config, const Scenario& scenario) {
-  const double palings = palings_of(config, scenario.goal_x_m());
+  const double across_from_m = scenario.goal_x_m() - config.first_across_m;
+  const double fences = std::max(0.0, std::ceil(across_from_m / config.across_apart_m));
+  const double across_m = fences * 2 * (config.reach_m - 0.5 * config.opening_m);
+  const double palings = (across_m + std::max(0.0, across_from_m)) / config.spacing_m;
   if (scenario.course == "fence" && palings > maximum_obstacles)
     return fmt::format("spacing_m: a fence may have at most {} palings, this one would have about {:.0f}",
                        maximum_obstacles, palings);

@@ -21,7 +21,7 @@ import _understory
 
 from .flight import load_scenario, save_scenario
 from .parts import load_plugin
-from .spaces import Box, Dict, checked_actions
+from .spaces import Box, Dict, checked_action
 
 try:
     import gymnasium
@@ -219,7 +219,7 @@ class FlightEnv(_Base):
         core = self._core
         if core is None or self._ended:
             raise RuntimeError("step() before reset(): the episode has ended or none has begun")
-        values = checked_actions(action, self.action_space.shape, "action")
+        values = checked_action(action, self.action_space.shape)
         if self._act == "command":
             bank, climb = values.tolist()
             core.command(bank * MAXIMUM_BANK_RAD, climb * MAXIMUM_CLIMB_MPS)

@@ -81,11 +81,11 @@ except ImportError:
             return f"Dict({self.spaces})"
 
 
-def checked_actions(given: Any, shape: tuple[int, ...], name: str) -> np.ndarray:
-    """The actions as numbers. Raises ValueError at another shape, and where one lies beyond -1 and 1 or is no number."""
+def checked_action(given: Any, shape: tuple[int, ...]) -> np.ndarray:
+    """The action as numbers. Raises ValueError at another shape, and where one lies beyond -1 and 1 or is no number."""
     values = np.asarray(given, dtype=float)
     if values.shape != shape:
-        raise ValueError(f"{name}: must have shape {shape}, got {values.shape}")
+        raise ValueError(f"action: must have shape {shape}, got {values.shape}")
     if not np.abs(values).max() <= 1:
-        raise ValueError(f"{name}: must lie within -1 and 1, got {values.tolist()}")
+        raise ValueError(f"action: must lie within -1 and 1, got {values.tolist()}")
     return values
