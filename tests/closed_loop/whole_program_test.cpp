@@ -8,12 +8,10 @@
 #include "tests/support/temporary_folder.hpp"
 
 /// Every large part of the program once, briefly: what the sanitizers look at (preset asan_sim).
+namespace understory::support {
 namespace {
 
 namespace fs = std::filesystem;
-using understory::support::Outcome;
-using understory::support::TemporaryFolder;
-using understory::support::understory;
 
 class WholeProgram : public testing::Test {
  protected:
@@ -77,3 +75,4 @@ validation: 1001
 }
 
 }  // namespace
+}  // namespace understory::support

@@ -21,9 +21,7 @@ bool operator==(const StereoHit& a, const StereoHit& b) {
 
 namespace {
 
-using support::house_rig;
-using support::render_plane;
-using support::SyntheticPlane;
+using namespace support;
 
 /// Blocks of the detector's grid whose left and right edges suffice: those that could hit at all.
 int textured_blocks(const StereoFrame& frame, const PushbroomStereo& detector,

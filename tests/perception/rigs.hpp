@@ -17,6 +17,18 @@ inline const std::filesystem::path house_rigs =
 
 inline StereoRig house_rig(const char* name) { return read_rig(house_rigs / name); }
 
+/// The paper's rig (Barry & Tedrake 2015): its principal points lie far apart. Looks along body x.
+inline StereoRig paper_rig() {
+  StereoRig rig;
+  rig.focal_px = 180.4;
+  rig.baseline_m = 0.353;
+  rig.center_left_x_px = 197.5;
+  rig.center_right_x_px = 105.7;
+  rig.center_y_px = 101.0;
+  rig.T_body_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return rig;
+}
+
 /// One line, with `part` in it, from `beginning` on.
 inline void expect_line(const std::string& found, const std::string& beginning, const std::string& part) {
   EXPECT_EQ(found.find(beginning), 0u) << found << "\n  should begin with " << beginning;

@@ -98,8 +98,7 @@ TEST_F(Plugins, EveryKindFlies) {
 
 /// What a recorded flight's images give is what the flight saw: also for a detector of a plug-in.
 TEST_F(Plugins, DetectInRecordings) {
-  const std::string recording = (folder.path() / "recording").string(),
-                    out = (folder.path() / "out").string();
+  const std::string recording = path("recording"), out = path("out");
   const std::string edges = " --plugin " + plugin("edge_detector") + " --set perception.detector=edges";
   expect_success("record forest --seed 1003 --set forest.length_m=5 --quiet --out " + recording + edges);
   const Outcome found = expect_success("detect " + recording + " --out " + out + edges);
@@ -143,7 +142,7 @@ TEST_F(Plugins, ThatBreakTheirPromisesEndTheFlightAsAFailedMachine) {
       {"course=nowhere", "course 'nowhere': make() gave obstacle 1, which is not finite"}};
   for (const auto& [setting, message] : cases)
     expect_refusal("fly forest --set forest.length_m=5 --set " + std::string(setting) + " --quiet --plugin " +
-                       plugin("defects") + " --row " + (folder.path() / "row.json").string(),
+                       plugin("defects") + " --row " + path("row.json"),
                    message, 3);
 }
 
@@ -163,17 +162,17 @@ TEST_F(Plugins, WrongFilesAreOneLine) {
       {plugin("wrong_throws_int"), "threw what is no std::exception"},
       {plugin("wrong_exits"), "ends the process that loads it (status 0)"},
       {plugin("wrong_bounds"), "backwards:1: gain: expected a number from 40 to 2, got 3"},
-      {(folder.path() / "cut60.so").string(), "is cut off: its headers speak of"},
-      {(folder.path() / "cut90.so").string(), "is cut off: its headers speak of"},
+      {path("cut60.so"), "is cut off: its headers speak of"},
+      {path("cut90.so"), "is cut off: its headers speak of"},
       {plugin("wrong_symbol"), "a_function_that_nobody_has"},
       {plugin("wrong_name_taken"), "the name 'pushbroom' is taken"},
       {plugin("wrong_name"), "the name 'My Detector' must be letters"},
       {plugin("wrong_key"), "the name 'compute' is taken by the keys perception.compute"},
       {plugin("wrong_throws"), "no licence for"},
       {plugin("wrong_nothing"), "adds no part"},
-      {(folder.path() / "text.so").string(), "text.so"},
+      {path("text.so"), "text.so"},
       {folder.path().string(), "must be a shared library"},
-      {(folder.path() / "none.so").string(), "No such file"}};
+      {path("none.so"), "No such file"}};
   for (const auto& [file, message] : cases) {
     expect_refusal("plugin " + file, message);
     expect_refusal("fly clear --quiet --plugin " + file, message);
@@ -233,7 +232,7 @@ TEST_F(Plugins, DefectsAreFoundByName) {
 
 TEST_F(Plugins, ThatEndTheProcessAreNamed) {
   expect_refusal("fly forest --quiet --set perception.detector=exits --plugin " + plugin("blocking") +
-                     " --row " + (folder.path() / "row.json").string(),
+                     " --row " + path("row.json"),
                  "blocking.so: detector 'exits': detect(): ended the process", 3);
   EXPECT_FALSE(fs::exists(folder.path() / "row.json"));
 }
@@ -241,7 +240,7 @@ TEST_F(Plugins, ThatEndTheProcessAreNamed) {
 /// What a command that is ended by the watchdog says, and how.
 TEST_F(Plugins, ThatBlockEndTheProgramAndLoseNoFlight) {
   expect_refusal("fly forest --quiet --set perception.detector=blocks --plugin " + plugin("blocking") +
-                     " --row " + (folder.path() / "row.json").string(),
+                     " --row " + path("row.json"),
                  "blocking.so: detector 'blocks': detect(): has not returned for 20 s", 3);
   EXPECT_FALSE(fs::exists(folder.path() / "row.json"));
 }

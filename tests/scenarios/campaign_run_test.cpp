@@ -16,15 +16,10 @@
 
 /// Campaigns as they are run and as they break: flights of a clear field by the blind, a fraction of a second
 /// each.
+namespace understory::support {
 namespace {
 
 namespace fs = std::filesystem;
-using understory::support::content_of;
-using understory::support::expect_part;
-using understory::support::expect_refusal;
-using understory::support::expect_success;
-using understory::support::Outcome;
-using understory::support::understory;
 
 class CampaignRun : public testing::Test {
  protected:
@@ -158,3 +153,4 @@ TEST_F(CampaignRun, RefusesFoldersThatAreNotItsOwn) {
 }
 
 }  // namespace
+}  // namespace understory::support

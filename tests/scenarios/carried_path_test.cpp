@@ -17,12 +17,15 @@
 #include "scenarios/scenario/scenario_rig.hpp"
 #include "tests/scenarios/recordings.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 /// Paths that cameras are carried along, and what they leave.
 namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
+using PathFile = support::FolderTest;
+using Follow = support::FolderTest;
 using support::TemporaryFolder;
 constexpr double pi = std::numbers::pi;
 
@@ -101,8 +104,7 @@ TEST(SmoothPath, RatesAndForcesAreThePathsOwn) {
       2e-3);
 }
 
-TEST(PathFile, AllFormsSayTheSame) {
-  const TemporaryFolder folder;
+TEST_F(PathFile, AllFormsSayTheSame) {
   const fs::path tum = folder.write("a.tum", "0.5 1 2 3 0.5 -0.5 0.5 0.5\n1 2 2 3 0.5 -0.5 0.5 0.5\n");
   const fs::path flown =
       folder.write("trajectory.csv",
@@ -117,8 +119,7 @@ TEST(PathFile, AllFormsSayTheSame) {
   }
 }
 
-TEST(PathFile, WhatNobodyCanBeCarriedAlongIsRefused) {
-  const TemporaryFolder folder;
+TEST_F(PathFile, WhatNobodyCanBeCarriedAlongIsRefused) {
   const auto complaint = [&](const std::string& text) -> std::string {
     try {
       read_path(folder.write("path", text));
@@ -128,7 +129,7 @@ TEST(PathFile, WhatNobodyCanBeCarriedAlongIsRefused) {
     return "none";
   };
   const auto expect_complaint = [&](const std::string& text, const std::string& part) {
-    EXPECT_NE(complaint(text).find(part), std::string::npos) << complaint(text);
+    support::expect_part(complaint(text), part);
     EXPECT_EQ(complaint(text).find('\n'), std::string::npos);
   };
   expect_complaint("", "holds no pose");
@@ -144,7 +145,7 @@ TEST(PathFile, WhatNobodyCanBeCarriedAlongIsRefused) {
                    "path:4: expected numbers under the columns' names");
 }
 
-TEST(PathFile, ThinningKeepsBothEndsAndADistance) {
+TEST_F(PathFile, ThinningKeepsBothEndsAndADistance) {
   const auto thin = thinned(weave_at(200, 814));
   EXPECT_EQ(thin.front().t_ns, 7'000'000'000);
   EXPECT_EQ(thin.back().t_ns, 7'000'000'000 + 813 * std::int64_t{5'000'000});
@@ -157,8 +158,7 @@ TEST(PathFile, ThinningKeepsBothEndsAndADistance) {
 }
 
 /// The shipped path says where it is: every recorded pose is known beforehand.
-TEST(Follow, TheShippedPathIsWhereItSays) {
-  const TemporaryFolder folder;
+TEST_F(Follow, TheShippedPathIsWhereItSays) {
   const Scenario scenario = library_scenario("forest", {"seed=1003", "cameras.rate_hz=2"});
   const Carried carried =
       follow_recorded(scenario, read_path(root / "scenarios/library/paths/level.tum"), into(folder.path()));
@@ -175,8 +175,7 @@ TEST(Follow, TheShippedPathIsWhereItSays) {
 }
 
 /// A flight's own path, followed, shows what the flight saw.
-TEST(Follow, AFlightsTrajectoryLooksLikeTheFlight) {
-  const TemporaryFolder folder;
+TEST_F(Follow, AFlightsTrajectoryLooksLikeTheFlight) {
   const Scenario scenario = library_scenario("forest", {"seed=1003", "cameras.rate_hz=10", "time_limit_s=3",
                                                         "forest.clear_m=8", "perception.detector=none"});
   const fs::path flown = folder.path() / "flown", followed = folder.path() / "followed";

@@ -10,17 +10,13 @@
 #include "tests/support/temporary_folder.hpp"
 
 /// What the program leaves behind: whole or nothing, however it ends.
+namespace understory::support {
 namespace {
 
 namespace fs = std::filesystem;
-using understory::support::content_of;
-using understory::support::expect_refusal;
-using understory::support::Outcome;
-using understory::support::TemporaryFolder;
-using understory::support::understory;
+using CliOutput = FolderTest;
 
-TEST(CliOutput, AnOutputThatCannotBeWrittenIsRefusedBeforeTheWork) {
-  const TemporaryFolder folder;
+TEST_F(CliOutput, AnOutputThatCannotBeWrittenIsRefusedBeforeTheWork) {
   const std::string nowhere = (folder.path() / "none" / "file").string();
   expect_refusal("rig long --out " + nowhere + ".svg", "cannot write here");
   expect_refusal("bench --rounds 100000 --json " + nowhere, "cannot write here");
@@ -34,8 +30,7 @@ TEST(CliOutput, AnOutputThatCannotBeWrittenIsRefusedBeforeTheWork) {
 #endif
 }
 
-TEST(CliOutput, APictureGoesThroughALinkToAFullDevice) {
-  const TemporaryFolder folder;
+TEST_F(CliOutput, APictureGoesThroughALinkToAFullDevice) {
   const fs::path link = folder.path() / "rig.svg";
   fs::create_symlink("/dev/full", link);
   if (geteuid() == 0) {  // who could replace the machine's: one of our own
@@ -65,8 +60,7 @@ const std::string short_flight = "fly clear --set forest.length_m=1 --quiet ";
 const std::string long_flight =
     "fly forest --set forest.length_m=1000 --set forest.intangible=true --set time_limit_s=600 --quiet ";
 
-TEST(CliOutput, StandardOutputIsNoFileToBeReplaced) {
-  const TemporaryFolder folder;
+TEST_F(CliOutput, StandardOutputIsNoFileToBeReplaced) {
   const fs::path file = folder.path() / "said";
   const Outcome flown = understory(short_flight + "--row /dev/stdout --junit /dev/stdout > " + file.string());
   EXPECT_EQ(flown.status, 0) << flown.text;
@@ -75,15 +69,13 @@ TEST(CliOutput, StandardOutputIsNoFileToBeReplaced) {
   EXPECT_EQ(names_in(folder.path()).size(), 1u);
 }
 
-TEST(CliOutput, ARunsFilesMayBeNamedWithinItsFolder) {
-  const TemporaryFolder folder;
-  const std::string run = (folder.path() / "run").string();
+TEST_F(CliOutput, ARunsFilesMayBeNamedWithinItsFolder) {
+  const std::string run = path("run");
   EXPECT_EQ(understory(short_flight + "--out " + run + " --junit " + run + "/junit.xml").status, 0);
   EXPECT_TRUE(fs::exists(folder.path() / "run/junit.xml"));
 }
 
-TEST(CliOutput, ARunOfAnotherConfigurationIsKeptUnlessForced) {
-  const TemporaryFolder folder;
+TEST_F(CliOutput, ARunOfAnotherConfigurationIsKeptUnlessForced) {
   const std::string there = "cd " + folder.path().string() + " &&";
   EXPECT_EQ(understory(short_flight, there).status, 0);
   const fs::path run = folder.path() / "runs" / "clear-1000";
@@ -97,19 +89,17 @@ TEST(CliOutput, ARunOfAnotherConfigurationIsKeptUnlessForced) {
   EXPECT_NE(content_of(run / "result.json"), first);
 }
 
-TEST(CliOutput, TwoFlightsDoNotMixInOneFolder) {
-  const TemporaryFolder folder;
-  const std::string out = "--out " + (folder.path() / "run").string();
+TEST_F(CliOutput, TwoFlightsDoNotMixInOneFolder) {
+  const std::string out = "--out " + path("run");
   // The second starts when the first has begun to write, and the first goes on when the second has ended.
   const std::string first = std::string(UNDERSTORY_BINARY) + " " + short_flight +
                             "--set forest.length_m=200 --set forest.intangible=true " + out +
-                            " & p=$!; until test -e " +
-                            (folder.path() / ".understory-run.unfinished/scenario.yaml").string() +
+                            " & p=$!; until test -e " + path(".understory-run.unfinished/scenario.yaml") +
                             "; do sleep 0.01; done; kill -STOP $p;";
   const Outcome second =
       understory(short_flight + "--seed 7 " + out + " 2>&1; echo status $?; kill -CONT $p; wait", first);
-  EXPECT_NE(second.text.find("another understory writes there"), std::string::npos) << second.text;
-  EXPECT_NE(second.text.find("status 2"), std::string::npos) << second.text;
+  expect_part(second.text, "another understory writes there");
+  expect_part(second.text, "status 2");
   EXPECT_NE(content_of(folder.path() / "run/scenario.yaml").find("seed: 1000"), std::string::npos);
   EXPECT_NE(content_of(folder.path() / "run/result.json").find("\"seed\": 1000"), std::string::npos);
 }
@@ -121,13 +111,12 @@ void expect_stopped(const std::string& arguments, const std::string& event, cons
     const Outcome stopped = understory::support::stopped(arguments, folder, signal, event);
     EXPECT_EQ(stopped.status, status) << arguments << "\n" << stopped.text;
     EXPECT_EQ(std::count(stopped.text.begin(), stopped.text.end(), '\n'), 1) << stopped.text;
-    EXPECT_NE(stopped.text.find("stopped"), std::string::npos) << stopped.text;
+    expect_part(stopped.text, "stopped");
     EXPECT_EQ(names_in(folder), left) << arguments;
   }
 }
 
-TEST(CliOutput, NoCommandWritesIntoAFolderThatAnotherWritesInto) {
-  const TemporaryFolder folder;
+TEST_F(CliOutput, NoCommandWritesIntoAFolderThatAnotherWritesInto) {
   const std::string in_folder = "cd " + folder.path().string() + " && ";
   ASSERT_EQ(understory("record clear --set forest.length_m=1 --quiet --out rec", in_folder).status, 0);
   const std::string campaign = "campaign " UNDERSTORY_SOURCE_DIR "/scenarios/library/campaigns/gate.yaml";
@@ -147,8 +136,7 @@ TEST(CliOutput, NoCommandWritesIntoAFolderThatAnotherWritesInto) {
   EXPECT_FALSE(fs::exists(folder.path() / "new"));
 }
 
-TEST(CliOutput, ASignalEndsEveryCommandInOneLineAndLeavesNothing) {
-  const TemporaryFolder folder;
+TEST_F(CliOutput, ASignalEndsEveryCommandInOneLineAndLeavesNothing) {
   fs::create_directories(folder.path() / "runs");
   expect_stopped(long_flight + "--video", "ls runs/.understory-*.unfinished/scenario.yaml", folder.path(),
                  {"runs"});
@@ -163,8 +151,7 @@ TEST(CliOutput, ASignalEndsEveryCommandInOneLineAndLeavesNothing) {
   expect_stopped("bench --closed-loop --flights 50 --json rows.json", listens, folder.path());
 }
 
-TEST(CliOutput, ASignalStopsACampaignThatGoesOnLater) {
-  const TemporaryFolder folder;
+TEST_F(CliOutput, ASignalStopsACampaignThatGoesOnLater) {
   const std::string file = folder
                                .write("c.yaml",
                                       "scenario: forest\nseeds: 1..3\noverrides: [{name: long, set: "
@@ -173,14 +160,11 @@ TEST(CliOutput, ASignalStopsACampaignThatGoesOnLater) {
   const Outcome stopped = understory::support::stopped("campaign " + file + " --out results", folder.path(),
                                                        "TERM", "ls results/logs/*.txt");
   EXPECT_EQ(stopped.status, 143);
-  EXPECT_NE(stopped.text.find("stopped with 0 of 3 flights over; --resume goes on\n"), std::string::npos)
-      << stopped.text;
-  for (const std::string& name : names_in(folder.path()))
-    EXPECT_EQ(name.find("unfinished"), std::string::npos) << name;
+  expect_part(stopped.text, "stopped with 0 of 3 flights over; --resume goes on\n");
+  for (const std::string& name : names_in(folder.path())) expect_no_part(name, "unfinished");
 }
 
-TEST(CliOutput, ASignalStopsTheRecordersOfAnEvaluation) {
-  const TemporaryFolder folder;
+TEST_F(CliOutput, ASignalStopsTheRecordersOfAnEvaluation) {
   folder.write(
       "suite.yaml",
       "recordings:\n  - {name: forest, scenario: forest, seeds: 1..2, set: {forest.length_m: 400}}\n");
@@ -201,28 +185,25 @@ bool mounts_disks() {
   return std::system("unshare -m sh -c 'mount -t tmpfs tmpfs /mnt' >/dev/null 2>&1") == 0;
 }
 
-TEST(CliOutput, AFullDiskIsOneLineAndAFilmThatDoesNotFitLosesNoResult) {
+TEST_F(CliOutput, AFullDiskIsOneLineAndAFilmThatDoesNotFitLosesNoResult) {
   if (!mounts_disks()) GTEST_SKIP() << "only root may mount a small disk";
-  const TemporaryFolder folder;
   const Outcome none = on_small_disk(short_flight + "--out run", folder.path(), "4k", "ls -A");
-  EXPECT_NE(none.text.find("No space left on device\nstatus 3\n"), std::string::npos) << none.text;
+  expect_part(none.text, "No space left on device\nstatus 3\n");
   const Outcome no_film = on_small_disk("fly clear --set forest.length_m=5 --quiet --video --out run",
                                         folder.path(), "16k", "ls -A");
-  EXPECT_NE(no_film.text.find("No space left on device\nstatus 3\n"), std::string::npos) << no_film.text;
+  expect_part(no_film.text, "No space left on device\nstatus 3\n");
   const Outcome film = on_small_disk("fly clear --set forest.length_m=10 --quiet --video --out run",
                                      folder.path(), "300k", "ls -A . run");
-  EXPECT_NE(film.text.find("No space left on device\nstatus 3\n"), std::string::npos) << film.text;
-  EXPECT_NE(film.text.find("run:\n.understory\nestimate.tum\nflight.log\nmap.ply\nobstacles.csv\nresult."
-                           "json\nscenario.yaml\n"),
-            std::string::npos)
-      << film.text;
-  EXPECT_EQ(film.text.find("unfinished", film.text.find("status 3")), std::string::npos) << film.text;
+  expect_part(film.text, "No space left on device\nstatus 3\n");
+  expect_part(film.text,
+              "run:\n.understory\nestimate.tum\nflight.log\nmap.ply\nobstacles.csv\nresult."
+              "json\nscenario.yaml\n");
+  expect_no_part(film.text.substr(film.text.find("status 3")), "unfinished");
 }
 
 // 60 frames take 6 MB, and a second of the next command's hour 12 MB.
-TEST(CliOutput, ARecordingThatDoesNotFitSaysWhatItNeedsAndWhatIsFree) {
+TEST_F(CliOutput, ARecordingThatDoesNotFitSaysWhatItNeedsAndWhatIsFree) {
   if (!mounts_disks()) GTEST_SKIP() << "only root may mount a small disk";
-  const TemporaryFolder folder;
   const std::string record = "record clear --set time_limit_s=0.5 --quiet --out r";
   EXPECT_NE(on_small_disk(record, folder.path(), "20m", "true").text.find("status 0"), std::string::npos);
   const fs::path path = folder.path().string() + ".tum";  // the disk lies over the folder
@@ -231,12 +212,11 @@ TEST(CliOutput, ARecordingThatDoesNotFitSaysWhatItNeedsAndWhatIsFree) {
                                         folder.path(), "20m", "true");
   for (const char* part :
        {"the recording needs up to 0.7", "GB more (7200 frames", "GB are free there", "status 3"})
-    EXPECT_NE(refused.text.find(part), std::string::npos) << part << "\n" << refused.text;
+    expect_part(refused.text, part);
 }
 
-TEST(CliOutput, AFolderThatIsADiskOfItsOwnIsWrittenWithin) {
+TEST_F(CliOutput, AFolderThatIsADiskOfItsOwnIsWrittenWithin) {
   if (!mounts_disks()) GTEST_SKIP() << "only root may mount a small disk";
-  const TemporaryFolder folder;
   const Outcome flown = on_small_disk(short_flight + "--out .", folder.path(), "1m", "ls -A");
   EXPECT_EQ(flown.text,
             "status "
@@ -248,3 +228,4 @@ TEST(CliOutput, AFolderThatIsADiskOfItsOwnIsWrittenWithin) {
 #endif
 
 }  // namespace
+}  // namespace understory::support

@@ -18,8 +18,7 @@ namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
-using support::expect_success;
-using support::Outcome;
+using namespace support;
 
 struct DetectReal : testing::Test {
   static constexpr const char* name = "stereo/euroc-v1_01";

@@ -19,9 +19,7 @@ namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
-using support::expect_part;
-using support::expect_success;
-using support::Outcome;
+using namespace support;
 
 struct Detect : testing::Test {
   support::TemporaryFolder folder;

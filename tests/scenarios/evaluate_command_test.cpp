@@ -13,16 +13,11 @@
 #include "tests/support/temporary_folder.hpp"
 
 /// `understory evaluate` as people meet it.
+namespace understory::support {
 namespace {
 
 namespace fs = std::filesystem;
-using understory::support::content_of;
-using understory::support::expect_part;
-using understory::support::expect_refusal;
-using understory::support::expect_success;
-using understory::support::Outcome;
-using understory::support::TemporaryFolder;
-using understory::support::understory;
+using EvaluateCommand = FolderTest;
 
 const char* suite = R"(
 set: {cameras.rate_hz: 10, time_limit_s: 3}
@@ -46,8 +41,7 @@ nlohmann::json figures(const fs::path& folder) {
   return json;
 }
 
-TEST(EvaluateCommand, RecordsASuiteAndJudgesIt) {
-  const TemporaryFolder folder;
+TEST_F(EvaluateCommand, RecordsASuiteAndJudgesIt) {
   const fs::path file = folder.write("short.yaml", suite);
   const fs::path out = folder.path() / "out";
   expect_success("evaluate " + file.string() + " --out " + out.string());
@@ -66,7 +60,7 @@ TEST(EvaluateCommand, RecordsASuiteAndJudgesIt) {
 
   // Curves are drawn over the frames of the table, however few: at each algorithm's own setting they meet it.
   const Outcome sparse = expect_success("evaluate " + (out / "recordings/short-1007").string() +
-                                        " --every 8 --out " + (folder.path() / "sparse").string());
+                                        " --every 8 --out " + path("sparse"));
   const nlohmann::json few = figures(folder.path() / "sparse")["all"];
   EXPECT_EQ(few["frames"], 4);
   for (const nlohmann::json* sum : {&all, &few})
@@ -114,8 +108,7 @@ void write_true_disparities(const fs::path& recording, const fs::path& to, const
 
 // The right principal point lies further right than the left one, as in one rig of the original aircraft:
 // what is far away has negative disparities.
-TEST(EvaluateCommand, DisparitiesMayBeNegativeWhereInfinityIs) {
-  const TemporaryFolder folder;
+TEST_F(EvaluateCommand, DisparitiesMayBeNegativeWhereInfinityIs) {
   const fs::path recording = folder.path() / "a", given = folder.path() / "given",
                  out = folder.path() / "out";
   const fs::path rig = folder.write(
@@ -133,8 +126,7 @@ TEST(EvaluateCommand, DisparitiesMayBeNegativeWhereInfinityIs) {
   expect_part(content_of(out / "tables/disparities.csv"), "exact,100.0,0.0,0.0,0.0,0.000");
 }
 
-TEST(EvaluateCommand, DisparitiesOfOthersStandBesideOurs) {
-  const TemporaryFolder folder;
+TEST_F(EvaluateCommand, DisparitiesOfOthersStandBesideOurs) {
   const fs::path recording = folder.path() / "walk-7", given = folder.path() / "given",
                  out = folder.path() / "out";
   expect_success(
@@ -162,9 +154,8 @@ TEST(EvaluateCommand, DisparitiesOfOthersStandBesideOurs) {
   expect_part(content_of(out / "tables/disparities.csv"), "exact,100.0,0.0,0.0,0.0,0.000");
 }
 
-TEST(EvaluateCommand, WrongInputIsRefusedInOneLine) {
-  const TemporaryFolder folder;
-  const std::string out = " --out " + (folder.path() / "out").string();
+TEST_F(EvaluateCommand, WrongInputIsRefusedInOneLine) {
+  const std::string out = " --out " + path("out");
   expect_refusal("evaluate nowhere" + out, "nowhere");
   expect_refusal("evaluate " + folder.path().string() + out, "cam0");
   const auto refuses = [&](const std::string& text, const std::string& part) {
@@ -187,3 +178,4 @@ TEST(EvaluateCommand, WrongInputIsRefusedInOneLine) {
 }
 
 }  // namespace
+}  // namespace understory::support

@@ -9,11 +9,8 @@
 namespace understory {
 namespace {
 
-using support::expect_part;
-using support::expect_refusal;
-using support::expect_success;
-using support::flown_row;
-using support::Outcome;
+using namespace support;
+using GateCommand = FolderTest;
 
 /// Writes a campaign's folder: 20 flights, of which the first `collisions` collide.
 std::string campaign(const support::TemporaryFolder& folder, const std::string& name,
@@ -26,28 +23,26 @@ std::string campaign(const support::TemporaryFolder& folder, const std::string& 
   return (folder.path() / name).string();
 }
 
-TEST(GateCommand, EndsWithItsVerdict) {
-  const support::TemporaryFolder folder;
+TEST_F(GateCommand, EndsWithItsVerdict) {
   const std::string gate = "gate --baseline " + campaign(folder, "before", 0);
   expect_success(gate + " --candidate " + campaign(folder, "same", 0));
   expect_success(gate + " --candidate " + campaign(folder, "one", 1));
   const std::string worse = gate + " --candidate " + campaign(folder, "two", 2);
-  const Outcome failed = support::understory(worse + " --junit " + (folder.path() / "gate.xml").string());
+  const support::Outcome failed = support::understory(worse + " --junit " + path("gate.xml"));
   EXPECT_EQ(failed.status, 1);
   expect_part(failed.text, "worse: forest: seed 0 (collision at 30.0 m), 1 (");
   expect_part(support::content_of(folder.path() / "gate.xml"), "tests=\"21\" failures=\"3\" errors=\"0\"");
   expect_success(worse + " --max-drop 0.1");
 }
 
-TEST(GateCommand, RefusesWhatMeansNothing) {
-  const support::TemporaryFolder folder;
+TEST_F(GateCommand, RefusesWhatMeansNothing) {
   const std::string here = campaign(folder, "here", 0);
   expect_refusal("gate --baseline " + here, "candidate");
-  expect_refusal("gate --candidate " + here + " --baseline " + (folder.path() / "gone").string(), "gone");
+  expect_refusal("gate --candidate " + here + " --baseline " + path("gone"), "gone");
   const std::string both = "gate --baseline " + here + " --candidate " + here;
   for (const char* drop : {"nan", "-0.1", "1.1", "5%"})
     expect_refusal(both + " --max-drop " + drop, "--max-drop");
-  expect_refusal(both + " --junit " + (folder.path() / "gone/gate.xml").string(), "gate.xml");
+  expect_refusal(both + " --junit " + path("gone/gate.xml"), "gate.xml");
 }
 
 }  // namespace

@@ -8,13 +8,10 @@
 #include "tests/support/temporary_folder.hpp"
 
 /// `understory keys`: complete, current, and true of what --set takes.
+namespace understory::support {
 namespace {
 
 using understory::Key;
-using understory::support::content_of;
-using understory::support::Outcome;
-using understory::support::TemporaryFolder;
-using understory::support::understory;
 using Json = nlohmann::json;
 
 TEST(Keys, ATextIsAMeaningThenItsSourceThenItsUnit) {
@@ -52,7 +49,7 @@ TEST(Keys, ThePageIsCurrentAndNoColumnIsWithoutAMeaning) {
   EXPECT_EQ(page.text, content_of(UNDERSTORY_SOURCE_DIR "/docs/keys.md"))
       << "mend it: understory keys --markdown > docs/keys.md";
   const std::string columns = page.text.substr(page.text.find("## Columns"));
-  EXPECT_EQ(columns.find("|  |\n"), std::string::npos) << columns;
+  expect_no_part(columns, "|  |\n");
 }
 
 /// A scenario's values, each given with --set over the defaults, are that scenario.
@@ -76,3 +73,4 @@ TEST(Keys, NamesAndValuesAreThoseOfSet) {
 #endif
 
 }  // namespace
+}  // namespace understory::support

@@ -23,6 +23,7 @@ namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
+using Objects = support::FolderTest;
 
 /// A line of objects.csv.
 struct Object {
@@ -139,49 +140,32 @@ Recorded walked(const std::string& name, std::vector<std::string> settings, cons
   return recorded;
 }
 
-TEST(Objects, OfAForestAreThoseThatRaysMeet) {
-  const support::TemporaryFolder folder;
-  const Recorded forest =
-      walked("forest", {"cameras.view_distance_m=200", "forest.square_metres_per_tree=20"}, folder.path());
-  EXPECT_EQ(forest.objects[1].kind, "ground");
-  EXPECT_EQ(forest.objects[2].kind, "trunk");
-  EXPECT_GT(forest.agreement.on_obstacles, 20'000);
-  EXPECT_EQ(forest.agreement.agreed, forest.agreement.compared);
-}
-
-TEST(Objects, OfAGoalAreThoseThatRaysMeet) {
-  const support::TemporaryFolder folder;
-  const Recorded goal = walked("goalposts", {"goalposts.ahead_m=17"}, folder.path());
-  ASSERT_EQ(goal.objects.size(), 5u);
-  EXPECT_EQ(goal.objects[2].kind, "post");
-  EXPECT_EQ(goal.objects[4].name, "crossbar");
-  EXPECT_EQ(goal.objects[4].kind, "crossbar");
-  EXPECT_GT(goal.agreement.on_obstacles, 500);
-  EXPECT_EQ(goal.agreement.agreed, goal.agreement.compared);
-}
-
-TEST(Objects, OfAFenceAreThoseThatRaysMeet) {
-  const support::TemporaryFolder folder;
-  const Recorded fence = walked("fence", {"fence.first_across_m=16", "forest.length_m=15"}, folder.path());
-  EXPECT_EQ(fence.objects[2].kind, "post");
-  EXPECT_EQ(fence.objects.back().kind, "rail");
-  EXPECT_GT(fence.agreement.on_obstacles, 500);
-  EXPECT_EQ(fence.agreement.agreed, fence.agreement.compared);
-}
-
-TEST(Objects, OfAWallOfWindowsAreThoseThatRaysMeet) {
-  const support::TemporaryFolder folder;
-  const Recorded facade = walked("windows", {"forest.length_m=5"}, folder.path());
-  ASSERT_EQ(facade.objects.size(), 3u);
-  EXPECT_EQ(facade.objects[2].name, "facade");
-  EXPECT_EQ(facade.objects[2].kind, "wall");
-  EXPECT_GT(facade.agreement.on_obstacles, 100'000);
-  EXPECT_EQ(facade.agreement.agreed, facade.agreement.compared);
+TEST_F(Objects, OfEveryCourseAreThoseThatRaysMeet) {
+  struct Course {
+    std::string name;
+    std::vector<std::string> settings, kinds;  ///< kinds of the objects behind sky and ground, the first ones
+    int smallest_on_obstacles;
+  };
+  for (const Course& course :
+       {Course{
+            "forest", {"cameras.view_distance_m=200", "forest.square_metres_per_tree=20"}, {"trunk"}, 20'000},
+        Course{"goalposts", {"goalposts.ahead_m=17"}, {"post", "post", "crossbar"}, 500},
+        Course{"fence", {"fence.first_across_m=16", "forest.length_m=15"}, {"post"}, 500},
+        Course{"windows", {"forest.length_m=5"}, {"wall"}, 100'000}}) {
+    SCOPED_TRACE(course.name);
+    const Recorded found = walked(course.name, course.settings, folder.path() / course.name);
+    ASSERT_GE(found.objects.size(), 2 + course.kinds.size());
+    EXPECT_EQ(found.objects[1].kind, "ground");
+    for (std::size_t i = 0; i < course.kinds.size(); ++i)
+      EXPECT_EQ(found.objects[2 + i].kind, course.kinds[i]);
+    EXPECT_EQ(found.objects.back().kind == "rail", course.name == "fence");
+    EXPECT_GT(found.agreement.on_obstacles, course.smallest_on_obstacles);
+    EXPECT_EQ(found.agreement.agreed, found.agreement.compared);
+  }
 }
 
 /// Flown straight at, a wall is a plane whose depth is one distance less the way gone.
-TEST(Objects, AWallAheadHasOneDepth) {
-  const support::TemporaryFolder folder;
+TEST_F(Objects, AWallAheadHasOneDepth) {
   const fs::path knots = folder.write(
       "straight", "0 0 0 4.5 0 -0.095585155 0 0.995421257\n1 12 0 4.5 0 -0.095585155 0 0.995421257\n");
   const fs::path followed = folder.path() / "followed";
@@ -202,8 +186,7 @@ TEST(Objects, AWallAheadHasOneDepth) {
 }
 
 /// Along the banked path, which goes through trunks: where it is at a time is known, and its roll.
-TEST(Objects, AlongTheBankedPathAreThoseThatRaysMeet) {
-  const support::TemporaryFolder folder;
+TEST_F(Objects, AlongTheBankedPathAreThoseThatRaysMeet) {
   const Scenario scenario =
       library_scenario("forest", {"seed=1003", "cameras.rate_hz=2", "cameras.view_distance_m=200"});
   EXPECT_EQ(
@@ -229,8 +212,7 @@ TEST(Objects, AlongTheBankedPathAreThoseThatRaysMeet) {
 }
 
 /// What is not drawn is no object: neither image nor depth nor number knows of it.
-TEST(Objects, BeyondTheViewAreNone) {
-  const support::TemporaryFolder folder;
+TEST_F(Objects, BeyondTheViewAreNone) {
   const Recorded forest = walked("forest", {"cameras.view_distance_m=5"}, folder.path());
   for (const auto& entry : fs::directory_iterator(folder.path() / "mav0/objects0/data")) {
     double maximum = 0;

@@ -8,19 +8,16 @@
 #include "tests/support/temporary_folder.hpp"
 
 /// `understory record` as people meet it.
+namespace understory::support {
 namespace {
 
 namespace fs = std::filesystem;
-using understory::support::content_of;
-using understory::support::expect_refusal;
-using understory::support::TemporaryFolder;
-using understory::support::understory;
+using RecordCommand = FolderTest;
 
 const std::string flight = " forest --seed 1007 --set time_limit_s=0.9 --set cameras.rate_hz=60";
 
-TEST(RecordCommand, RecordingChangesNoFlight) {
-  const TemporaryFolder folder;
-  const std::string flown = (folder.path() / "flown").string(), kept = (folder.path() / "kept").string();
+TEST_F(RecordCommand, RecordingChangesNoFlight) {
+  const std::string flown = path("flown"), kept = path("kept");
   EXPECT_EQ(understory("fly --quiet" + flight + " --out " + flown).status, 1);  // time is over
   const auto outcome = understory("record" + flight + " --out " + kept);
   EXPECT_EQ(outcome.status, 0) << outcome.text;
@@ -36,8 +33,7 @@ TEST(RecordCommand, RecordingChangesNoFlight) {
   expect_refusal("record" + flight + " --out " + kept, "holds results already: --force");
 }
 
-TEST(RecordCommand, TwoRecordingsOfAWoodHoldTheSameBytes) {
-  const TemporaryFolder folder;
+TEST_F(RecordCommand, TwoRecordingsOfAWoodHoldTheSameBytes) {
   const fs::path one = folder.path() / "one", other = folder.path() / "other";
   for (const fs::path& kept : {one, other}) {
     const auto outcome = understory(
@@ -54,13 +50,11 @@ TEST(RecordCommand, TwoRecordingsOfAWoodHoldTheSameBytes) {
   }
   EXPECT_GT(files, 40);
   const std::string objects = content_of(one / "mav0" / "objects0" / "objects.csv");
-  for (const char* kind : {"trunk", "branch", "foliage", "undergrowth"})
-    EXPECT_NE(objects.find(kind), std::string::npos) << kind;
+  for (const char* kind : {"trunk", "branch", "foliage", "undergrowth"}) expect_part(objects, kind);
 }
 
-TEST(RecordCommand, WrongArgumentsAreBadInput) {
-  const TemporaryFolder folder;
-  const std::string out = " --out " + (folder.path() / "out").string();
+TEST_F(RecordCommand, WrongArgumentsAreBadInput) {
+  const std::string out = " --out " + path("out");
   expect_refusal("record forest", "--out");
   expect_refusal("record nowhere" + out, "nowhere");
   expect_refusal("record forest --walk=0" + out, "--walk");
@@ -78,3 +72,4 @@ TEST(RecordCommand, WrongArgumentsAreBadInput) {
 }
 
 }  // namespace
+}  // namespace understory::support

@@ -17,11 +17,10 @@
 #include "tests/support/temporary_folder.hpp"
 
 /// `campaign --engine slurm` on a real Slurm of two nodes, both on this machine, started here for the test.
+namespace understory::support {
 namespace {
 
 namespace fs = std::filesystem;
-using understory::support::content_of;
-using understory::support::expect_success;
 
 bool installed() {
   for (const char* program : {"slurmctld", "slurmd", "sbatch", "squeue", "munged"})
@@ -175,3 +174,4 @@ TEST(Slurm, WithoutItOneLineSaysSo) {
 }
 
 }  // namespace
+}  // namespace understory::support

@@ -9,22 +9,17 @@
 
 #include "scenarios/course/courses.hpp"
 #include "scenarios/flight/clearance.hpp"
+#include "tests/perception/rigs.hpp"
 
 namespace understory {
 namespace {
 
 using Eigen::Vector3d;
 
-/// The paper's rig looking level along world x: camera x = world -y, camera y = world -z, camera z = world x.
+/// It looks level along world x: camera x = world -y, camera y = world -z, camera z = world x.
 StereoRig paper_rig() {
-  StereoRig rig;
-  rig.focal_px = 180.4;
-  rig.baseline_m = 0.353;
-  rig.center_left_x_px = 197.5;
-  rig.center_right_x_px = 105.7;
-  rig.center_y_px = 101.0;
+  StereoRig rig = support::paper_rig();
   rig.detection_depth_m = 4.8;
-  rig.T_body_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   return rig;
 }
 

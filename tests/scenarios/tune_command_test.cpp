@@ -14,9 +14,8 @@ namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
-using support::content_of;
-using support::expect_refusal;
-using support::expect_success;
+using namespace support;
+using TuneCommand = FolderTest;
 
 /// Half a second in the air: what takes long in a flight is left out.
 const std::string short_flight =
@@ -28,8 +27,7 @@ std::string flights_text(const std::string& search) {
          search + "\nover: flights\ntraining: 1000..1001\nvalidation: 1002\n";
 }
 
-TEST(TuneCommand, RefusesBadInputInOneLine) {
-  const support::TemporaryFolder folder;
+TEST_F(TuneCommand, RefusesBadInputInOneLine) {
   const std::string here = folder.path().string() + "/";
   folder.write("short.yaml", short_flight);
   folder.write("bad.yaml",
@@ -44,14 +42,13 @@ TEST(TuneCommand, RefusesBadInputInOneLine) {
   expect_refusal("tune " + here + "tune.yaml --resume --out " + here + "out", "format changed");
 }
 
-TEST(TuneCommand, WithGoesOverTheScenarioAndItsErrorsNameItsLines) {
-  const support::TemporaryFolder folder;
+TEST_F(TuneCommand, WithGoesOverTheScenarioAndItsErrorsNameItsLines) {
   const std::string scenario = folder.write("short.yaml", short_flight).string();
   const std::string wrong = folder.write("wrong.yaml", "forest:\n  lenght_m: 1\n").string();
   const std::string wide = folder.write("wide.yaml", "forest:\n  length_m: -1\n").string();
   const std::string rig = folder.write("rig.yaml", "rig: none\n").string();
   for (const std::string command : {"fly ", "record "}) {
-    const std::string begin = command + scenario + " --out " + (folder.path() / "run").string() + " --with ";
+    const std::string begin = command + scenario + " --out " + path("run") + " --with ";
     expect_refusal(begin + wrong, "wrong.yaml:2: forest.lenght_m: unknown key");
     expect_refusal(begin + wide, "wide.yaml:2: forest.length_m: expected a number");
     expect_refusal(begin + rig, "rig.yaml:1: rig: must be a name in");
@@ -66,8 +63,7 @@ TEST(TuneCommand, WithGoesOverTheScenarioAndItsErrorsNameItsLines) {
   EXPECT_EQ(flown.forest.half_width_m, 13);
 }
 
-TEST(TuneCommand, StoppedAndResumedItEndsWithTheSameLogs) {
-  const support::TemporaryFolder folder;
+TEST_F(TuneCommand, StoppedAndResumedItEndsWithTheSameLogs) {
   folder.write("short.yaml", short_flight);
   const std::string file =
       folder.write("tune.yaml", flights_text("{method: random, trials: 3, seed: 1, sensitivity: 2}"))
@@ -81,15 +77,14 @@ TEST(TuneCommand, StoppedAndResumedItEndsWithTheSameLogs) {
        {"trials.jsonl", "validation.jsonl", "sensitivity.jsonl", "summary.md", "tune.svg", "pareto.csv"})
     EXPECT_EQ(content_of(folder.path() / "stopped" / log), content_of(folder.path() / "undisturbed" / log))
         << log;
-  const std::string fly = "fly " + (folder.path() / "short.yaml").string() + " --seed 1002 --quiet --with " +
+  const std::string fly = "fly " + path("short.yaml") + " --seed 1002 --quiet --with " +
                           fs::directory_iterator(folder.path() / "undisturbed/front")->path().string() +
-                          " --out " + (folder.path() / "run").string();
+                          " --out " + path("run");
   EXPECT_LE(support::understory(fly).status, 1);  // flown, to an end good or bad
   EXPECT_TRUE(fs::exists(folder.path() / "run" / "result.json"));
 }
 
-TEST(TuneCommand, OverRecordingsItsFiguresAreThoseOfTheirEvaluation) {
-  const support::TemporaryFolder folder;
+TEST_F(TuneCommand, OverRecordingsItsFiguresAreThoseOfTheirEvaluation) {
   const std::string here = folder.path().string() + "/";
   for (const std::string seed : {"1000", "1001", "1002"})
     expect_success(

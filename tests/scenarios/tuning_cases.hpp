@@ -13,9 +13,7 @@
 namespace understory {
 
 namespace fs = std::filesystem;
-using support::content_of;
-using support::expect_no_part;
-using support::expect_part;
+using namespace support;
 
 inline fs::path in_library(const std::string& name) {
   const fs::path file = fs::path(UNDERSTORY_SOURCE_DIR) / "scenarios" / "library" / (name + ".yaml");

@@ -38,6 +38,11 @@ Airframe in_vacuum() {
   return airframe;
 }
 
+struct FlyingAircraft : testing::Test {
+  const Airframe airframe;
+  const World world = empty_world(airframe);
+};
+
 TEST(Aircraft, MassAndInertiaAreTheAirframes) {
   Airframe airframe;
   airframe.mass_kg = 0.7;
@@ -89,9 +94,7 @@ TEST(Aircraft, TorqueFreeTumbleKeepsMomentumAndEnergy) {
   EXPECT_NEAR(energy(), start, 0.01 * start);
 }
 
-TEST(Aircraft, HoldsTheTrimItWasGiven) {
-  const Airframe airframe;
-  const World world = empty_world(airframe);
+TEST_F(FlyingAircraft, HoldsTheTrimItWasGiven) {
   const Trim trim = straight_trim(airframe, 12.27).value();
   Aircraft aircraft(*world.model, airframe, LaunchConfig{}, Vector3d::Zero());
   const Controls held{trim.elevon_rad, trim.elevon_rad, trim.thrust_n};
@@ -105,9 +108,7 @@ TEST(Aircraft, HoldsTheTrimItWasGiven) {
   EXPECT_NEAR(aircraft.truth().specific_force_body_mps2.norm(), 9.81, 0.02);  // level: weight alone
 }
 
-TEST(Aircraft, ShortPeriodSettles) {
-  const Airframe airframe;
-  const World world = empty_world(airframe);
+TEST_F(FlyingAircraft, ShortPeriodSettles) {
   const Trim trim = straight_trim(airframe, 12.27).value();
   Aircraft aircraft(*world.model, airframe, LaunchConfig{}, Vector3d::Zero());
   const Controls held{trim.elevon_rad, trim.elevon_rad, trim.thrust_n};
@@ -116,9 +117,7 @@ TEST(Aircraft, ShortPeriodSettles) {
   EXPECT_NEAR(attack_of(aircraft.truth()), trim.angle_of_attack_rad, 0.02);
 }
 
-TEST(Aircraft, ControlsActOneInputDelayLater) {
-  const Airframe airframe;
-  const World world = empty_world(airframe);
+TEST_F(FlyingAircraft, ControlsActOneInputDelayLater) {
   Aircraft aircraft(*world.model, airframe, LaunchConfig{}, Vector3d::Zero());
   aircraft.place(level_pose(0.19, 50), {12, 0, 0}, Vector3d::Zero(), {});
   int steps_until_up = 0;
@@ -134,9 +133,7 @@ TEST(Aircraft, ControlsActOneInputDelayLater) {
   EXPECT_EQ(aircraft.data().qpos[world.model->jnt_qposadr[joint]], airframe.elevon_max_rad);
 }
 
-TEST(Aircraft, LeftElevonUpRollsLeftInTheWorld) {
-  const Airframe airframe;
-  const World world = empty_world(airframe);
+TEST_F(FlyingAircraft, LeftElevonUpRollsLeftInTheWorld) {
   Aircraft aircraft(*world.model, airframe, LaunchConfig{}, Vector3d::Zero());
   const Controls left{0.4, 0.0, 5.0};
   aircraft.place(level_pose(0.19, 50), {12.27, 0, 0}, Vector3d::Zero(), left);
@@ -144,10 +141,8 @@ TEST(Aircraft, LeftElevonUpRollsLeftInTheWorld) {
   EXPECT_GT(aircraft.truth().velocity_world_mps.y(), 1.0);  // y is to the left
 }
 
-TEST(Aircraft, CatapultReleasesAtItsSpeedAndPlace) {
-  const Airframe airframe;
+TEST_F(FlyingAircraft, CatapultReleasesAtItsSpeedAndPlace) {
   const LaunchConfig launch;
-  const World world = empty_world(airframe);
   Aircraft aircraft(*world.model, airframe, launch, Vector3d::Zero());
   EXPECT_NEAR(aircraft.truth().specific_force_body_mps2.norm(), 9.81, 1e-9);  // at rest
   const Eigen::Matrix3d attitude = aircraft.truth().T_world_body.linear();
@@ -167,9 +162,7 @@ TEST(Aircraft, CatapultReleasesAtItsSpeedAndPlace) {
   EXPECT_NEAR(felt_world.z(), 9.81 + 48 * std::sin(launch.climb_angle_rad), 0.3);
 }
 
-TEST(Aircraft, ReleaseIsSmooth) {
-  const Airframe airframe;
-  const World world = empty_world(airframe);
+TEST_F(FlyingAircraft, ReleaseIsSmooth) {
   Aircraft aircraft(*world.model, airframe, LaunchConfig{}, Vector3d::Zero());
   const Trim trim = straight_trim(airframe, 12.0).value();
   const Controls full{trim.elevon_rad, trim.elevon_rad, airframe.max_thrust_n};
@@ -183,9 +176,7 @@ TEST(Aircraft, ReleaseIsSmooth) {
   EXPECT_EQ(aircraft.contact(), Contact::none);
 }
 
-TEST(Aircraft, WindMovesItOverGround) {
-  const Airframe airframe;
-  const World world = empty_world(airframe);
+TEST_F(FlyingAircraft, WindMovesItOverGround) {
   const Trim trim = straight_trim(airframe, 12.27).value();
   const Vector3d wind(-3, 0, 0);
   Aircraft aircraft(*world.model, airframe, LaunchConfig{}, wind);
@@ -196,9 +187,7 @@ TEST(Aircraft, WindMovesItOverGround) {
   EXPECT_NEAR(aircraft.truth().T_world_body.translation().x(), 2 * (12.27 - 3), 0.1);
 }
 
-TEST(Aircraft, SpecificForceIntegratesToTheVelocity) {
-  const Airframe airframe;
-  const World world = empty_world(airframe);
+TEST_F(FlyingAircraft, SpecificForceIntegratesToTheVelocity) {
   Aircraft aircraft(*world.model, airframe, LaunchConfig{}, Vector3d::Zero());
   Vector3d velocity_world = Vector3d::Zero();
   const auto gained = [](const Truth& truth) {
@@ -239,9 +228,7 @@ TEST(Aircraft, SameInputsSameBits) {
   EXPECT_EQ(fly(), fly());
 }
 
-TEST(Aircraft, RefusesWhatCannotBe) {
-  const Airframe airframe;
-  const World world = empty_world(airframe);
+TEST_F(FlyingAircraft, RefusesWhatCannotBe) {
   LaunchConfig buried;
   buried.altitude_m = 0.3;
   buried.rail_length_m = 10;

@@ -13,21 +13,12 @@
 #include <vector>
 
 #include "sim/cameras/stereo_cameras.hpp"
+#include "tests/perception/rigs.hpp"
 
 /// Small worlds to point cameras at, and where things stand in their images.
 namespace understory {
 
-/// The paper's rig (Barry & Tedrake 2015): its principal points lie far apart. Looks along body x.
-inline StereoRig paper_rig() {
-  StereoRig rig;
-  rig.focal_px = 180.4;
-  rig.baseline_m = 0.353;
-  rig.center_left_x_px = 197.5;
-  rig.center_right_x_px = 105.7;
-  rig.center_y_px = 101.0;
-  rig.T_body_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  return rig;
-}
+using support::paper_rig;
 
 /// A world of the test's own: an aircraft that can be put anywhere, and `geoms` in the drawn group.
 inline World bare_world(const std::string& geoms) {
