@@ -376,8 +376,8 @@ TEST(Size, OnlyGoesDown) {
     EXPECT_LE(number, allowed_by(page_number, name)) << "tests/sizes.txt: decision page " << page_number
                                                      << " must allow `" << name << ' ' << number << '`';
   for (const auto& [what, number] : measured)
-    EXPECT_EQ(held[what], number) << "tests/sizes.txt: " << what << ": lower it, so that it stays down; only "
-                                  << "a decision page may raise it";
+    EXPECT_EQ(held[what], number) << "tests/sizes.txt: write " << number << " at " << what
+                                  << "; more than before needs a page in docs/decisions that allows it";
   EXPECT_EQ(held.size(), measured.size());
 }
 

@@ -130,9 +130,8 @@ class FieldReader : public FieldVisitor {
     if (is_plain(node) && !numbers.whole) value = number_in(node.text);
     if (!value || *value < numbers.minimum || *value > numbers.maximum)
       refuse(node, name,
-             numbers.whole
-                 ? fmt::format("a whole number from {:.0f} to {:.0f}", numbers.minimum, numbers.maximum)
-                 : fmt::format("a number from {} to {}", numbers.minimum, numbers.maximum));
+             fmt::format("a {}number from {} to {}", numbers.whole ? "whole " : "",
+                         number_text(numbers, numbers.minimum), number_text(numbers, numbers.maximum)));
     return *value;
   }
 
@@ -170,6 +169,10 @@ void read_fields(const TextNode& map, const Fields& fields, const std::string& p
   FieldReader reader(map, path, keys);
   fields(reader);
   reader.refuse_unknown();
+}
+
+std::string number_text(const FieldNumbers& numbers, double value) {
+  return numbers.whole ? fmt::format("{:.0f}", value) : fmt::format("{}", value);
 }
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known) {

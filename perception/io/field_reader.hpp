@@ -22,6 +22,9 @@ void read_config(const TextNode& map, Config& config) {
   read_fields(map, fields_of(config));
 }
 
+/// One of the numbers of a field, in the fewest digits that read back exactly.
+std::string number_text(const FieldNumbers& numbers, double value);
+
 /// " (did you mean NAME?)", with the known name that is most similar to `word`; empty if none is similar.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
 

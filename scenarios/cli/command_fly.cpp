@@ -73,8 +73,7 @@ void warn_of(const Scenario& scenario, bool quiet) {
   if (!quiet && asked_mps > fastest_mps + 0.1)
     fmt::print(stderr,
                "understory: warning: autopilot.flight_model.cruise_speed_mps: the aircraft holds at most "
-               "{:.1f} m/s in level "
-               "flight, {:g} m/s are asked for\n",
+               "{:.1f} m/s in level flight, {:g} m/s are asked for\n",
                fastest_mps, asked_mps);
 }
 

@@ -10,6 +10,7 @@
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/keys.hpp"
 #include "scenarios/flight/flight_result.hpp"
+#include "scenarios/parts/parts.hpp"
 #include "scenarios/report/table.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
@@ -32,8 +33,7 @@ std::vector<Key> result_keys() {
   visit_fields(add, result);
   add("points_on_obstacles", 0,
       "Number of points added to the map within 0.5 m of each obstacle, by its name; only on courses of at "
-      "most "
-      "eight obstacles.");
+      "most eight obstacles.");
   add("planner_counts", 0, "counts that one planner alone knows, by name");
   add("timings", 0, "wall time of each stage of the simulation: count, mean, maximum and total");
   return keys;
@@ -53,9 +53,9 @@ Table table_of(const std::vector<Key>& keys, bool are_columns) {
 
 /// A part of the list of keys: those that begin with `prefix` and with no longer one.
 struct Chapter {
-  const char *prefix, *title, *text;
+  std::string prefix, title, text;
 };
-constexpr Chapter chapters[]{
+const std::vector<Chapter> written_chapters{
     {"", "The flight", "What is flown: course, seed and rig. Every other group describes a part of it."},
     {"wind", "Wind",
      "The mean wind, its profile over height, turbulence, one gust, and the shelter of the forest. Still air "
@@ -77,8 +77,8 @@ constexpr Chapter chapters[]{
     {"launch.", "Launch", "The catapult: the aircraft rests on its rail, is accelerated, and is released."},
     {"airframe.", "Airframe",
      "The delta wing's identified flat-plate model. The simulator, the planner and the filter use it. Axes: "
-     "x "
-     "forward, y left, z up, from the centre of mass. All defaults come from the original's flight records."},
+     "x forward, y left, z up, from the centre of mass. All defaults come from the original's flight "
+     "records."},
     {"mismatch.", "Mismatch",
      "Differences between the aircraft that flies and the airframe that the stack believes in, in percent."},
     {"actuators.", "Actuators",
@@ -111,8 +111,7 @@ constexpr Chapter chapters[]{
      "The state from pitot and gyro alone (estimation.source: dead_reckoning)."},
     {"estimation.filter.", "Estimation: filter",
      "The error-state Kalman filter (docs/estimator.md). Standard deviations are one sigma. The scenario "
-     "sets "
-     "start, airframe and the sensors' noises from its other groups; keys given here win."},
+     "sets start, airframe and the sensors' noises from its other groups; keys given here win."},
     {"autopilot.", "Autopilot", "When the aircraft takes control, and how often it plans."},
     {"autopilot.map.", "Autopilot: map", "Which detections the map remembers, and for how long."},
     {"autopilot.resightings.", "Autopilot: resightings",
@@ -134,12 +133,30 @@ constexpr Chapter chapters[]{
     {"autopilot.follower.", "Autopilot: path follower",
      "The inner loops that turn commands into elevons and thrust."}};
 
-const Chapter& chapter_of(const std::string& key) {
+/// Of a part with keys of its own about which nothing is written: its meaning.
+template <typename One>
+void add_chapters(std::vector<Chapter>& chapters, const PartList<One>& list, const std::string& above,
+                  const std::string& kind) {
+  for (const One& part : list.all()) {
+    const std::string prefix = above + part.name + ".";
+    if (part.defaults && std::ranges::find(chapters, prefix, &Chapter::prefix) == chapters.end())
+      chapters.push_back({prefix, kind + ": " + part.name, part.meaning + "."});
+  }
+}
+
+std::vector<Chapter> all_chapters() {
+  std::vector<Chapter> chapters = written_chapters;
+  add_chapters(chapters, parts().detectors, "perception.", "Detection");
+  add_chapters(chapters, parts().state_sources, "estimation.", "Estimation");
+  add_chapters(chapters, parts().planners, "autopilot.", "Planner");
+  add_chapters(chapters, parts().courses, "", "Course");
+  return chapters;
+}
+
+const Chapter& chapter_of(const std::vector<Chapter>& chapters, const std::string& key) {
   const Chapter* found = &chapters[0];
   for (const Chapter& chapter : chapters)
-    if (key.starts_with(chapter.prefix) &&
-        std::string_view(chapter.prefix).size() > std::string_view(found->prefix).size())
-      found = &chapter;
+    if (key.starts_with(chapter.prefix) && chapter.prefix.size() > found->prefix.size()) found = &chapter;
   return *found;
 }
 
@@ -147,10 +164,11 @@ const Chapter& chapter_of(const std::string& key) {
 template <typename ChapterText>
 std::string by_chapter(const std::vector<Key>& keys, ChapterText&& chapter_text) {
   std::string text;
+  const std::vector<Chapter> chapters = all_chapters();
   for (const Chapter& chapter : chapters) {
     std::vector<Key> own;
     for (const Key& key : keys)
-      if (&chapter_of(key.name) == &chapter) own.push_back(key);
+      if (&chapter_of(chapters, key.name) == &chapter) own.push_back(key);
     text += chapter_text(chapter, own);
   }
   return text;
@@ -161,19 +179,17 @@ std::string page_of(const std::vector<Key>& keys) {
   return fmt::format(
       "# Keys and columns\n\n"
       "Made by `understory keys --markdown`, a test checks that it is current. `understory keys SCENARIO` "
-      "shows the values of one scenario; [scenarios.md](scenarios.md) says how a scenario is written. "
-      "A value "
+      "shows the values of one scenario; [scenarios.md](scenarios.md) says how a scenario is written. A "
+      "value "
       "without a source was chosen or measured here.\n\n{}"
-      "## Columns of flights.csv\n\nA row per flight of a campaign; the keys of each line of flights.jsonl, "
-      "too.\n\n{}\n"
+      "## Columns of flights.csv\n\n"
+      "A row per flight of a campaign; the keys of each line of flights.jsonl, too.\n\n{}\n"
       "## Keys of result.json\n\n{}\n"
-      "## Columns of trajectory.csv\n\nA row each 5 ms: time, the true pose of the centre of mass in the "
-      "world "
-      "(quaternion from body to world), velocity, angular rate about the body's axes; `est_`: the same as "
-      "the "
-      "aircraft estimates it; commands; what the actuators did of them; distance from the wing to the "
-      "nearest "
-      "obstacle.\n\n```\n{}```\n",
+      "## Columns of trajectory.csv\n\n"
+      "A row each 5 ms: time, the true pose of the centre of mass in the world (quaternion from body to "
+      "world), velocity, angular rate about the body's axes; `est_`: the same as the aircraft estimates it; "
+      "commands; what the actuators did of them; distance from the wing to the nearest obstacle.\n\n"
+      "```\n{}```\n",
       by_chapter(keys,
                  [](const Chapter& chapter, const std::vector<Key>& own) {
                    return fmt::format("## {}\n\n{}\n\n{}\n", chapter.title, chapter.text,
@@ -205,7 +221,7 @@ std::string json_of(const std::vector<Key>& keys, const std::vector<Key>& defaul
 std::string lines_of(const std::vector<Key>& keys, const std::vector<Key>& defaults) {
   return by_chapter(keys, [&](const Chapter& chapter, const std::vector<Key>& own) {
     std::string text =
-        fmt::format("{}# {}: {}\n", chapter.prefix[0] == 0 ? "" : "\n", chapter.title, chapter.text);
+        fmt::format("{}# {}: {}\n", chapter.prefix.empty() ? "" : "\n", chapter.title, chapter.text);
     for (const Key& key : own) {
       const std::string& usual = std::ranges::find(defaults, key.name, &Key::name)->value;
       text += fmt::format("{}: {}{}{}  ({})  {}{}{}\n", key.name, key.value, key.unit.empty() ? "" : " ",

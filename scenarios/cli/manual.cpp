@@ -86,8 +86,7 @@ std::string manual_page(const std::deque<Command>& commands) {
       ".SH SYNOPSIS\n.B understory\n.I command\n.RI [ arguments ]\n.br\n.B understory \\-\\-version\n"
       ".SH DESCRIPTION\n"
       "Understory flies a small delta wing through simulated forests on its own stereo vision, headless, on "
-      "a "
-      "CPU,\nthe same way every time. It detects obstacles in recorded stereo images, too.\n"
+      "a CPU,\nthe same way every time. It detects obstacles in recorded stereo images, too.\n"
       ".SH COMMANDS\n",
       troff(understory_version));
   for (const Command& command : commands)

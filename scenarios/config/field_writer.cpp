@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "perception/io/field_reader.hpp"
+
 namespace understory {
 namespace {
 
@@ -30,11 +32,7 @@ class FieldWriter : public FieldVisitor {
     if (chosen < words.size()) line(name, words[chosen]);
   }
   void numbers(std::string_view name, FieldNumbers& numbers, std::string_view) override {
-    const std::string values = text_of_values(numbers);
-    if (numbers.shape == Shape::one || numbers.shape == Shape::optional)
-      line(name, values.empty() ? "~" : values);
-    else
-      line(name, "[" + values + "]");
+    line(name, value_text(numbers));
   }
   void seed(std::string_view name, std::uint64_t& value, std::uint64_t, std::string_view) override {
     line(name, fmt::format("{}", value));
@@ -68,13 +66,12 @@ class FieldWriter : public FieldVisitor {
 
 }  // namespace
 
-std::string text_of_values(const FieldNumbers& numbers) {
+std::string value_text(const FieldNumbers& numbers) {
+  using Shape = FieldNumbers::Shape;
   std::string text;
-  for (const double value : numbers.values) {
-    if (!text.empty()) text += ", ";
-    text += numbers.whole ? fmt::format("{:.0f}", value) : fmt::format("{}", value);
-  }
-  return text;
+  for (const double value : numbers.values) text += (text.empty() ? "" : ", ") + number_text(numbers, value);
+  if (numbers.shape == Shape::three || numbers.shape == Shape::list) return "[" + text + "]";
+  return text.empty() ? "~" : text;
 }
 
 std::string write_fields(const Fields& fields) {

@@ -15,7 +15,7 @@ std::string write_config(Config config) {  // by value: visitors take fields tha
   return write_fields(fields_of(config));
 }
 
-/// "1, 2.5".
-std::string text_of_values(const FieldNumbers& numbers);
+/// The value of a field of numbers: "1", "[1, 2.5]", "~" for an optional one without a value.
+std::string value_text(const FieldNumbers& numbers);
 
 }  // namespace understory

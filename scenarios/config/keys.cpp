@@ -74,17 +74,9 @@ class KeyLister : public FieldVisitor {
         meaning);
   }
   void numbers(std::string_view name, FieldNumbers& numbers, std::string_view meaning) override {
-    const bool optional = numbers.shape == Shape::optional;
-    const std::string values = text_of_values(numbers);
-    const bool is_list = numbers.shape == Shape::three || numbers.shape == Shape::list;
-    const std::string value = is_list                      ? fmt::format("[{}]", values)
-                              : optional && values.empty() ? "~"
-                                                           : values;
-    add(name, value,
-        numbers.whole ? fmt::format("{:.0f} .. {:.0f}", numbers.minimum, numbers.maximum)
-                      : fmt::format("{} .. {}", numbers.minimum, numbers.maximum),
-        meaning);
-    if (optional) return;
+    add(name, value_text(numbers),
+        number_text(numbers, numbers.minimum) + " .. " + number_text(numbers, numbers.maximum), meaning);
+    if (numbers.shape == Shape::optional) return;
     Key& key = keys.back();
     key.numbers = numbers.values;
     key.minimum = numbers.minimum;

@@ -246,8 +246,7 @@ EvaluationTable disparities_table(const Evaluation& evaluation) {
   }
   return {"disparities",
           "Disparities of every pixel that has a true depth: share matched; of these, off by more than 1, 2 "
-          "and 4 px, "
-          "and the mean error",
+          "and 4 px, and the mean error",
           std::move(table)};
 }
 

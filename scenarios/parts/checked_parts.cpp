@@ -285,10 +285,10 @@ Planted checked(const CoursePart& part, const CourseContext& context) {
                                       maximum_obstacles));
   for (std::size_t i = 0; i < planted.obstacles.size(); ++i) {
     if (!is_sound(planted.obstacles[i]))
-      callee.fail("make()", fmt::format("gave obstacle {}, which is not finite, has no length, is thinner "
-                                        "than {} m or larger than {} m, or "
-                                        "lies farther than {} m from the launch",
-                                        i + 1, thinnest_m, widest_m, farthest_m));
+      callee.fail("make()",
+                  fmt::format("gave obstacle {}, which is not finite, has no length, is thinner than {} m or "
+                              "larger than {} m, or lies farther than {} m from the launch",
+                              i + 1, thinnest_m, widest_m, farthest_m));
   }
   return planted;
 }

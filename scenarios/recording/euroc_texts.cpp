@@ -84,8 +84,7 @@ std::string camera_sensor_text(const RecordedCamera& recorded, const StereoRig& 
   return head_text("camera", "simulated", recorded.T_body_camera) + pinhole_text(camera, rig, rate_hz) +
          fmt::format(
              "\n# Not EuRoC's: camera axes into rectified ones; the rectified pair's focal length, cu, cv; "
-             "where "
-             "the detector looks.\nrectification: [{}]\nrectified_intrinsics: [{}, {}, {}]\n"
+             "where the detector looks.\nrectification: [{}]\nrectified_intrinsics: [{}, {}, {}]\n"
              "detection_depth_m: {}\n",
              list_text(camera.rectification.val), P(0, 0), P(0, 2), P(1, 2), rig.detection_depth_m);
 }

@@ -33,8 +33,7 @@ void visit_fields(FieldVisitor& visit, ComputeConfig& config) {
 void visit_fields(FieldVisitor& visit, FileConfig& read) {
   visit("file", read.file,
         "Name of the file: of a plug-in (a shared library, or Python), or of a file that the run read. A "
-        "relative "
-        "path is looked for beside the scenario file, then in the working directory.");
+        "relative path is looked for beside the scenario file, then in the working directory.");
   visit("hash", read.hash,
         "Hash of the file's contents; empty: any. A run writes it, so that no other file is taken for it.");
 }

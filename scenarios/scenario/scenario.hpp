@@ -190,17 +190,11 @@ struct Scenario {
 };
 
 void visit_fields(FieldVisitor& visit, BandConfig& band);
-
 void visit_fields(FieldVisitor& visit, CameraSection& section);
-
 void visit_fields(FieldVisitor& visit, SensorSection& section);
-
 void visit_fields(FieldVisitor& visit, PerceptionSection& section);
-
 void visit_fields(FieldVisitor& visit, EstimationSection& section);
-
 void visit_fields(FieldVisitor& visit, AutopilotSection& section);
-
 void visit_fields(FieldVisitor& visit, Scenario& scenario);
 
 }  // namespace understory

@@ -21,8 +21,7 @@ void require_alike(const StereoRig& rectified, const StereoRig& rig, const fs::p
       rectified.width_px != rig.width_px || rectified.height_px != rig.height_px)
     throw std::runtime_error(
         fmt::format("{}: the cameras must be those of rig {}, {}x{} px, focal length {:.4g} px, baseline "
-                    "{:.4g} m, they are "
-                    "{}x{} px, {:.4g} px, {:.4g} m",
+                    "{:.4g} m, they are {}x{} px, {:.4g} px, {:.4g} m",
                     file.string(), rig.name, rig.width_px, rig.height_px, rig.focal_px, rig.baseline_m,
                     rectified.width_px, rectified.height_px, rectified.focal_px, rectified.baseline_m));
 }

@@ -189,8 +189,7 @@ Table comparison_table(const TuneFile& file, const Tuned& tuned) {
 std::string tune_summary(const TuneFile& file, const Tuned& tuned) {
   std::string text = fmt::format(
       "# {}\n\n{} parameters of {}, tuned for {} over {}: {} trials, {}, seed {}. Training chose trial {}; "
-      "what "
-      "counts is validation.\n\n",
+      "what counts is validation.\n\n",
       file.name, file.space.parameters.size(), file.scenario_file.stem().string(), objective_in_words(file),
       data_in_words(file), tuned.trials.size() - 1, method_name(file), file.search.seed,
       tuned.best.training.number);
