@@ -153,8 +153,8 @@ class FieldReader : public FieldVisitor {
 /// `name` as it is called now, where it has changed since version 0.1: keys, options and values.
 std::string renamed(std::string name) {
   static const std::map<std::string, std::string, std::less<>> whole{
-      {"rule", "preset"},   {"--rule", "--preset"},  {"paper", "original"},
-      {"plain", "nominal"}, {"gate_m", "opening_m"}, {"--no-film", "--no-video"},
+      {"rule", "preset"},      {"--rule", "--preset"},      {"paper", "original"},      {"plain", "nominal"},
+      {"gate_m", "opening_m"}, {"--no-film", "--no-video"}, {"--max-drop", "--margin"},
   };
   if (const auto found = whole.find(name); found != whole.end()) return found->second;
   for (const auto& [before, now] : {std::pair{"least", "minimum"}, std::pair{"greatest", "maximum"}})

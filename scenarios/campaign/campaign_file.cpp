@@ -165,7 +165,8 @@ std::uint64_t seed_of(std::string_view word, const std::string& where, const std
   return *seed;
 }
 
-/// "1..200", "7" or a list of such things, as seeds. Throws ScenarioError, beginning with `where`.
+}  // namespace
+
 std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, const std::string& where) {
   std::vector<std::uint64_t> seeds;
   std::set<std::uint64_t> seen;
@@ -185,8 +186,6 @@ std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, cons
   }
   return seeds;
 }
-
-}  // namespace
 
 std::string name_or_stem(const std::string& name, const ConfigNode& top, const fs::path& file) {
   if (find_child(top, "name") == nullptr) {

@@ -34,6 +34,10 @@ Campaign load_campaign(const std::filesystem::path& file, const FindScenario& fi
                        const std::vector<ConfigNode>& over = {},
                        const std::function<void(std::size_t done, std::size_t of)>& on_condition = {});
 
+/// "1..200", "7" or several of these, as seeds. Throws ScenarioError, beginning with `where`, for other words
+/// and a seed that is given twice.
+std::vector<std::uint64_t> seeds_of(const std::vector<std::string>& ranges, const std::string& where);
+
 /// The scenario that `word`, given under a key of `top`, means: a file beside `file`, or the file that the
 /// command line would find. Throws ScenarioError, beginning with the key and its line.
 std::filesystem::path scenario_beside(const std::filesystem::path& file, const ConfigNode& top,

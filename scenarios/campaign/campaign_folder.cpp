@@ -42,11 +42,14 @@ std::string manifest_of(const Campaign& campaign) {
   }
   Json identity = Json::object();
   for (const auto& [name, digest] : campaign.identity) identity[name] = digest;
-  const Json json{{"format", results_format},       {"understory", understory_version},
-                  {"commit", understory_commit},    {"identity", identity},
-                  {"processor", processor_model()}, {"name", campaign.name},
-                  {"renderer", campaign.renderer},  {"timeout_s", campaign.timeout_s},
-                  {"conditions", conditions},       {"seeds", campaign.seeds}};
+  Json pictures = Json::object();
+  for (const auto& [scenery, digest] : campaign.pictures) pictures[scenery] = digest;
+  const Json json{{"format", results_format},        {"understory", understory_version},
+                  {"commit", understory_commit},     {"identity", identity},
+                  {"processor", processor_model()},  {"name", campaign.name},
+                  {"renderer", campaign.renderer},   {"pictures", pictures},
+                  {"timeout_s", campaign.timeout_s}, {"conditions", conditions},
+                  {"seeds", campaign.seeds}};
   return json_text(json, 1) + "\n";
 }
 
@@ -66,14 +69,17 @@ Json manifest_in(const CampaignFolder& folder) {
 }
 
 /// Says in one line what keeps `folder` from going on with `campaign`.
-void require_same(const CampaignFolder& folder, const Campaign& campaign) {
+void require_same(const CampaignFolder& folder, const Campaign& campaign, bool may_grow) {
   const Campaign held = read_campaign(folder);
   const auto refuse = [&](const std::string& what) {
     throw ScenarioError(fmt::format("{}: {}: the campaign was begun with another one; choose another --out",
                                     (folder.path / manifest_name).string(), what));
   };
   require_identity(folder, held, campaign.identity);
-  if (held.seeds != campaign.seeds) refuse("seeds changed");
+  const bool has_all = std::ranges::all_of(held.seeds, [&](std::uint64_t seed) {
+    return std::ranges::find(campaign.seeds, seed) != campaign.seeds.end();
+  });
+  if (may_grow ? !has_all : held.seeds != campaign.seeds) refuse("seeds changed");
   if (held.renderer != campaign.renderer) refuse("renderer changed");
   if (held.timeout_s != campaign.timeout_s) refuse("timeout_s changed");
   for (const Condition& condition : campaign.conditions) {
@@ -146,8 +152,8 @@ std::vector<CampaignTask> in_flying_order(const Campaign& campaign) {
 }
 
 void prepare_campaign_folder(FolderMark& mark, const CampaignFolder& folder, const Campaign& campaign,
-                             bool resume) {
-  if (mark.goes_on(resume)) require_same(folder, campaign);
+                             bool resume, bool may_grow) {
+  if (mark.goes_on(resume)) require_same(folder, campaign, may_grow);
   for (const char* part : {"conditions", "flights", "tracks", "logs"})
     prepare_output_folder(folder.path / part);
   for (const Condition& condition : campaign.conditions)
@@ -187,6 +193,10 @@ Campaign read_campaign(const CampaignFolder& folder) {
     }
     if (json.contains(key = "identity"))
       for (const auto& [name, digest] : json.at(key).items()) campaign.identity.emplace_back(name, digest);
+    if (json.contains(key = "pictures"))
+      for (const auto& [scenery, digest] : json.at(key).items())
+        campaign.pictures.emplace_back(scenery, digest);
+    campaign.commit = json.value(key = "commit", "");
   } catch (const Json::exception&) {
     refuse_manifest(folder, key, "not as `understory campaign` writes it");
   }

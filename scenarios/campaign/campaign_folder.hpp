@@ -37,9 +37,11 @@ struct Campaign {
   std::string name;
   std::vector<Condition> conditions;
   std::vector<std::uint64_t> seeds;
-  std::string renderer = "osmesa";           ///< osmesa or egl; the identity has the renderer's full name
-  double timeout_s = 300;                    ///< of wall time: a flight that takes longer hangs
-  Identity identity;                         ///< of its flights (identity_of)
+  std::string renderer = "osmesa";  ///< osmesa or egl; the identity has the renderer's full name
+  double timeout_s = 300;           ///< of wall time: a flight that takes longer hangs
+  Identity identity;                ///< of its flights (identity_of)
+  Identity pictures;   ///< scenery, and the digest of a pair of it (pictures_of); empty: of an older program
+  std::string commit;  ///< of the program that began it
   std::vector<std::filesystem::path> files;  ///< that its description was read from
 };
 
@@ -81,11 +83,12 @@ struct CampaignFolder {
   }
 };
 
-/// Makes the folder, or, with `resume`, checks that it holds this very campaign, begun by this program.
+/// Makes the folder, or, with `resume`, checks that it holds this very campaign, begun by this program. With
+/// `may_grow` it may have fewer seeds until now.
 /// Throws ScenarioError in one line where it holds a campaign already (without `resume`), another one, one of
 /// another identity or format, other files, or where it cannot be written.
 void prepare_campaign_folder(FolderMark& mark, const CampaignFolder& folder, const Campaign& campaign,
-                             bool resume);
+                             bool resume, bool may_grow = false);
 
 /// Throws ScenarioError where the flights of `held`, which the folder holds, began with another identity.
 void require_identity(const CampaignFolder& folder, const Campaign& held, const Identity& identity);

@@ -187,20 +187,37 @@ void add_rows(const CampaignFolder& folder, const Campaign& campaign, const std:
 
 std::string outcome_of(const FlightRow& row) { return row.flown() ? row.outcome : "not flown"; }
 
-Json gate_of(const GatedCampaign& gated, const std::string& candidate) {
+Json gate_of(const GatedCampaign& gated) {
   Json pairs = Json::array();
   for (const ConditionComparison& condition : gated.comparison.conditions)
     for (const FlightPair& pair : condition.pairs)
       pairs.push_back({condition.condition, fmt::format("{}", pair.baseline.seed), outcome_of(pair.baseline),
                        outcome_of(pair.candidate)});
-  return {{"verdict", gated.verdict.passes() ? "passes" : "fails"},
-          {"baseline", gated.baseline},
-          {"candidate", candidate},
-          {"lines", gated.verdict.reasons},
+  const bool is_open = gated.verdict.verdict == Verdict::undecided;
+  return {{"verdict", gated.verdict.passes() ? "passes"
+                      : is_open              ? "undecided"
+                                             : "fails"},
+          {"title", fmt::format("The gate says of {} against {}: {}", gated.sides.candidate,
+                                gated.sides.baseline, gated.verdict.name())},
+          {"baseline", gated.sides.baseline},
+          {"candidate", gated.sides.candidate},
+          {"lines", {gated.sentence}},
           {"pairs", pairs}};
 }
 
 }  // namespace
+
+std::function<std::string(const FlightRow& row)> commands_of(const CampaignFolder& folder,
+                                                             const Campaign& campaign,
+                                                             const fs::path& data_root) {
+  std::map<std::string, ShownCondition> conditions;
+  for (const Condition& condition : campaign.conditions)
+    conditions[condition.name] = shown(folder, condition, data_root);
+  return [conditions](const FlightRow& row) {
+    const auto found = conditions.find(row.condition);
+    return found == conditions.end() ? "" : command(found->second, row.seed);
+  };
+}
 
 std::string campaign_page(const CampaignFolder& folder, const Campaign& campaign, const Collected& collected,
                           const fs::path& data_root, const std::optional<GatedCampaign>& gated) {
@@ -228,7 +245,7 @@ std::string campaign_page(const CampaignFolder& folder, const Campaign& campaign
   facts["outcomes"] = outcomes;
   facts["survival"] = survival_of(campaign, summaries, page.arrays);
   add_rows(folder, campaign, rows, conditions, page, facts);
-  facts["gate"] = gated ? gate_of(*gated, campaign.name) : Json();
+  facts["gate"] = gated ? gate_of(*gated) : Json();
   page.facts = json_text(facts);
   return page_html(data_root, page);
 }

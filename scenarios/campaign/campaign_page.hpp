@@ -11,10 +11,16 @@ namespace understory {
 
 /// A campaign's comparison with its baseline, and the gate's verdict.
 struct GatedCampaign {
-  std::string baseline;  ///< name of the baseline's folder
+  GateSides sides;
   Comparison comparison;
   GateVerdict verdict;
+  std::string sentence;  ///< sentence_of()
 };
+
+/// What flies a flight of the campaign again: "understory fly forest --seed 7".
+std::function<std::string(const FlightRow& row)> commands_of(const CampaignFolder& folder,
+                                                             const Campaign& campaign,
+                                                             const std::filesystem::path& data_root);
 
 /// The page of a campaign: one HTML file that needs nothing else, with a replay of each lost flight that left
 /// a track, of the first 500. Throws MachineError where the page's program cannot be read.

@@ -1,13 +1,14 @@
 #include "scenarios/campaign/gate.hpp"
 
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <random>
 
+#include "perception/io/field_reader.hpp"
 #include "scenarios/config/config_tree.hpp"
-#include "scenarios/report/table.hpp"
-#include "scenarios/statistics/statistics.hpp"
 
 namespace understory {
 namespace {
@@ -15,12 +16,13 @@ namespace {
 using RowsBySeed = std::map<std::uint64_t, const FlightRow*>;
 
 struct Metric {
-  const char* name;
+  std::string_view name;
   double FlightRow::*value;
+  double sign = 1;  ///< -1: less is better
 };
 constexpr Metric metrics[]{{"mean_speed_mps", &FlightRow::mean_speed_mps},
                            {"minimum_clearance_m", &FlightRow::minimum_clearance_m},
-                           {"position_error_mean_m", &FlightRow::position_error_mean_m},
+                           {"position_error_mean_m", &FlightRow::position_error_mean_m, -1},
                            {"progress_m", &FlightRow::progress_m}};
 
 std::map<std::string, RowsBySeed> by_condition(const std::vector<FlightRow>& rows, const char* side) {
@@ -75,8 +77,8 @@ MetricComparison compare_metric(const std::vector<FlightPair>& pairs, const Metr
     candidate.push_back(after);
     differences.push_back(after - before);
   }
-  return {metric.name, static_cast<int>(differences.size()), mean_of(baseline), mean_of(candidate),
-          bootstrap(differences)};
+  return {std::string(metric.name), static_cast<int>(differences.size()), mean_of(baseline),
+          mean_of(candidate), bootstrap(differences)};
 }
 
 ConditionComparison compare_pairs(const std::string& condition, std::vector<FlightPair> pairs) {
@@ -93,95 +95,86 @@ ConditionComparison compare_pairs(const std::string& condition, std::vector<Flig
   return comparison;
 }
 
-constexpr std::size_t named_at_most = 20;  // a log is read: the JUnit file has all of them
-
-/// "3 (goal to collision), 7, ... and 12 more"
-template <typename Item, typename Word>
-std::string some_of(const std::vector<Item>& items, Word&& word) {
-  std::string text;
-  for (std::size_t i = 0; i < std::min(items.size(), named_at_most); ++i)
-    text += (i == 0 ? "" : ", ") + word(items[i]);
-  if (items.size() > named_at_most) text += fmt::format(" and {} more", items.size() - named_at_most);
-  return text;
+SignCounts scaled(const SignCounts& counts, double times) {
+  return {counts.up * times, counts.even * times, counts.down * times};
 }
 
-std::string percent(double share) { return fmt::format("{:.1f}", 100 * share); }
-std::string signed_percent(double share) { return fmt::format("{:+.1f}", 100 * share); }
-
-std::string success_text(int goals, int flights) {
-  const Interval interval = wilson_interval(goals, flights);
-  return fmt::format("{} ({} to {})", goals, percent(interval.minimum), percent(interval.maximum));
+/// Evidence against "success fell in no condition": the mean of that of all pairs and of each condition's
+/// mean. `times`: how often the pairs are counted, for a forecast.
+double log_evidence_of_fall(const Comparison& comparison, double times = 1) {
+  const auto evidence = [&](const ConditionComparison& one) {
+    return std::exp(log_evidence_above(scaled(one.signs().mirrored(), times), 0));
+  };
+  double sum = 0;
+  for (const ConditionComparison& condition : comparison.conditions) sum += evidence(condition);
+  return std::log(0.5 * evidence(comparison.all) +
+                  0.5 * sum / static_cast<double>(std::max<std::size_t>(1, comparison.conditions.size())));
 }
 
-void add_success(const ConditionComparison& condition, Table& table) {
-  const PairedOutcomes& goals = condition.goals;
-  table.add(
-      condition.condition, goals.pairs(), success_text(goals.first(), goals.pairs()),
-      success_text(goals.second(), goals.pairs()),
-      fmt::format("{} ({} to {})", signed_percent(goals.difference()),
-                  signed_percent(condition.difference.minimum), signed_percent(condition.difference.maximum)),
-      goals.only_first, goals.only_second, fmt::format("{:.3g}", condition.p), condition.bit_for_bit);
+/// Where it fell: over all pairs, unless one condition says more.
+std::string reason_of_fall(const Comparison& comparison) {
+  const ConditionComparison* most = &comparison.all;
+  const auto evidence = [](const ConditionComparison& one) {
+    return log_evidence_above(one.signs().mirrored(), 0);
+  };
+  for (const ConditionComparison& condition : comparison.conditions)
+    if (evidence(condition) >= evidence(*most)) most = &condition;
+  const PairedOutcomes& goals = most->goals;
+  return fmt::format("{}: success fell by {:.1f} percentage points, from {} to {} of {}", most->condition,
+                     -100 * goals.difference(), goals.first(), goals.second(), goals.pairs());
 }
 
-Table success_table(const Comparison& comparison) {
-  Table table{{"success, %", "pairs", "baseline goals", "candidate goals", "difference", "worse", "better",
-               "p", "bit for bit"}};
-  for (const ConditionComparison& condition : comparison.conditions) add_success(condition, table);
-  if (comparison.conditions.size() > 1) add_success(comparison.all, table);
-  return table;
+/// As a share of the pairs, if as many gain as did; 2 if none could have been shown.
+double smallest_shown(SignCounts signs, double alpha) {
+  const double changeable = signs.even + signs.down;
+  for (double lost = signs.up + 1; lost <= changeable; ++lost)
+    if (log_evidence_above({lost, changeable - lost, signs.up}, 0) >= -std::log(alpha))
+      return (lost - signs.up) / signs.total();
+  return 2;
 }
 
-Table metric_table(const Comparison& comparison) {
-  Table table{{"means", "figure", "pairs", "baseline", "candidate", "difference"}, {}};
-  for (const ConditionComparison& condition : comparison.conditions) {
-    if (condition.bit_for_bit == condition.goals.pairs()) continue;  // nothing has changed
-    for (const MetricComparison& metric : condition.metrics) {
-      if (metric.pairs == 0) continue;
-      const BootstrapEstimate& difference = metric.difference;
-      std::string change = fmt::format("{:+.4f}", difference.value);
-      if (std::isfinite(difference.interval.minimum))
-        change +=
-            fmt::format(" ({:+.4f} to {:+.4f})", difference.interval.minimum, difference.interval.maximum);
-      table.add(condition.condition, metric.name, metric.pairs, number_text(metric.baseline_mean, 4),
-                number_text(metric.candidate_mean, 4), change);
-    }
+/// The pairs that are missing to a verdict if more come out as these did; 0: beyond a hundred times as many.
+int pairs_missing(const Comparison& comparison, const GateRule& rule) {
+  const SignCounts signs = comparison.all.signs();
+  for (double times = 1.02; times < 100; times *= 1.02)
+    if (log_evidence_above(scaled(signs, times), -rule.margin) >= -std::log(rule.alpha) ||
+        log_evidence_of_fall(comparison, times) >= -std::log(rule.alpha))
+      return static_cast<int>(std::ceil((times - 1) * signs.total()));
+  return 0;
+}
+
+/// The verdict gets what a tolerance adds: at first sight of a loss that is too large it is worse, where
+/// nobody knows undecided.
+void judge(const Tolerance& tolerance, const ConditionComparison& all, const GateRule& rule,
+           GateVerdict& verdict) {
+  const auto metric = std::ranges::find(metrics, tolerance.figure, &Metric::name);
+  std::vector<double> gains;
+  for (const FlightPair& pair : all.pairs) {
+    const double gain = (pair.candidate.*metric->value - pair.baseline.*metric->value) * metric->sign;
+    if (pair.flown() && std::isfinite(gain)) gains.push_back(gain);
   }
-  return table;
+  BootstrapOptions options;
+  options.z = normal_quantile(1 - rule.alpha);
+  const Interval gain = bootstrap(gains, mean_of, options).interval;
+  if (gains.size() >= 15 && gain.minimum > -tolerance.loss) return;
+  const bool is_worse = gains.size() >= 15 && gain.maximum < 0;
+  if (is_worse || verdict.passes()) verdict.verdict = is_worse ? Verdict::worse : Verdict::undecided;
+  verdict.reasons.push_back(fmt::format("{}: it may be worse by up to {:.3g}, tolerated are {:.3g}{}",
+                                        tolerance.figure, -gain.minimum, tolerance.loss,
+                                        is_worse ? "" : "; more flights would tell"));
 }
-
-std::string changed_seeds(const ConditionComparison& condition, bool worse) {
-  std::vector<FlightPair> changed;
-  std::ranges::copy_if(condition.pairs, std::back_inserter(changed), [worse](const FlightPair& pair) {
-    return worse ? pair.got_worse() : pair.got_better();
-  });
-  if (changed.empty()) return "";
-  return fmt::format("{}: {}: seed {}\n", worse ? "worse" : "better", condition.condition,
-                     some_of(changed, [worse](const FlightPair& pair) {
-                       const FlightRow& bad = worse ? pair.candidate : pair.baseline;
-                       return fmt::format("{} ({} at {:.1f} m)", bad.seed, bad.outcome, bad.progress_m);
-                     }));
-}
-
-std::string ids_of(const std::vector<FlightRow>& rows) {
-  return some_of(rows, [](const FlightRow& row) { return row.id; });
-}
-
-std::string failures_of(const std::vector<FlightRow>& rows) {
-  return some_of(rows, [](const FlightRow& row) { return fmt::format("{} ({})", row.id, row.reason); });
-}
-
-std::string flights(std::size_t count) { return count == 1 ? "1 flight" : fmt::format("{} flights", count); }
 
 }  // namespace
 
-Comparison compare_campaigns(const std::vector<FlightRow>& baseline,
-                             const std::vector<FlightRow>& candidate) {
+Comparison compare_campaigns(const std::vector<FlightRow>& baseline, const std::vector<FlightRow>& candidate,
+                             const std::optional<std::string>& drawn_differently) {
   const auto old_rows = by_condition(baseline, "baseline"), new_rows = by_condition(candidate, "candidate");
   std::vector<std::string> order;
   for (const FlightRow& row : baseline)
     if (std::ranges::find(order, row.condition) == order.end()) order.push_back(row.condition);
 
   Comparison comparison;
+  comparison.drawn_differently = drawn_differently.value_or("");
   std::vector<FlightPair> all;
   for (const std::string& condition : order) {
     std::vector<FlightPair> pairs;
@@ -190,13 +183,17 @@ Comparison compare_campaigns(const std::vector<FlightRow>& baseline,
     if (pairs.empty()) continue;
     if (!std::ranges::all_of(pairs, asked_alike)) comparison.altered.push_back(condition);
     for (const auto& [old_row, new_row] : pairs)
-      if (old_row.flown() && new_row.flown() && old_row.renderer != new_row.renderer)
+      if (!drawn_differently && old_row.flown() && new_row.flown() && old_row.renderer != new_row.renderer)
         comparison.drawn_differently =
             fmt::format("{} in the baseline, {} in the candidate", old_row.renderer, new_row.renderer);
     all.insert(all.end(), pairs.begin(), pairs.end());
     comparison.conditions.push_back(compare_pairs(condition, std::move(pairs)));
   }
   comparison.all = compare_pairs("all", std::move(all));
+  if (!comparison.drawn_differently.empty()) {
+    comparison.all.bit_for_bit = 0;
+    for (ConditionComparison& condition : comparison.conditions) condition.bit_for_bit = 0;
+  }
   comparison.missing = without_partner(baseline, new_rows);
   comparison.added = without_partner(candidate, old_rows);
   comparison.baseline_failed = failed_to_run(baseline);
@@ -204,63 +201,98 @@ Comparison compare_campaigns(const std::vector<FlightRow>& baseline,
   return comparison;
 }
 
-bool dropped_too_far(const ConditionComparison& condition, const GateRule& rule) {
-  const double lost = condition.goals.only_first - condition.goals.only_second;
-  return lost > rule.max_drop * condition.goals.pairs() + 1e-9;  // the product is not exact, the count is
+ComparedCampaign read_compared(const std::filesystem::path& folder) {
+  const CampaignFolder held{folder};
+  return {held, read_campaign(held), read_campaign_rows(folder)};
+}
+
+std::optional<std::string> drawn_differently(const Campaign& baseline, const Campaign& candidate) {
+  if (baseline.pictures.empty() || candidate.pictures.empty()) return {};
+  for (const auto& [scenery, digest] : baseline.pictures)
+    for (const auto& [other, other_digest] : candidate.pictures)
+      if (scenery == other && digest != other_digest)
+        return fmt::format("{} scenery is drawn with pictures {} in the baseline, {} in the candidate",
+                           scenery, digest, other_digest);
+  return "";
+}
+
+std::string flights_text(std::size_t count) {
+  return count == 1 ? "1 flight" : fmt::format("{} flights", count);
+}
+
+std::string names_text(const std::vector<FlightRow>& rows) {
+  return some_of(rows, [](const FlightRow& row) {
+    return row.flown() ? row.id : fmt::format("{} ({})", row.id, row.reason);
+  });
+}
+
+void require_known_figures(const GateRule& rule) {
+  std::vector<std::string> known;
+  for (const Metric& metric : metrics) known.emplace_back(metric.name);
+  for (const Tolerance& tolerance : rule.tolerances)
+    if (std::ranges::find(known, tolerance.figure) == known.end())
+      throw ScenarioError(fmt::format("--tolerate {}: must be one of {}{}", tolerance.figure,
+                                      fmt::join(known, ", "), did_you_mean(tolerance.figure, known)));
+}
+
+std::string GateVerdict::name() const {
+  return std::string(verdict_names[static_cast<std::size_t>(verdict)].first);
 }
 
 GateVerdict verdict_on(const Comparison& comparison, const GateRule& rule) {
   GateVerdict verdict;
-  for (const ConditionComparison& condition : comparison.conditions)
-    if (dropped_too_far(condition, rule))
-      verdict.reasons.push_back(fmt::format(
-          "{}: success fell by {} percentage points, from {} to {} of {}; at most {} are allowed (p = "
-          "{:.3g})",
-          condition.condition, percent(-condition.goals.difference()), condition.goals.first(),
-          condition.goals.second(), condition.goals.pairs(), percent(rule.max_drop), condition.p));
+  const ConditionComparison& all = comparison.all;
+  const SignCounts signs = all.signs();
+  const int pairs = all.goals.pairs();
+  verdict.difference = {sequential_lower_end(signs, rule.alpha),
+                        -sequential_lower_end(signs.mirrored(), rule.alpha)};
+  verdict.largest_fall = std::max(0.0, -verdict.difference.minimum);
+  verdict.smallest_shown = smallest_shown(signs, rule.alpha);
   if (!comparison.candidate_failed.empty())
     verdict.reasons.push_back(fmt::format("{} of the candidate failed to run: {}",
-                                          flights(comparison.candidate_failed.size()),
-                                          failures_of(comparison.candidate_failed)));
+                                          flights_text(comparison.candidate_failed.size()),
+                                          names_text(comparison.candidate_failed)));
   if (!comparison.missing.empty())
     verdict.reasons.push_back(fmt::format("{} of the baseline missing in the candidate: {}",
-                                          flights(comparison.missing.size()), ids_of(comparison.missing)));
-  if (comparison.all.goals.pairs() == 0)
-    verdict.reasons.emplace_back("no flight of the two campaigns can be compared");
+                                          flights_text(comparison.missing.size()),
+                                          names_text(comparison.missing)));
+  if (pairs == 0) verdict.reasons.emplace_back("no flight of the two campaigns can be compared");
+  const bool may_be_judged = verdict.reasons.empty();
+  const double enough = -std::log(rule.alpha);
+  if (!may_be_judged) {
+    verdict.verdict = Verdict::worse;
+  } else if (all.bit_for_bit == pairs) {
+    verdict.verdict = Verdict::unchanged;
+    verdict.changed_at_most = none_seen_upper_end(pairs, rule.alpha);
+  } else if (log_evidence_above(signs, -rule.margin) >= enough) {
+    verdict.verdict = Verdict::not_worse;
+  } else if (log_evidence_of_fall(comparison) >= enough) {
+    verdict.verdict = Verdict::worse;
+    verdict.reasons.push_back(reason_of_fall(comparison));
+  } else {
+    verdict.more_pairs = pairs_missing(comparison, rule);
+  }
+  if (may_be_judged && verdict.verdict != Verdict::unchanged)
+    for (const Tolerance& tolerance : rule.tolerances) judge(tolerance, all, rule, verdict);
   return verdict;
 }
 
-std::string to_report(const Comparison& comparison, const GateVerdict& verdict, const GateRule& rule) {
-  std::string text = to_text(success_table(comparison));
-  text +=
-      "  intervals 95 %: goals by Wilson, difference by Newcombe's paired method; p: McNemar's exact "
-      "test\n\n";
-  const Table metrics = metric_table(comparison);
-  if (!metrics.rows.empty())
-    text +=
-        to_text(metrics) +
-        "  difference of paired flights, 95 % interval by BCa bootstrap (too narrow below some 15 pairs)\n\n";
-  for (const bool worse : {true, false})
-    for (const ConditionComparison& condition : comparison.conditions)
-      text += changed_seeds(condition, worse);
-  for (const std::string& condition : comparison.altered)
-    text +=
-        fmt::format("note: {}: asked for another speed, density or goal than in the baseline\n", condition);
-  if (!comparison.drawn_differently.empty())
-    text += fmt::format("note: other renderers give other images, and so other flights: {}\n",
-                        comparison.drawn_differently);
-  if (!comparison.added.empty())
-    text += fmt::format("note: {} of the candidate not in the baseline: {}\n",
-                        flights(comparison.added.size()), ids_of(comparison.added));
-  if (!comparison.baseline_failed.empty())
-    text += fmt::format("note: {} of the baseline failed to run: {}\n",
-                        flights(comparison.baseline_failed.size()), failures_of(comparison.baseline_failed));
-  for (const std::string& reason : verdict.reasons) text += fmt::format("FAILED: {}\n", reason);
-  if (verdict.passes())
-    text +=
-        fmt::format("passed: {} compared, no condition lost more than {} percentage points\n",
-                    flights(static_cast<std::size_t>(comparison.all.goals.pairs())), percent(rule.max_drop));
-  return text;
+int planned_pairs(double discordance, double power, const GateRule& rule) {
+  constexpr int runs = 1000, step = 10, most = 20'000;
+  std::mt19937_64 generator(1);
+  std::vector<double> ends;
+  for (int run = 0; run < runs; ++run) {
+    SignCounts signs;
+    while (signs.total() < most) {
+      for (int i = 0; i < step; ++i) {
+        const double drawn = static_cast<double>(generator() >> 11) * 0x1p-53;
+        (drawn < discordance / 2 ? signs.up : drawn < discordance ? signs.down : signs.even) += 1;
+      }
+      if (log_evidence_above(signs, -rule.margin) >= -std::log(rule.alpha)) break;
+    }
+    ends.push_back(signs.total());
+  }
+  return static_cast<int>(quantile(ends, power));
 }
 
 }  // namespace understory

@@ -1,12 +1,31 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
-#include "scenarios/campaign/flight_row.hpp"
-#include "scenarios/statistics/statistics.hpp"
+#include "scenarios/campaign/campaign_folder.hpp"
+#include "scenarios/statistics/sequential.hpp"
 
 namespace understory {
+
+/// A campaign that is to be compared, with the rows of its flights.csv.
+struct ComparedCampaign {
+  CampaignFolder folder;
+  Campaign campaign;
+  std::vector<FlightRow> rows;
+};
+/// Throws ScenarioError where the folder holds no campaign with results.
+ComparedCampaign read_compared(const std::filesystem::path& folder);
+
+/// Why flights of two campaigns cannot be equal to the bit, by the pictures that their renderers draw; empty:
+/// they draw the same; nothing: an older campaign does not say.
+std::optional<std::string> drawn_differently(const Campaign& baseline, const Campaign& candidate);
 
 /// The same condition and seed in both campaigns.
 struct FlightPair {
@@ -36,6 +55,7 @@ struct ConditionComparison {
   Interval difference;            ///< 95 %, of the share of goals: candidate less baseline
   std::vector<MetricComparison> metrics;
   int bit_for_bit = 0;  ///< pairs with the same digest: nothing that affects a flight has changed
+  SignCounts signs() const { return signs_of(goals); }
 };
 
 /// Two campaigns, paired by condition and seed. A flight that failed to run on either side counts in no
@@ -50,49 +70,120 @@ struct Comparison {
   /// Conditions of one name with another speed, density or goal in the two sets: their difference is not due
   /// to the program alone.
   std::vector<std::string> altered;
-  /// "A in the baseline, B in the candidate", where flights of a pair were drawn by different renderers.
+  /// Why digests say nothing: "A in the baseline, B in the candidate", if the two sets were drawn by
+  /// different renderers. Then bit_for_bit is 0 everywhere.
   std::string drawn_differently;
 };
 
-/// Throws ScenarioError where a set has a seed of a condition twice.
-Comparison compare_campaigns(const std::vector<FlightRow>& baseline, const std::vector<FlightRow>& candidate);
+/// Throws ScenarioError where a set has a seed of a condition twice. `drawn_differently`: see Comparison; by
+/// default the names of the renderers in the rows tell.
+Comparison compare_campaigns(const std::vector<FlightRow>& baseline, const std::vector<FlightRow>& candidate,
+                             const std::optional<std::string>& drawn_differently = {});
 
-struct GateRule {
-  double max_drop = 0.05;  ///< share of goals, 0 .. 1, that any condition may lose
+/// A figure that may get worse by so much, in its unit: `minimum_clearance_m` by 0.1.
+struct Tolerance {
+  std::string figure;
+  double loss = 0;
 };
 
-/// Whether a change may pass.
-///
-/// It may not if
-/// - in any condition the share of goals, over the pairs both flown, fell by more than max_drop. The rule
-///   uses the measured drop, not its significance: p and interval are printed beside it. A rule on p would
-///   let any drop pass that is measured with few enough seeds, and one on the interval's end would fail
-///   nearly every change. So the number of seeds decides how often chance fails a change: if a share r of n
-///   pairs changes outcome either way, the drop has a deviation of sqrt(r / n), 3 points for 100 seeds of
-///   which a tenth change; then one in 20 changes without effect loses more than 5 points. Flights repeat bit
-///   for bit, so an unchanged program never fails;
-/// - a flight of the candidate failed to run: crashed, hung, was killed or refused;
-/// - a flight of the baseline is missing in the candidate: else dropping the hard seeds would pass;
-/// - no flight of the two campaigns could be compared.
-/// The overall share cannot fall by more than max_drop if no condition's does, so it is not tested.
-/// Conditions and seeds that only the candidate has decide nothing, nor do flights that failed in the
-/// baseline.
-struct GateVerdict {
-  std::vector<std::string> reasons;  ///< why not, a line each
+struct GateRule {
+  double margin = 0.05;  ///< a fall of the share of goals that matters, 0.001 .. 0.5
+  double alpha = 0.05;   ///< how often the gate may err, either way, however often somebody looks
+  std::vector<Tolerance> tolerances = {};  ///< none: figures other than success decide nothing
+};
 
-  bool passes() const { return reasons.empty(); }
+/// Throws ScenarioError if a tolerance is about a figure that no comparison has.
+void require_known_figures(const GateRule& rule);
+
+enum class Verdict {
+  not_worse,  ///< a fall by the margin is refuted
+  unchanged,  ///< every pair of flights is equal to the bit
+  worse,      ///< that success did not fall is refuted; or flights failed to run or are missing
+  undecided   ///< neither: more flights would tell
+};
+inline constexpr std::array<std::pair<std::string_view, Verdict>, 4> verdict_names{
+    {{"not worse", Verdict::not_worse},
+     {"unchanged on these flights", Verdict::unchanged},
+     {"worse", Verdict::worse},
+     {"not enough flights", Verdict::undecided}}};
+
+/// Whether a change may pass, by the pairs that were flown on both sides.
+///
+/// - worse: a flight of the candidate failed to run, or one of the baseline is missing (else dropping the
+/// hard
+///   seeds would pass), or the evidence against "success did not fall, in no condition" reaches 1 / alpha.
+///   That evidence is the mean of two: of all pairs together, and the mean of each condition's (means of
+///   e-values are e-values: Vovk & Wang 2021, Annals of Statistics 49, 1736). So a fall in one forest of
+///   twenty is found, too, and no correction for twenty looks is owed.
+/// - not worse: the evidence against "success fell by the margin or more", over all pairs, reaches 1 / alpha.
+///   This counts first: a fall that is proved to be smaller than the margin passes.
+/// - unchanged: all digests are equal, so nothing can have fallen on these seeds.
+/// - undecided: neither is known yet.
+///
+/// An unchanged rate is called worse with probability alpha at most, and a fall by the margin not worse, at
+/// all looks together (sequential.hpp), if every look is at whole seeds: each condition with the same seeds.
+/// A fall between nothing and the margin may get either verdict. Tolerances are judged by the paired
+/// bootstrap with the same alpha, at one look: worse if a larger loss than the tolerance is not excluded and
+/// a loss is proved, undecided if neither.
+struct GateVerdict {
+  Verdict verdict = Verdict::undecided;
+  std::vector<std::string> reasons;  ///< a line each
+  double largest_fall = 1;           ///< of the share of goals, that these pairs do not exclude
+  Interval difference;               ///< sequential, one-sided alpha at each end: candidate less baseline
+  double smallest_shown = 1;   ///< the smallest fall of the share that these pairs could have shown; 2: none
+  double changed_at_most = 1;  ///< unchanged alone: share of other seeds that the change could alter
+  int more_pairs = 0;          ///< undecided: pairs still to be flown if they come out like these; 0: unknown
+
+  bool passes() const { return verdict == Verdict::not_worse || verdict == Verdict::unchanged; }
+  std::string name() const;
 };
 
 GateVerdict verdict_on(const Comparison& comparison, const GateRule& rule = {});
 
-/// Whether this condition fell by more than the rule allows; exact at the edge: 5 of 100 are not more than
-/// 0.05.
-bool dropped_too_far(const ConditionComparison& condition, const GateRule& rule);
+/// Pairs after which a change that alters outcomes but not their rate is called not worse with probability
+/// `power`, looked at after every ten: simulated, with the same random numbers each time. `discordance`:
+/// share of pairs whose outcome differs.
+int planned_pairs(double discordance, double power, const GateRule& rule);
+
+/// What a comparison is about, for its reports.
+struct GateSides {
+  std::string baseline, candidate;  ///< folders, or conditions
+  std::string page = {};            ///< file of the page with replays; empty: none
+  /// The command that flies a flight of the candidate again; empty: unknown.
+  std::function<std::string(const FlightRow& row)> command = {};
+};
+
+/// "3 (collision), 7, ... and 12 more": a log is read; the other outputs have all of them.
+template <typename Item, typename Word>
+std::string some_of(const std::vector<Item>& items, Word&& word) {
+  constexpr std::size_t named_at_most = 20;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(items.size(), named_at_most); ++i)
+    text += (i == 0 ? "" : ", ") + word(items[i]);
+  return items.size() > named_at_most
+             ? text + " and " + std::to_string(items.size() - named_at_most) + " more"
+             : text;
+}
+/// "1 flight", "3 flights".
+std::string flights_text(std::size_t count);
+/// "forest-3 (hung), dense-7 and 12 more": the first twenty, with the reasons of those that failed to run.
+std::string names_text(const std::vector<FlightRow>& rows);
 
 /// For a person at a CI log: success per condition with intervals, p and difference; the other figures of
 /// conditions in which any flight changed; the seeds that got worse and better; what could not be compared;
 /// the verdict last.
 std::string to_report(const Comparison& comparison, const GateVerdict& verdict, const GateRule& rule);
+
+/// The same as a comment on a change: the verdict first.
+std::string to_markdown(const Comparison& comparison, const GateVerdict& verdict, const GateRule& rule,
+                        const GateSides& sides);
+
+/// The same for a program: verdict, rule, counts and intervals, conditions, figures, seeds that changed.
+std::string to_json(const Comparison& comparison, const GateVerdict& verdict, const GateRule& rule,
+                    const GateSides& sides);
+
+/// What the verdict says, in one sentence with its figures.
+std::string sentence_of(const Comparison& comparison, const GateVerdict& verdict, const GateRule& rule);
 
 /// Flights as JUnit XML, which every CI server shows: a test suite per condition, in order of appearance, a
 /// test case per flight; classname: the condition, name: the seed, time: simulated seconds. Each suite has
@@ -101,10 +192,9 @@ std::string to_report(const Comparison& comparison, const GateVerdict& verdict, 
 std::string campaign_junit(const std::vector<FlightRow>& rows);
 
 /// The gate's comparison: a flight that reached its goal in the baseline and does not any more is a
-/// <failure>; one that failed to run or is missing in the candidate an <error>; flights only the candidate
-/// has pass. A suite "gate" has a test case per condition, which fails where it lost more than the rule
-/// allows. A server that calls a build broken for any <failure> is stricter than the gate, whose exit status
-/// is its verdict.
-std::string gate_junit(const Comparison& comparison, const GateRule& rule = {});
+/// <failure> unless the verdict passes, and else a remark; one that failed to run or is missing in the
+/// candidate an <error>; flights only the candidate has pass. A suite "gate" has one test case, which fails
+/// unless the verdict passes.
+std::string gate_junit(const Comparison& comparison, const GateVerdict& verdict);
 
 }  // namespace understory

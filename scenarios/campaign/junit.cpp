@@ -15,8 +15,8 @@ struct TestCase {
   std::string suite;
   std::string name;
   double time_s = 0;
-  std::string fault = {};    ///< "failure" or "error"; empty: passed
-  std::string message = {};  ///< of the fault
+  std::string fault = {};    ///< "failure" or "error", or "system-out" for a remark; empty: passed
+  std::string message = {};  ///< of the fault or remark
 };
 
 /// Bytes of the UTF-8 letter at `at` that XML 1.0 can hold; 0 where there is none. Beyond its control
@@ -71,7 +71,12 @@ void append_case(pugi::xml_node suite, const TestCase& test) {
   set(node, "classname", test.suite);
   set(node, "name", test.name);
   set(node, "time", fmt::format("{:.3f}", test.time_s));
-  if (!test.fault.empty()) set(node.append_child(test.fault.c_str()), "message", test.message);
+  if (test.fault.empty()) return;
+  pugi::xml_node fault = node.append_child(test.fault.c_str());
+  if (test.fault == "system-out")
+    fault.text().set(without_odd_characters(test.message).c_str());
+  else
+    set(fault, "message", test.message);
 }
 
 std::string to_junit(const std::string& name, const std::vector<TestCase>& cases) {
@@ -116,18 +121,6 @@ TestCase case_of(const FlightRow& row) {
   return test;
 }
 
-TestCase case_of(const ConditionComparison& condition, const GateRule& rule) {
-  const PairedOutcomes& goals = condition.goals;
-  TestCase test{"gate", condition.condition};
-  if (!dropped_too_far(condition, rule)) return test;
-  test.fault = "failure";
-  test.message = fmt::format(
-      "success fell from {} to {} of {}, by {:.1f} percentage points ({:.1f} allowed), p = {:.3g}",
-      goals.first(), goals.second(), goals.pairs(), -100 * goals.difference(), 100 * rule.max_drop,
-      condition.p);
-  return test;
-}
-
 }  // namespace
 
 std::string campaign_junit(const std::vector<FlightRow>& rows) {
@@ -141,15 +134,15 @@ std::string campaign_junit(const std::vector<FlightRow>& rows) {
   return to_junit("campaign", cases);
 }
 
-std::string gate_junit(const Comparison& comparison, const GateRule& rule) {
-  std::vector<TestCase> cases;
-  for (const ConditionComparison& condition : comparison.conditions)
-    cases.push_back(case_of(condition, rule));
+std::string gate_junit(const Comparison& comparison, const GateVerdict& verdict) {
+  std::vector<TestCase> cases{{"gate", "verdict", 0, verdict.passes() ? "system-out" : "failure",
+                               fmt::format("{}{}{}", verdict.name(), verdict.reasons.empty() ? "" : ": ",
+                                           fmt::join(verdict.reasons, "; "))}};
   for (const ConditionComparison& condition : comparison.conditions)
     for (const FlightPair& pair : condition.pairs) {
       TestCase& test = cases.emplace_back(case_of(pair.candidate));
       if (!pair.got_worse()) continue;
-      test.fault = "failure";
+      test.fault = verdict.passes() ? "system-out" : "failure";
       test.message = outcome_of(pair.candidate) + "; reached its goal in the baseline";
     }
   for (const FlightRow& row : comparison.missing)

@@ -9,6 +9,7 @@
 
 #include "perception/io/calibration_file.hpp"
 #include "perception/io/text_table.hpp"
+#include "scenarios/campaign/gate.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/errors.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
@@ -20,6 +21,16 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::pair<std::string_view, double>, 3> meters_per_unit{
     {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}}};
+
+/// "minimum_clearance_m=0.1"
+Tolerance tolerance_of(const std::string& word) {
+  const std::size_t at = word.find('=');
+  const auto loss = at == std::string::npos ? std::nullopt : number_in(word.substr(at + 1));
+  if (!loss || *loss < 0)
+    throw ScenarioError(
+        fmt::format("--tolerate {}: expected FIGURE=LOSS, for example minimum_clearance_m=0.1", word));
+  return {word.substr(0, at), *loss};
+}
 
 }  // namespace
 
@@ -87,6 +98,22 @@ CalibrationOptions calibration_options(const CalibrationArguments& arguments) {
     throw ScenarioError(
         fmt::format("--size {}: must be WIDTHxHEIGHT in pixels, for example 376x240", arguments.size));
   return options;
+}
+
+void add_rule_options(Command& command, GateRule& rule, std::vector<std::string>& tolerances) {
+  command.number("--margin", rule.margin, 0.001, 0.5,
+                 "fall of the share of flights that reach the goal which matters: a smaller one may pass");
+  command.number("--alpha", rule.alpha, 0.001, 0.3,
+                 "how often the verdicts 'worse' and 'not worse' may each be wrong");
+  command.texts("--tolerate", "FIGURE=LOSS", tolerances,
+                "also judge the mean of mean_speed_mps, minimum_clearance_m, position_error_mean_m or "
+                "progress_m, which may get worse by LOSS; repeatable");
+}
+
+GateRule rule_of(GateRule rule, const std::vector<std::string>& tolerances) {
+  for (const std::string& word : tolerances) rule.tolerances.push_back(tolerance_of(word));
+  require_known_figures(rule);
+  return rule;
 }
 
 }  // namespace understory

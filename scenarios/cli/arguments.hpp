@@ -13,6 +13,7 @@
 namespace understory {
 
 struct CalibrationOptions;
+struct GateRule;
 struct VisionConfigSources;
 
 /// --set, and --plugin.
@@ -29,6 +30,11 @@ void add_renderer_option(Command& command, RendererKind& renderer);
 void add_jobs_option(Command& command, int& jobs, const std::string& what);
 /// `jobs`, or one a core if that is 0.
 int jobs_or_cores(int jobs);
+
+/// --margin, --alpha and --tolerate, as every command that judges two campaigns has them.
+void add_rule_options(Command& command, GateRule& rule, std::vector<std::string>& tolerances);
+/// The rule with what the words of --tolerate say. Throws ScenarioError if they are invalid.
+GateRule rule_of(GateRule rule, const std::vector<std::string>& tolerances);
 
 /// --unit, --size and --depth, as every command that reads a calibration has them.
 struct CalibrationArguments {

@@ -28,7 +28,7 @@ constexpr std::array<std::pair<std::string_view, Engine>, 2> engine_names{
 
 struct CampaignArguments {
   std::string file;
-  std::vector<std::string> with, settings;
+  std::vector<std::string> with, settings, seeds;
   std::string out;    // empty: results/<name>
   std::string junit;  // empty: none
   Engine engine = Engine::local;
@@ -113,22 +113,39 @@ void require_engine(const CampaignArguments& arguments) {
   refuse(on_slurm && arguments.keeps_runs, "--keep-runs", "local");
 }
 
+/// Whether what is to be flown is a folder that a campaign has left.
+bool is_results(const fs::path& file) {
+  std::error_code ignored;
+  return fs::exists(file / campaign_results.manifest, ignored);
+}
+
+/// Of a campaign file, or of the folder of a campaign that is to go on.
+Campaign campaign_of(const CampaignArguments& arguments, const std::vector<ConfigNode>& over) {
+  if (is_results(arguments.file)) {
+    if (!over.empty())
+      throw ScenarioError(fmt::format(
+          "{}: --set and --with change a campaign file, not a campaign that has begun", arguments.file));
+    return read_campaign({arguments.file});
+  }
+  ProgressLine line;
+  return load_campaign(library_file(arguments.file, "campaigns", "campaign"), scenario_file, over,
+                       [&](std::size_t done, std::size_t of) {
+                         line.show(fmt::format("{} of {} conditions read", done, of), done, of - done);
+                       });
+}
+
 int run_campaign(const CampaignArguments& arguments) {
   require_engine(arguments);
   std::vector<ConfigNode> over;
   for (const std::string& file : arguments.with) over.push_back(parse_config_file(file));
   for (const std::string& setting : arguments.settings) over.push_back(parse_assignment(setting));
-  ProgressLine line;
-  Campaign campaign =
-      load_campaign(library_file(arguments.file, "campaigns", "campaign"), scenario_file, over,
-                    [&](std::size_t done, std::size_t of) {
-                      line.show(fmt::format("{} of {} conditions read", done, of), done, of - done);
-                    });
+  Campaign campaign = campaign_of(arguments, over);
   campaign.files.insert(campaign.files.end(), arguments.with.begin(), arguments.with.end());
-  line.clear();
+  if (!arguments.seeds.empty()) campaign.seeds = seeds_of(arguments.seeds, "--seeds");
   const std::vector<Scenario> scenarios = scenarios_of(campaign, arguments.file);
-  const CampaignFolder folder{arguments.out.empty() ? fs::path("results") / campaign.name
-                                                    : fs::path(arguments.out)};
+  const CampaignFolder folder{!arguments.out.empty()       ? fs::path(arguments.out)
+                              : is_results(arguments.file) ? fs::path(arguments.file)
+                                                           : fs::path("results") / campaign.name};
   if (folder.path.string().find('\n') != std::string::npos)  // --print-tasks prints a line for each flight
     throw ScenarioError(fmt::format("{}: the folder's name must not hold line breaks", folder.path.string()));
   require_separate({arguments.junit}, campaign.files);
@@ -140,8 +157,9 @@ int run_campaign(const CampaignArguments& arguments) {
   const OpenedRenderer renderer = opened_renderer(arguments.renderer);
   campaign.renderer = word_for(renderer.kind);
   campaign.identity = identity_of(scenarios, data_root() / "models", renderer);
+  campaign.pictures = pictures_of(scenarios, data_root() / "models", renderer.kind);
   remove_parts(folder);
-  prepare_campaign_folder(mark, folder, campaign, arguments.resume);
+  prepare_campaign_folder(mark, folder, campaign, arguments.resume, !arguments.seeds.empty());
   if (arguments.print_tasks) return print_tasks(folder, campaign);
 
   const StopSignals stop_signals;
@@ -207,11 +225,17 @@ void add_campaign_command(CommandLine& line) {
        "a flight could not be flown"});
   command
       .text("file", "FILE", arguments->file,
-            "campaign file, or a name in scenarios/library/campaigns (docs/campaigns.md)")
+            "campaign file, a name in scenarios/library/campaigns (docs/campaigns.md), or the results folder "
+            "of "
+            "a campaign that is to go on")
       .required();
   command.text("--out", "FOLDER", arguments->out, "results folder (default: results/NAME)");
   add_with_option(command, arguments->with);
   add_settings_option(command, arguments->settings);
+  command.texts(
+      "--seeds", "SEEDS", arguments->seeds,
+      "seeds to fly in place of the file's, for example 1000..1079; with --resume there may be more than "
+      "before; repeatable");
   add_jobs_option(command, arguments->jobs, "flights");
   add_renderer_option(command, arguments->renderer);
   command.choice("--engine", arguments->engine, engine_names,

@@ -62,6 +62,7 @@ std::vector<std::pair<std::string, std::string>> exit_statuses(const CommandText
   if (!command.failure.empty()) lines.emplace_back("1", command.failure);
   lines.emplace_back("2", "bad input");
   lines.emplace_back("3", "the machine failed: a full disk, a missing library");
+  if (!command.undecided.empty()) lines.emplace_back("4", command.undecided);
   lines.emplace_back("130, 143", "stopped by SIGINT, SIGTERM");
   return lines;
 }
@@ -133,10 +134,12 @@ Command::Added Command::texts(std::string name, std::string placeholder, std::ve
       {std::move(name), std::move(placeholder), std::move(meaning)},
       [&values](const std::string& given) { values.push_back(given); }, most);
   if (is_option)
-    added.option.expected(1)->allow_extra_args(false)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    added.option.expected(std::max(1, least))
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   else
     added.option.expected(std::max(1, least), most);
-  if (least > 0) added.required();
+  if (least > 0 && !is_option) added.required();
   return added;
 }
 

@@ -22,7 +22,13 @@ namespace understory {
 
 /// How every command ends; if a signal stopped it, with 128 and the signal's number (130: SIGINT, 143:
 /// SIGTERM).
-enum ExitStatus { exit_goal = 0, exit_not_goal = 1, exit_bad_input = 2, exit_machine_failed = 3 };
+enum ExitStatus {
+  exit_goal = 0,
+  exit_not_goal = 1,
+  exit_bad_input = 2,
+  exit_machine_failed = 3,
+  exit_undecided = 4
+};
 
 /// An option as help, manual and completion show it.
 struct OptionText {
@@ -40,6 +46,7 @@ struct CommandText {
   std::string example;           ///< a line that works
   std::string success = "done";  ///< meaning of status 0
   std::string failure = {};      ///< meaning of status 1; empty: the command never ends so
+  std::string undecided = {};    ///< the same of status 4
 };
 
 /// One command: its options, what it does. Every option refuses an empty value. The variable that an option
@@ -60,7 +67,8 @@ class Command {
   };
 
   Added text(std::string name, std::string placeholder, std::string& value, std::string meaning);
-  /// May be given again and again; an argument without a dash takes `least` to `most` words.
+  /// May be given again and again; an option takes `least` words each time (0: one), an argument without a
+  /// dash `least` to `most`.
   Added texts(std::string name, std::string placeholder, std::vector<std::string>& values,
               std::string meaning, int least = 0, int most = 1 << 29);
   Added whole(std::string name, int& value, int least, int most, std::string meaning);

@@ -38,6 +38,8 @@ struct AgainArguments {
 
 struct ReportArguments : AgainArguments {
   std::string baseline;
+  GateRule rule;
+  std::vector<std::string> tolerances;
   bool no_video = false;
 };
 
@@ -177,15 +179,21 @@ int report_campaign(const ReportArguments& arguments) {
   const Collected collected = gather(folder, campaign);
   std::optional<GatedCampaign> gated;
   if (!arguments.baseline.empty()) {
-    const fs::path baseline = arguments.baseline;
-    const Comparison comparison = compare_campaigns(read_campaign_rows(baseline), collected.rows);
-    gated = GatedCampaign{baseline.filename().string(), comparison, verdict_on(comparison)};
+    const GateRule rule = rule_of(arguments.rule, arguments.tolerances);
+    const ComparedCampaign baseline = read_compared(arguments.baseline);
+    gated = GatedCampaign{
+        {arguments.baseline, arguments.folder},
+        compare_campaigns(baseline.rows, collected.rows, drawn_differently(baseline.campaign, campaign)),
+        {},
+        ""};
+    gated->verdict = verdict_on(gated->comparison, rule);
+    gated->sentence = sentence_of(gated->comparison, gated->verdict, rule);
   }
   require_writable(output.file);
   write_whole_file(output.file, campaign_page(folder, campaign, collected, data_root(), gated),
                    output.listed_in());
   if (!arguments.quiet) fmt::print("{}\n", output.file.string());
-  return gated && !gated->verdict.passes() ? exit_not_goal : exit_goal;
+  return gated ? status_of(gated->verdict) : exit_goal;
 }
 
 int run_report_of_either(const ReportArguments& arguments) {
@@ -232,12 +240,14 @@ void add_report_command(CommandLine& line) {
       line.add({"report", "write an HTML page about a flight (video, replay, charts) or about a campaign",
                 "understory report runs/forest-7", "the page was written",
                 "the page was written, but the repeated flight differs from the run (another digest), or the "
-                "gate fails"});
+                "gate says worse",
+                "the page was written; the gate has not enough flights"});
   add_again_options(command, *arguments, "folder of a run or of a campaign",
                     "file name of the page (default: FOLDER/report.html)");
   command.text("--baseline", "FOLDER", arguments->baseline,
                "for a campaign: results folder of the campaign before the change; adds the comparison and "
                "verdict of gate");
+  add_rule_options(command, arguments->rule, arguments->tolerances);
   command.flag("--no-video", arguments->no_video,
                "make the page without video from the run's flight.log; this takes no new flight");
   command.runs([arguments] { return run_report_of_either(*arguments); });

@@ -12,6 +12,7 @@ namespace understory {
 struct Campaign;
 struct CampaignFolder;
 struct Collected;
+struct GateVerdict;
 
 /// Each adds one command with its options.
 void add_fly_command(CommandLine& line);
@@ -35,6 +36,9 @@ void add_plugin_command(CommandLine& line);
 /// `junit` is given. Returns the exit status: 0 if every flight was flown, with any outcome; else 1.
 int report(const CampaignFolder& folder, const Campaign& campaign, const Collected& collected,
            const std::filesystem::path& junit = {});
+
+/// The exit status that a gate's verdict has.
+int status_of(const GateVerdict& verdict);
 
 /// OpenGL's name of the default renderer, or why there is none.
 std::string renderer_of_this_machine();

@@ -93,7 +93,8 @@ std::string manual_page(const std::deque<Command>& commands) {
     if (!command.hidden()) page += section_of(command);
   page += ".SH EXIT STATUS\n";
   for (const auto& [status, meaning] : exit_statuses({"", "", "", "done, or the goal was reached",
-                                                      "the goal was not reached, or the result is negative"}))
+                                                      "the goal was not reached, or the result is negative",
+                                                      "not enough flights for a verdict (gate)"}))
     page += fmt::format(".TP\n.B {}\n{}\n", status, troff(meaning));
   page +=
       ".SH ENVIRONMENT\n"

@@ -32,6 +32,7 @@ void add_mcap_command(CommandLine& line) { add_refusal(line, "mcap"); }
 void add_campaign_command(CommandLine& line) { add_refusal(line, "campaign"); }
 void add_tune_command(CommandLine& line) { add_refusal(line, "tune"); }
 void add_shard_command(CommandLine& line) { add_refusal(line, "shard"); }
+void add_gate_command(CommandLine& line) { add_refusal(line, "gate"); }
 void add_plugin_command(CommandLine& line) { add_refusal(line, "plugin"); }
 
 std::string renderer_of_this_machine() { return "none: this build has no simulator"; }

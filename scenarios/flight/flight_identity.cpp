@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <set>
 
+#include "scenarios/flight/flight.hpp"
 #include "scenarios/output/errors.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
 #include "sim/render/offscreen_context.hpp"
 
@@ -60,6 +62,27 @@ Identity identity_of(const std::vector<Scenario>& scenarios, const fs::path& mod
     if (rigs.insert(name).second) identity.emplace_back(name, digest_of_text(all));
   }
   return identity;
+}
+
+Identity pictures_of(const std::vector<Scenario>& scenarios, const fs::path& models_folder,
+                     RendererKind renderer) {
+  Identity pictures;
+  for (const Scenario& one : scenarios) {
+    const auto& [word, scenery] = scenery_names[static_cast<std::size_t>(one.world.scenery)];
+    if (std::ranges::find(pictures, word, &Identity::value_type::first) != pictures.end()) continue;
+    Scenario scenario = scenario_from_text("forest: {length_m: 30}", "a wood for its pictures");
+    scenario.world.scenery = scenery;
+    const World world = world_of(scenario, models_folder);
+    const CalibratedRig rig = rig_of(scenario, models_folder);
+    const Eigen::Isometry3d pose(Eigen::Translation3d(0, 0, 4));
+    const StereoFrame frame = cameras_of(scenario, world, rig, renderer)->capture(pose, 0);
+    const auto bytes = [](const cv::Mat& image) {
+      return std::string_view(image.ptr<char>(), image.total() * image.elemSize());
+    };
+    pictures.emplace_back(
+        word, digest_of_text(digest_of_text(bytes(frame.left)) + digest_of_text(bytes(frame.right))));
+  }
+  return pictures;
 }
 
 std::string rig_name_in_identity(const Scenario& scenario) {

@@ -24,6 +24,11 @@ OpenedRenderer opened_renderer(RendererKind asked);
 Identity identity_of(const std::vector<Scenario>& scenarios, const std::filesystem::path& models_folder,
                      const OpenedRenderer& renderer);
 
+/// Each scenery of the scenarios, with the digest of a pair of images of one wood of it: renderers that draw
+/// it alike fly alike.
+Identity pictures_of(const std::vector<Scenario>& scenarios, const std::filesystem::path& models_folder,
+                     RendererKind renderer);
+
 /// The name of a scenario's rig in an identity.
 std::string rig_name_in_identity(const Scenario& scenario);
 

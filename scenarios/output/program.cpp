@@ -28,12 +28,13 @@ namespace understory {
 
 namespace {
 
-/// Makes the calling process, fresh from fork(), this program anew; 127 where that fails.
-[[noreturn]] void become_this_program(const std::vector<std::string>& arguments) {
+/// Makes the calling process, fresh from fork(), that program; 127 where that fails.
+[[noreturn]] void become_program(const std::filesystem::path& program,
+                                 const std::vector<std::string>& arguments) {
   std::vector<char*> argv{const_cast<char*>("understory")};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
-  execv("/proc/self/exe", argv.data());
+  execv(program.c_str(), argv.data());
   _exit(127);
 }
 
@@ -111,7 +112,7 @@ void repair_surroundings() {
 }
 
 pid_t start_this_program(const std::vector<std::string>& arguments, int at_our_end,
-                         const std::filesystem::path& log) {
+                         const std::filesystem::path& log, const std::filesystem::path& program) {
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child < 0)
@@ -129,7 +130,7 @@ pid_t start_this_program(const std::vector<std::string>& arguments, int at_our_e
     dup2(nothing, STDOUT_FILENO);
     dup2(log_file, STDERR_FILENO);
   }
-  become_this_program(arguments);
+  become_program(program.empty() ? "/proc/self/exe" : program, arguments);
 }
 
 EndedProcess wait_for_process(pid_t pid, int options) {

@@ -53,9 +53,10 @@ struct EndedProcess {
 
 /// Starts this program with `arguments` (without the program's name), in a process group of its own, so that
 /// Ctrl-C reaches us alone. `at_our_end`: the signal that it gets when we end. `log`: takes its standard
-/// error, its output is discarded; empty: it has ours. Throws MachineError if it cannot be started.
+/// error, its output is discarded; empty: it has ours. `program`: another one than this. Throws
+/// MachineError if it cannot be started.
 pid_t start_this_program(const std::vector<std::string>& arguments, int at_our_end,
-                         const std::filesystem::path& log = {});
+                         const std::filesystem::path& log = {}, const std::filesystem::path& program = {});
 
 /// What a program said last on its standard error, which `log` took: without the program's name.
 std::string last_line_of(const std::filesystem::path& log);

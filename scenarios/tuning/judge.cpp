@@ -41,13 +41,11 @@ class FlightJudge : public Judge {
   }
 
   Measured measure(const std::string& name, const Scenario& scenario) override {
-    const Campaign campaign{"tuning",
-                            {{name, scenario_to_text(scenario), name, "", {}}},
-                            config_.seeds,
-                            config_.renderer,
-                            config_.timeout_s,
-                            {},
-                            {}};
+    Campaign campaign;
+    campaign.conditions = {{name, scenario_to_text(scenario), name, "", {}}};
+    campaign.seeds = config_.seeds;
+    campaign.renderer = config_.renderer;
+    campaign.timeout_s = config_.timeout_s;
     keep_condition(folder_, campaign);
     const std::vector<CampaignTask> tasks = tasks_of(campaign);
     if (!fly_locally(folder_, campaign, tasks, {config_.jobs, false}, {})) throw Stopped{};

@@ -1,8 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
-#include "scenarios/statistics/statistics.hpp"
+#include "scenarios/statistics/sequential.hpp"
 
 namespace understory {
 namespace {
@@ -197,6 +198,51 @@ TEST(KaplanMeier, TheEndsOfWhatCanBeSaid) {
   EXPECT_EQ(all_gone.steps[2].interval.minimum, 0);
   EXPECT_EQ(all_gone.steps[2].interval.maximum, all_gone.steps[1].interval.maximum);
   EXPECT_EQ(median_survival(all_gone), 10);
+}
+
+/// By hand: a first value of 1 multiplies a bet of the share s by 1 + s against a mean of 0.
+TEST(Sequential, TheEvidenceIsTheMeanOfTheBets) {
+  EXPECT_NEAR(std::exp(log_evidence_above({1, 0, 0}, 0)), 1.525, 1e-12);
+  EXPECT_NEAR(std::exp(log_evidence_above({0, 0, 1}, 0)), 0.475, 1e-12);
+  EXPECT_NEAR(std::exp(log_evidence_above({0, 1, 0}, 0)), 1, 1e-12);
+  double sum = 0;  // two gains, one loss and one tie against a mean of -0.1, bet by bet
+  for (int k = 1; k <= 20; ++k) {
+    const double stake = k / 20.0 / 0.9;
+    sum += std::pow(1 + stake * 1.1, 2) * (1 + stake * 0.1) * (1 - stake * 0.9) / 20;
+  }
+  EXPECT_NEAR(log_evidence_above({2, 1, 1}, -0.1), std::log(sum), 1e-12);
+}
+
+/// The rule of three (Hanley & Lippman-Hand 1983, J. Am. Med. Assoc. 249, 1743): none of n, at most 3 / n.
+TEST(Sequential, NoneSeenFollowsTheRuleOfThree) {
+  EXPECT_NEAR(none_seen_upper_end(100, 0.05), 0.0295, 5e-5);
+  EXPECT_NEAR(none_seen_upper_end(1000, 0.05), 3.0 / 1000, 1e-5);
+  EXPECT_EQ(none_seen_upper_end(0, 0.05), 1);
+}
+
+/// Somebody who looks after every pair sees the true mean left outside at most once in twenty, and the end
+/// closes in on it.
+TEST(Sequential, TheLowerEndHoldsAtEveryLook) {
+  std::mt19937_64 generator(20261127);
+  for (const auto& [up, down] : {std::pair(0.02, 0.02), {0.0, 0.05}, {0.3, 0.1}, {0.45, 0.5}}) {
+    int left_out = 0;
+    double last = 0;
+    constexpr int runs = 1000;
+    for (int run = 0; run < runs; ++run) {
+      SignCounts counts;
+      bool was_outside = false;
+      for (int i = 0; i < 600; ++i) {
+        const double drawn = static_cast<double>(generator() >> 11) * 0x1p-53;
+        (drawn < up ? counts.up : drawn < up + down ? counts.down : counts.even) += 1;
+        was_outside = was_outside || log_evidence_above(counts, up - down) >= std::log(20);
+      }
+      left_out += was_outside ? 1 : 0;
+      if (run < 20) last += sequential_lower_end(counts, 0.05) / 20;
+    }
+    EXPECT_LE(left_out, runs * 0.05 + 3 * std::sqrt(runs * 0.05 * 0.95)) << up << " " << down;
+    EXPECT_LT(last, up - down);
+    EXPECT_GT(last, up - down - 0.16);
+  }
 }
 
 }  // namespace

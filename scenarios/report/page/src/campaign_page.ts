@@ -18,7 +18,7 @@ function show_gate(root: HTMLElement, gate: GateFact | null | undefined): void {
   place.hidden = !gate;
   if (!gate) return;
   place.classList.add(gate.verdict);
-  find(place, "h2").textContent = `The gate ${gate.verdict}: ${gate.candidate} against ${gate.baseline}`;
+  find(place, "h2").textContent = gate.title;
   for (const line of gate.lines ?? []) find(place, "ul").append(make("li", line));
   const pairs = gate.pairs ?? [];
   const differing = [...pairs.keys()].filter((i) => pairs[i][2] !== pairs[i][3]);
@@ -155,4 +155,6 @@ export function show_campaign(root: HTMLElement, facts: CampaignFacts, arrays: A
   show_survival(root, facts, arrays);
   add_map(find(root, ".map"), facts.conditions, facts.grid_keys ?? []);
   offer_handles();
+  const linked = facts.rows.ids.indexOf(decodeURIComponent(location.hash.slice(1))); // a comment's link: page.html#forest-7
+  if (facts.tracks?.[linked]) open_replay(root, facts.tracks[linked], facts.rows.commands[linked]);
 }

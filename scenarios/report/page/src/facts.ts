@@ -88,7 +88,8 @@ export interface Condition {
 }
 
 export interface GateFact {
-  verdict: "passes" | "fails";
+  verdict: "passes" | "fails" | "undecided";
+  title: string;
   baseline: string;
   candidate: string;
   lines?: string[];

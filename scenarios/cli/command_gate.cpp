@@ -1,0 +1,314 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <memory>
+
+#include "perception/io/field_reader.hpp"
+#include "scenarios/campaign/campaign_page.hpp"
+#include "scenarios/campaign/campaign_summary.hpp"
+#include "scenarios/campaign/gate.hpp"
+#include "scenarios/campaign/gate_history.hpp"
+#include "scenarios/cli/arguments.hpp"
+#include "scenarios/cli/commands.hpp"
+#include "scenarios/config/config_tree.hpp"
+#include "scenarios/output/file_output.hpp"
+#include "scenarios/output/signals.hpp"
+
+namespace understory {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct GateArguments {
+  bool plan = false;
+  std::string baseline, candidate, baseline_program;
+  std::vector<std::string> between, history, tolerances;
+  std::string junit, json, markdown, page;  // files; empty: none
+  GateRule rule;
+  double power = 0.8;
+  int limit = 1000;
+  bool extend = false;
+};
+
+constexpr std::array<std::pair<std::string_view, bool>, 1> tasks{{{"plan", true}}};
+
+/// The campaigns' conditions that both compare, and the flights. `between`: conditions A and B of the
+/// candidate's campaign; then A's flights stand for the baseline.
+struct Sides {
+  ComparedCampaign baseline, candidate;
+  std::optional<std::string> drawn_differently;
+};
+
+std::vector<FlightRow> rows_of(const ComparedCampaign& campaign, const std::string& condition,
+                               const std::string& called) {
+  std::vector<std::string> names;
+  for (const Condition& one : campaign.campaign.conditions) names.push_back(one.name);
+  if (std::ranges::find(names, condition) == names.end())
+    throw ScenarioError(fmt::format("--between {}: {} has no such condition{}; it has {}", condition,
+                                    campaign.folder.path.string(), did_you_mean(condition, names),
+                                    fmt::join(names, ", ")));
+  std::vector<FlightRow> rows;
+  for (FlightRow row : campaign.rows)
+    if (row.condition == condition) {
+      row.condition = called;
+      rows.push_back(std::move(row));
+    }
+  return rows;
+}
+
+Sides sides_of(const GateArguments& arguments) {
+  Sides sides{{}, read_compared(arguments.candidate), {}};
+  if (arguments.between.empty()) {
+    sides.baseline = read_compared(arguments.baseline);
+    sides.drawn_differently = drawn_differently(sides.baseline.campaign, sides.candidate.campaign);
+    return sides;
+  }
+  sides.baseline = sides.candidate;
+  sides.baseline.rows = rows_of(sides.candidate, arguments.between[0], arguments.between[1]);
+  sides.candidate.rows = rows_of(sides.candidate, arguments.between[1], arguments.between[1]);
+  return sides;
+}
+
+/// "1000..1079" or several of these, as options of `campaign`.
+std::vector<std::string> seed_options(std::vector<std::uint64_t> seeds) {
+  std::ranges::sort(seeds);
+  std::vector<std::string> options;
+  for (std::size_t first = 0; first < seeds.size();) {
+    std::size_t last = first;
+    while (last + 1 < seeds.size() && seeds[last + 1] == seeds[last] + 1) ++last;
+    options.push_back(fmt::format("--seeds={}..{}", seeds[first], seeds[last]));
+    first = last + 1;
+  }
+  return options;
+}
+
+/// Runs a program until it ends. Throws Stopped where a signal ended it, MachineError where it failed.
+void run_program(const fs::path& program, const std::vector<std::string>& arguments) {
+  const pid_t child = start_this_program(arguments, SIGTERM, {}, program);
+  ends_with_us(child);
+  const EndedProcess ended = wait_for_process(child);
+  has_ended(child);
+  const int status = WIFEXITED(ended.wait_status) ? WEXITSTATUS(ended.wait_status) : exit_machine_failed;
+  if (status > 128) throw Stopped(status - 128, "stopped; the same command goes on");
+  if (status > exit_not_goal)
+    throw MachineError(
+        fmt::format("{} {}: ended with status {}", program.string(), fmt::join(arguments, " "), status));
+}
+
+/// Flies `seeds` more seeds of both campaigns, or prints the commands where a program is not known: false.
+bool fly_more(const GateArguments& arguments, const Sides& sides, int seeds) {
+  const Identity& identity = sides.baseline.campaign.identity;
+  const bool is_ours =
+      std::ranges::find(identity, Identity::value_type("program", program_digest())) != identity.end();
+  const std::string self = fs::read_symlink("/proc/self/exe").string();
+  const std::string before =
+      arguments.baseline_program.empty() && is_ours ? self : arguments.baseline_program;
+  std::uint64_t next = 0;
+  for (const ComparedCampaign* side : {&sides.baseline, &sides.candidate})
+    next = std::max(next, *std::ranges::max_element(side->campaign.seeds) + 1);
+  const auto command = [&](const ComparedCampaign& side) {
+    std::vector<std::uint64_t> all = side.campaign.seeds;
+    for (int i = 0; i < seeds; ++i) all.push_back(next + static_cast<std::uint64_t>(i));
+    std::vector<std::string> words{"campaign", side.folder.path.string(), "--resume"};
+    for (const std::string& option : seed_options(all)) words.push_back(option);
+    return words;
+  };
+  if (before.empty() && arguments.between.empty()) {
+    fmt::print(
+        "Fly more with these commands (the first one with the program of the baseline; "
+        "--baseline-program PROGRAM does it here):\n  understory {}\n  understory {}\n",
+        fmt::join(command(sides.baseline), " "), fmt::join(command(sides.candidate), " "));
+    return false;
+  }
+  std::fflush(stdout);
+  if (arguments.between.empty()) run_program(before, command(sides.baseline));
+  run_program(self, command(sides.candidate));
+  return true;
+}
+
+struct Judged {
+  Sides sides;
+  Comparison comparison;
+  GateVerdict verdict;
+};
+
+Judged judged(const GateArguments& arguments) {
+  Judged result{sides_of(arguments), {}, {}};
+  result.comparison = compare_campaigns(result.sides.baseline.rows, result.sides.candidate.rows,
+                                        result.sides.drawn_differently);
+  result.verdict = verdict_on(result.comparison, arguments.rule);
+  return result;
+}
+
+/// Judges, and with --extend flies on until a verdict or the limit.
+Judged judge_until_known(const GateArguments& arguments) {
+  Judged result = judged(arguments);
+  while (arguments.extend && result.verdict.verdict == Verdict::undecided) {
+    const int conditions = static_cast<int>(result.comparison.conditions.size());
+    const int pairs = result.comparison.all.goals.pairs(), left = (arguments.limit - pairs) / conditions;
+    const int asked = result.verdict.more_pairs == 0 ? pairs : result.verdict.more_pairs;
+    const int seeds = std::min(left, (asked + conditions - 1) / conditions);
+    if (seeds < 1) {
+      fmt::print("stopped at --limit {}\n", arguments.limit);
+      break;
+    }
+    fmt::print("{}\n", sentence_of(result.comparison, result.verdict, arguments.rule));
+    if (!fly_more(arguments, result.sides, seeds)) break;
+    result = judged(arguments);
+  }
+  return result;
+}
+
+int run_judge(const GateArguments& arguments) {
+  const Judged result = judge_until_known(arguments);
+  const ComparedCampaign& flown = result.sides.candidate;
+  GateSides names{arguments.between.empty() ? arguments.baseline : arguments.between[0],
+                  arguments.between.empty() ? arguments.candidate : arguments.between[1],
+                  fs::path(arguments.page).filename().string(),
+                  commands_of(flown.folder, flown.campaign, data_root())};
+  const auto write = [](const std::string& file, const std::string& text) {
+    if (!file.empty()) write_whole_file(file, text);
+  };
+  write(arguments.junit, gate_junit(result.comparison, result.verdict));
+  write(arguments.json, to_json(result.comparison, result.verdict, arguments.rule, names));
+  write(arguments.markdown, to_markdown(result.comparison, result.verdict, arguments.rule, names));
+  if (!arguments.page.empty())
+    write(arguments.page,
+          campaign_page(flown.folder, flown.campaign, gather(flown.folder, flown.campaign), data_root(),
+                        GatedCampaign{names, result.comparison, result.verdict,
+                                      sentence_of(result.comparison, result.verdict, arguments.rule)}));
+  fmt::print("{}", to_report(result.comparison, result.verdict, arguments.rule));
+  return status_of(result.verdict);
+}
+
+/// The share of pairs whose outcome differs: measured on two campaigns, or of one as if a change drew all
+/// outcomes anew.
+int run_plan(const GateArguments& arguments) {
+  const ComparedCampaign baseline = read_compared(arguments.baseline);
+  const ComparedCampaign& flown = arguments.candidate.empty() ? baseline : read_compared(arguments.candidate);
+  const auto conditions = static_cast<int>(baseline.campaign.conditions.size());
+  double discordance = 0;
+  std::string source;
+  if (arguments.candidate.empty()) {
+    for (const ConditionSummary& condition : summarise(baseline.rows)) {
+      const double rate = condition.flown > 0 ? static_cast<double>(condition.goals) / condition.flown : 0.5;
+      discordance += 2 * rate * (1 - rate) / conditions;
+    }
+    source = "if a change draws every outcome anew (two campaigns, with --candidate, tell what it does)";
+  } else {
+    const PairedOutcomes goals = compare_campaigns(baseline.rows, flown.rows).all.goals;
+    discordance = static_cast<double>(goals.only_first + goals.only_second + 1) / (goals.pairs() + 1);
+    source = fmt::format("{} of {} pairs, and one more to be careful", goals.only_first + goals.only_second,
+                         goals.pairs());
+  }
+  const int pairs = planned_pairs(discordance, arguments.power, arguments.rule);
+  const int seeds = (pairs + conditions - 1) / conditions;
+  double wall_s = 0;
+  const Collected collected = gather(baseline.folder, baseline.campaign);
+  for (const FlightCost& cost : collected.costs) wall_s += cost.wall_s;
+  const double each_s = collected.costs.empty() ? 0 : wall_s / static_cast<double>(collected.costs.size());
+  fmt::print(
+      "The outcomes of {:.1f} % of the pairs differ: {}.\n"
+      "A change that keeps the rate of success is called not worse (margin {:.3g}) after at most {} pairs "
+      "with "
+      "probability {:.3g}: {} seeds in each of {} conditions.\n"
+      "The flights of one side then take about {:.0f} min on this machine ({:.1f} s each, {} at a time).\n",
+      100 * discordance, source, arguments.rule.margin, pairs, arguments.power, seeds, conditions,
+      seeds * conditions * each_s / jobs_or_cores(0) / 60, each_s, jobs_or_cores(0));
+  return exit_goal;
+}
+
+int run_history(const GateArguments& arguments) {
+  const GateHistory history = history_of(arguments.history, arguments.rule);
+  if (!arguments.page.empty()) write_whole_file(arguments.page, history_page(history, data_root()));
+  fmt::print("{}", history_text(history));
+  return exit_goal;
+}
+
+void require(bool is_right, const std::string& message) {
+  if (!is_right) throw ScenarioError("gate: " + message);
+}
+
+int run_gate(GateArguments arguments) {
+  arguments.rule = rule_of(arguments.rule, arguments.tolerances);
+  const std::vector<std::string> outputs{arguments.junit, arguments.json, arguments.markdown, arguments.page};
+  std::vector<std::string> folders = arguments.history;
+  for (const std::string& folder : {arguments.baseline, arguments.candidate})
+    if (!folder.empty()) folders.push_back(folder);
+  for (const std::string& output : outputs) {
+    for (const std::string& folder : folders) require_outside(output, folder);
+    require_writable(output);
+  }
+  require_separate({outputs.begin(), outputs.end()}, {});
+  if (!arguments.history.empty()) {
+    require(arguments.baseline.empty() && arguments.candidate.empty() && !arguments.plan,
+            "--history looks at folders of its own: no plan, --baseline or --candidate beside it");
+    return run_history(arguments);
+  }
+  if (arguments.plan) {
+    require(!arguments.baseline.empty(), "plan requires --baseline FOLDER, a campaign to learn from");
+    return run_plan(arguments);
+  }
+  require(!arguments.candidate.empty(),
+          "requires --candidate FOLDER, the results folder of the campaign with the change");
+  require(
+      arguments.between.empty() != arguments.baseline.empty(),
+      "requires either --baseline FOLDER, the campaign before the change, or --between A B, two conditions "
+      "of the candidate's campaign");
+  return run_judge(arguments);
+}
+
+}  // namespace
+
+int status_of(const GateVerdict& verdict) {
+  if (verdict.passes()) return exit_goal;
+  return verdict.verdict == Verdict::undecided ? exit_undecided : exit_not_goal;
+}
+
+void add_gate_command(CommandLine& line) {
+  const auto arguments = std::make_shared<GateArguments>();
+  Command& command =
+      line.add({"gate", "compare two campaigns flight by flight and say whether a change may pass",
+                "understory gate --baseline results/before --candidate results/after",
+                "not worse, or unchanged on these flights",
+                "worse, or flights are missing or could not be flown", "not enough flights for a verdict"});
+  command.choice(
+      "task", arguments->plan, tasks,
+      "plan: say how many flights a verdict needs, from the campaigns given, and how long they take");
+  command.text("--baseline", "FOLDER", arguments->baseline,
+               "results folder of the campaign before the change");
+  command.text("--candidate", "FOLDER", arguments->candidate,
+               "results folder of the campaign with the change");
+  command.texts("--between", "CONDITION", arguments->between,
+                "compare two conditions of the candidate's campaign, the first as the baseline", 2);
+  add_rule_options(command, arguments->rule, arguments->tolerances);
+  command.number("--power", arguments->power, 0.5, 0.99,
+                 "for plan: how probable a verdict shall be after the flights that it names");
+  const auto extend = command.flag("--extend", arguments->extend,
+                                   "fly more seeds of both campaigns until there is a verdict");
+  command
+      .text("--baseline-program", "FILE", arguments->baseline_program,
+            "with --extend: the program that flew the baseline (default: this one, if it did; else the "
+            "commands "
+            "are printed)")
+      .needs(extend);
+  command.whole("--limit", arguments->limit, 1, 200'000, "with --extend: fly no more than N pairs in all")
+      .needs(extend);
+  command.texts(
+      "--history", "FOLDER", arguments->history,
+      "instead: compare campaigns of one file in this order, or all in FOLDER in the order of their "
+      "names; repeatable");
+  command.text("--junit", "FILE", arguments->junit, "write the comparison as JUnit test cases (XML)");
+  command.text("--json", "FILE", arguments->json, "write verdict, counts and figures as JSON");
+  command.text("--markdown", "FILE", arguments->markdown, "write a comment on the change (Markdown)");
+  command.text("--page", "FILE", arguments->page,
+               "write the candidate's page with verdict and replays (HTML); with --history a page of curves");
+  command.runs([arguments] { return run_gate(*arguments); });
+}
+
+}  // namespace understory
