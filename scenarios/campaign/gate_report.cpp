@@ -98,8 +98,8 @@ std::vector<std::string> notes_of(const Comparison& comparison) {
 }
 
 std::string shown_text(const GateVerdict& verdict) {
-  return verdict.smallest_shown > 1 ? "They could not have shown any fall"
-                                    : fmt::format("The smallest fall that they could have shown is {} points",
+  return verdict.smallest_shown > 1 ? "No fall could have been called worse"
+                                    : fmt::format("A fall by {} points or more would have been called worse",
                                                   percent(verdict.smallest_shown));
 }
 
@@ -145,34 +145,38 @@ Json json_of(const ConditionComparison& condition, const GateSides& sides) {
 
 std::string sentence_of(const Comparison& comparison, const GateVerdict& verdict, const GateRule& rule) {
   const int pairs = comparison.all.goals.pairs();
-  const std::string open = fmt::format("{} pairs leave a fall of up to {} percentage points open", pairs,
-                                       percent(verdict.largest_fall));
-  const std::string matters = fmt::format("{} matter", percent(rule.margin));
+  const std::string fall = percent(verdict.largest_fall), margin = percent(rule.margin),
+                    shown = shown_text(verdict);
   switch (verdict.verdict) {
     case Verdict::not_worse:
-      return fmt::format("not worse: {}, and {}. {}.", open, matters, shown_text(verdict));
+      return fmt::format(
+          "not worse: after {} pairs success may have fallen by {} percentage points at most, and {} would "
+          "matter. {}.",
+          pairs, fall, margin, shown);
     case Verdict::unchanged:
       return fmt::format(
           "unchanged on these flights: all {} pairs are equal to the bit. Of other seeds {} % at most could "
-          "differ. {}.",
-          pairs, percent(verdict.changed_at_most), shown_text(verdict));
+          "differ. "
+          "{}.",
+          pairs, percent(verdict.changed_at_most), shown);
     case Verdict::worse:
       return fmt::format("worse: {}. {}.", fmt::join(verdict.reasons, "; "),
-                         pairs == 0 ? "Nothing can be said of success" : shown_text(verdict));
+                         pairs == 0 ? "Nothing can be said of success" : shown);
     case Verdict::undecided:
       break;
   }
   const auto conditions = static_cast<int>(std::max<std::size_t>(1, comparison.conditions.size()));
   const int seeds = (verdict.more_pairs + conditions - 1) / conditions;
-  std::string more = "Nobody knows how many more would decide";
-  if (verdict.more_pairs > 0)
-    more =
-        fmt::format("Fly {} more pairs, {} more seeds in each of {} conditions, if they come out like these",
-                    seeds * conditions, seeds, conditions);
-  std::string reasons;
-  for (const std::string& reason : verdict.reasons) reasons += reason + ". ";
-  return fmt::format("not enough flights: {}, and {}. {}{}. {}.", open, matters, reasons, more,
-                     shown_text(verdict));
+  const std::string more =
+      verdict.more_pairs == 0
+          ? "Nobody knows how many more would decide"
+          : fmt::format("If more come out like these, {} more pairs decide ({} seeds{})", seeds * conditions,
+                        seeds, conditions == 1 ? "" : fmt::format(" in each of {} conditions", conditions));
+  return fmt::format(
+      "not enough flights: after {} pairs success may have fallen by {} percentage points, and {} matter. "
+      "{}{}{}. {}.",
+      pairs, fall, margin, fmt::join(verdict.reasons, ". "), verdict.reasons.empty() ? "" : ". ", more,
+      shown);
 }
 
 std::string to_report(const Comparison& comparison, const GateVerdict& verdict, const GateRule& rule) {

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
+#include <nlohmann/json.hpp>
 #include <pugixml.hpp>
+#include <regex>
 #include <sstream>
 
 #include "scenarios/output/program.hpp"
@@ -19,34 +22,15 @@ struct TestCase {
   std::string message = {};  ///< of the fault or remark
 };
 
-/// Bytes of the UTF-8 letter at `at` that XML 1.0 can hold; 0 where there is none. Beyond its control
-/// characters XML leaves out surrogates, which UTF-8 leaves out too, and U+FFFE and U+FFFF.
-std::size_t letter_length(const std::string& text, std::size_t at) {
-  const auto byte = [&](std::size_t i) {
-    return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0u;
-  };
-  const unsigned first = byte(0);
-  if (first < 0x80) return first >= 0x20 || first == '\t' || first == '\n' || first == '\r' ? 1 : 0;
-  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
-  if (first < 0xc2 || first > 0xf4) return 0;
-  unsigned code = first & (0xffu >> (length + 1));
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-    code = code << 6 | (byte(i) & 0x3f);
-  }
-  constexpr unsigned minimum[]{0, 0, 0x80, 0x800, 0x10000};
-  const bool surrogate = code >= 0xd800 && code <= 0xdfff;
-  return code < minimum[length] || code > 0x10ffff || surrogate || code == 0xfffe || code == 0xffff ? 0
-                                                                                                    : length;
-}
-
+/// '?' for what XML 1.0 cannot hold: broken UTF-8, which a JSON writer knows, control characters, and U+FFFE
+/// and U+FFFF.
 std::string without_odd_characters(const std::string& text) {
-  std::string clean;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = letter_length(text, at);
-    clean += length == 0 ? "?" : text.substr(at, length);
-    at += std::max<std::size_t>(length, 1);
-  }
+  using Json = nlohmann::json;
+  static const std::regex odd("\xef\xbf\xbd|\xef\xbf\xbe|\xef\xbf\xbf");
+  const std::string valid = Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
+  std::string clean = std::regex_replace(valid, odd, "?");
+  std::ranges::replace_if(
+      clean, [](char c) { return c >= 0 && c < ' ' && !std::strchr("\t\n\r", c); }, '?');
   return clean;
 }
 

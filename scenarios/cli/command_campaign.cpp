@@ -141,7 +141,12 @@ int run_campaign(const CampaignArguments& arguments) {
   for (const std::string& setting : arguments.settings) over.push_back(parse_assignment(setting));
   Campaign campaign = campaign_of(arguments, over);
   campaign.files.insert(campaign.files.end(), arguments.with.begin(), arguments.with.end());
-  if (!arguments.seeds.empty()) campaign.seeds = seeds_of(arguments.seeds, "--seeds");
+  if (!arguments.seeds.empty()) {
+    const std::vector<std::uint64_t> given = seeds_of(arguments.seeds, "--seeds");
+    if (!is_results(arguments.file)) campaign.seeds.clear();
+    for (const std::uint64_t seed : given)
+      if (std::ranges::find(campaign.seeds, seed) == campaign.seeds.end()) campaign.seeds.push_back(seed);
+  }
   const std::vector<Scenario> scenarios = scenarios_of(campaign, arguments.file);
   const CampaignFolder folder{!arguments.out.empty()       ? fs::path(arguments.out)
                               : is_results(arguments.file) ? fs::path(arguments.file)
@@ -234,8 +239,8 @@ void add_campaign_command(CommandLine& line) {
   add_settings_option(command, arguments->settings);
   command.texts(
       "--seeds", "SEEDS", arguments->seeds,
-      "seeds to fly in place of the file's, for example 1000..1079; with --resume there may be more than "
-      "before; repeatable");
+      "seeds in place of the file's, for example 1000..1079; more seeds where FILE is a results folder; "
+      "repeatable");
   add_jobs_option(command, arguments->jobs, "flights");
   add_renderer_option(command, arguments->renderer);
   command.choice("--engine", arguments->engine, engine_names,

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct GateArguments {
-  bool plan = false;
+  std::string task;  // "plan"; empty: judge
   std::string baseline, candidate, baseline_program;
   std::vector<std::string> between, history, tolerances;
   std::string junit, json, markdown, page;  // files; empty: none
@@ -35,56 +35,19 @@ struct GateArguments {
   bool extend = false;
 };
 
-constexpr std::array<std::pair<std::string_view, bool>, 1> tasks{{{"plan", true}}};
-
-/// The campaigns' conditions that both compare, and the flights. `between`: conditions A and B of the
-/// candidate's campaign; then A's flights stand for the baseline.
-struct Sides {
-  ComparedCampaign baseline, candidate;
-  std::optional<std::string> drawn_differently;
-};
-
+/// The flights of one condition, which get another's name.
 std::vector<FlightRow> rows_of(const ComparedCampaign& campaign, const std::string& condition,
                                const std::string& called) {
   std::vector<std::string> names;
   for (const Condition& one : campaign.campaign.conditions) names.push_back(one.name);
   if (std::ranges::find(names, condition) == names.end())
-    throw ScenarioError(fmt::format("--between {}: {} has no such condition{}; it has {}", condition,
-                                    campaign.folder.path.string(), did_you_mean(condition, names),
-                                    fmt::join(names, ", ")));
+    throw ScenarioError(
+        fmt::format("--between {}: the campaign's conditions are {}", condition, fmt::join(names, ", ")));
   std::vector<FlightRow> rows;
-  for (FlightRow row : campaign.rows)
-    if (row.condition == condition) {
-      row.condition = called;
-      rows.push_back(std::move(row));
-    }
+  std::ranges::copy_if(campaign.rows, std::back_inserter(rows),
+                       [&](const FlightRow& row) { return row.condition == condition; });
+  for (FlightRow& row : rows) row.condition = called;
   return rows;
-}
-
-Sides sides_of(const GateArguments& arguments) {
-  Sides sides{{}, read_compared(arguments.candidate), {}};
-  if (arguments.between.empty()) {
-    sides.baseline = read_compared(arguments.baseline);
-    sides.drawn_differently = drawn_differently(sides.baseline.campaign, sides.candidate.campaign);
-    return sides;
-  }
-  sides.baseline = sides.candidate;
-  sides.baseline.rows = rows_of(sides.candidate, arguments.between[0], arguments.between[1]);
-  sides.candidate.rows = rows_of(sides.candidate, arguments.between[1], arguments.between[1]);
-  return sides;
-}
-
-/// "1000..1079" or several of these, as options of `campaign`.
-std::vector<std::string> seed_options(std::vector<std::uint64_t> seeds) {
-  std::ranges::sort(seeds);
-  std::vector<std::string> options;
-  for (std::size_t first = 0; first < seeds.size();) {
-    std::size_t last = first;
-    while (last + 1 < seeds.size() && seeds[last + 1] == seeds[last] + 1) ++last;
-    options.push_back(fmt::format("--seeds={}..{}", seeds[first], seeds[last]));
-    first = last + 1;
-  }
-  return options;
 }
 
 /// Runs a program until it ends. Throws Stopped where a signal ended it, MachineError where it failed.
@@ -100,49 +63,55 @@ void run_program(const fs::path& program, const std::vector<std::string>& argume
         fmt::format("{} {}: ended with status {}", program.string(), fmt::join(arguments, " "), status));
 }
 
-/// Flies `seeds` more seeds of both campaigns, or prints the commands where a program is not known: false.
-bool fly_more(const GateArguments& arguments, const Sides& sides, int seeds) {
-  const Identity& identity = sides.baseline.campaign.identity;
-  const bool is_ours =
-      std::ranges::find(identity, Identity::value_type("program", program_digest())) != identity.end();
-  const std::string self = fs::read_symlink("/proc/self/exe").string();
-  const std::string before =
-      arguments.baseline_program.empty() && is_ours ? self : arguments.baseline_program;
-  std::uint64_t next = 0;
-  for (const ComparedCampaign* side : {&sides.baseline, &sides.candidate})
-    next = std::max(next, *std::ranges::max_element(side->campaign.seeds) + 1);
-  const auto command = [&](const ComparedCampaign& side) {
-    std::vector<std::uint64_t> all = side.campaign.seeds;
-    for (int i = 0; i < seeds; ++i) all.push_back(next + static_cast<std::uint64_t>(i));
-    std::vector<std::string> words{"campaign", side.folder.path.string(), "--resume"};
-    for (const std::string& option : seed_options(all)) words.push_back(option);
-    return words;
-  };
-  if (before.empty() && arguments.between.empty()) {
-    fmt::print(
-        "Fly more with these commands (the first one with the program of the baseline; "
-        "--baseline-program PROGRAM does it here):\n  understory {}\n  understory {}\n",
-        fmt::join(command(sides.baseline), " "), fmt::join(command(sides.candidate), " "));
-    return false;
-  }
-  std::fflush(stdout);
-  if (arguments.between.empty()) run_program(before, command(sides.baseline));
-  run_program(self, command(sides.candidate));
-  return true;
-}
-
+/// Both sides as they are now, and what the gate says of them.
 struct Judged {
-  Sides sides;
+  ComparedCampaign baseline, candidate;
   Comparison comparison;
   GateVerdict verdict;
 };
 
 Judged judged(const GateArguments& arguments) {
-  Judged result{sides_of(arguments), {}, {}};
-  result.comparison = compare_campaigns(result.sides.baseline.rows, result.sides.candidate.rows,
-                                        result.sides.drawn_differently);
+  Judged result{{}, read_compared(arguments.candidate), {}, {}};
+  std::optional<std::string> drawn;
+  if (arguments.between.empty()) {
+    result.baseline = read_compared(arguments.baseline);
+    drawn = drawn_differently(result.baseline.campaign, result.candidate.campaign);
+  } else {  // the second condition's name stands for both
+    result.baseline = result.candidate;
+    result.baseline.rows = rows_of(result.candidate, arguments.between[0], arguments.between[1]);
+    result.candidate.rows = rows_of(result.candidate, arguments.between[1], arguments.between[1]);
+  }
+  result.comparison = compare_campaigns(result.baseline.rows, result.candidate.rows, drawn);
   result.verdict = verdict_on(result.comparison, arguments.rule);
   return result;
+}
+
+/// Flies `count` more seeds of both campaigns, or prints the commands where the baseline's program is not
+/// known: false.
+bool fly_more(const GateArguments& arguments, const Judged& now, int count) {
+  const Identity& identity = now.baseline.campaign.identity;
+  const bool is_ours =
+      std::ranges::find(identity, Identity::value_type("program", program_digest())) != identity.end();
+  const std::string self = fs::read_symlink("/proc/self/exe").string();
+  const std::string before =
+      arguments.baseline_program.empty() && is_ours ? self : arguments.baseline_program;
+  const std::uint64_t last =
+      std::max(std::ranges::max(now.baseline.campaign.seeds), std::ranges::max(now.candidate.campaign.seeds));
+  const std::string seeds = fmt::format("--seeds={}..{}", last + 1, last + static_cast<std::uint64_t>(count));
+  const auto command = [&](const std::string& folder) {
+    return std::vector<std::string>{"campaign", folder, "--resume", seeds};
+  };
+  if (before.empty() && arguments.between.empty()) {
+    fmt::print(
+        "Fly more with these commands (the first one with the program of the baseline; "
+        "--baseline-program PROGRAM does it here):\n  understory {}\n  understory {}\n",
+        fmt::join(command(arguments.baseline), " "), fmt::join(command(arguments.candidate), " "));
+    return false;
+  }
+  std::fflush(stdout);
+  if (arguments.between.empty()) run_program(before, command(arguments.baseline));
+  run_program(self, command(arguments.candidate));
+  return true;
 }
 
 /// Judges, and with --extend flies on until a verdict or the limit.
@@ -158,7 +127,7 @@ Judged judge_until_known(const GateArguments& arguments) {
       break;
     }
     fmt::print("{}\n", sentence_of(result.comparison, result.verdict, arguments.rule));
-    if (!fly_more(arguments, result.sides, seeds)) break;
+    if (!fly_more(arguments, result, seeds)) break;
     result = judged(arguments);
   }
   return result;
@@ -166,7 +135,7 @@ Judged judge_until_known(const GateArguments& arguments) {
 
 int run_judge(const GateArguments& arguments) {
   const Judged result = judge_until_known(arguments);
-  const ComparedCampaign& flown = result.sides.candidate;
+  const ComparedCampaign& flown = result.candidate;
   GateSides names{arguments.between.empty() ? arguments.baseline : arguments.between[0],
                   arguments.between.empty() ? arguments.candidate : arguments.between[1],
                   fs::path(arguments.page).filename().string(),
@@ -214,9 +183,8 @@ int run_plan(const GateArguments& arguments) {
   const double each_s = collected.costs.empty() ? 0 : wall_s / static_cast<double>(collected.costs.size());
   fmt::print(
       "The outcomes of {:.1f} % of the pairs differ: {}.\n"
-      "A change that keeps the rate of success is called not worse (margin {:.3g}) after at most {} pairs "
-      "with "
-      "probability {:.3g}: {} seeds in each of {} conditions.\n"
+      "A change that keeps the rate of success is called not worse (margin {:.3g}) after {} pairs or fewer "
+      "with probability {:.3g}: {} seeds in each of {} conditions.\n"
       "The flights of one side then take about {:.0f} min on this machine ({:.1f} s each, {} at a time).\n",
       100 * discordance, source, arguments.rule.margin, pairs, arguments.power, seeds, conditions,
       seeds * conditions * each_s / jobs_or_cores(0) / 60, each_s, jobs_or_cores(0));
@@ -246,11 +214,12 @@ int run_gate(GateArguments arguments) {
   }
   require_separate({outputs.begin(), outputs.end()}, {});
   if (!arguments.history.empty()) {
-    require(arguments.baseline.empty() && arguments.candidate.empty() && !arguments.plan,
+    require(arguments.baseline.empty() && arguments.candidate.empty() && arguments.task.empty(),
             "--history looks at folders of its own: no plan, --baseline or --candidate beside it");
     return run_history(arguments);
   }
-  if (arguments.plan) {
+  require(arguments.task.empty() || arguments.task == "plan", arguments.task + ": expected plan, or nothing");
+  if (!arguments.task.empty()) {
     require(!arguments.baseline.empty(), "plan requires --baseline FOLDER, a campaign to learn from");
     return run_plan(arguments);
   }
@@ -277,8 +246,8 @@ void add_gate_command(CommandLine& line) {
                 "understory gate --baseline results/before --candidate results/after",
                 "not worse, or unchanged on these flights",
                 "worse, or flights are missing or could not be flown", "not enough flights for a verdict"});
-  command.choice(
-      "task", arguments->plan, tasks,
+  command.text(
+      "task", "plan", arguments->task,
       "plan: say how many flights a verdict needs, from the campaigns given, and how long they take");
   command.text("--baseline", "FOLDER", arguments->baseline,
                "results folder of the campaign before the change");

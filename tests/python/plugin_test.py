@@ -191,8 +191,9 @@ class Plugins(InFolder):
         other = understory.campaign(flown, self.folder / "theirs", set=wrapped, plugins=[self.mine], jobs=1)
         self.assertEqual(one.rows["digest"].tolist(), other.rows["digest"].tolist())
         self.assertEqual(one.rows["outcome"].tolist(), ["goal", "goal"])
-        passed, text = understory.gate(one, other)
-        self.assertTrue(passed, text)
+        verdict = understory.gate(one, other)
+        self.assertTrue(verdict["passes"], verdict)
+        self.assertEqual(verdict["verdict"], "unchanged on these flights")
 
     def test_recordings_are_evaluated_from_python(self):
         folder = understory.record("forest", self.folder / "recording", seed=1003, set={"forest.length_m": 6})

@@ -156,12 +156,21 @@ def campaign(
 
 
 def gate(
-    baseline: str | os.PathLike | Campaign, candidate: str | os.PathLike | Campaign, quiet: bool = True
-) -> tuple[bool, str]:
-    """Whether the candidate's flights are as good as the baseline's, and what `understory gate` says about it."""
+    baseline: str | os.PathLike | Campaign,
+    candidate: str | os.PathLike | Campaign,
+    margin: float = 0.05,
+    quiet: bool = True,
+) -> dict[str, Any]:
+    """The gate's verdict on two campaigns, as `understory gate --json` writes it: "passes", "verdict", "sentence",
+    counts and intervals."""
+    import tempfile
+
     folders = [one.folder if isinstance(one, Campaign) else one for one in (baseline, candidate)]
-    status, text = run(["gate", "--baseline", folders[0], "--candidate", folders[1]], quiet, (0, 1))
-    return status == 0, text
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "gate.json"
+        options = ["--margin", str(margin), "--json", file]
+        run(["gate", "--baseline", folders[0], "--candidate", folders[1], *options], quiet, (0, 1, 4))
+        return json.loads(file.read_text(encoding="utf-8"))
 
 
 def evaluate(
