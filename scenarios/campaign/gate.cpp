@@ -95,20 +95,11 @@ ConditionComparison compare_pairs(const std::string& condition, std::vector<Flig
   return comparison;
 }
 
-SignCounts scaled(const SignCounts& counts, double times) {
-  return {counts.up * times, counts.even * times, counts.down * times};
-}
-
-/// Evidence against "success fell in no condition": the mean of that of all pairs and of each condition's
-/// mean. `times`: how often the pairs are counted, for a forecast.
-double log_evidence_of_fall(const Comparison& comparison, double times = 1) {
-  const auto evidence = [&](const ConditionComparison& one) {
-    return std::exp(log_evidence_above(scaled(one.signs().mirrored(), times), 0));
-  };
-  double sum = 0;
-  for (const ConditionComparison& condition : comparison.conditions) sum += evidence(condition);
-  return std::log(0.5 * evidence(comparison.all) +
-                  0.5 * sum / static_cast<double>(std::max<std::size_t>(1, comparison.conditions.size())));
+GateCounts counts_of(const Comparison& comparison) {
+  GateCounts counts{comparison.all.signs(), {}};
+  for (const ConditionComparison& condition : comparison.conditions)
+    counts.conditions.push_back(condition.signs());
+  return counts;
 }
 
 /// Where it fell: over all pairs, unless one condition says more.
@@ -134,12 +125,16 @@ double smallest_shown(SignCounts signs, double alpha) {
 }
 
 /// The pairs that are missing to a verdict if more come out as these did; 0: beyond a hundred times as many.
-int pairs_missing(const Comparison& comparison, const GateRule& rule) {
-  const SignCounts signs = comparison.all.signs();
-  for (double times = 1.02; times < 100; times *= 1.02)
-    if (log_evidence_above(scaled(signs, times), -rule.margin) >= -std::log(rule.alpha) ||
-        log_evidence_of_fall(comparison, times) >= -std::log(rule.alpha))
-      return static_cast<int>(std::ceil((times - 1) * signs.total()));
+int pairs_missing(const GateCounts& counts, const GateRule& rule) {
+  const auto scaled = [](const SignCounts& signs, double times) {
+    return SignCounts{signs.up * times, signs.even * times, signs.down * times};
+  };
+  for (double times = 1.02; times < 100; times *= 1.02) {
+    GateCounts more{scaled(counts.all, times), {}};
+    for (const SignCounts& condition : counts.conditions) more.conditions.push_back(scaled(condition, times));
+    if (verdict_on(more, rule) != Verdict::undecided)
+      return static_cast<int>(std::ceil((times - 1) * counts.all.total()));
+  }
   return 0;
 }
 
@@ -239,6 +234,18 @@ std::string GateVerdict::name() const {
   return std::string(verdict_names[static_cast<std::size_t>(verdict)].first);
 }
 
+Verdict verdict_on(const GateCounts& counts, const GateRule& rule) {
+  const double enough = -std::log(rule.alpha);
+  if (log_evidence_above(counts.all, -rule.margin) >= enough) return Verdict::not_worse;
+  const auto of_fall = [](const SignCounts& signs) {
+    return std::exp(log_evidence_above(signs.mirrored(), 0));
+  };
+  double sum = 0;
+  for (const SignCounts& condition : counts.conditions) sum += of_fall(condition);
+  const double each = counts.conditions.empty() ? 1 : sum / static_cast<double>(counts.conditions.size());
+  return std::log((of_fall(counts.all) + each) / 2) >= enough ? Verdict::worse : Verdict::undecided;
+}
+
 GateVerdict verdict_on(const Comparison& comparison, const GateRule& rule) {
   GateVerdict verdict;
   const ConditionComparison& all = comparison.all;
@@ -258,19 +265,16 @@ GateVerdict verdict_on(const Comparison& comparison, const GateRule& rule) {
                                           names_text(comparison.missing)));
   if (pairs == 0) verdict.reasons.emplace_back("no flight of the two campaigns can be compared");
   const bool may_be_judged = verdict.reasons.empty();
-  const double enough = -std::log(rule.alpha);
   if (!may_be_judged) {
     verdict.verdict = Verdict::worse;
   } else if (all.bit_for_bit == pairs) {
     verdict.verdict = Verdict::unchanged;
     verdict.changed_at_most = none_seen_upper_end(pairs, rule.alpha);
-  } else if (log_evidence_above(signs, -rule.margin) >= enough) {
-    verdict.verdict = Verdict::not_worse;
-  } else if (log_evidence_of_fall(comparison) >= enough) {
-    verdict.verdict = Verdict::worse;
-    verdict.reasons.push_back(reason_of_fall(comparison));
   } else {
-    verdict.more_pairs = pairs_missing(comparison, rule);
+    verdict.verdict = verdict_on(counts_of(comparison), rule);
+    if (verdict.verdict == Verdict::worse) verdict.reasons.push_back(reason_of_fall(comparison));
+    if (verdict.verdict == Verdict::undecided)
+      verdict.more_pairs = pairs_missing(counts_of(comparison), rule);
   }
   if (may_be_judged && verdict.verdict != Verdict::unchanged)
     for (const Tolerance& tolerance : rule.tolerances) judge(tolerance, all, rule, verdict);

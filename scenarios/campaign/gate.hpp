@@ -140,6 +140,14 @@ struct GateVerdict {
 
 GateVerdict verdict_on(const Comparison& comparison, const GateRule& rule = {});
 
+/// What the verdict rests on: how many pairs gained, stayed and lost, all together and in each condition.
+struct GateCounts {
+  SignCounts all;
+  std::vector<SignCounts> conditions;
+};
+/// The same by the counts alone: not_worse, worse or undecided.
+Verdict verdict_on(const GateCounts& counts, const GateRule& rule);
+
 /// Pairs after which a change that alters outcomes but not their rate is called not worse with probability
 /// `power`, looked at after every ten: simulated, with the same random numbers each time. `discordance`:
 /// share of pairs whose outcome differs.

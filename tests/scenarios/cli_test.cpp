@@ -42,7 +42,7 @@ TEST_F(Cli, VersionSaysCommitAndRenderer) {
 
 TEST_F(Cli, TheManualNamesCommandsAndOptions) {
   const Outcome manual = understory("manual");
-  expect_parts(manual, {".TH UNDERSTORY 1", ".SS gate", "\\-\\-max\\-drop", ".SH EXIT STATUS"});
+  expect_parts(manual, {".TH UNDERSTORY 1", ".SS gate", "\\-\\-margin", ".SH EXIT STATUS"});
   expect_no_part(manual.text, "completion");  // hidden
 }
 

@@ -37,4 +37,7 @@ Section drift_section(int flights);
 /// the one that the stack's model describes.
 std::vector<Section> mismatch_sections();
 
+/// docs/ci.md: how often the gate errs, and after how many flights it knows. From outcomes of real flights.
+Section gate_section();
+
 }  // namespace understory

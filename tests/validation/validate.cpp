@@ -44,7 +44,8 @@ struct Page {
 
 const std::vector<Page> pages{{"flight_model", aircraft_sections},
                               {"estimator", estimator_sections},
-                              {"model_mismatch", mismatch_sections}};
+                              {"model_mismatch", mismatch_sections},
+                              {"ci", [] { return std::vector<Section>{gate_section()}; }}};
 
 std::string read_text(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -90,7 +91,7 @@ int run(const std::vector<std::string>& arguments) {
     else if (page != pages.end())
       chosen.push_back(*page);
     else
-      throw ScenarioError(argument + ": expected --check, flight_model, estimator or model_mismatch");
+      throw ScenarioError(argument + ": expected --check, flight_model, estimator, model_mismatch or ci");
   }
   int faults = 0;
   for (const Page& page : chosen.empty() ? pages : chosen) faults += validate(page, check);
