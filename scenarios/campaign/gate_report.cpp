@@ -145,19 +145,20 @@ Json json_of(const ConditionComparison& condition, const GateSides& sides) {
 
 std::string sentence_of(const Comparison& comparison, const GateVerdict& verdict, const GateRule& rule) {
   const int pairs = comparison.all.goals.pairs();
-  const std::string fall = percent(verdict.largest_fall), margin = percent(rule.margin),
-                    shown = shown_text(verdict);
+  const std::string margin = percent(rule.margin), shown = shown_text(verdict);
+  const std::string known =
+      verdict.difference.minimum > 0
+          ? fmt::format("after {} pairs success has risen by {} percentage points at least", pairs,
+                        percent(verdict.difference.minimum))
+          : fmt::format("after {} pairs success may have fallen by {} percentage points at most", pairs,
+                        percent(verdict.largest_fall));
   switch (verdict.verdict) {
     case Verdict::not_worse:
-      return fmt::format(
-          "not worse: after {} pairs success may have fallen by {} percentage points at most, and {} would "
-          "matter. {}.",
-          pairs, fall, margin, shown);
+      return fmt::format("not worse: {}, and {} would matter. {}.", known, margin, shown);
     case Verdict::unchanged:
       return fmt::format(
           "unchanged on these flights: all {} pairs are equal to the bit. Of other seeds {} % at most could "
-          "differ. "
-          "{}.",
+          "differ. {}.",
           pairs, percent(verdict.changed_at_most), shown);
     case Verdict::worse:
       return fmt::format("worse: {}. {}.", fmt::join(verdict.reasons, "; "),
@@ -172,11 +173,8 @@ std::string sentence_of(const Comparison& comparison, const GateVerdict& verdict
           ? "Nobody knows how many more would decide"
           : fmt::format("If more come out like these, {} more pairs decide ({} seeds{})", seeds * conditions,
                         seeds, conditions == 1 ? "" : fmt::format(" in each of {} conditions", conditions));
-  return fmt::format(
-      "not enough flights: after {} pairs success may have fallen by {} percentage points, and {} matter. "
-      "{}{}{}. {}.",
-      pairs, fall, margin, fmt::join(verdict.reasons, ". "), verdict.reasons.empty() ? "" : ". ", more,
-      shown);
+  return fmt::format("not enough flights: {}, and {} matter. {}{}{}. {}.", known, margin,
+                     fmt::join(verdict.reasons, ". "), verdict.reasons.empty() ? "" : ". ", more, shown);
 }
 
 std::string to_report(const Comparison& comparison, const GateVerdict& verdict, const GateRule& rule) {

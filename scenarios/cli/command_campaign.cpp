@@ -231,8 +231,7 @@ void add_campaign_command(CommandLine& line) {
   command
       .text("file", "FILE", arguments->file,
             "campaign file, a name in scenarios/library/campaigns (docs/campaigns.md), or the results folder "
-            "of "
-            "a campaign that is to go on")
+            "of a campaign that is to go on")
       .required();
   command.text("--out", "FOLDER", arguments->out, "results folder (default: results/NAME)");
   add_with_option(command, arguments->with);

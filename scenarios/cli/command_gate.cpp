@@ -263,8 +263,7 @@ void add_gate_command(CommandLine& line) {
   command
       .text("--baseline-program", "FILE", arguments->baseline_program,
             "with --extend: the program that flew the baseline (default: this one, if it did; else the "
-            "commands "
-            "are printed)")
+            "commands are printed)")
       .needs(extend);
   command.whole("--limit", arguments->limit, 1, 200'000, "with --extend: fly no more than N pairs in all")
       .needs(extend);
