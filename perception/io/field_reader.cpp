@@ -179,6 +179,8 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
   std::string best = renamed(std::string(word));
   if (std::ranges::find(known, best) == known.end()) best.clear();
   std::size_t best_distance = !best.empty() ? 0 : std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (const std::string& name : known)
+    if (best.empty() && word.size() > 4 && name.starts_with(word)) best = name, best_distance = 1;
   for (const std::string& name : known) {  // Levenshtein, one row at a time
     std::vector<std::size_t> row(name.size() + 1);
     for (std::size_t i = 0; i < row.size(); ++i) row[i] = i;

@@ -138,8 +138,8 @@ int pairs_missing(const GateCounts& counts, const GateRule& rule) {
   return 0;
 }
 
-/// The verdict gets what a tolerance adds: at first sight of a loss that is too large it is worse, where
-/// nobody knows undecided.
+/// A loss beyond the tolerance that is shown is worse; one that is not ruled out leaves a verdict that passes
+/// undecided.
 void judge(const Tolerance& tolerance, const ConditionComparison& all, const GateRule& rule,
            GateVerdict& verdict) {
   const auto metric = std::ranges::find(metrics, tolerance.figure, &Metric::name);
@@ -152,11 +152,11 @@ void judge(const Tolerance& tolerance, const ConditionComparison& all, const Gat
   options.z = normal_quantile(1 - rule.alpha);
   const Interval gain = bootstrap(gains, mean_of, options).interval;
   if (gains.size() >= 15 && gain.minimum > -tolerance.loss) return;
-  const bool is_worse = gains.size() >= 15 && gain.maximum < 0;
+  const bool is_worse = gains.size() >= 15 && gain.maximum < -tolerance.loss;
   if (is_worse || verdict.passes()) verdict.verdict = is_worse ? Verdict::worse : Verdict::undecided;
-  verdict.reasons.push_back(fmt::format("{}: it may be worse by up to {:.3g}, tolerated are {:.3g}{}",
-                                        tolerance.figure, -gain.minimum, tolerance.loss,
-                                        is_worse ? "" : "; more flights would tell"));
+  verdict.reasons.push_back(fmt::format("{} is worse by {:.3g} to {:.3g}, and {:.3g} is tolerated",
+                                        tolerance.figure, std::max(0.0, -gain.maximum), -gain.minimum,
+                                        tolerance.loss));
 }
 
 }  // namespace

@@ -123,8 +123,8 @@ inline constexpr std::array<std::pair<std::string_view, Verdict>, 4> verdict_nam
 /// An unchanged rate is called worse with probability alpha at most, and a fall by the margin not worse, at
 /// all looks together (sequential.hpp), if every look is at whole seeds: each condition with the same seeds.
 /// A fall between nothing and the margin may get either verdict. Tolerances are judged by the paired
-/// bootstrap with the same alpha, at one look: worse if a larger loss than the tolerance is not excluded and
-/// a loss is proved, undecided if neither.
+/// bootstrap with the same alpha, at one look: worse if a loss beyond the tolerance is shown, undecided
+/// if it is not ruled out either.
 struct GateVerdict {
   Verdict verdict = Verdict::undecided;
   std::vector<std::string> reasons;  ///< a line each

@@ -18,110 +18,101 @@ bool holds_campaign(const fs::path& folder) {
   return fs::exists(folder / "campaign.json", ignored);
 }
 
-std::vector<fs::path> campaigns_in(const std::vector<std::string>& folders) {
+std::vector<fs::path> campaigns_in(const fs::path& folder) {
+  std::error_code ignored;
+  if (holds_campaign(folder) || !fs::is_directory(folder, ignored)) return {folder};
   std::vector<fs::path> found;
-  for (const fs::path folder : folders) {
-    std::error_code ignored;
-    if (holds_campaign(folder) || !fs::is_directory(folder, ignored)) {
-      found.push_back(folder);
-      continue;
-    }
-    std::vector<fs::path> within;
-    for (const auto& entry : fs::directory_iterator(folder))
-      if (holds_campaign(entry.path())) within.push_back(entry.path());
-    std::ranges::sort(within);
-    found.insert(found.end(), within.begin(), within.end());
-  }
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (holds_campaign(entry.path())) found.push_back(entry.path());
+  std::ranges::sort(found);
   return found;
 }
 
-BootstrapEstimate mean_over(const std::vector<FlightRow>& rows, double FlightRow::*figure) {
+/// A figure of a campaign's flights, with its 95 % interval.
+BootstrapEstimate success_of(const ComparedCampaign& campaign) {
+  const auto flown = static_cast<int>(std::ranges::count_if(campaign.rows, &FlightRow::flown));
+  const auto goals = static_cast<int>(std::ranges::count_if(campaign.rows, &FlightRow::reached_goal));
+  return {flown > 0 ? static_cast<double>(goals) / flown : std::nan(""), wilson_interval(goals, flown)};
+}
+BootstrapEstimate mean_over(const ComparedCampaign& campaign, double FlightRow::*figure) {
   std::vector<double> values;
-  for (const FlightRow& row : rows)
+  for (const FlightRow& row : campaign.rows)
     if (row.flown() && std::isfinite(row.*figure)) values.push_back(row.*figure);
   return bootstrap(values);
 }
-
-HistoryEntry entry_of(const ComparedCampaign& campaign) {
-  HistoryEntry entry;
-  entry.name = fs::weakly_canonical(campaign.folder.path).filename().string();
-  entry.commit = campaign.campaign.commit;
-  entry.flown = static_cast<int>(std::ranges::count_if(campaign.rows, &FlightRow::flown));
-  entry.goals = static_cast<int>(std::ranges::count_if(campaign.rows, &FlightRow::reached_goal));
-  entry.success = wilson_interval(entry.goals, entry.flown);
-  entry.speed_mps = mean_over(campaign.rows, &FlightRow::mean_speed_mps);
-  entry.clearance_m = mean_over(campaign.rows, &FlightRow::minimum_clearance_m);
-  return entry;
+BootstrapEstimate speed_of(const ComparedCampaign& campaign) {
+  return mean_over(campaign, &FlightRow::mean_speed_mps);
+}
+BootstrapEstimate clearance_of(const ComparedCampaign& campaign) {
+  return mean_over(campaign, &FlightRow::minimum_clearance_m);
 }
 
-double share(const HistoryEntry& entry) {
-  return entry.flown > 0 ? static_cast<double>(entry.goals) / entry.flown : std::nan("");
-}
-
-std::string change_text(const HistoryEntry& entry) {
-  if (entry.pairs == 0) return "-";
-  return fmt::format("{:+.1f}{}", 100 * entry.difference, entry.change.empty() ? "" : ", " + entry.change);
+std::string name_of(const ComparedCampaign& campaign) {
+  return fs::weakly_canonical(campaign.folder.path).filename().string();
 }
 
 Table table_of(const GateHistory& history) {
-  Table table{{"campaign", "commit", "flown", "goal", "success % (95 %)", "m/s", "clearance m", "pairs",
+  const auto text = [](const BootstrapEstimate& figure, double unit, int decimals) {
+    return fmt::format("{} ({} to {})", number_text(unit * figure.value, decimals),
+                       number_text(unit * figure.interval.minimum, decimals),
+                       number_text(unit * figure.interval.maximum, decimals));
+  };
+  Table table{{"campaign", "commit", "flights", "success %", "m/s", "clearance m", "pairs",
                "points to the one before"}};
-  for (const HistoryEntry& entry : history.entries)
-    table.add(entry.name, entry.commit, entry.flown, entry.goals,
-              fmt::format("{} ({:.1f} to {:.1f})", number_text(100 * share(entry), 1),
-                          100 * entry.success.minimum, 100 * entry.success.maximum),
-              number_text(entry.speed_mps.value, 2), number_text(entry.clearance_m.value, 2), entry.pairs,
-              change_text(entry));
+  for (std::size_t i = 0; i < history.campaigns.size(); ++i) {
+    const ComparedCampaign& campaign = history.campaigns[i];
+    const PairedOutcomes goals = i == 0 ? PairedOutcomes() : history.changes[i - 1].goals;
+    table.add(name_of(campaign), campaign.campaign.commit, campaign.rows.size(),
+              text(success_of(campaign), 100, 1), text(speed_of(campaign), 1, 2),
+              text(clearance_of(campaign), 1, 2), goals.pairs(),
+              i == 0 ? "-" : fmt::format("{:+.1f} {}", 100 * goals.difference(), history.shown[i - 1]));
+  }
   return table;
 }
 
 std::string changes_text(const GateHistory& history) {
   std::string text;
-  for (const HistoryEntry& entry : history.entries)
-    if (!entry.change.empty())
-      text += fmt::format("Success {} by {:.1f} percentage points at {} ({} pairs). ", entry.change,
-                          100 * std::abs(entry.difference), entry.name, entry.pairs);
+  for (std::size_t i = 0; i < history.changes.size(); ++i)
+    if (!history.shown[i].empty())
+      text += fmt::format("Success {} by {:.1f} percentage points at {} ({} pairs). ", history.shown[i],
+                          100 * std::abs(history.changes[i].goals.difference()),
+                          name_of(history.campaigns[i + 1]), history.changes[i].goals.pairs());
   return text.empty() ? "No campaign shows a change of success against the one before it." : text;
 }
 
-LinePlot curve(const GateHistory& history, const std::string& title, const std::string& label,
-               const std::function<std::pair<double, Interval>(const HistoryEntry&)>& value_of) {
-  LinePlot plot{.title = title, .x_label = "campaign", .y_label = label};
-  Series series{.name = label, .mark = Mark::line_and_dots};
-  for (const HistoryEntry& entry : history.entries) {
-    const auto [value, interval] = value_of(entry);
-    const auto place = static_cast<double>(series.x.size());
-    series.x.push_back(place);
-    series.y.push_back(value);
-    series.low.push_back(interval.minimum);
-    series.high.push_back(interval.maximum);
-    plot.x_names.emplace_back(place, entry.name);
-    if (!entry.change.empty())
-      plot.references.push_back({place, fmt::format("success {} at {}", entry.change, entry.name), true});
+LinePlot curve(const GateHistory& history, const char* label,
+               BootstrapEstimate (*figure_of)(const ComparedCampaign&)) {
+  LinePlot plot{.title = label, .x_label = "campaign", .y_label = label};
+  Series& series = plot.series.emplace_back(Series{.name = label, .mark = Mark::dots});
+  for (std::size_t i = 0; i < history.campaigns.size(); ++i) {
+    const BootstrapEstimate figure = figure_of(history.campaigns[i]);
+    const auto place = static_cast<double>(i);
+    series.x.push_back(place), series.y.push_back(figure.value);
+    series.low.push_back(figure.interval.minimum), series.high.push_back(figure.interval.maximum);
+    plot.x_names.emplace_back(place, name_of(history.campaigns[i]));
+    if (i > 0 && !history.shown[i - 1].empty())
+      plot.references.push_back({place, "success " + history.shown[i - 1], true});
   }
-  plot.series.push_back(std::move(series));
   return plot;
 }
 
 }  // namespace
 
 GateHistory history_of(const std::vector<std::string>& folders, const GateRule& rule) {
-  std::vector<ComparedCampaign> campaigns;
-  for (const fs::path& folder : campaigns_in(folders)) campaigns.push_back(read_compared(folder));
-  if (campaigns.size() < 2)
-    throw ScenarioError(fmt::format("--history {}: requires two campaigns or more, found {}",
-                                    fmt::join(folders, " "), campaigns.size()));
   GateHistory history;
-  const double enough = std::log(2.0 * static_cast<double>(campaigns.size() - 1) / rule.alpha);
-  for (std::size_t i = 0; i < campaigns.size(); ++i) {
-    HistoryEntry& entry = history.entries.emplace_back(entry_of(campaigns[i]));
-    if (i == 0) continue;
-    const PairedOutcomes goals = compare_campaigns(campaigns[i - 1].rows, campaigns[i].rows).all.goals;
-    const SignCounts signs = signs_of(goals);
-    entry.pairs = goals.pairs();
-    entry.difference = goals.difference();
-    if (log_evidence_above(signs, 0) >= enough) entry.change = "rose";
-    if (log_evidence_above(signs.mirrored(), 0) >= enough) entry.change = "fell";
+  for (const std::string& folder : folders)
+    for (const fs::path& campaign : campaigns_in(folder))
+      history.campaigns.push_back(read_compared(campaign));
+  if (history.campaigns.size() < 2)
+    throw ScenarioError(fmt::format("--history {}: requires two campaigns or more, found {}",
+                                    fmt::join(folders, " "), history.campaigns.size()));
+  const double enough = std::log(2.0 * static_cast<double>(history.campaigns.size() - 1) / rule.alpha);
+  for (std::size_t i = 1; i < history.campaigns.size(); ++i) {
+    const ConditionComparison& change = history.changes.emplace_back(
+        compare_campaigns(history.campaigns[i - 1].rows, history.campaigns[i].rows).all);
+    history.shown.emplace_back(log_evidence_above(change.signs(), 0) >= enough              ? "rose"
+                               : log_evidence_above(change.signs().mirrored(), 0) >= enough ? "fell"
+                                                                                            : "");
   }
   return history;
 }
@@ -131,18 +122,11 @@ std::string history_text(const GateHistory& history) {
 }
 
 std::string history_page(const GateHistory& history, const fs::path& data_root) {
-  const auto of_estimate = [](const BootstrapEstimate& estimate) {
-    return std::pair(estimate.value, estimate.interval);
-  };
-  const std::vector<LinePlot> plots{
-      curve(history, "Success", "share that reached the goal",
-            [](const HistoryEntry& entry) { return std::pair(share(entry), entry.success); }),
-      curve(history, "Speed", "mean speed, m/s",
-            [&](const HistoryEntry& entry) { return of_estimate(entry.speed_mps); }),
-      curve(history, "Clearance", "mean of the minimum clearance, m",
-            [&](const HistoryEntry& entry) { return of_estimate(entry.clearance_m); })};
   return sheet_page(data_root, "History of campaigns", changes_text(history),
-                    {{.title = "Over the campaigns, with 95 % intervals", .plots = plots},
+                    {{.title = "Over the campaigns, with 95 % intervals",
+                      .plots = {curve(history, "share that reached the goal", success_of),
+                                curve(history, "mean speed, m/s", speed_of),
+                                curve(history, "mean of the minimum clearance, m", clearance_of)}},
                      {.title = "Campaigns", .table = table_of(history)}});
 }
 

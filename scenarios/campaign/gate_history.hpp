@@ -6,23 +6,14 @@
 
 #include "scenarios/campaign/gate.hpp"
 
-/// Several campaigns of one file, one after the other: how a project's flights went over its commits.
 namespace understory {
 
-/// One campaign among its neighbours.
-struct HistoryEntry {
-  std::string name;    ///< of its folder
-  std::string commit;  ///< of the program that flew it
-  int flown = 0, goals = 0;
-  Interval success;                          ///< 95 %, Wilson's
-  BootstrapEstimate speed_mps, clearance_m;  ///< means over flights, 95 %
-  int pairs = 0;                             ///< of the same condition and seed in the campaign before
-  double difference = 0;  ///< of the share of goals, to the campaign before, over these pairs
-  std::string change;     ///< "fell", "rose"; empty: neither is shown
-};
-
+/// Several campaigns of one file, one after the other: how a project's flights went over its commits.
 struct GateHistory {
-  std::vector<HistoryEntry> entries;
+  std::vector<ComparedCampaign> campaigns;
+  std::vector<ConditionComparison>
+      changes;                     ///< of each campaign but the first to the one before it, all pairs
+  std::vector<std::string> shown;  ///< of each change: "fell", "rose"; empty: neither is shown
 };
 
 /// Reads the campaigns in this order; a folder that is none stands for the campaigns in it, by their names. A

@@ -72,10 +72,10 @@ std::string ending_of(const FlightRow& row) {
 std::string changed_seeds(const ConditionComparison& condition, bool worse) {
   const std::vector<FlightPair> pairs = changed(condition, worse);
   if (pairs.empty()) return "";
-  return fmt::format("{}: {}: seed {}\n", worse ? "worse" : "better", condition.condition,
+  return fmt::format("got {}: {}: seed {}\n", worse ? "worse" : "better", condition.condition,
                      some_of(pairs, [worse](const FlightPair& pair) {
                        const FlightRow& bad = worse ? pair.candidate : pair.baseline;
-                       return fmt::format("{} ({})", bad.seed, ending_of(bad));
+                       return fmt::format("{} ({}{})", bad.seed, worse ? "" : "before: ", ending_of(bad));
                      }));
 }
 
@@ -98,8 +98,8 @@ std::vector<std::string> notes_of(const Comparison& comparison) {
 }
 
 std::string shown_text(const GateVerdict& verdict) {
-  return verdict.smallest_shown > 1 ? "No fall could have been called worse"
-                                    : fmt::format("A fall by {} points or more would have been called worse",
+  return verdict.smallest_shown > 1 ? "So few pairs cannot show any fall"
+                                    : fmt::format("So many pairs show a fall if it is {} points or more",
                                                   percent(verdict.smallest_shown));
 }
 
@@ -154,10 +154,10 @@ std::string sentence_of(const Comparison& comparison, const GateVerdict& verdict
                         percent(verdict.largest_fall));
   switch (verdict.verdict) {
     case Verdict::not_worse:
-      return fmt::format("not worse: {}, and {} would matter. {}.", known, margin, shown);
+      return fmt::format("not worse: {}; a fall by {} is ruled out. {}.", known, margin, shown);
     case Verdict::unchanged:
       return fmt::format(
-          "unchanged on these flights: all {} pairs are equal to the bit. Of other seeds {} % at most could "
+          "unchanged on these flights: all {} pairs are equal to the bit. Under {} % of other seeds would "
           "differ. {}.",
           pairs, percent(verdict.changed_at_most), shown);
     case Verdict::worse:
@@ -173,15 +173,16 @@ std::string sentence_of(const Comparison& comparison, const GateVerdict& verdict
           ? "Nobody knows how many more would decide"
           : fmt::format("If more come out like these, {} more pairs decide ({} seeds{})", seeds * conditions,
                         seeds, conditions == 1 ? "" : fmt::format(" in each of {} conditions", conditions));
-  return fmt::format("not enough flights: {}, and {} matter. {}{}{}. {}.", known, margin,
-                     fmt::join(verdict.reasons, ". "), verdict.reasons.empty() ? "" : ". ", more, shown);
+  return fmt::format(
+      "not enough flights: {}; a fall by {} is not ruled out, and no fall is shown. {}{}{}. {}.", known,
+      margin, fmt::join(verdict.reasons, ". "), verdict.reasons.empty() ? "" : ". ", more, shown);
 }
 
 std::string to_report(const Comparison& comparison, const GateVerdict& verdict, const GateRule& rule) {
   std::string text = to_text(success_table(comparison));
   text +=
-      "  intervals 95 %: goals by Wilson, difference by Newcombe's paired method; p: McNemar's exact test; "
-      "both hold at one look\n\n";
+      "  intervals 95 %: goals by Wilson, difference by Newcombe's paired method; p: McNemar's exact test. "
+      "These hold for somebody who looks once; the verdict below holds at every look\n\n";
   const Table metrics = metric_table(comparison);
   if (!metrics.rows.empty())
     text +=

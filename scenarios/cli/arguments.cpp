@@ -101,13 +101,16 @@ CalibrationOptions calibration_options(const CalibrationArguments& arguments) {
 }
 
 void add_rule_options(Command& command, GateRule& rule, std::vector<std::string>& tolerances) {
-  command.number("--margin", rule.margin, 0.001, 0.5,
-                 "fall of the share of flights that reach the goal which matters: a smaller one may pass");
-  command.number("--alpha", rule.alpha, 0.001, 0.3,
-                 "how often the verdicts 'worse' and 'not worse' may each be wrong");
-  command.texts("--tolerate", "FIGURE=LOSS", tolerances,
-                "also judge the mean of mean_speed_mps, minimum_clearance_m, position_error_mean_m or "
-                "progress_m, which may get worse by LOSS; repeatable");
+  command.number(
+      "--margin", rule.margin, 0.001, 0.5,
+      "fall of the success rate that must be ruled out for a change to pass: 0.05 is 5 percentage points");
+  command.number(
+      "--alpha", rule.alpha, 0.001, 0.3,
+      "how many harmless changes may be called worse, and how many that cost the margin not worse");
+  command.texts(
+      "--tolerate", "FIGURE=LOSS", tolerances,
+      "also judge the mean of mean_speed_mps, minimum_clearance_m, position_error_mean_m or progress_m, "
+      "which may get worse by LOSS, for example mean_speed_mps=0.2; repeatable");
 }
 
 GateRule rule_of(GateRule rule, const std::vector<std::string>& tolerances) {

@@ -218,7 +218,8 @@ int run_gate(GateArguments arguments) {
             "--history looks at folders of its own: no plan, --baseline or --candidate beside it");
     return run_history(arguments);
   }
-  require(arguments.task.empty() || arguments.task == "plan", arguments.task + ": expected plan, or nothing");
+  require(arguments.task.empty() || arguments.task == "plan",
+          arguments.task + ": expected plan; folders are given by --baseline and --candidate");
   if (!arguments.task.empty()) {
     require(!arguments.baseline.empty(), "plan requires --baseline FOLDER, a campaign to learn from");
     return run_plan(arguments);
@@ -257,7 +258,7 @@ void add_gate_command(CommandLine& line) {
                 "compare two conditions of the candidate's campaign, the first as the baseline", 2);
   add_rule_options(command, arguments->rule, arguments->tolerances);
   command.number("--power", arguments->power, 0.5, 0.99,
-                 "for plan: how probable a verdict shall be after the flights that it names");
+                 "for plan: probability of a verdict within the number of flights that it names");
   const auto extend = command.flag("--extend", arguments->extend,
                                    "fly more seeds of both campaigns until there is a verdict");
   command
@@ -269,8 +270,8 @@ void add_gate_command(CommandLine& line) {
       .needs(extend);
   command.texts(
       "--history", "FOLDER", arguments->history,
-      "instead: compare campaigns of one file in this order, or all in FOLDER in the order of their "
-      "names; repeatable");
+      "in place of --baseline and --candidate: campaigns to compare, each with the one before it; a folder "
+      "stands for the campaigns in it, by name; repeatable");
   command.text("--junit", "FILE", arguments->junit, "write the comparison as JUnit test cases (XML)");
   command.text("--json", "FILE", arguments->json, "write verdict, counts and figures as JSON");
   command.text("--markdown", "FILE", arguments->markdown, "write a comment on the change (Markdown)");

@@ -34,6 +34,7 @@ Json json_of(const LinePlot& plot, PageArrays& arrays, int& count) {
     }
     json["series"].push_back(std::move(one));
   }
+  if (!plot.x_names.empty()) json["x_names"] = plot.x_names;
   json["references"] = Json::array();
   for (const ReferenceLine& line : plot.references)
     json["references"].push_back({{"at", line.at}, {"label", line.label}, {"vertical", line.vertical}});

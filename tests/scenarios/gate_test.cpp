@@ -240,6 +240,7 @@ TEST(Gate, ATolerancesLossIsJudged) {
     return judged(rows, slower, {.tolerances = {{figure, loss}}}).verdict;
   };
   EXPECT_EQ(verdict("mean_speed_mps", 0.3), Verdict::worse);
+  EXPECT_EQ(verdict("mean_speed_mps", 0.45), Verdict::undecided);  // it is 0.4505, spread over 0.1
   EXPECT_EQ(verdict("mean_speed_mps", 0.6), Verdict::not_worse);
   EXPECT_EQ(verdict("progress_m", 0), Verdict::undecided);  // all equal: no loss below nothing is excluded
   EXPECT_THROW(require_known_figures({.tolerances = {{"speed", 1}}}), ScenarioError);
@@ -261,7 +262,7 @@ TEST(Gate, TheReportNamesSeedsAndNumbers) {
   for (const char* part : {"97 (91.5 to 99.0)", "93 (86.3 to 96.6)", "-4.0", "0.289",
                            "mean_speed_mps",  // p: 2 * P(6 of 8 or more)
                            "worse: forest: seed 4 (collision at 33.0 m), 5 (",
-                           "better: forest: seed 1 (collision at 33.0 m), 2 (",
+                           "better: forest: seed 1 (before: collision at 33.0 m), 2 (",
                            "not enough flights: after 100 pairs success may have fallen by "})
     expect_part(report, part);
   const auto command = [](const FlightRow& row) {

@@ -189,6 +189,10 @@ export async function check_campaign() {
   await page.keyboard.press("t");
   check("campaign: t changes them, too", (await theme()) === before);
   await close(opened, "campaign");
+  const [linked] = Object.keys(facts.tracks).map(Number);
+  const link = await open(`${file}#${facts.rows.ids[linked]}`);
+  check("campaign: a comment's link opens the replay", (await text(link.page, ".panel h1")).length > 0);
+  await close(link, "campaign, a replay linked");
   await check_phone(file, "campaign");
 }
 
@@ -239,6 +243,7 @@ export async function check_sheet() {
   const all = await text(page, "body");
   check("sheet: says everything", [facts.sentence, facts.warning, facts.program, ...facts.sections.map((each) => each.title), facts.sections[0].text].every((each) => all.includes(each)));
   check("sheet: shows its plots", (await page.$$(".plot")).length === 2 && (await page.$$(".values")).length === 3);
+  check("sheet: names places in the place of numbers", ["first", "last"].every((name) => all.includes(name)));
   await page.$eval("section:nth-child(2) .plot svg", (picture) => picture.focus());
   for (const key of ["ArrowRight", "ArrowRight"]) await page.keyboard.press(key);
   check("sheet: tells a point, its label and interval", same((await text(page, ".tip")).split("\n"), ["trials", "horizon 2 s", "trial: 2.00", "share of goals: 0.61 (0.50 … 0.70)"]), await text(page, ".tip"));

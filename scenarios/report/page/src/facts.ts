@@ -118,6 +118,7 @@ export interface PlotFact {
   y_label: string;
   series: { name: string; x: string; y: string; lower?: string; upper?: string; mark: Mark; labels?: string[] }[];
   references?: Reference[];
+  x_names?: [number, string][];
 }
 
 /// A line across the plot at one value.

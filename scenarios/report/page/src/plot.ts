@@ -18,6 +18,7 @@ interface PlotWords {
   x_label: string;
   y_label: string;
   references?: Reference[];
+  x_names?: [number, string][]; // of places along x, in the place of numbers
 }
 
 const height_px = 300;
@@ -122,9 +123,9 @@ export function add_plot(place: HTMLElement, tip: HTMLElement, words: PlotWords,
     picture.setAttribute("width", String(width_px));
     picture.setAttribute("height", String(height_px));
     picture.replaceChildren();
-    for (const x of x_ticks) {
+    for (const [x, name] of words.x_names ?? x_ticks.map((tick): [number, string] => [tick, String(tick)])) {
       picture.append(svg("path", { class: "grid", d: `M${at(x, y_ticks[0])}V${margin_px.top}` }));
-      picture.append(svg("text", { x: x_px(x), y: height_px - 24, "text-anchor": "middle" }, String(x)));
+      picture.append(svg("text", { x: x_px(x), y: height_px - 24, "text-anchor": "middle" }, name));
     }
     for (const y of y_ticks) {
       picture.append(svg("path", { class: "grid", d: `M${at(x_ticks[0], y)}H${width_px - margin_px.right}` }));
