@@ -41,6 +41,7 @@ struct CampaignText {
   std::vector<Override> overrides;
   ConfigNode grid;
   double timeout_s = Campaign().timeout_s;
+  int seeds_apart = 0;
 };
 
 void visit_fields(FieldVisitor& visit, CampaignText& text) {
@@ -51,6 +52,7 @@ void visit_fields(FieldVisitor& visit, CampaignText& text) {
   visit("overrides", text.overrides);
   visit("grid", text.grid);
   visit("timeout_s", text.timeout_s, 1, 86400);
+  visit("seeds_apart", text.seeds_apart, 0, 1'000'000);
 }
 
 /// A condition's changes to its scenario.
@@ -229,6 +231,12 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario,
   if (text.scenario.empty() == text.scenarios.empty())
     refuse_key(top, "scenarios", "the scenarios to fly, once: [forest, dense]");
   campaign.seeds = seeds_in(text.seeds, top, "seeds");
+  const auto apart = static_cast<std::uint64_t>(text.seeds_apart);
+  const std::uint64_t range = std::ranges::max(campaign.seeds) - std::ranges::min(campaign.seeds);
+  if (apart > 0 && (range >= apart || std::ranges::max(campaign.seeds) + apart * words.size() > maximum_seed))
+    refuse_key(
+        top, "seeds_apart",
+        fmt::format("more than the {} seeds from the first to the last, and no seed over 2^32", range + 1));
 
   std::vector<Variant> overrides = overrides_of(text, top, file, campaign.files);
   const std::size_t conditions = words.size() * require_grid(top, overrides.size());
@@ -244,6 +252,7 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario,
     for (Variant& variant : variants) variant.changes.push_back(tree);
   }
   std::set<std::string> seen;
+  std::uint64_t scenario_index = 0;
   for (const std::string& word : words) {
     const fs::path path = scenario_beside(file, top, key, word, find_scenario);
     campaign.files.push_back(path);
@@ -256,10 +265,11 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario,
             fmt::format("names of conditions of at most 200 characters, no '.' first; '{}' comes out", name));
       if (!seen.insert(name).second)
         refuse_key_since(top, key, fmt::format("two conditions are called '{}'", name));
-      campaign.conditions.push_back(
-          {name, scenario_to_text(scenario), plain_name(path.stem().string()), variant.name, variant.grid});
+      campaign.conditions.push_back({name, scenario_to_text(scenario), plain_name(path.stem().string()),
+                                     variant.name, variant.grid, apart * scenario_index});
       if (on_condition) on_condition(campaign.conditions.size(), conditions);
     }
+    ++scenario_index;
   }
   return campaign;
 }

@@ -24,6 +24,7 @@ using FindScenario = std::function<std::filesystem::path(const std::string&)>;
 ///     grid:                             # optional: every combination, over each override
 ///       autopilot.flight_model.cruise_speed_mps: [10, 12]
 ///     timeout_s: 300                    # optional, 1 .. 86400
+///     seeds_apart: 1000                 # optional: the second scenario flies the seeds and 1000 more, ...
 ///     name: speed                       # optional; otherwise the file's
 ///
 /// `over` changes keys of every condition but not its name, so that the gate can compare campaigns that

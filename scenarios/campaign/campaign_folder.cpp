@@ -38,6 +38,7 @@ std::string manifest_of(const Campaign& campaign) {
     conditions.push_back({{"name", condition.name},
                           {"scenario", condition.scenario},
                           {"variant", condition.variant},
+                          {"seed_offset", condition.seed_offset},
                           {"grid", grid}});
   }
   Json identity = Json::object();
@@ -84,7 +85,8 @@ void require_same(const CampaignFolder& folder, const Campaign& campaign, bool m
   if (held.timeout_s != campaign.timeout_s) refuse("timeout_s changed");
   for (const Condition& condition : campaign.conditions) {
     const auto same = [&](const Condition& other) {
-      return other.name == condition.name && other.scenario_text == condition.scenario_text;
+      return other.name == condition.name && other.scenario_text == condition.scenario_text &&
+             other.seed_offset == condition.seed_offset;
     };
     if (std::ranges::none_of(held.conditions, same)) refuse("condition " + condition.name + " changed");
   }
@@ -136,8 +138,10 @@ std::string scenario_of_all(const std::vector<Condition>& conditions) {
 std::vector<CampaignTask> tasks_of(const Campaign& campaign) {
   std::vector<CampaignTask> tasks;
   for (std::size_t condition = 0; condition < campaign.conditions.size(); ++condition)
-    for (const std::uint64_t seed : campaign.seeds)
+    for (const std::uint64_t base : campaign.seeds) {
+      const std::uint64_t seed = base + campaign.conditions[condition].seed_offset;
       tasks.push_back({fmt::format("{}-{}", campaign.conditions[condition].name, seed), condition, seed});
+    }
   return tasks;
 }
 
@@ -184,8 +188,13 @@ Campaign read_campaign(const CampaignFolder& folder) {
       campaign.seeds.push_back(seed);
     }
     for (const Json& held : json.at(key = "conditions")) {
-      Condition& condition = campaign.conditions.emplace_back(
-          Condition{held.at("name"), "", held.at("scenario"), held.at("variant"), {}});
+      Condition& condition =
+          campaign.conditions.emplace_back(Condition{held.at("name"),
+                                                     "",
+                                                     held.at("scenario"),
+                                                     held.at("variant"),
+                                                     {},
+                                                     held.value("seed_offset", std::uint64_t{0})});
       for (const auto& [name, value] : held.at("grid").items()) condition.grid.emplace_back(name, value);
       const bool is_new = names.insert(campaign.conditions.back().name).second;
       if (!is_plain_name(campaign.conditions.back().name) || !is_new)

@@ -22,6 +22,7 @@ struct Condition {
   std::string scenario;  ///< what its file is called: "forest"
   std::string variant;   ///< name of the overrides: "blind"; empty without any
   std::vector<std::pair<std::string, std::string>> grid;  ///< keys of the grid and its values, in its order
+  std::uint64_t seed_offset = 0;  ///< its flights' seeds are the campaign's and this more (seeds_apart)
 };
 
 /// What distinguishes a condition, in words: "forest, blind, raw=true"; without its scenario if that is
@@ -32,7 +33,7 @@ std::string words_of(const Condition& condition, const std::string& titled_scena
 /// The scenario of all conditions; empty where they have several, or there are none.
 std::string scenario_of_all(const std::vector<Condition>& conditions);
 
-/// Many flights: every seed in every condition.
+/// Many flights: every seed in every condition, or with seed_offset seeds of its own in each scenario.
 struct Campaign {
   std::string name;
   std::vector<Condition> conditions;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <set>
 
 #include "perception/io/field_reader.hpp"
 #include "scenarios/config/config_tree.hpp"
@@ -115,12 +116,18 @@ std::string reason_of_fall(const Comparison& comparison) {
                      -100 * goals.difference(), goals.first(), goals.second(), goals.pairs());
 }
 
-/// As a share of the pairs, if as many gain as did; 2 if none could have been shown.
-double smallest_shown(SignCounts signs, double alpha) {
-  const double changeable = signs.even + signs.down;
-  for (double lost = signs.up + 1; lost <= changeable; ++lost)
-    if (log_evidence_above({lost, changeable - lost, signs.up}, 0) >= -std::log(alpha))
-      return (lost - signs.up) / signs.total();
+/// The smallest net loss, as a share of the pairs, that is called worse if as many gain as did and the losses
+/// are spread over the conditions; 2 if none is.
+double smallest_shown(GateCounts counts, const GateRule& rule) {
+  const double all = counts.all.total();
+  counts.all.even += counts.all.down, counts.all.down = 0;
+  for (SignCounts& condition : counts.conditions) condition.even += condition.down, condition.down = 0;
+  for (std::size_t lost = 0; counts.all.even > 0; ++lost) {
+    SignCounts& condition = counts.conditions[lost % counts.conditions.size()];
+    if (condition.even <= 0) return 2;
+    for (SignCounts* signs : {&counts.all, &condition}) --signs->even, ++signs->down;
+    if (verdict_on(counts, rule) == Verdict::worse) return (counts.all.down - counts.all.up) / all;
+  }
   return 2;
 }
 
@@ -151,12 +158,14 @@ void judge(const Tolerance& tolerance, const ConditionComparison& all, const Gat
   BootstrapOptions options;
   options.z = normal_quantile(1 - rule.alpha);
   const Interval gain = bootstrap(gains, mean_of, options).interval;
-  if (gains.size() >= 15 && gain.minimum > -tolerance.loss) return;
-  const bool is_worse = gains.size() >= 15 && gain.maximum < -tolerance.loss;
+  const bool can_tell = gains.size() >= 15;
+  if (can_tell && gain.minimum > -tolerance.loss) return;
+  const bool is_worse = can_tell && gain.maximum < -tolerance.loss;
   if (is_worse || verdict.passes()) verdict.verdict = is_worse ? Verdict::worse : Verdict::undecided;
-  verdict.reasons.push_back(fmt::format("{} is worse by {:.3g} to {:.3g}, and {:.3g} is tolerated",
-                                        tolerance.figure, std::max(0.0, -gain.maximum), -gain.minimum,
-                                        tolerance.loss));
+  verdict.reasons.push_back(
+      can_tell ? fmt::format("{} is worse by {:.3g} to {:.3g} at this one look, and {:.3g} is tolerated",
+                             tolerance.figure, std::max(0.0, -gain.maximum), -gain.minimum, tolerance.loss)
+               : fmt::format("{} is known of {} pairs, and 15 are needed", tolerance.figure, gains.size()));
 }
 
 }  // namespace
@@ -236,14 +245,18 @@ std::string GateVerdict::name() const {
 
 Verdict verdict_on(const GateCounts& counts, const GateRule& rule) {
   const double enough = -std::log(rule.alpha);
-  if (log_evidence_above(counts.all, -rule.margin) >= enough) return Verdict::not_worse;
-  const auto of_fall = [](const SignCounts& signs) {
-    return std::exp(log_evidence_above(signs.mirrored(), 0));
+  const auto of_fall = [](const SignCounts& signs, double by) {
+    return std::exp(log_evidence_above(signs.mirrored(), by));
   };
-  double sum = 0;
-  for (const SignCounts& condition : counts.conditions) sum += of_fall(condition);
-  const double each = counts.conditions.empty() ? 1 : sum / static_cast<double>(counts.conditions.size());
-  return std::log((of_fall(counts.all) + each) / 2) >= enough ? Verdict::worse : Verdict::undecided;
+  const auto mean_of_conditions = [&](double by) {
+    double sum = 0;
+    for (const SignCounts& condition : counts.conditions) sum += of_fall(condition, by);
+    return sum / static_cast<double>(std::max<std::size_t>(1, counts.conditions.size()));
+  };
+  if (std::log(mean_of_conditions(rule.margin) / 2) >= enough) return Verdict::worse;
+  if (log_evidence_above(counts.all, -rule.margin) >= enough) return Verdict::not_worse;
+  const double evidence = (of_fall(counts.all, 0) + mean_of_conditions(0)) / 2;
+  return std::log(evidence) >= enough ? Verdict::worse : Verdict::undecided;
 }
 
 GateVerdict verdict_on(const Comparison& comparison, const GateRule& rule) {
@@ -254,7 +267,7 @@ GateVerdict verdict_on(const Comparison& comparison, const GateRule& rule) {
   verdict.difference = {sequential_lower_end(signs, rule.alpha),
                         -sequential_lower_end(signs.mirrored(), rule.alpha)};
   verdict.largest_fall = std::max(0.0, -verdict.difference.minimum);
-  verdict.smallest_shown = smallest_shown(signs, rule.alpha);
+  verdict.smallest_shown = smallest_shown(counts_of(comparison), rule);
   if (!comparison.candidate_failed.empty())
     verdict.reasons.push_back(fmt::format("{} of the candidate failed to run: {}",
                                           flights_text(comparison.candidate_failed.size()),
@@ -269,7 +282,9 @@ GateVerdict verdict_on(const Comparison& comparison, const GateRule& rule) {
     verdict.verdict = Verdict::worse;
   } else if (all.bit_for_bit == pairs) {
     verdict.verdict = Verdict::unchanged;
-    verdict.changed_at_most = none_seen_upper_end(pairs, rule.alpha);
+    std::set<std::uint64_t> seeds;
+    for (const FlightPair& pair : all.pairs) seeds.insert(pair.baseline.seed);
+    verdict.changed_at_most = none_seen_upper_end(static_cast<int>(seeds.size()), rule.alpha);
   } else {
     verdict.verdict = verdict_on(counts_of(comparison), rule);
     if (verdict.verdict == Verdict::worse) verdict.reasons.push_back(reason_of_fall(comparison));
@@ -296,7 +311,8 @@ int planned_pairs(double discordance, double power, const GateRule& rule) {
     }
     ends.push_back(signs.total());
   }
-  return static_cast<int>(quantile(ends, power));
+  const auto pairs = static_cast<int>(quantile(ends, power));
+  return pairs < most ? pairs : 0;
 }
 
 }  // namespace understory

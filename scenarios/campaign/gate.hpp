@@ -111,27 +111,29 @@ inline constexpr std::array<std::pair<std::string_view, Verdict>, 4> verdict_nam
 ///
 /// - worse: a flight of the candidate failed to run, or one of the baseline is missing (else dropping the
 /// hard
-///   seeds would pass), or the evidence against "success did not fall, in no condition" reaches 1 / alpha.
-///   That evidence is the mean of two: of all pairs together, and the mean of each condition's (means of
-///   e-values are e-values: Vovk & Wang 2021, Annals of Statistics 49, 1736). So a fall in one forest of
-///   twenty is found, too, and no correction for twenty looks is owed.
-/// - not worse: the evidence against "success fell by the margin or more", over all pairs, reaches 1 / alpha.
-///   This counts first: a fall that is proved to be smaller than the margin passes.
+///   seeds would pass).
 /// - unchanged: all digests are equal, so nothing can have fallen on these seeds.
-/// - undecided: neither is known yet.
+/// - worse: the evidence that success fell by more than the margin in a condition, as the mean over the
+///   conditions, reaches 2 / alpha. So a forest that breaks is seen among many that do not.
+/// - not worse: the evidence against "success fell by the margin or more", over all pairs, reaches 1 / alpha.
+/// - worse: the evidence against "success did not fall, in no condition" reaches 1 / alpha. It is the mean of
+///   that of all pairs and of the conditions' mean (means of e-values are e-values: Vovk & Wang 2021, Annals
+///   of Statistics 49, 1736). The second rule can hold only where this one does, too, so it costs nothing.
+/// - undecided: none of these is known yet.
 ///
-/// An unchanged rate is called worse with probability alpha at most, and a fall by the margin not worse, at
-/// all looks together (sequential.hpp), if every look is at whole seeds: each condition with the same seeds.
-/// A fall between nothing and the margin may get either verdict. Tolerances are judged by the paired
-/// bootstrap with the same alpha, at one look: worse if a loss beyond the tolerance is shown, undecided
-/// if it is not ruled out either.
+/// Of changes that leave success as it is alpha at most are called worse, and of those that lower it by the
+/// margin alpha at most not worse, at all looks together (sequential.hpp), if every look is at whole seeds,
+/// each condition with the same ones, and if a seed's pairs in several conditions differ independently:
+/// docs/ci.md measures how far they do. A fall between nothing and the margin may get either verdict.
+/// Tolerances are judged by the paired bootstrap with the same alpha, which holds at one look: worse if a
+/// loss beyond the tolerance is shown, undecided if it is not ruled out either.
 struct GateVerdict {
   Verdict verdict = Verdict::undecided;
   std::vector<std::string> reasons;  ///< a line each
   double largest_fall = 1;           ///< of the share of goals, that these pairs do not exclude
   Interval difference;               ///< sequential, one-sided alpha at each end: candidate less baseline
   double smallest_shown = 1;   ///< the smallest fall of the share that these pairs could have shown; 2: none
-  double changed_at_most = 1;  ///< unchanged alone: share of other seeds that the change could alter
+  double changed_at_most = 1;  ///< unchanged alone: share of other seeds that would differ in any condition
   int more_pairs = 0;          ///< undecided: pairs still to be flown if they come out like these; 0: unknown
 
   bool passes() const { return verdict == Verdict::not_worse || verdict == Verdict::unchanged; }

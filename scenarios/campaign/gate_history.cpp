@@ -106,10 +106,10 @@ GateHistory history_of(const std::vector<std::string>& folders, const GateRule& 
   if (history.campaigns.size() < 2)
     throw ScenarioError(fmt::format("--history {}: requires two campaigns or more, found {}",
                                     fmt::join(folders, " "), history.campaigns.size()));
-  const double enough = std::log(2.0 * static_cast<double>(history.campaigns.size() - 1) / rule.alpha);
   for (std::size_t i = 1; i < history.campaigns.size(); ++i) {
     const ConditionComparison& change = history.changes.emplace_back(
         compare_campaigns(history.campaigns[i - 1].rows, history.campaigns[i].rows).all);
+    const double enough = std::log(2.0 * static_cast<double>(i * (i + 1)) / rule.alpha);
     history.shown.emplace_back(log_evidence_above(change.signs(), 0) >= enough              ? "rose"
                                : log_evidence_above(change.signs().mirrored(), 0) >= enough ? "fell"
                                                                                             : "");

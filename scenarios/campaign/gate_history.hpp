@@ -17,7 +17,8 @@ struct GateHistory {
 };
 
 /// Reads the campaigns in this order; a folder that is none stands for the campaigns in it, by their names. A
-/// change is shown if its evidence reaches the number of changes looked at / alpha (Bonferroni). Throws
+/// change is shown if its evidence reaches i (i + 1) / alpha for the i-th, of a rise and of a fall each half:
+/// over all changes, also those to come, one that is none is shown with probability alpha. Throws
 /// ScenarioError if there are fewer than two.
 GateHistory history_of(const std::vector<std::string>& folders, const GateRule& rule);
 

@@ -97,10 +97,10 @@ std::vector<std::string> notes_of(const Comparison& comparison) {
   return notes;
 }
 
-std::string shown_text(const GateVerdict& verdict) {
-  return verdict.smallest_shown > 1 ? "So few pairs cannot show any fall"
-                                    : fmt::format("So many pairs show a fall if it is {} points or more",
-                                                  percent(verdict.smallest_shown));
+std::string shown_text(const GateVerdict& verdict, int pairs) {
+  if (verdict.smallest_shown > 1) return "No net loss of so few pairs would be called worse";
+  return fmt::format("A net loss of {:.0f} of these pairs ({} points) would be called worse",
+                     verdict.smallest_shown * pairs, percent(verdict.smallest_shown));
 }
 
 Json json_of(const Interval& interval) {
@@ -145,7 +145,7 @@ Json json_of(const ConditionComparison& condition, const GateSides& sides) {
 
 std::string sentence_of(const Comparison& comparison, const GateVerdict& verdict, const GateRule& rule) {
   const int pairs = comparison.all.goals.pairs();
-  const std::string margin = percent(rule.margin), shown = shown_text(verdict);
+  const std::string margin = percent(rule.margin), shown = shown_text(verdict, pairs);
   const std::string known =
       verdict.difference.minimum > 0
           ? fmt::format("after {} pairs success has risen by {} percentage points at least", pairs,
@@ -157,9 +157,10 @@ std::string sentence_of(const Comparison& comparison, const GateVerdict& verdict
       return fmt::format("not worse: {}; a fall by {} is ruled out. {}.", known, margin, shown);
     case Verdict::unchanged:
       return fmt::format(
-          "unchanged on these flights: all {} pairs are equal to the bit. Under {} % of other seeds would "
-          "differ. {}.",
-          pairs, percent(verdict.changed_at_most), shown);
+          "unchanged on these flights: all {} pairs are equal to the bit. With {:.0f} % confidence under {} "
+          "% of other "
+          "seeds would differ. {}.",
+          pairs, 100 - 100 * rule.alpha, percent(verdict.changed_at_most), shown);
     case Verdict::worse:
       return fmt::format("worse: {}. {}.", fmt::join(verdict.reasons, "; "),
                          pairs == 0 ? "Nothing can be said of success" : shown);
@@ -171,8 +172,9 @@ std::string sentence_of(const Comparison& comparison, const GateVerdict& verdict
   const std::string more =
       verdict.more_pairs == 0
           ? "Nobody knows how many more would decide"
-          : fmt::format("If more come out like these, {} more pairs decide ({} seeds{})", seeds * conditions,
-                        seeds, conditions == 1 ? "" : fmt::format(" in each of {} conditions", conditions));
+          : fmt::format("If more come out like these, about {} more pairs decide ({} seeds{})",
+                        seeds * conditions, seeds,
+                        conditions == 1 ? "" : fmt::format(" in each of {} conditions", conditions));
   return fmt::format(
       "not enough flights: {}; a fall by {} is not ruled out, and no fall is shown. {}{}{}. {}.", known,
       margin, fmt::join(verdict.reasons, ". "), verdict.reasons.empty() ? "" : ". ", more, shown);
@@ -199,10 +201,11 @@ std::string to_markdown(const Comparison& comparison, const GateVerdict& verdict
                         const GateSides& sides) {
   const std::string sentence = sentence_of(comparison, verdict, rule);
   std::string text = fmt::format(
-      "### Flights: {}\n\n{}{}\n\n{} against {}; each verdict is wrong in {} % of "
-      "changes at most, however often somebody looks.\n\n{}\n",
+      "### Flights: {}\n\n{}{}\n\n{} against {}. Of harmless changes {:.0f} % at most are called worse, of "
+      "those that cost {} points {:.0f} % at most not worse, however often somebody looks.\n\n{}\n",
       verdict.name(), static_cast<char>(std::toupper(sentence[0])), sentence.substr(1), sides.candidate,
-      sides.baseline, percent(rule.alpha), to_markdown(success_table(comparison)));
+      sides.baseline, 100 * rule.alpha, percent(rule.margin), 100 * rule.alpha,
+      to_markdown(success_table(comparison)));
   std::string worse;
   for (const ConditionComparison& condition : comparison.conditions)
     for (const FlightPair& pair : changed(condition, true)) {

@@ -129,6 +129,7 @@ Judged judge_until_known(const GateArguments& arguments) {
     fmt::print("{}\n", sentence_of(result.comparison, result.verdict, arguments.rule));
     if (!fly_more(arguments, result, seeds)) break;
     result = judged(arguments);
+    if (result.comparison.all.goals.pairs() == pairs) break;  // flights that fail to run are no pairs
   }
   return result;
 }
@@ -155,6 +156,10 @@ int run_judge(const GateArguments& arguments) {
   return status_of(result.verdict);
 }
 
+void require(bool is_right, const std::string& message) {
+  if (!is_right) throw ScenarioError("gate: " + message);
+}
+
 /// The share of pairs whose outcome differs: measured on two campaigns, or of one as if a change drew all
 /// outcomes anew.
 int run_plan(const GateArguments& arguments) {
@@ -168,14 +173,20 @@ int run_plan(const GateArguments& arguments) {
       const double rate = condition.flown > 0 ? static_cast<double>(condition.goals) / condition.flown : 0.5;
       discordance += 2 * rate * (1 - rate) / conditions;
     }
-    source = "if a change draws every outcome anew (two campaigns, with --candidate, tell what it does)";
+    source =
+        "as if the change drew the outcome of every flight anew; two campaigns, with --candidate, show what "
+        "it does";
   } else {
     const PairedOutcomes goals = compare_campaigns(baseline.rows, flown.rows).all.goals;
     discordance = static_cast<double>(goals.only_first + goals.only_second + 1) / (goals.pairs() + 1);
-    source = fmt::format("{} of {} pairs, and one more to be careful", goals.only_first + goals.only_second,
+    source = fmt::format("{} of {} pairs, counted as one more of both", goals.only_first + goals.only_second,
                          goals.pairs());
   }
   const int pairs = planned_pairs(discordance, arguments.power, arguments.rule);
+  require(pairs > 0,
+          fmt::format("plan: at a discordance of {:.1f} % no 20,000 pairs rule out a fall by {}; choose a "
+                      "larger --margin",
+                      100 * discordance, arguments.rule.margin));
   const int seeds = (pairs + conditions - 1) / conditions;
   double wall_s = 0;
   const Collected collected = gather(baseline.folder, baseline.campaign);
@@ -183,8 +194,9 @@ int run_plan(const GateArguments& arguments) {
   const double each_s = collected.costs.empty() ? 0 : wall_s / static_cast<double>(collected.costs.size());
   fmt::print(
       "The outcomes of {:.1f} % of the pairs differ: {}.\n"
-      "A change that keeps the rate of success is called not worse (margin {:.3g}) after {} pairs or fewer "
-      "with probability {:.3g}: {} seeds in each of {} conditions.\n"
+      "A change that keeps the rate of success is called not worse (margin {:.3g}) within {} pairs "
+      "with probability {:.3g}, if it is looked at after every ten (--extend): {} seeds in each of {} "
+      "conditions.\n"
       "The flights of one side then take about {:.0f} min on this machine ({:.1f} s each, {} at a time).\n",
       100 * discordance, source, arguments.rule.margin, pairs, arguments.power, seeds, conditions,
       seeds * conditions * each_s / jobs_or_cores(0) / 60, each_s, jobs_or_cores(0));
@@ -196,10 +208,6 @@ int run_history(const GateArguments& arguments) {
   if (!arguments.page.empty()) write_whole_file(arguments.page, history_page(history, data_root()));
   fmt::print("{}", history_text(history));
   return exit_goal;
-}
-
-void require(bool is_right, const std::string& message) {
-  if (!is_right) throw ScenarioError("gate: " + message);
 }
 
 int run_gate(GateArguments arguments) {

@@ -34,6 +34,17 @@ struct CampaignFile : testing::Test {
 };
 using CampaignFolders = CampaignFile;
 
+TEST_F(CampaignFile, ScenariosMayFlySeedsOfTheirOwn) {
+  const Campaign campaign = campaign_of(
+      "{scenarios: [clear, forest], seeds: [3, 5], seeds_apart: 10, overrides: [{name: a}, {name: b}]}");
+  std::vector<std::string> flown;
+  for (const CampaignTask& task : tasks_of(campaign))
+    flown.push_back(task.id + " " + std::to_string(task.seed));
+  EXPECT_EQ(flown, (std::vector<std::string>{"clear-a-3 3", "clear-a-5 5", "clear-b-3 3", "clear-b-5 5",
+                                             "forest-a-13 13", "forest-a-15 15", "forest-b-13 13",
+                                             "forest-b-15 15"}));
+}
+
 TEST_F(CampaignFile, FliesEverySeedInEveryConditionOfOverridesAndGrid) {
   const Campaign campaign = campaign_of(
       "scenarios: [forest, dense]\n"

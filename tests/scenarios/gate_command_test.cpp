@@ -42,14 +42,15 @@ TEST_F(GateCommand, EndsWithItsVerdict) {
     expect_part(outcome.text, "\n" + sentence);
   };
   judged(campaign("same", 0, ""), 0,
-         "unchanged on these flights: all 120 pairs are equal to the bit. Under 2.5 % of other seeds would "
+         "unchanged on these flights: all 120 pairs are equal to the bit. With 95 % confidence under 2.5 % "
+         "of other seeds would "
          "differ");
   judged(campaign("other", 0, "x"), 0, "not worse: after 120 pairs success may have fallen by ");
   judged(campaign("three", 3, "x"), 4, "not enough flights: after 120 pairs success may have fallen by ");
   judged(path("three"), 0, "not worse: ", " --margin 0.2");
   judged(path("other"), 4, "not enough flights", " --tolerate mean_speed_mps=0");
   judged(campaign("worse", 12, "x"), 1,
-         "worse: forest: success fell by 10.0 percentage points, from 120 to 108 of 120. So many pairs show",
+         "worse: forest: success fell by 10.0 percentage points, from 120 to 108 of 120. A net loss of ",
          " --junit " + path("gate.xml") + " --json " + path("gate.json"));
   expect_part(support::content_of(folder.path() / "gate.xml"), "tests=\"121\" failures=\"13\" errors=\"0\"");
   expect_part(support::content_of(folder.path() / "gate.json"), "\"command\": \"understory fly ");

@@ -231,7 +231,7 @@ export function sample_campaign({ seeds = 50, tracks = 20, gate = true } = {}) {
     },
     tracks: Object.fromEntries(lost.map((row) => [row, `track-${row}`])),
     gate: gate ? {
-      verdict: "fails", title: "The gate says of this version against version 0.1: worse", baseline: "version 0.1", candidate: "this version", lines: ["worse: all: success fell by 4.0 percentage points, from 168 to 160 of 200. So many pairs show a fall if it is 3.5 points or more."],
+      verdict: "fails", title: "The gate says of this version against version 0.1: worse", baseline: "version 0.1", candidate: "this version", lines: ["worse: all: success fell by 4.0 percentage points, from 168 to 160 of 200. A net loss of 7 of these pairs (3.5 points) would be called worse."],
       pairs: flights.map((each) => [conditions[each.condition].label, each.seed, outcomes[random() < 0.95 ? each.outcome : 0], outcomes[each.outcome]]),
     } : null,
   };
