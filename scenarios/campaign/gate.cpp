@@ -19,11 +19,11 @@ using RowsBySeed = std::map<std::uint64_t, const FlightRow*>;
 struct Metric {
   std::string_view name;
   double FlightRow::*value;
-  double sign = 1;  ///< -1: less is better
+  bool less_is_better = false;
 };
 constexpr Metric metrics[]{{"mean_speed_mps", &FlightRow::mean_speed_mps},
                            {"minimum_clearance_m", &FlightRow::minimum_clearance_m},
-                           {"position_error_mean_m", &FlightRow::position_error_mean_m, -1},
+                           {"position_error_mean_m", &FlightRow::position_error_mean_m, true},
                            {"progress_m", &FlightRow::progress_m}};
 
 std::map<std::string, RowsBySeed> by_condition(const std::vector<FlightRow>& rows, const char* side) {
@@ -146,26 +146,20 @@ int pairs_missing(const GateCounts& counts, const GateRule& rule) {
 }
 
 /// A loss beyond the tolerance that is shown is worse; one that is not ruled out leaves a verdict that passes
-/// undecided.
-void judge(const Tolerance& tolerance, const ConditionComparison& all, const GateRule& rule,
-           GateVerdict& verdict) {
-  const auto metric = std::ranges::find(metrics, tolerance.figure, &Metric::name);
-  std::vector<double> gains;
-  for (const FlightPair& pair : all.pairs) {
-    const double gain = (pair.candidate.*metric->value - pair.baseline.*metric->value) * metric->sign;
-    if (pair.flown() && std::isfinite(gain)) gains.push_back(gain);
-  }
-  BootstrapOptions options;
-  options.z = normal_quantile(1 - rule.alpha);
-  const Interval gain = bootstrap(gains, mean_of, options).interval;
-  const bool can_tell = gains.size() >= 15;
+/// undecided. By the 95 % interval that the report prints.
+void judge(const Tolerance& tolerance, const ConditionComparison& all, GateVerdict& verdict) {
+  const MetricComparison& metric = *std::ranges::find(all.metrics, tolerance.figure, &MetricComparison::name);
+  Interval gain = metric.difference.interval;
+  if (std::ranges::find(metrics, tolerance.figure, &Metric::name)->less_is_better)
+    gain = {-gain.maximum, -gain.minimum};
+  const bool can_tell = metric.pairs >= 15;
   if (can_tell && gain.minimum > -tolerance.loss) return;
   const bool is_worse = can_tell && gain.maximum < -tolerance.loss;
   if (is_worse || verdict.passes()) verdict.verdict = is_worse ? Verdict::worse : Verdict::undecided;
   verdict.reasons.push_back(
       can_tell ? fmt::format("{} is worse by {:.3g} to {:.3g} at this one look, and {:.3g} is tolerated",
                              tolerance.figure, std::max(0.0, -gain.maximum), -gain.minimum, tolerance.loss)
-               : fmt::format("{} is known of {} pairs, and 15 are needed", tolerance.figure, gains.size()));
+               : fmt::format("{} is known of {} pairs, and 15 are needed", tolerance.figure, metric.pairs));
 }
 
 }  // namespace
@@ -292,7 +286,7 @@ GateVerdict verdict_on(const Comparison& comparison, const GateRule& rule) {
       verdict.more_pairs = pairs_missing(counts_of(comparison), rule);
   }
   if (may_be_judged && verdict.verdict != Verdict::unchanged)
-    for (const Tolerance& tolerance : rule.tolerances) judge(tolerance, all, rule, verdict);
+    for (const Tolerance& tolerance : rule.tolerances) judge(tolerance, all, verdict);
   return verdict;
 }
 

@@ -122,17 +122,17 @@ inline constexpr std::array<std::pair<std::string_view, Verdict>, 4> verdict_nam
 /// - undecided: none of these is known yet.
 ///
 /// Of changes that leave success as it is alpha at most are called worse, and of those that lower it by the
-/// margin alpha at most not worse, at all looks together (sequential.hpp), if every look is at whole seeds,
-/// each condition with the same ones, and if a seed's pairs in several conditions differ independently:
-/// docs/ci.md measures how far they do. A fall between nothing and the margin may get either verdict.
-/// Tolerances are judged by the paired bootstrap with the same alpha, which holds at one look: worse if a
-/// loss beyond the tolerance is shown, undecided if it is not ruled out either.
+/// margin alpha at most not worse, at all looks together (sequential.hpp), if every look is at as many pairs
+/// of each condition and the scenarios fly seeds of their own (seeds_apart): pairs on the same trees may
+/// change together. A fall between nothing and the margin may get either verdict. Tolerances are judged by
+/// the paired bootstrap interval, 95 % at one look: worse if a loss beyond the tolerance is shown, undecided
+/// if it is not ruled out either.
 struct GateVerdict {
   Verdict verdict = Verdict::undecided;
   std::vector<std::string> reasons;  ///< a line each
   double largest_fall = 1;           ///< of the share of goals, that these pairs do not exclude
   Interval difference;               ///< sequential, one-sided alpha at each end: candidate less baseline
-  double smallest_shown = 1;   ///< the smallest fall of the share that these pairs could have shown; 2: none
+  double smallest_shown = 1;  ///< smallest net loss, as a share of these pairs, that is called worse; 2: none
   double changed_at_most = 1;  ///< unchanged alone: share of other seeds that would differ in any condition
   int more_pairs = 0;          ///< undecided: pairs still to be flown if they come out like these; 0: unknown
 

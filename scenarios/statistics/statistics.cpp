@@ -37,6 +37,18 @@ double at_most_heads(int heads, int throws) {
 
 double normal_cdf(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 
+/// By Newton's steps from the middle: the cumulative distribution is convex below it, so that none
+/// overshoots.
+double normal_quantile(double share) {
+  if (share > 0.5) return -normal_quantile(1 - share);
+  double z = 0, step = 1;
+  while (std::abs(step) > 1e-14 * (1 + std::abs(z))) {
+    step = (share - normal_cdf(z)) * std::sqrt(2 * std::numbers::pi) * std::exp(0.5 * z * z);
+    z += step;
+  }
+  return z;
+}
+
 /// Below `count`. std::uniform_int_distribution may differ from library to library; this does not. Its bias,
 /// count / 2^32, is far below what resampling can tell.
 std::size_t draw_below(std::size_t count, std::mt19937_64& generator) {
@@ -113,18 +125,6 @@ Interval log_log_interval(double share, double greenwood) {
 }
 
 }  // namespace
-
-/// By Newton's steps from the middle: the cumulative distribution is convex below it, so that none
-/// overshoots.
-double normal_quantile(double share) {
-  if (share > 0.5) return -normal_quantile(1 - share);
-  double z = 0, step = 1;
-  while (std::abs(step) > 1e-14 * (1 + std::abs(z))) {
-    step = (share - normal_cdf(z)) * std::sqrt(2 * std::numbers::pi) * std::exp(0.5 * z * z);
-    z += step;
-  }
-  return z;
-}
 
 Interval wilson_interval(int successes, int trials) {
   if (trials == 0) return {0, 1};

@@ -33,9 +33,6 @@ struct Interval {
 /// The normal quantile of 95 % intervals: what every interval of this folder has unless it says otherwise.
 inline constexpr double z_95 = 1.959963984540054;
 
-/// The z below which a standard normal value lies with probability `share`.
-double normal_quantile(double share);
-
 /// Wilson's score interval for a proportion (Wilson 1927, J. Am. Stat. Assoc. 22), 95 %, without continuity
 /// correction. No trials: 0 .. 1.
 Interval wilson_interval(int successes, int trials);
