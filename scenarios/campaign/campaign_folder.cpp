@@ -77,10 +77,9 @@ void require_same(const CampaignFolder& folder, const Campaign& campaign, bool m
                                     (folder.path / manifest_name).string(), what));
   };
   require_identity(folder, held, campaign.identity);
-  const bool has_all = std::ranges::all_of(held.seeds, [&](std::uint64_t seed) {
-    return std::ranges::find(campaign.seeds, seed) != campaign.seeds.end();
-  });
-  if (may_grow ? !has_all : held.seeds != campaign.seeds) refuse("seeds changed");
+  const std::set<std::uint64_t> before(held.seeds.begin(), held.seeds.end());
+  const std::set<std::uint64_t> now(campaign.seeds.begin(), campaign.seeds.end());
+  if (may_grow ? !std::ranges::includes(now, before) : held.seeds != campaign.seeds) refuse("seeds changed");
   if (held.renderer != campaign.renderer) refuse("renderer changed");
   if (held.timeout_s != campaign.timeout_s) refuse("timeout_s changed");
   for (const Condition& condition : campaign.conditions) {
@@ -188,13 +187,11 @@ Campaign read_campaign(const CampaignFolder& folder) {
       campaign.seeds.push_back(seed);
     }
     for (const Json& held : json.at(key = "conditions")) {
-      Condition& condition =
-          campaign.conditions.emplace_back(Condition{held.at("name"),
-                                                     "",
-                                                     held.at("scenario"),
-                                                     held.at("variant"),
-                                                     {},
-                                                     held.value("seed_offset", std::uint64_t{0})});
+      Condition& condition = campaign.conditions.emplace_back();
+      condition.name = held.at("name");
+      condition.scenario = held.at("scenario");
+      condition.variant = held.at("variant");
+      condition.seed_offset = held.value("seed_offset", condition.seed_offset);
       for (const auto& [name, value] : held.at("grid").items()) condition.grid.emplace_back(name, value);
       const bool is_new = names.insert(campaign.conditions.back().name).second;
       if (!is_plain_name(campaign.conditions.back().name) || !is_new)

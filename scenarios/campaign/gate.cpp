@@ -256,12 +256,12 @@ Verdict verdict_on(const GateCounts& counts, const GateRule& rule) {
 GateVerdict verdict_on(const Comparison& comparison, const GateRule& rule) {
   GateVerdict verdict;
   const ConditionComparison& all = comparison.all;
-  const SignCounts signs = all.signs();
+  const GateCounts counts = counts_of(comparison);
   const int pairs = all.goals.pairs();
-  verdict.difference = {sequential_lower_end(signs, rule.alpha),
-                        -sequential_lower_end(signs.mirrored(), rule.alpha)};
+  verdict.difference = {sequential_lower_end(counts.all, rule.alpha),
+                        -sequential_lower_end(counts.all.mirrored(), rule.alpha)};
   verdict.largest_fall = std::max(0.0, -verdict.difference.minimum);
-  verdict.smallest_shown = smallest_shown(counts_of(comparison), rule);
+  verdict.smallest_shown = smallest_shown(counts, rule);
   if (!comparison.candidate_failed.empty())
     verdict.reasons.push_back(fmt::format("{} of the candidate failed to run: {}",
                                           flights_text(comparison.candidate_failed.size()),
@@ -280,10 +280,9 @@ GateVerdict verdict_on(const Comparison& comparison, const GateRule& rule) {
     for (const FlightPair& pair : all.pairs) seeds.insert(pair.baseline.seed);
     verdict.changed_at_most = none_seen_upper_end(static_cast<int>(seeds.size()), rule.alpha);
   } else {
-    verdict.verdict = verdict_on(counts_of(comparison), rule);
+    verdict.verdict = verdict_on(counts, rule);
     if (verdict.verdict == Verdict::worse) verdict.reasons.push_back(reason_of_fall(comparison));
-    if (verdict.verdict == Verdict::undecided)
-      verdict.more_pairs = pairs_missing(counts_of(comparison), rule);
+    if (verdict.verdict == Verdict::undecided) verdict.more_pairs = pairs_missing(counts, rule);
   }
   if (may_be_judged && verdict.verdict != Verdict::unchanged)
     for (const Tolerance& tolerance : rule.tolerances) judge(tolerance, all, verdict);

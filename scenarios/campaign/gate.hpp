@@ -110,8 +110,7 @@ inline constexpr std::array<std::pair<std::string_view, Verdict>, 4> verdict_nam
 /// Whether a change may pass, by the pairs that were flown on both sides.
 ///
 /// - worse: a flight of the candidate failed to run, or one of the baseline is missing (else dropping the
-/// hard
-///   seeds would pass).
+///   hard seeds would pass).
 /// - unchanged: all digests are equal, so nothing can have fallen on these seeds.
 /// - worse: the evidence that success fell by more than the margin in a condition, as the mean over the
 ///   conditions, reaches 2 / alpha. So a forest that breaks is seen among many that do not.
@@ -152,7 +151,7 @@ Verdict verdict_on(const GateCounts& counts, const GateRule& rule);
 
 /// Pairs after which a change that alters outcomes but not their rate is called not worse with probability
 /// `power`, looked at after every ten: simulated, with the same random numbers each time. `discordance`:
-/// share of pairs whose outcome differs.
+/// share of pairs whose outcome differs. 0: 20,000 pairs are not enough.
 int planned_pairs(double discordance, double power, const GateRule& rule);
 
 /// What a comparison is about, for its reports.

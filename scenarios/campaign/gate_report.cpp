@@ -108,7 +108,7 @@ Json json_of(const Interval& interval) {
   return {number(interval.minimum), number(interval.maximum)};
 }
 
-Json json_of(const ConditionComparison& condition, const GateSides& sides) {
+Json json_of(const ConditionComparison& condition) {
   const PairedOutcomes& goals = condition.goals;
   Json json{{"condition", condition.condition},
             {"pairs", goals.pairs()},
@@ -129,7 +129,10 @@ Json json_of(const ConditionComparison& condition, const GateSides& sides) {
                                  {"candidate", metric.candidate_mean},
                                  {"difference", metric.difference.value},
                                  {"interval", json_of(metric.difference.interval)}});
-  if (condition.condition == "all") return json;
+  return json;
+}
+
+Json with_seeds(Json json, const ConditionComparison& condition, const GateSides& sides) {
   for (const bool worse : {true, false}) {
     Json& list = json[worse ? "got_worse" : "got_better"] = Json::array();
     for (const auto& [baseline, candidate] : changed(condition, worse)) {
@@ -158,8 +161,8 @@ std::string sentence_of(const Comparison& comparison, const GateVerdict& verdict
     case Verdict::unchanged:
       return fmt::format(
           "unchanged on these flights: all {} pairs are equal to the bit. With {:.0f} % confidence under {} "
-          "% of other "
-          "seeds would differ. {}.",
+          "% "
+          "of other seeds would differ. {}.",
           pairs, 100 - 100 * rule.alpha, percent(verdict.changed_at_most), shown);
     case Verdict::worse:
       return fmt::format("worse: {}. {}.", fmt::join(verdict.reasons, "; "),
@@ -175,9 +178,11 @@ std::string sentence_of(const Comparison& comparison, const GateVerdict& verdict
           : fmt::format("If more come out like these, about {} more pairs decide ({} seeds{})",
                         seeds * conditions, seeds,
                         conditions == 1 ? "" : fmt::format(" in each of {} conditions", conditions));
-  return fmt::format(
-      "not enough flights: {}; a fall by {} is not ruled out, and no fall is shown. {}{}{}. {}.", known,
-      margin, fmt::join(verdict.reasons, ". "), verdict.reasons.empty() ? "" : ". ", more, shown);
+  // A tolerance may be what is undecided.
+  const std::string open =
+      verdict.largest_fall < rule.margin ? "ruled out" : "not ruled out, and no fall is shown";
+  return fmt::format("not enough flights: {}; a fall by {} is {}. {}{}{}. {}.", known, margin, open,
+                     fmt::join(verdict.reasons, ". "), verdict.reasons.empty() ? "" : ". ", more, shown);
 }
 
 std::string to_report(const Comparison& comparison, const GateVerdict& verdict, const GateRule& rule) {
@@ -237,12 +242,12 @@ std::string to_json(const Comparison& comparison, const GateVerdict& verdict, co
             {"largest_fall", verdict.largest_fall},
             {"smallest_shown", verdict.smallest_shown > 1 ? Json() : Json(verdict.smallest_shown)},
             {"more_pairs", verdict.more_pairs},
-            {"all", json_of(comparison.all, sides)},
+            {"all", json_of(comparison.all)},
             {"conditions", Json::array()},
             {"notes", notes_of(comparison)}};
   if (verdict.verdict == Verdict::unchanged) json["changed_at_most"] = verdict.changed_at_most;
   for (const ConditionComparison& condition : comparison.conditions)
-    json["conditions"].push_back(json_of(condition, sides));
+    json["conditions"].push_back(with_seeds(json_of(condition), condition, sides));
   return json_text(json, 1) + "\n";
 }
 

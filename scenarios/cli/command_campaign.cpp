@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <set>
 
 #include "scenarios/campaign/campaign_file.hpp"
 #include "scenarios/campaign/campaign_folder.hpp"
@@ -142,10 +143,10 @@ int run_campaign(const CampaignArguments& arguments) {
   Campaign campaign = campaign_of(arguments, over);
   campaign.files.insert(campaign.files.end(), arguments.with.begin(), arguments.with.end());
   if (!arguments.seeds.empty()) {
-    const std::vector<std::uint64_t> given = seeds_of(arguments.seeds, "--seeds");
     if (!is_results(arguments.file)) campaign.seeds.clear();
-    for (const std::uint64_t seed : given)
-      if (std::ranges::find(campaign.seeds, seed) == campaign.seeds.end()) campaign.seeds.push_back(seed);
+    std::set<std::uint64_t> known(campaign.seeds.begin(), campaign.seeds.end());
+    std::ranges::copy_if(seeds_of(arguments.seeds, "--seeds"), std::back_inserter(campaign.seeds),
+                         [&](std::uint64_t seed) { return known.insert(seed).second; });
   }
   const std::vector<Scenario> scenarios = scenarios_of(campaign, arguments.file);
   const CampaignFolder folder{!arguments.out.empty()       ? fs::path(arguments.out)

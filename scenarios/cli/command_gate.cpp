@@ -3,7 +3,6 @@
 #include <sys/wait.h>
 
 #include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <memory>
@@ -164,7 +163,6 @@ void require(bool is_right, const std::string& message) {
 /// outcomes anew.
 int run_plan(const GateArguments& arguments) {
   const ComparedCampaign baseline = read_compared(arguments.baseline);
-  const ComparedCampaign& flown = arguments.candidate.empty() ? baseline : read_compared(arguments.candidate);
   const auto conditions = static_cast<int>(baseline.campaign.conditions.size());
   double discordance = 0;
   std::string source;
@@ -173,11 +171,10 @@ int run_plan(const GateArguments& arguments) {
       const double rate = condition.flown > 0 ? static_cast<double>(condition.goals) / condition.flown : 0.5;
       discordance += 2 * rate * (1 - rate) / conditions;
     }
-    source =
-        "as if the change drew the outcome of every flight anew; two campaigns, with --candidate, show what "
-        "it does";
+    source = "as if the change drew every outcome anew; --candidate shows what one did";
   } else {
-    const PairedOutcomes goals = compare_campaigns(baseline.rows, flown.rows).all.goals;
+    const PairedOutcomes goals =
+        compare_campaigns(baseline.rows, read_compared(arguments.candidate).rows).all.goals;
     discordance = static_cast<double>(goals.only_first + goals.only_second + 1) / (goals.pairs() + 1);
     source = fmt::format("{} of {} pairs, counted as one more of both", goals.only_first + goals.only_second,
                          goals.pairs());
@@ -234,6 +231,7 @@ int run_gate(GateArguments arguments) {
   }
   require(!arguments.candidate.empty(),
           "requires --candidate FOLDER, the results folder of the campaign with the change");
+  require(arguments.between.size() <= 2, "--between is given twice");
   require(
       arguments.between.empty() != arguments.baseline.empty(),
       "requires either --baseline FOLDER, the campaign before the change, or --between A B, two conditions "
