@@ -235,7 +235,7 @@ TEST(Scenario, FullStereosNumbersAreRefusedInOneLineWhereOpenCvWouldThrow) {
   EXPECT_EQ(
       refusal("perception: {detector: stereo}"),
       "a.yaml:1: perception.detector: expected pushbroom | stereo_bm | stereo_sgbm | true_depth | none, "
-      "got stereo");
+      "got stereo (did you mean stereo_bm?)");
   EXPECT_EQ(refusal("perception: {compute: {factor: -1}}"),
             "a.yaml:1: perception.compute.factor: expected a number from 0.001 to 1000, got -1");
 }
