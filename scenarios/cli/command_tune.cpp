@@ -124,6 +124,7 @@ void add_tune_command(CommandLine& line) {
             "tuning file, or a name in scenarios/library/tunings (docs/tuning.md)")
       .required();
   command.text("--out", "FOLDER", arguments->out, "results folder (default: results/tune-NAME)");
+  add_plugin_option(command);
   add_jobs_option(command, arguments->jobs, "flights or recordings");
   add_renderer_option(command, arguments->renderer);
   command.flag("--resume", arguments->resume, "continue the unfinished tuning in the results folder");

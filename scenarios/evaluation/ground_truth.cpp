@@ -55,8 +55,10 @@ cv::Mat shared_depth(const cv::Mat& depth_mm, const StereoRig& rig) {
 
 BlockContent content_between(const TrueImages& truth, int column_px, int row_px, DepthInterval depths,
                              Surfaces surfaces) {
-  const auto near_mm = static_cast<int>(std::lround(std::clamp(1000 * depths.near_m, 1.0, 65535.0)));
-  const auto far_mm = static_cast<int>(std::lround(std::clamp(1000 * depths.far_m, 0.0, 65535.0)));
+  // A truncation is cheaper than a call of lround, for every block of every frame.
+  const auto near_mm = static_cast<int>(std::clamp(1000 * depths.near_m, 1.0, 65535.0) + 0.5);
+  const auto far_mm = static_cast<int>(std::clamp(1000 * depths.far_m, 0.0, 65535.0) + 0.5);
+  const bool has_objects = !truth.objects.empty();
   const cv::Mat& depth_image =
       surfaces == Surfaces::shared_obstacles ? truth.shared_depth_mm : truth.depth_mm;
   BlockContent content;
@@ -64,7 +66,7 @@ BlockContent content_between(const TrueImages& truth, int column_px, int row_px,
   std::int64_t sum_mm = 0;
   for (int v = row_px; v < row_px + truth_block_px; ++v) {
     const auto* depth_mm = depth_image.ptr<std::uint16_t>(v);
-    const auto* object = truth.objects.empty() ? nullptr : truth.objects.ptr<std::uint16_t>(v);
+    const auto* object = has_objects ? truth.objects.ptr<std::uint16_t>(v) : nullptr;
     for (int u = column_px; u < column_px + truth_block_px; ++u) {
       if (depth_mm[u] < near_mm || depth_mm[u] > far_mm) continue;
       if (surfaces != Surfaces::any && object != nullptr && !truth.is_obstacle(object[u])) continue;

@@ -53,11 +53,17 @@ PushbroomConfig papers_rule_beside(const PushbroomConfig& rule) {
   return paper;
 }
 
-FullStereoCrop crop_beside(const PushbroomConfig& rule, const StereoRig& rig) {
+}  // namespace
+
+FullStereoCrop crop_beside(const PerceptionSection& perception, const StereoRig& rig) {
   FullStereoCrop crop = one_pixel_crop(rig);
-  crop.last_row_px = rule.last_row_px;
+  crop.last_row_px = perception.pushbroom().last_row_px;
+  crop.cell_px = perception.full_stereo.cell_px;
+  crop.minimum_pixels_per_cell = perception.full_stereo.minimum_pixels_per_cell;
   return crop;
 }
+
+namespace {
 
 /// Every algorithm at several thresholds over the same frames: score limit or uniqueness of the pushbroom,
 /// uniqueness of StereoBM and StereoSGBM.
@@ -65,7 +71,7 @@ class CurveSweeps {
  public:
   CurveSweeps(const StereoRig& rig, const DetectionGrid& grid, const EvaluationSettings& settings)
       : grid_(grid) {
-    const FullStereoCrop crop = crop_beside(settings.pushbroom(), rig);
+    const FullStereoCrop crop = crop_beside(settings, rig);
     add_rule(rig, algorithm_names[algorithm::our_rule], settings.pushbroom());
     add_rule(rig, algorithm_names[algorithm::the_papers_rule], papers_rule_beside(settings.pushbroom()));
     add_full_stereo(rig, algorithm_names[algorithm::stereo_bm],
@@ -150,7 +156,7 @@ class Evaluator {
     check_depths(settings.pushbroom(), rig, "perception.depths_m", "perception.pushbroom");
     for (const RecordedObject& object : recording_.objects()) kinds_[object.number] = object.kind;
     const PushbroomConfig paper = papers_rule_beside(settings.pushbroom());
-    const FullStereoCrop crop = crop_beside(settings.pushbroom(), rig);
+    const FullStereoCrop crop = crop_beside(settings, rig);
     if (recording_.is_raw() && !settings.disparities.empty())
       throw ScenarioError(fmt::format(
           "{}: --disparities requires a recording of rectified images; this one has raw ones (record without "

@@ -7,6 +7,7 @@
 #include "scenarios/campaign/campaign_folder.hpp"
 #include "scenarios/campaign/engines.hpp"
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/detect/recorded_detector.hpp"
 #include "scenarios/evaluation/evaluation.hpp"
 #include "scenarios/evaluation/evaluation_recording.hpp"
 #include "scenarios/evaluation/obstacle_sightings.hpp"
@@ -19,6 +20,8 @@ namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::size_t glance_part = 8;  ///< of the data, one in so many
 
 Counts counts_of(const FlightRow& row) {
   return {row.reached_goal() ? 1.0 : 0.0,
@@ -40,10 +43,11 @@ class FlightJudge : public Judge {
     for (const char* part : {"conditions", "flights", "logs"}) prepare_output_folder(folder_.path / part);
   }
 
-  Measured measure(const std::string& name, const Scenario& scenario) override {
+  Measured measure(const std::string& name, const Scenario& scenario, Look look) override {
     Campaign campaign;
     campaign.conditions = {{name, scenario_to_text(scenario), name, "", {}}};
     campaign.seeds = config_.seeds;
+    if (look == Look::glance) campaign.seeds.resize((campaign.seeds.size() + glance_part - 1) / glance_part);
     campaign.renderer = config_.renderer;
     campaign.timeout_s = config_.timeout_s;
     keep_condition(folder_, campaign);
@@ -77,7 +81,15 @@ class FlightJudge : public Judge {
 struct HeldRecording {
   std::vector<RecordedObject> objects;
   std::vector<EvaluationFrame> frames;
-  std::vector<std::vector<ExpectedBlock>> expected;  ///< of each frame, where the usual rule looks
+  /// The blocks due in each frame where the last configuration looked: they seldom change with the next.
+  std::vector<double> looked_at_m;
+  int last_row_px = 0;
+  std::vector<std::optional<std::vector<ExpectedBlock>>> expected;
+
+  const std::vector<ExpectedBlock>& due(std::size_t frame, const DetectionGrid& grid) {
+    if (!expected[frame]) expected[frame] = expected_blocks(frames[frame].truth, grid);
+    return *expected[frame];
+  }
 };
 
 class VisionJudge : public Judge {
@@ -91,27 +103,32 @@ class VisionJudge : public Judge {
       if (!is_same_rig(recording.rig(), rig_))
         throw ScenarioError(fmt::format("{}: has another rig than {}: one tuning is for one rig",
                                         folder.string(), folders.front().string()));
-      const DetectionGrid grid(rig_, stated_depths_m(usual_, rig_), usual_.last_row_px);
       HeldRecording& held = recordings_.emplace_back();
       held.objects = recording.objects();
-      for (std::size_t i = 0; i < recording.frame_count(); i += static_cast<std::size_t>(every)) {
+      for (std::size_t i = 0; i < recording.frame_count(); i += static_cast<std::size_t>(every))
         held.frames.push_back(recording.frame(i));
-        held.expected.push_back(expected_blocks(held.frames.back().truth, grid));
-      }
     }
   }
 
-  Measured measure(const std::string&, const Scenario& scenario) override {
-    const PushbroomConfig& rule = scenario.perception.pushbroom();
+  Measured measure(const std::string&, const Scenario& scenario, Look look) override {
+    VisionConfig config;
+    static_cast<PerceptionSection&>(config) = scenario.perception;
+    config.full_stereo = crop_beside(config, rig_);
+    Measured measured;
+    measured.units.resize(recordings_.size());
     try {
-      check_depths(rule, rig_, "perception.depths_m", "perception.pushbroom");
+      check_depths(config.pushbroom(), rig_, "perception.depths_m", "perception.pushbroom");
+      in_parallel(recordings_.size(), threads_, [&](std::size_t i) {
+        const std::size_t frames = recordings_[i].frames.size(),
+                          part = (frames + glance_part - 1) / glance_part,
+                          from = std::min(frames, i % glance_part * part);
+        measured.units[i] = look == Look::whole
+                                ? count(recordings_[i], config, 0, frames)
+                                : count(recordings_[i], config, from, std::min(frames, from + part));
+      });
     } catch (const ScenarioError& error) {
       return {{}, error.what()};
     }
-    Measured measured;
-    measured.units.resize(recordings_.size());
-    in_parallel(recordings_.size(), threads_,
-                [&](std::size_t i) { measured.units[i] = count(recordings_[i], rule); });
     return measured;
   }
 
@@ -130,23 +147,33 @@ class VisionJudge : public Judge {
   /// Frames; then, of how many it holds and of how many: hits that are true, expected blocks that were hit,
   /// obstacles within 1 m and 3 m of the path that were found; of hits on obstacles and false ones those that
   /// are true.
-  Counts count(const HeldRecording& recording, const PushbroomConfig& rule) const {
-    PushbroomStereo detector(rig_, rule);
-    const DetectionGrid grid(rig_, stated_depths_m(rule, rig_), rule.last_row_px);
+  /// Frames outside of `from` .. `to` (not included) show where the path goes, and no more.
+  Counts count(HeldRecording& recording, const VisionConfig& config, std::size_t from, std::size_t to) const {
+    const PushbroomConfig& rule = config.pushbroom();
+    RecordedDetector detector(config, config.detector, rig_);
+    const std::vector<double> depths_m = stated_depths_m(rule, rig_);
+    const DetectionGrid grid(rig_, depths_m, rule.last_row_px);
+    if (recording.expected.empty() || depths_m != recording.looked_at_m ||
+        rule.last_row_px != recording.last_row_px) {
+      recording.looked_at_m = depths_m;
+      recording.last_row_px = rule.last_row_px;
+      recording.expected.assign(recording.frames.size(), std::nullopt);
+    }
     ObstacleSightings sightings(recording.objects, rig_.baseline_m);
     Rates rates;
-    const bool looks_as_usual = stated_depths_m(rule, rig_) == stated_depths_m(usual_, rig_) &&
-                                rule.last_row_px == usual_.last_row_px;
     for (std::size_t i = 0; i < recording.frames.size(); ++i) {
       const EvaluationFrame& frame = recording.frames[i];
-      const std::vector<StereoHit>& hits = detector.detect(frame.pair);
-      const std::vector<ExpectedBlock> expected =
-          looks_as_usual ? recording.expected[i] : expected_blocks(frame.truth, grid);
+      if (i < from || i >= to) {
+        sightings.add(frame, grid, {}, {});
+        continue;
+      }
+      const std::vector<StereoHit>& hits = detector.detector().detect(frame.pair);
+      const std::vector<ExpectedBlock>& expected = recording.due(i, grid);
       count_one_pixel(frame.truth, grid, expected, hits, rates);
       sightings.add(frame, grid, expected, hits);
     }
     const std::vector<ObstacleSighting> passed = sightings.passed();
-    Counts counts{static_cast<double>(recording.frames.size())};
+    Counts counts{static_cast<double>(to - from)};
     for (const Share& share : {rates.precision, rates.recall, found_within(passed, 1),
                                found_within(passed, 3), rates.trunk_precision})
       counts.insert(counts.end(), {static_cast<double>(share.with), static_cast<double>(share.of)});
@@ -154,7 +181,6 @@ class VisionJudge : public Judge {
   }
 
   StereoRig rig_;
-  PushbroomConfig usual_;  ///< for rules that look where this one does the blocks due are computed already
   std::vector<HeldRecording> recordings_;
   int threads_;
 };
@@ -171,8 +197,12 @@ std::unique_ptr<Judge> flight_judge(FlightJudgeConfig config) {
 const std::vector<std::string> vision_figure_names{
     "precision", "recall", "f_score", "trunks_1m", "trunks_3m", "hits_per_frame", "trunk_precision"};
 
-bool matters_on_recordings(std::string_view key) {
-  return key.starts_with("perception.pushbroom.") || key.starts_with("perception.depths_m[");
+bool matters_on_recordings(const Scenario& scenario, std::string_view key) {
+  const std::string& detector = scenario.perception.detector;
+  if (key.starts_with("perception." + detector + ".")) return true;
+  if (detector.starts_with("stereo_"))
+    return key == "perception.full_stereo.cell_px" || key == "perception.full_stereo.minimum_pixels_per_cell";
+  return detector == "pushbroom" && key.starts_with("perception.depths_m[");
 }
 
 std::unique_ptr<Judge> vision_judge(const std::vector<std::filesystem::path>& folders, int every,

@@ -23,13 +23,16 @@ struct Measured {
   std::string refused = {};        ///< why nothing was measured, one line; empty where it was
 };
 
+/// How much of the data is looked at. A glance at a part of each unit costs an eighth of the whole.
+enum class Look { glance, whole };
+
 /// Measures scenarios on some data. The same scenario always gives the same result.
 class Judge {
  public:
   virtual ~Judge() = default;
   /// `name`: letters, digits and '-', unique to this scenario. Throws Stopped, and MachineError where the
   /// machine fails.
-  virtual Measured measure(const std::string& name, const Scenario& scenario) = 0;
+  virtual Measured measure(const std::string& name, const Scenario& scenario, Look look = Look::whole) = 0;
   /// The figures of some units (one or more, some perhaps twice) together, in the order of their names.
   virtual Figures figures(std::span<const Counts> units) const = 0;
 };
@@ -54,13 +57,14 @@ std::unique_ptr<Judge> flight_judge(FlightJudgeConfig config);
 /// Shares at one pixel: docs/tuning.md says what each is.
 extern const std::vector<std::string> vision_figure_names;
 
-/// Whether the detector's hits on recordings can depend on a key of the scenario.
-bool matters_on_recordings(std::string_view key);
+/// Whether the hits of the scenario's detector on recordings can depend on a key of it.
+bool matters_on_recordings(const Scenario& scenario, std::string_view key);
 
-/// Runs a scenario's pushbroom detector over every `every`-th frame of recordings, which it holds in memory
-/// (0.55 MB a frame), `threads` recordings at a time; the result does not depend on that. A scenario whose
-/// depths the rig cannot show is refused. Throws ScenarioError where a folder cannot be read, has no true
-/// depth, or another rig than the first.
+/// Runs a scenario's detector over every `every`-th frame of recordings, which it holds in memory (0.55 MB a
+/// frame), `threads` recordings at a time; the result does not depend on that. Figures are those of
+/// `understory evaluate`: full stereo is compared at the pushbroom's depth alone. A glance is a stretch of
+/// each recording, at another place in each. A scenario whose depths the rig cannot show is refused. Throws
+/// ScenarioError where a folder cannot be read, has no true depth, or another rig than the first.
 std::unique_ptr<Judge> vision_judge(const std::vector<std::filesystem::path>& folders, int every,
                                     int threads);
 

@@ -108,10 +108,11 @@ void read_parameters(const ConfigNode& group, TuneFile& tune) {
   const std::vector<NumericKey> keys = numeric_keys(tune.scenario);
   for (const ConfigNode& node : group.children) {
     const NumericKey& key = key_of(node, keys);
-    if (tune.over == TuningData::recordings && !matters_on_recordings(key.key))
+    if (tune.over == TuningData::recordings && !matters_on_recordings(tune.scenario, key.key))
       refuse_input(node.origin, "parameters." + node.key,
-                   "expected a key of perception.pushbroom or perception.depths_m: no other key changes "
-                   "anything on recordings");
+                   fmt::format("expected a key of the scenario's detector, perception.{}: this one changes "
+                               "nothing on recordings",
+                               tune.scenario.perception.detector));
     tune.space.parameters.push_back(parameter_of(node, key));
     tune.scenario_point.push_back(key.value);
     const std::size_t bracket = key.key.find('[');

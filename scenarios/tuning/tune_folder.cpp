@@ -35,6 +35,7 @@ std::string line_of(const Trial& trial, const std::vector<std::string>& paramete
     json["figures"] = numbers_of(figures, trial.figures);
   else
     json["refused"] = trial.refused;
+  if (trial.dropped) json["dropped"] = true;
   return json_text(json) + "\n";
 }
 
@@ -51,6 +52,7 @@ bool take_trial(const std::string& line, const std::vector<std::string>& paramet
                 const std::vector<std::string>& figures, Trial& trial) try {
   const Json json = parse_json(line);
   if (json.contains("refused")) trial.refused = json.at("refused");
+  trial.dropped = json.value("dropped", false);
   return json.at("trial") == trial.number && take_numbers(json.at("parameters"), parameters, trial.point) &&
          (!trial.refused.empty() || take_numbers(json.at("figures"), figures, trial.figures));
 } catch (const Json::exception&) {

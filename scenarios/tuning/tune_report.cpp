@@ -145,12 +145,14 @@ Table trials_table(const TuneFile& file, const std::vector<Item>& items,
   for (const Parameter& parameter : file.space.parameters) table.head.push_back(parameter.key);
   for (const std::string& prefix : prefixes)
     for (const std::string& figure : file.figures) table.head.push_back(prefix + figure);
+  table.head.push_back("measured");
   for (const Item& item : items) {
     const std::vector<const Trial*> sides = sides_of(item);
     std::vector<std::string>& row = table.rows.emplace_back(1, fmt::format("{}", sides.front()->number));
     for (const double value : sides.front()->point) row.push_back(fmt::format("{}", value));
     for (const Trial* side : sides)
       for (std::size_t i = 0; i < file.figures.size(); ++i) row.push_back(cell(*side, i));
+    row.push_back(sides.front()->dropped ? "glance" : "whole");
   }
   return table;
 }

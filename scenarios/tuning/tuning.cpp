@@ -9,6 +9,7 @@
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/statistics/statistics.hpp"
+#include "scenarios/tuning/race.hpp"
 
 namespace understory {
 namespace {
@@ -19,9 +20,11 @@ std::vector<std::string> keys_of(const Space& space) {
   return keys;
 }
 
-std::vector<Figures> figures_of(const std::vector<Trial>& trials) {
+/// Nothing of those that were dropped, nor of the scenario as it is, which stands beside the search.
+std::vector<Figures> figures_to_choose_from(const std::vector<Trial>& trials) {
   std::vector<Figures> figures;
-  for (const Trial& trial : trials) figures.push_back(trial.figures);
+  for (const Trial& trial : trials)
+    figures.push_back(trial.dropped || trial.number == 0 ? Figures() : trial.figures);
   return figures;
 }
 
@@ -34,15 +37,31 @@ class Tuning {
   TrialLog log(const std::string& part, Judge& judge) {
     return TrialLog(options_.folder / (part + ".jsonl"), keys_of(file_.space), file_.figures,
                     [this, part, &judge](int number, const Point& point) {
-                      const Measured measured = measure(part, number, point, judge);
-                      Trial trial;
-                      trial.refused = measured.refused;
-                      if (measured.refused.empty()) trial.figures = judge.figures(measured.units);
-                      return trial;
+                      return trial_of(measure(part, number, point, judge), judge);
                     });
   }
+  /// The same, where most points are dropped after a glance.
+  TrialLog log(const std::string& part, Judge& judge, const Race& race) {
+    return TrialLog(options_.folder / (part + ".jsonl"), keys_of(file_.space), file_.figures,
+                    [this, part, &judge, &race](int number, const Point& point) {
+                      const Measured glance = glance_at(part, number, point, judge);
+                      if (!glance.refused.empty() || (number > 0 && race.drops(glance.units))) {
+                        Trial trial = trial_of(glance, judge);
+                        trial.dropped = trial.refused.empty();
+                        return trial;
+                      }
+                      return trial_of(measure(part, number, point, judge), judge);
+                    });
+  }
+  /// Measured anew where a search goes on: the logs hold no units.
+  const Measured& glance_at(const std::string& part, int number, const Point& point, Judge& judge) {
+    const auto held = glances_.find(point);
+    if (held != glances_.end()) return held->second;
+    return glances_[point] = measure(part, number, point, judge, Look::glance);
+  }
 
-  Measured measure(const std::string& part, int number, const Point& point, Judge& judge) {
+  Measured measure(const std::string& part, int number, const Point& point, Judge& judge,
+                   Look look = Look::whole) {
     if (options_.stop_asked()) throw Stopped{};
     ++progress_.measured;
     Scenario scenario;
@@ -52,7 +71,7 @@ class Tuning {
     } catch (const ScenarioError& error) {  // keys that contradict each other
       return {{}, error.what()};
     }
-    return judge.measure(fmt::format("{}-{}", part, number), scenario);
+    return judge.measure(fmt::format("{}-{}", part, number), scenario, look);
   }
 
   /// `after`: what is still to be measured when this part is done, as far as known.
@@ -66,8 +85,16 @@ class Tuning {
   void set_best(double figure) { progress_.best = figure; }
 
  private:
+  static Trial trial_of(const Measured& measured, const Judge& judge) {
+    Trial trial;
+    trial.refused = measured.refused;
+    if (measured.refused.empty()) trial.figures = judge.figures(measured.units);
+    return trial;
+  }
+
   const TuneFile& file_;
   const TuneOptions& options_;
+  std::map<Point, Measured> glances_;
   TuneProgress progress_;
 };
 
@@ -77,15 +104,21 @@ std::size_t sensitivity_trials(const TuneFile& file) {
 
 /// All trials: the scenario as it is, then the search's.
 std::vector<Trial> run_search(const TuneFile& file, Tuning& tuning, Judge& training) {
-  TrialLog log = tuning.log("trials", training);
+  const Race::GlanceAt glance_at = [&](const Trial& trial) -> const std::vector<Counts>& {
+    return tuning.glance_at("trials", trial.number, trial.point, training).units;
+  };
+  Race race(file.objective, training, glance_at);
+  TrialLog log = tuning.log("trials", training, race);
   double minimum = std::numeric_limits<double>::infinity();
   const auto of = static_cast<std::size_t>(file.search.trials);
   const auto evaluate = [&](const Point& point) {
     const Trial trial = log.evaluate(point);
-    const double cost = fitness(file.objective, trial.figures).front();
-    if (cost < minimum && !trial.figures.empty())
-      tuning.set_best(trial.figures[file.objective.goals.front().figure]);
-    minimum = std::min(minimum, cost);
+    if (!trial.dropped && !trial.figures.empty()) {
+      race.add(trial);
+      const double cost = fitness(file.objective, trial.figures).front();
+      if (cost < minimum) tuning.set_best(trial.figures[file.objective.goals.front().figure]);
+      minimum = std::min(minimum, cost);
+    }
     tuning.report("trial", log.evaluated().size() - 1, of, maximum_front / 2 + sensitivity_trials(file));
     return trial.figures;
   };
@@ -98,11 +131,15 @@ std::vector<Trial> run_search(const TuneFile& file, Tuning& tuning, Judge& train
 /// The search's best, numbered as in `trials`; where none keeps the limits, the one that misses them least.
 std::size_t choose_best(const TuneFile& file, const std::vector<Trial>& trials,
                         const std::filesystem::path& folder, bool& keeps_limits) {
-  std::vector<Figures> figures = figures_of(trials);
-  figures.front().clear();  // the scenario as it is stands beside, not in the search
+  const std::vector<Figures> figures = figures_to_choose_from(trials);
   if (const auto best = best_of(file.objective, figures)) {
     keeps_limits = true;
     return *best;
+  }
+  if (std::ranges::any_of(trials, &Trial::dropped) &&
+      std::ranges::all_of(figures, [](const Figures& some) { return some.empty(); })) {
+    keeps_limits = violation(file.objective, trials.front().figures) == 0;  // nothing comes near the scenario
+    return 0;
   }
   keeps_limits = false;
   const auto cost = [&](const Figures& some) { return fitness(file.objective, some).front(); };
@@ -114,9 +151,7 @@ std::size_t choose_best(const TuneFile& file, const std::vector<Trial>& trials,
 }
 
 std::vector<std::size_t> choose_front(const TuneFile& file, const std::vector<Trial>& trials) {
-  std::vector<Figures> figures = figures_of(trials);
-  figures.front().clear();
-  return thinned(pareto_front(file.objective, figures), maximum_front);
+  return thinned(pareto_front(file.objective, figures_to_choose_from(trials)), maximum_front);
 }
 
 /// The values of each parameter alone: spread over its range, and the best's own.

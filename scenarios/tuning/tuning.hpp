@@ -19,8 +19,9 @@ namespace understory {
 struct Trial {
   int number = 0;
   Point point;
-  Figures figures;      ///< empty where it was refused
-  std::string refused;  ///< why, one line
+  Figures figures;       ///< empty where it was refused
+  std::string refused;   ///< why, one line
+  bool dropped = false;  ///< after a glance (race.hpp), which the figures are of
 };
 
 /// Trials in their order, each a line of a JSON Lines file on disk before the next begins. Evaluating a point
