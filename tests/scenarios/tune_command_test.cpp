@@ -110,16 +110,26 @@ TEST_F(TuneCommand, OverRecordingsItsFiguresAreThoseOfTheirEvaluation) {
   EvaluationOptions options{folders, {}, 1, [](std::int64_t, std::int64_t) {}};
   options.settings.pushbroom() = scenario.perception.pushbroom();
   const EvaluationSum& sum = evaluate(options).all;
-  const Rates& rates = sum.tallies[algorithm::our_rule].at_one_pixel();
   const std::unique_ptr<Judge> judge = vision_judge(folders, 1, 2);
-  const Figures figures = judge->figures(judge->measure("all", scenario).units);
-  EXPECT_GT(rates.recall.value(), 0);
-  EXPECT_EQ(figures,
-            (Figures{rates.precision.value(), rates.recall.value(), rates.f_score(),
-                     found_within(sum.sightings[algorithm::our_rule], 1).value(),
-                     found_within(sum.sightings[algorithm::our_rule], 3).value(),
-                     static_cast<double>(sum.hits[algorithm::our_rule]) / static_cast<double>(sum.frames),
-                     rates.trunk_precision.value()}));
+  for (const auto& [detector, index] :
+       {std::pair("pushbroom", algorithm::our_rule), std::pair("stereo_bm", algorithm::stereo_bm),
+        std::pair("stereo_sgbm", algorithm::stereo_sgbm)}) {
+    Scenario with = scenario;
+    with.perception.detector = detector;
+    const Rates& rates = sum.tallies[index].at_one_pixel();
+    EXPECT_GT(rates.recall.value(), 0) << detector;
+    EXPECT_EQ(
+        judge->figures(judge->measure("all", with).units),
+        (Figures{rates.precision.value(), rates.recall.value(), rates.f_score(),
+                 found_within(sum.sightings[index], 1).value(), found_within(sum.sightings[index], 3).value(),
+                 static_cast<double>(sum.hits[index]) / static_cast<double>(sum.frames),
+                 rates.trunk_precision.value()}))
+        << detector;
+    const Counts whole = judge->measure("all", with).units[0],
+                 glance = judge->measure("all", with, Look::glance).units[0];
+    EXPECT_EQ(whole[0], 12) << "frames";
+    EXPECT_EQ(glance[0], 2) << "frames";
+  }
   Scenario blind = scenario;
   blind.perception.pushbroom().depths_m = {0.2};
   EXPECT_FALSE(judge->measure("blind", blind).refused.empty());

@@ -118,7 +118,8 @@ TEST_F(TuningTest, RefusesBadObjectivesSearchesAndDataInOneLine) {
       {"scenario: forest\nparameters:\n  forest.length_m: {from: 10, to: 20}\nobjective: {maximize: recall}\n"
        "search: {method: random, trials: 5}\n" +
            recordings + "validation: [seen/b]\n",
-       "t.yaml:3: parameters.forest.length_m: expected a key of the scenario's detector, perception.pushbroom"},
+       "t.yaml:3: parameters.forest.length_m: expected a key of the scenario's detector, "
+       "perception.pushbroom"},
   };
   for (const BadFile& one : cases) expect_part(refusal_of(one.text), one.part);
 }

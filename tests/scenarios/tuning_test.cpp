@@ -6,6 +6,7 @@
 
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
+#include "scenarios/tuning/race.hpp"
 #include "scenarios/tuning/tune_report.hpp"
 #include "tests/scenarios/tuning_cases.hpp"
 
@@ -64,6 +65,60 @@ TEST_F(TuningTest, TrainingChoosesAndValidationIsMeasuredApart) {
   EXPECT_NEAR(changes[2].difference, difference, 1e-9);
   EXPECT_NEAR(changes[2].interval.minimum, difference, 1e-9);
   EXPECT_NEAR(changes[2].interval.maximum, difference, 1e-9);
+}
+
+/// A figure of 30 units that scatter by the same noise in every trial, less what the trial loses in each; the
+/// loss itself scatters by `spread`.
+std::vector<Counts> units_losing(double loss, double spread) {
+  std::vector<Counts> units;
+  for (int i = 0; i < 30; ++i)
+    units.push_back({0.5, 0.5, 10 + i % 7 - loss + (i % 2 ? spread : -spread), 0.5});
+  return units;
+}
+
+TEST(Race, DropsWhatIsClearlyWorseOnTheSameUnitsAndKeepsTheRest) {
+  const ClosedForm judge(0.2);
+  const Objective faster{.goals = {{2, true}}};
+  std::vector<Counts> of_the_rival = units_losing(0, 0);
+  Race race(faster, judge, [&](const Trial&) -> const std::vector<Counts>& { return of_the_rival; });
+  EXPECT_FALSE(race.drops(units_losing(1, 0.1)));  // nothing to compare with
+  race.add({1, {}, {0.5, 0.5, 13, 0.5}, ""});
+  // Units differ by 2 among each other, a pair by 0.1: its mean of 30 by 0.018.
+  EXPECT_TRUE(race.drops(units_losing(0.05, 0.1)));
+  EXPECT_FALSE(race.drops(units_losing(0.03, 0.1)));
+  EXPECT_FALSE(race.drops(units_losing(-1, 0.1)));
+}
+
+TEST(Race, LimitsDropOnlyWhatMissesThemAndGoalsOnlyWhatIsBetterInNone) {
+  const ClosedForm judge(0.2);
+  const std::vector<Counts> rival(30, Counts{0.9, 0.5, 10, 0.5});
+  const auto race_for = [&](const Objective& objective) {
+    Race race(objective, judge, [&](const Trial&) -> const std::vector<Counts>& { return rival; });
+    race.add({1, {}, {0.9, 0.5, 10, 0.5}, ""});
+    return race;
+  };
+  const Objective limited{.goals = {{2, true}}, .limits = {{0, true, 0.8}}};
+  const auto trial = [](double success, double speed) {
+    std::vector<Counts> units(30, Counts{success, 0.5, speed, 0.5});
+    units[0][0] -= 0.01, units[1][0] += 0.01, units[0][2] -= 0.01, units[1][2] += 0.01;
+    return units;
+  };
+  EXPECT_TRUE(race_for(limited).drops(trial(0.7, 20)));
+  EXPECT_FALSE(race_for(limited).drops(trial(0.85, 20)));  // worse than the rival, and allowed
+  const Objective both{.goals = {{2, true}, {0, true}}};
+  EXPECT_TRUE(race_for(both).drops(trial(0.8, 9)));
+  EXPECT_FALSE(race_for(both).drops(trial(0.8, 10.1)));
+}
+
+TEST_F(TuningTest, ARaceMeasuresFewTrialsWholeAndFindsTheSame) {
+  const TuneFile file = load(tuning_text("{method: cma_es, trials: 200, seed: 2}"));
+  ClosedForm training(0.2), validation(0.2);
+  const Tuned tuned = tune(file, training, validation, {.folder = results("r")});
+  const auto dropped = std::ranges::count_if(tuned.trials, &Trial::dropped);
+  EXPECT_GT(dropped, 100);
+  EXPECT_FALSE(tuned.trials[static_cast<std::size_t>(tuned.best.training.number)].dropped);
+  EXPECT_NEAR(tuned.best.training.point[0], 300, 3);
+  for (const JudgedTrial& member : tuned.front) EXPECT_FALSE(member.training.dropped);
 }
 
 TEST_F(TuningTest, VariesEachParameterAloneOverItsRange) {
