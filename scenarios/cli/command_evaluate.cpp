@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <sstream>
 
+#include "perception/io/text_table.hpp"
 #include "perception/perception_config.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
@@ -23,7 +25,7 @@ struct EvaluateArguments {
   std::vector<std::string> inputs;
   VisionConfigSources vision;
   std::string out;
-  std::vector<std::string> detectors, disparities;
+  std::vector<std::string> detectors, disparities, curves;
   int every = 1;
   int jobs = 0;
 };
@@ -41,6 +43,30 @@ void require_detectors(const std::vector<std::string>& names) {
   }
 }
 
+/// "perception.edges.uniqueness=1.1,1.5,2"
+CurveSettings curve_of(const std::string& given, const EvaluateArguments& arguments, const std::string& rig) {
+  const std::size_t at = given.find('='), dot = given.rfind('.', at);
+  const std::string expected = "expected perception.DETECTOR.KEY=VALUE,VALUE,... from lax to strict";
+  if (at == std::string::npos || dot == std::string::npos || !given.starts_with("perception.") || dot < 11)
+    throw ScenarioError(fmt::format("--curve {}: {}", given, expected));
+  CurveSettings curve{given.substr(11, dot - 11), given.substr(dot + 1, at - dot - 1), {}};
+  std::vector<std::string> names = arguments.detectors;
+  names.insert(names.end(), {"pushbroom", "stereo_bm", "stereo_sgbm"});
+  if (std::ranges::find(names, curve.detector) == names.end())
+    throw ScenarioError(fmt::format("--curve {}: no detector {} is compared here{}", given, curve.detector,
+                                    did_you_mean(curve.detector, names)));
+  std::istringstream values(given.substr(at + 1));
+  for (std::string value; std::getline(values, value, ',');) {
+    const auto number = number_in(value);
+    if (!number) throw ScenarioError(fmt::format("--curve {}: {}", given, expected));
+    VisionConfigSources sources = arguments.vision;
+    sources.settings.push_back(given.substr(0, at + 1) + value);
+    curve.points.emplace_back(*number, read_vision_config(sources, rig));
+  }
+  if (curve.points.size() < 2) throw ScenarioError(fmt::format("--curve {}: {}", given, expected));
+  return curve;
+}
+
 int run_evaluate(EvaluateArguments arguments) {
   EvaluationOptions options;
   arguments.vision.one_depth = true;  // full stereo is cropped to one depth's interval, to be compared
@@ -49,6 +75,7 @@ int run_evaluate(EvaluateArguments arguments) {
     throw ScenarioError("perception.detector: must be pushbroom here; --detector adds another, got " +
                         detector);
   require_detectors(arguments.detectors);
+  for (const std::string& given : arguments.curves) curve_of(given, arguments, "");
   for (const std::string& given : arguments.disparities)
     options.settings.disparities.push_back(disparity_folder_of(given));
   options.settings.more_detectors = arguments.detectors;
@@ -73,6 +100,8 @@ int run_evaluate(EvaluateArguments arguments) {
   static_cast<VisionConfig&>(options.settings) =
       read_vision_config(arguments.vision, rig_named_in(options.folders.front()));
   options.settings.every = arguments.every;
+  for (const std::string& given : arguments.curves)
+    options.settings.curves.push_back(curve_of(given, arguments, rig_named_in(options.folders.front())));
   ProgressLine line;
   options.on_progress = [&](std::int64_t frames, std::int64_t expected) {
     line.show(fmt::format("{} of {} frames", frames, expected), static_cast<std::size_t>(frames),
@@ -102,6 +131,9 @@ void add_evaluate_command(CommandLine& line) {
   add_plugin_option(command);
   command.texts("--detector", "NAME", arguments->detectors,
                 "also compare this detector of a plug-in; repeatable");
+  command.texts("--curve", "KEY=VALUES", arguments->curves,
+                "also draw precision over recall for these values of a detector's key, for example "
+                "perception.stereo_bm.texture_threshold=0,200,400; repeatable");
   command.texts(
       "--disparities", "NAME=FOLDER", arguments->disparities,
       "disparities of another program for each pair, PFM or 16-bit PNG in 1/256 px, named as the left "

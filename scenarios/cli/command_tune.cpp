@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <iostream>
 #include <memory>
 
 #include "scenarios/campaign/engines.hpp"
@@ -14,6 +15,7 @@
 #include "scenarios/output/progress_line.hpp"
 #include "scenarios/output/signals.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
+#include "scenarios/tuning/asked_tuning.hpp"
 #include "scenarios/tuning/judge.hpp"
 #include "scenarios/tuning/tune_report.hpp"
 
@@ -28,23 +30,39 @@ struct TuneArguments {
   RendererKind renderer = RendererKind::osmesa;
   int jobs = 0;  // 0: a core each
   bool resume = false;
+  bool ask = false;
 };
 
-struct Judges {
-  std::unique_ptr<Judge> training, validation;
-};
-
-Judges judges_of(const TuneFile& file, const TuneArguments& arguments, const fs::path& folder) {
+/// The judge of training or validation data.
+std::unique_ptr<Judge> judge_of(bool validation, const TuneFile& file, const TuneArguments& arguments,
+                                const fs::path& folder) {
   const int jobs = jobs_or_cores(arguments.jobs);
   if (file.over == TuningData::recordings)
-    return {vision_judge(file.training_folders, file.every, jobs),
-            vision_judge(file.validation_folders, file.every, jobs)};
+    return bad_input_if_refused([&] {
+      return vision_judge(validation ? file.validation_folders : file.training_folders, file.every, jobs);
+    });
   rig_of(file.scenario, data_root() / "models");  // before anything is flown: every flight would fail
-  const std::string renderer(word_for(opened_renderer(arguments.renderer).kind));
-  const auto judge = [&](const char* part, const std::vector<std::uint64_t>& seeds) {
-    return flight_judge({folder / "flown" / part, seeds, renderer, file.timeout_s, jobs});
-  };
-  return {judge("training", file.training_seeds), judge("validation", file.validation_seeds)};
+  return flight_judge({folder / "flown" / (validation ? "validation" : "training"),
+                       validation ? file.validation_seeds : file.training_seeds,
+                       std::string(word_for(opened_renderer(arguments.renderer).kind)), file.timeout_s,
+                       jobs});
+}
+
+/// Answers another program, a line for a line, until its questions end.
+int answer_questions(const TuneFile& file, const TuneArguments& arguments, const fs::path& folder) {
+  std::unique_ptr<Judge> judges[2];
+  AskedTuning tuning(file, [&](bool validation) -> Judge& {
+    std::unique_ptr<Judge>& judge = judges[validation ? 1 : 0];
+    if (judge == nullptr) judge = judge_of(validation, file, arguments, folder);
+    return *judge;
+  });
+  fmt::print("{}\n", tuning.greeting());
+  std::fflush(stdout);
+  for (std::string question; std::getline(std::cin, question);) {
+    fmt::print("{}\n", tuning.answer(question));
+    std::fflush(stdout);
+  }
+  return exit_goal;
 }
 
 /// What decides the trials: flights' identity, or the recordings and what looks at them.
@@ -74,9 +92,13 @@ int run_tune(const TuneArguments& arguments) {
     others.insert(others.end(), folders->begin(), folders->end());
   require_separate({folder}, others);
   require_not_within(folder, others);
-  Judges judges;
-  if (file.over == TuningData::recordings)
-    judges = bad_input_if_refused([&] { return judges_of(file, arguments, folder); });
+  if (arguments.ask && file.over == TuningData::recordings) return answer_questions(file, arguments, folder);
+  std::unique_ptr<Judge> training, validation;
+  const auto take_judges = [&] {
+    training = judge_of(false, file, arguments, folder);
+    validation = judge_of(true, file, arguments, folder);
+  };
+  if (file.over == TuningData::recordings) take_judges();  // they name what is wrong there
   FolderMark mark(folder, tuning_results, folder);
   const Identity identity = [&] {
     try {
@@ -86,7 +108,8 @@ int run_tune(const TuneArguments& arguments) {
     }
   }();
   prepare_tune_folder(mark, folder, file, arguments.resume, identity);
-  if (file.over == TuningData::flights) judges = judges_of(file, arguments, folder);
+  if (arguments.ask) return answer_questions(file, arguments, folder);
+  if (file.over == TuningData::flights) take_judges();
   const StopSignals stop_signals;
   ProgressLine line;
   TuneOptions options;
@@ -94,7 +117,7 @@ int run_tune(const TuneArguments& arguments) {
   options.stop_asked = [&] { return stop_signals.asked(); };
   options.on_progress = [&](const TuneProgress& progress) { show(line, file, progress); };
   try {
-    const Tuned tuned = tune(file, *judges.training, *judges.validation, options);
+    const Tuned tuned = tune(file, *training, *validation, options);
     write_tune_report(folder, file, tuned, data_root());
     line.clear();
     fmt::print("{}{}", to_text(comparison_table(file, tuned)),
@@ -128,6 +151,9 @@ void add_tune_command(CommandLine& line) {
   add_jobs_option(command, arguments->jobs, "flights or recordings");
   add_renderer_option(command, arguments->renderer);
   command.flag("--resume", arguments->resume, "continue the unfinished tuning in the results folder");
+  command.flag(
+      "--ask", arguments->ask,
+      "answer another program's questions, a line of JSON each, instead of searching (docs/tuning.md)");
   command.runs([arguments] { return run_tune(*arguments); });
 }
 

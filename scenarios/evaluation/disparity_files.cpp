@@ -33,6 +33,9 @@ DisparityFolder disparity_folder_of(const std::string& argument) {
   if (equals == std::string::npos || equals == 0 || equals + 1 == argument.size())
     throw ScenarioError(fmt::format("--disparities {}: must be NAME=FOLDER", argument));
   DisparityFolder given{argument.substr(0, equals), argument.substr(equals + 1)};
+  if (given.name.find('/') != std::string::npos || given.name.starts_with('.'))
+    throw ScenarioError(
+        fmt::format("--disparities {}: the name becomes a folder's: no '/', no '.' first", argument));
   std::error_code ignored;
   if (!fs::is_directory(given.folder, ignored))
     throw ScenarioError(

@@ -98,6 +98,12 @@ void EvaluationSum::add(const EvaluationSum& other) {
   if (curves.empty()) curves = other.curves;
 }
 
+std::vector<std::size_t> followed(const EvaluationSum& sum) {
+  std::vector<std::size_t> places{algorithm::our_rule};
+  for (std::size_t i = algorithm_count; i < sum.algorithms.size(); ++i) places.push_back(i);
+  return places;
+}
+
 bool Evaluation::has_depth() const {
   return std::ranges::any_of(recordings, &RecordingEvaluation::has_depth);
 }

@@ -15,12 +15,20 @@
 
 namespace understory {
 
+/// A detector with several values of one of its keys, from lax to strict: a curve of precision over recall.
+struct CurveSettings {
+  std::string detector;   ///< a part's name
+  std::string threshold;  ///< the key that is varied, without "perception.NAME."
+  std::vector<std::pair<double, VisionConfig>> points;
+};
+
 /// What is evaluated, and how: `pushbroom` is the detector's parameter set, `map` the one of the evaluations
 /// with memory, `compute` the aircraft's computer, for results at its own pace, even if not `enabled`.
 struct EvaluationSettings : VisionConfig {
   int every = 1;                                  ///< every n-th frame only
   std::vector<std::string> more_detectors = {};   ///< further ones, by the names of their parts
   std::vector<DisparityFolder> disparities = {};  ///< of other programs
+  std::vector<CurveSettings> curves = {};         ///< besides those of the algorithms below
 };
 
 /// The algorithms that every evaluation has; the first four have to be computed, and so have those that
@@ -84,10 +92,14 @@ constexpr bool is_computed(std::size_t algorithm) {
   return algorithm < computed_count || algorithm >= algorithm_count;
 }
 
+/// The algorithms whose faults are shown one by one: our rule, and those that the settings add.
+std::vector<std::size_t> followed(const EvaluationSum& sum);
+
 /// A frame with many false positives, to be shown.
 struct WorstFrame {
   std::size_t index = 0;  ///< of the recording
   int false_hits = 0;
+  std::vector<StereoHit> hits = {};  ///< all of them
 };
 
 /// All results of one recording.
@@ -97,8 +109,8 @@ struct RecordingEvaluation {
   DetectionDepth detection_depth;  ///< the first depth
   bool has_depth = false, has_objects = false, has_poses = false;
   std::vector<RecordedObject> objects;
-  EvaluationSum sum;              ///< named as the folder without its seed: recordings of one scene add up
-  std::vector<WorstFrame> worst;  ///< the first is the worst
+  EvaluationSum sum;  ///< named as the folder without its seed: recordings of one scene add up
+  std::vector<std::vector<WorstFrame>> worst;  ///< of each of followed(); the first is the worst
 };
 
 /// What a recording is called: its folder, "rec" of "/data/rec/".

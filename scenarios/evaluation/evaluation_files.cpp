@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -27,6 +28,23 @@ std::string heading(const Evaluation& evaluation) {
       evaluation.recordings.size(), evaluation.recordings.size() == 1 ? "" : "s", evaluation.all.frames,
       evaluation.all.seconds, one_line(first.rig.name), first.detection_depth.depth_m,
       first.detection_depth.one_pixel.near_m, first.detection_depth.one_pixel.far_m);
+}
+
+/// What the figures say, before anything else.
+std::string sentence_of(const Evaluation& evaluation) {
+  if (!evaluation.has_depth())
+    return "These recordings have no true depth: StereoBM stands in for it, as in the paper. ";
+  const EvaluationSum& all = evaluation.all;
+  std::vector<std::size_t> places = followed(all);
+  places.insert(places.begin() + 1, algorithm::stereo_bm);
+  std::vector<std::string> words;
+  for (const std::size_t i : places) {
+    const Rates& rates = all.tallies[i].at_one_pixel();
+    words.push_back(fmt::format("{} {:.1f} and {:.1f} %", all.algorithms[i], 100 * rates.precision.value(),
+                                100 * rates.recall.value()));
+  }
+  return fmt::format("Detections that are true, and blocks of obstacles that are found: {}. ",
+                     fmt::join(words, ", "));
 }
 
 Json to_json(const Share& share) {
@@ -126,9 +144,10 @@ std::string evaluation_json(const Evaluation& evaluation) {
 SheetSection write_worst_frames(const Evaluation& evaluation, const fs::path& folder) {
   SheetSection section{"The frames with the most false detections"};
   prepare_output_folder(folder);
-  int number = 0;
+  std::map<std::string, int> numbers;
   for (const WorstPicture& worst : worst_pictures(evaluation)) {
-    write_picture(folder / fmt::format("{:06}.png", number++), worst.picture);
+    write_picture(folder / fmt::format("{}-{:02}.png", worst.algorithm, numbers[worst.algorithm]++),
+                  worst.picture);
     const auto jpeg = picture_codecs().encode_jpeg(worst.picture);
     section.pictures.push_back({worst.caption, {jpeg.begin(), jpeg.end()}});
   }
@@ -154,10 +173,15 @@ void write_evaluation(const Evaluation& evaluation, const fs::path& folder, cons
     page.front().plots.insert(page.front().plots.end(), plots.begin(), plots.end());
   };
   page.push_back({"Curves"});
+  SheetSection main_table;
   for (const EvaluationTable& table : evaluation_tables(evaluation)) {
     summary += "\n## " + table.title + "\n\n" + to_markdown(table.table);
     write_whole_file(folder / "tables" / (table.file + ".csv"), to_csv(table.table));
-    page.push_back({.title = table.title, .table = table.table});
+    SheetSection section{.title = table.title, .table = table.table};
+    if (table.file == (evaluation.has_depth() ? "algorithms" : "paper"))
+      main_table = std::move(section);
+    else
+      page.push_back(std::move(section));
   }
   write_whole_file(folder / "evaluation.json", evaluation_json(evaluation));
   if (evaluation.has_depth()) {
@@ -175,7 +199,9 @@ void write_evaluation(const Evaluation& evaluation, const fs::path& folder, cons
   }
   write_plots("distances.svg", distances_plots(evaluation));
   write_whole_file(folder / "summary.md", summary);
-  write_whole_file(folder / "report.html", sheet_page(data_root, "Evaluation", heading(evaluation), page));
+  page.insert(page.begin(), std::move(main_table));
+  write_whole_file(folder / "report.html",
+                   sheet_page(data_root, "Evaluation", sentence_of(evaluation) + heading(evaluation), page));
 }
 
 }  // namespace understory

@@ -90,10 +90,8 @@ cv::Mat heat_maps(const VisionTally& tally, const char* title) {
   return all;
 }
 
-cv::Mat annotated_frame(const EvaluationFrame& frame, const StereoRig& rig, const PushbroomConfig& rule) {
-  const DetectionGrid grid(rig, stated_depths_m(rule, rig), rule.last_row_px);
-  PushbroomStereo detector(rig, rule);
-  const std::vector<StereoHit>& hits = detector.detect(frame.pair);
+cv::Mat annotated_frame(const EvaluationFrame& frame, const DetectionGrid& grid,
+                        const std::vector<StereoHit>& hits) {
   cv::Mat picture;
   cv::cvtColor(frame.pair.left, picture, cv::COLOR_GRAY2BGR);
   cv::resize(picture, picture, {}, scale, scale, cv::INTER_NEAREST);
@@ -125,20 +123,27 @@ cv::Mat annotated_frame(const EvaluationFrame& frame, const StereoRig& rig, cons
 }
 
 std::vector<WorstPicture> worst_pictures(const Evaluation& evaluation) {
-  std::vector<std::pair<WorstFrame, const RecordingEvaluation*>> all;
-  for (const RecordingEvaluation& recording : evaluation.recordings)
-    for (const WorstFrame& frame : recording.worst) all.emplace_back(frame, &recording);
-  std::ranges::stable_sort(all, std::ranges::greater{}, [](const auto& one) { return one.first.false_hits; });
-  all.resize(std::min(all.size(), maximum_worst));
+  const PushbroomConfig& rule = evaluation.settings.pushbroom();
+  const std::vector<std::size_t> places = followed(evaluation.all);
   std::vector<WorstPicture> pictures;
-  for (const auto& [worst, recording] : all) {
-    EvaluationRecording source(recording->folder);
-    cv::Mat picture =
-        annotated_frame(source.frame(worst.index), recording->rig, evaluation.settings.pushbroom());
-    const std::string caption =
-        fmt::format("{}, frame {}", recording->folder.filename().string(), worst.index);
-    write_line(picture, caption, {8, 18});
-    pictures.push_back({fmt::format("{}: {} false positives", caption, worst.false_hits), picture});
+  for (std::size_t place = 0; place < places.size(); ++place) {
+    const std::string& name = evaluation.all.algorithms[places[place]];
+    std::vector<std::pair<WorstFrame, const RecordingEvaluation*>> all;
+    for (const RecordingEvaluation& recording : evaluation.recordings)
+      if (place < recording.worst.size())
+        for (const WorstFrame& frame : recording.worst[place]) all.emplace_back(frame, &recording);
+    std::ranges::stable_sort(all, std::ranges::greater{},
+                             [](const auto& one) { return one.first.false_hits; });
+    all.resize(std::min(all.size(), maximum_worst));
+    for (const auto& [worst, recording] : all) {
+      EvaluationRecording source(recording->folder);
+      const DetectionGrid grid(recording->rig, stated_depths_m(rule, recording->rig), rule.last_row_px);
+      cv::Mat picture = annotated_frame(source.frame(worst.index), grid, worst.hits);
+      const std::string caption =
+          fmt::format("{}, {}, frame {}", name, recording->folder.filename().string(), worst.index);
+      write_line(picture, caption, {8, 18});
+      pictures.push_back({name, fmt::format("{}: {} false positives", caption, worst.false_hits), picture});
+    }
   }
   return pictures;
 }
@@ -201,7 +206,9 @@ LinePlot first_hits_plot(const Evaluation& evaluation) {
   plot.title = "Obstacles within 3 m of the path: found by then";
   plot.x_label = "true distance, m";
   plot.y_label = "% of obstacles";
-  for (const std::size_t i : {algorithm::our_rule, algorithm::the_papers_rule, algorithm::stereo_bm}) {
+  std::vector<std::size_t> places{algorithm::our_rule, algorithm::the_papers_rule, algorithm::stereo_bm};
+  for (std::size_t i = algorithm_count; i < evaluation.all.algorithms.size(); ++i) places.push_back(i);
+  for (const std::size_t i : places) {
     std::vector<double> first_m, third_m;
     std::size_t of = 0;
     for (const ObstacleSighting& sighting : evaluation.all.sightings[i]) {
@@ -211,7 +218,7 @@ LinePlot first_hits_plot(const Evaluation& evaluation) {
       if (sighting.found()) third_m.push_back(sighting.third_hit_m);
     }
     if (of == 0) continue;
-    const std::string name = algorithm_names[i];
+    const std::string& name = evaluation.all.algorithms[i];
     plot.series.push_back(reached((name + ", first detection").c_str(), first_m, of));
     plot.series.push_back(reached((name + ", third").c_str(), third_m, of));
     plot.series.back().mark = Mark::dashes;

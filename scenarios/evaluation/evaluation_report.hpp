@@ -33,7 +33,7 @@ struct EvaluationTable {
 /// all algorithms, scenes, obstacles passed, parts, false hits, invariance.
 std::vector<EvaluationTable> evaluation_tables(const Evaluation& evaluation);
 
-/// A line per obstacle passed: how our rule detected it.
+/// A line per obstacle passed and algorithm of followed(): how it was detected.
 Table obstacles_table(const Evaluation& evaluation);
 
 /// Where in the image true positives, false positives and due blocks lie, side by side, each as bright as its
@@ -42,10 +42,13 @@ cv::Mat heat_maps(const VisionTally& tally, const char* title);
 
 /// A frame, three times as large: true positives green, false positives red, due blocks without a hit thin
 /// yellow. BGR.
-cv::Mat annotated_frame(const EvaluationFrame& frame, const StereoRig& rig, const PushbroomConfig& rule);
+cv::Mat annotated_frame(const EvaluationFrame& frame, const DetectionGrid& grid,
+                        const std::vector<StereoHit>& hits);
 
-/// The worst of all recordings, annotated, with a caption each. Throws as EvaluationRecording does.
+/// The worst of all recordings for each of followed(), annotated, with a caption each. Throws as
+/// EvaluationRecording does.
 struct WorstPicture {
+  std::string algorithm;
   std::string caption;
   cv::Mat picture;  ///< BGR
 };

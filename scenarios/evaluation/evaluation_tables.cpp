@@ -143,19 +143,20 @@ EvaluationTable intervals_table(const Evaluation& evaluation) {
 }
 
 EvaluationTable scenes_table(const Evaluation& evaluation) {
-  Table table{{"scene", "recordings", "s", "detections/frame", "precision", "recall", "false/s", "found 1 m",
-               "of", "found 3 m", "of", "hidden"}};
+  Table table{{"scene", "algorithm", "recordings", "s", "detections/frame", "precision", "recall", "false/s",
+               "found 1 m", "of", "found 3 m", "of", "hidden"}};
   for_each_scene(evaluation, [&](const EvaluationSum& sum) {
-    std::int64_t hidden = 0;
-    const Share near = found_within(sum.sightings[algorithm::our_rule], 1),
-                far = found_within(sum.sightings[algorithm::our_rule], 3, &hidden);
-    const VisionTally& tally = sum.tallies[algorithm::our_rule];
-    table.add(sum.name, sum.recordings, number_text(sum.seconds, 1),
-              per_frame(sum.hits[algorithm::our_rule], sum, 1), share_text(tally.at_one_pixel().precision),
-              share_text(tally.at_one_pixel().recall), number_text(tally.false_per_second(), 0),
-              share_text(near), near.of, share_text(far), far.of, hidden);
+    for (const std::size_t i : followed(sum)) {
+      std::int64_t hidden = 0;
+      const Share near = found_within(sum.sightings[i], 1), far = found_within(sum.sightings[i], 3, &hidden);
+      const VisionTally& tally = sum.tallies[i];
+      table.add(sum.name, sum.algorithms[i], sum.recordings, number_text(sum.seconds, 1),
+                per_frame(sum.hits[i], sum, 1), share_text(tally.at_one_pixel().precision),
+                share_text(tally.at_one_pixel().recall), number_text(tally.false_per_second(), 0),
+                share_text(near), near.of, share_text(far), far.of, hidden);
+    }
   });
-  return {"scenes", "The pushbroom in every scene, at one pixel", std::move(table)};
+  return {"scenes", "Every scene, at one pixel", std::move(table)};
 }
 
 EvaluationTable computer_table(const Evaluation& evaluation) {
@@ -199,15 +200,16 @@ EvaluationTable on_the_path_table(const Evaluation& evaluation) {
 }
 
 EvaluationTable parts_table(const Evaluation& evaluation) {
-  Table table{{"by", "part", "detections", "precision", "blocks", "recall"}};
-  for (const auto& [name, bins] : evaluation.all.tallies[algorithm::our_rule].parts)
-    for (const auto& [bin, rates] : bins) {
-      const std::size_t space = bin.find(' ');  // behind the number that sorts
-      const bool numbered = name != "kind" && space != std::string::npos;
-      table.add(name, numbered ? bin.substr(space + 1) : bin, rates.precision.of, share_text(rates.precision),
-                rates.recall.of, share_text(rates.recall));
-    }
-  return {"parts", "The pushbroom by parts, at one pixel", std::move(table)};
+  Table table{{"algorithm", "by", "part", "detections", "precision", "blocks", "recall"}};
+  for (const std::size_t i : followed(evaluation.all))
+    for (const auto& [name, bins] : evaluation.all.tallies[i].parts)
+      for (const auto& [bin, rates] : bins) {
+        const std::size_t space = bin.find(' ');  // behind the number that sorts
+        const bool numbered = name != "kind" && space != std::string::npos;
+        table.add(evaluation.all.algorithms[i], name, numbered ? bin.substr(space + 1) : bin,
+                  rates.precision.of, share_text(rates.precision), rates.recall.of, share_text(rates.recall));
+      }
+  return {"parts", "By parts, at one pixel", std::move(table)};
 }
 
 EvaluationTable false_hits_table(const Evaluation& evaluation) {
@@ -282,16 +284,17 @@ std::vector<EvaluationTable> evaluation_tables(const Evaluation& evaluation) {
 }
 
 Table obstacles_table(const Evaluation& evaluation) {
-  Table table{{"recording", "object", "name", "kind", "miss_m", "on_the_path", "hidden", "blocks_in_view",
-               "hits", "first_hit_m", "third_hit_m"}};
+  Table table{{"recording", "algorithm", "object", "name", "kind", "miss_m", "on_the_path", "hidden",
+               "blocks_in_view", "hits", "first_hit_m", "third_hit_m"}};
   for (const RecordingEvaluation& recording : evaluation.recordings)
-    for (const ObstacleSighting& sighting : recording.sum.sightings[algorithm::our_rule]) {
-      const auto object = std::ranges::find(recording.objects, sighting.object, &RecordedObject::number);
-      table.add(recording.folder.filename().string(), sighting.object, object->name, object->kind,
-                number_text(sighting.miss_m, 3), sighting.on_the_path ? "1" : "0",
-                sighting.hidden() ? "1" : "0", sighting.blocks_in_view, sighting.hits,
-                number_text(sighting.first_hit_m, 3), number_text(sighting.third_hit_m, 3));
-    }
+    for (const std::size_t i : followed(recording.sum))
+      for (const ObstacleSighting& sighting : recording.sum.sightings[i]) {
+        const auto object = std::ranges::find(recording.objects, sighting.object, &RecordedObject::number);
+        table.add(recording.folder.filename().string(), recording.sum.algorithms[i], sighting.object,
+                  object->name, object->kind, number_text(sighting.miss_m, 3),
+                  sighting.on_the_path ? "1" : "0", sighting.hidden() ? "1" : "0", sighting.blocks_in_view,
+                  sighting.hits, number_text(sighting.first_hit_m, 3), number_text(sighting.third_hit_m, 3));
+      }
   return table;
 }
 

@@ -66,7 +66,7 @@ FullStereoCrop crop_beside(const PerceptionSection& perception, const StereoRig&
 namespace {
 
 /// Every algorithm at several thresholds over the same frames: score limit or uniqueness of the pushbroom,
-/// uniqueness of StereoBM and StereoSGBM.
+/// uniqueness of StereoBM and StereoSGBM, and the settings' curves.
 class CurveSweeps {
  public:
   CurveSweeps(const StereoRig& rig, const DetectionGrid& grid, const EvaluationSettings& settings)
@@ -78,6 +78,16 @@ class CurveSweeps {
                     settings.detectors.of<StereoBmConfig>("stereo_bm"), crop, {0, 5, 10, 18, 30, 50});
     add_full_stereo(rig, algorithm_names[algorithm::stereo_sgbm],
                     settings.detectors.of<StereoSgbmConfig>("stereo_sgbm"), crop, {0, 10, 30, 60});
+    for (const CurveSettings& curve : settings.curves) {
+      curves_.push_back({curve.detector, curve.threshold});
+      detectors_.emplace_back();
+      for (auto [threshold, config] : curve.points) {
+        config.full_stereo = crop;
+        curves_.back().points.push_back({threshold});
+        brought_.push_back(std::make_unique<RecordedDetector>(config, curve.detector, rig));
+        detectors_.back().push_back(&brought_.back()->detector());
+      }
+    }
   }
 
   void add(const EvaluationFrame& frame, const std::vector<ExpectedBlock>& expected) {
@@ -99,7 +109,7 @@ class CurveSweeps {
       PushbroomConfig config = rule;
       (rule.uniqueness ? config.uniqueness_ratio : config.score_limit) = threshold;
       curves_.back().points.push_back({threshold});
-      detectors_.back().push_back(std::make_unique<PushbroomStereo>(rig, config));
+      add(std::make_unique<PushbroomStereo>(rig, config));
     }
   }
 
@@ -111,13 +121,20 @@ class CurveSweeps {
     for (const int percent : uniqueness_percent) {
       config.uniqueness_percent = percent;
       curves_.back().points.push_back({static_cast<double>(percent)});
-      detectors_.back().push_back(std::make_unique<FullStereoDetector>(rig, config, crop));
+      add(std::make_unique<FullStereoDetector>(rig, config, crop));
     }
+  }
+
+  void add(std::unique_ptr<ObstacleDetector> detector) {
+    detectors_.back().push_back(detector.get());
+    own_.push_back(std::move(detector));
   }
 
   DetectionGrid grid_;
   std::vector<PrecisionRecallCurve> curves_;
-  std::vector<std::vector<std::unique_ptr<ObstacleDetector>>> detectors_;  ///< a curve's, point by point
+  std::vector<std::vector<ObstacleDetector*>> detectors_;  ///< a curve's, point by point
+  std::vector<std::unique_ptr<ObstacleDetector>> own_;
+  std::vector<std::unique_ptr<RecordedDetector>> brought_;
 };
 
 /// What another program has found, in a detector's place.
@@ -260,17 +277,16 @@ class Evaluator {
   }
 
   /// The worst of each quarter of a second, so that they show different things.
-  void keep_if_bad(const EvaluationFrame& frame, std::size_t index) {
+  void keep_if_bad(const EvaluationFrame& frame, std::size_t index, const std::vector<StereoHit>& hits,
+                   std::vector<WorstFrame>& bad) const {
     constexpr std::size_t apart = 30;
     int false_positives = 0;
-    for (const StereoHit& hit : hits_[algorithm::our_rule])
-      false_positives += !true_within(hit, frame.truth, grid_)[one_pixel];
+    for (const StereoHit& hit : hits) false_positives += !true_within(hit, frame.truth, grid_)[one_pixel];
     if (false_positives == 0) return;
-    std::vector<WorstFrame>& bad = result_.worst;
     if (bad.empty() || index - bad.back().index >= apart)
-      bad.push_back({index, false_positives});
+      bad.push_back({index, false_positives, hits});
     else if (false_positives > bad.back().false_hits)
-      bad.back() = {index, false_positives};
+      bad.back() = {index, false_positives, hits};
   }
 
   /// `next_t_ns`: the moment of the frame after it.
@@ -287,7 +303,10 @@ class Evaluator {
       }
       for (std::size_t i = 0; i < hits_.size(); ++i)
         if (is_computed(i)) paced_[i].add(frame, next_t_ns, grid_, due[one_pixel], hits_[i]);
-      keep_if_bad(frame, index);
+      const std::vector<std::size_t> places = followed(result_.sum);
+      result_.worst.resize(places.size());
+      for (std::size_t i = 0; i < places.size(); ++i)
+        keep_if_bad(frame, index, hits_[places[i]], result_.worst[i]);
       sweeps_->add(frame, due[one_pixel]);
     }
     add_invariance(frame, due[one_pixel]);
@@ -308,8 +327,10 @@ class Evaluator {
     }
     for (std::size_t i = 0; i < published_.size(); ++i) sum.published[i] = published_[i].scores();
     if (sweeps_) sum.curves = sweeps_->curves();
-    std::ranges::stable_sort(result_.worst, std::ranges::greater{}, &WorstFrame::false_hits);
-    result_.worst.resize(std::min(result_.worst.size(), worst_kept));
+    for (std::vector<WorstFrame>& worst : result_.worst) {
+      std::ranges::stable_sort(worst, std::ranges::greater{}, &WorstFrame::false_hits);
+      worst.resize(std::min(worst.size(), worst_kept));
+    }
   }
 
   EvaluationSettings settings_;

@@ -76,13 +76,26 @@ void check_parts(const List& list, const PartConfigs& configs, const std::string
   }
 }
 
-/// Conditions between several keys.
-void check(const Scenario& scenario, const Sources& sources, const std::string& name) {
-  const auto expect = [&](bool holds, const std::string& what) {
+/// Throws what does not hold, "key: must ...", with the place where the key is given, else `name`.
+auto expecting(const Sources& sources, const std::string& name) {
+  return [&sources, name](bool holds, const std::string& what) {
     if (holds) return;
     const std::string origin = origin_of(sources, what.substr(0, what.find(':')));
     throw ScenarioError(fmt::format("{}: {}", origin.empty() ? name : origin, what));
   };
+}
+
+template <typename Expect>
+void check_detectors(const Scenario& scenario, Expect&& expect) {
+  check_parts(parts().detectors, scenario.perception.detectors, "perception.", scenario, expect);
+  const FullStereoCrop& crop = scenario.perception.full_stereo;
+  expect(crop.minimum_depth_m < crop.maximum_depth_m,
+         "perception.full_stereo.minimum_depth_m: must be less than maximum_depth_m");
+}
+
+/// Conditions between several keys.
+void check(const Scenario& scenario, const Sources& sources, const std::string& name) {
+  const auto expect = expecting(sources, name);
   expect(is_plain_word(scenario.name),
          "name: must be letters, digits, '-', '_' and '.', at most 100, no '.' first");
   expect(scenario.forest.radius_min_m <= scenario.forest.radius_max_m,
@@ -115,12 +128,10 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
   for (const auto& [key, rate_hz] : rates_hz)
     expect(physics_rate_hz % rate_hz == 0, fmt::format("{}rate_hz: must divide 1200", key));
   const PerceptionSection& perception = scenario.perception;
-  check_parts(parts().detectors, perception.detectors, "perception.", scenario, expect);
+  check_detectors(scenario, expect);
   check_parts(parts().state_sources, scenario.estimation.sources, "estimation.", scenario, expect);
   check_parts(parts().planners, scenario.autopilot.planners, "autopilot.", scenario, expect);
   check_parts(parts().courses, scenario.courses, "", scenario, expect);
-  expect(perception.full_stereo.minimum_depth_m < perception.full_stereo.maximum_depth_m,
-         "perception.full_stereo.minimum_depth_m: must be less than maximum_depth_m");
   // The estimator remembers its state for a second and accepts frames up to half a second old.
   const double cost_s = perception.cost_s();
   expect(scenario.cameras.latency_s + cost_s + std::min(cost_s, 1.0 / scenario.cameras.rate_hz) <= 0.5,
@@ -380,6 +391,9 @@ VisionConfig read_vision_config(const VisionConfigSources& sources, std::string_
   if (sources.one_depth) config.pushbroom().depths_m.clear();
   for (const ConfigNode& tree : trees) read_config(tree, config);
   config.preset = first.preset;
+  Scenario around;
+  around.perception = config;
+  check_detectors(around, expecting(trees, "--with"));
   return config;
 }
 

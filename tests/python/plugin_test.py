@@ -4,6 +4,7 @@ import importlib.util
 import json
 import os
 import shutil
+import subprocess
 import sys
 import unittest
 
@@ -195,10 +196,71 @@ class Plugins(InFolder):
         self.assertTrue(verdict["passes"], verdict)
         self.assertEqual(verdict["verdict"], "unchanged on these flights")
 
+    def recorded(self, *seeds):
+        return [understory.record("forest", self.folder / f"recording-{seed}", seed=seed,
+                                  set={"forest.length_m": 12, "forest.clear_m": 4, "cameras.rate_hz": 20}) for seed in seeds]
+
     def test_recordings_are_evaluated_from_python(self):
-        folder = understory.record("forest", self.folder / "recording", seed=1003, set={"forest.length_m": 6})
-        figures = understory.evaluate(folder, self.folder / "evaluation", every=8)
-        self.assertIn("pushbroom", str(figures))
+        self.mine.write_text(MINE.replace('"gain": 0.5', '"gain": context.config["gain"]'))
+        folder = self.recorded(1003)[0]
+        figures = understory.evaluate(folder, self.folder / "evaluation", plugins=[self.mine], detectors=["wrapped"],
+                                      curves=["perception.wrapped.gain=0.5,1"])
+        ours, theirs = (next(one for one in figures["all"]["algorithms"] if one["name"] == name)
+                        for name in ("pushbroom", "wrapped"))
+        self.assertGreater(ours["hits"], 0)
+        for figure in ("hits", "precision", "recall", "trunk_precision", "false_on", "parts"):
+            self.assertEqual(ours[figure], theirs[figure], figure)
+        curve = next(one for one in figures["all"]["curves"] if one["name"] == "wrapped")
+        self.assertEqual([point["threshold"] for point in curve["points"]], [0.5, 1])
+        self.assertEqual(curve["points"][0]["precision"], ours["precision"]["one pixel"])
+        rows = (self.folder / "evaluation" / "tables" / "parts.csv").read_text().splitlines()
+        self.assertEqual([row.split(",", 1)[1] for row in rows if row.startswith("pushbroom,")],
+                         [row.split(",", 1)[1] for row in rows if row.startswith("wrapped,")])
+
+    def test_a_tuning_step_by_step(self):
+        self.mine.write_text(MINE.replace('"gain": 0.5', '"gain": context.config["gain"]').replace(
+            "return self.inner.detect(frame)", "return self.inner.detect(frame)[: int(self.count)]").replace(
+            "self.inner = context.make_detector", "self.count = context.config['count']; self.inner = context.make_detector").replace(
+            '"count": 3', '"count": context.config["count"]'))
+        one, other = self.recorded(1003, 1004)
+        (self.folder / "scenario.yaml").write_text("perception: {detector: wrapped}\n")
+        tuning_file = self.folder / "tuning.yaml"
+        tuning_file.write_text(
+            "scenario: scenario.yaml\nparameters: {perception.wrapped.count: {from: 0, to: 5}}\n"
+            "objective: {maximize: hits_per_frame}\nsearch: {method: cma_es, trials: 8, seed: 1}\n"
+            f"over: recordings\ntraining: [{one.name}]\nvalidation: [{other.name}]\n")
+        key = "perception.wrapped.count"
+        with understory.Tuning(tuning_file, plugins=[self.mine]) as tuning:
+            self.assertEqual(tuning.scenario, {key: 3})
+            measured = [tuning.measure({key: count})["hits_per_frame"] for count in range(6)]
+            self.assertEqual(measured[0], 0)
+            self.assertEqual(measured, sorted(measured))
+            self.assertGreater(measured[5], measured[3])
+            self.assertIsNone(tuning.measure({key: 9}))  # beyond the key's bounds
+            with self.assertRaisesRegex(understory.InputError, "measure: expected a number of each of"):
+                tuning.measure({"count": 1})
+            asked = []
+            while trial := tuning.ask():
+                self.assertEqual(tuning.ask().values, trial.values)
+                asked.append(trial.values[key])
+                tuning.tell(trial, {**dict.fromkeys(tuning.figures, 0), "hits_per_frame": -(trial.values[key] - 2) ** 2})
+            self.assertEqual(len(asked), 8)
+            self.assertEqual(tuning.best.values[key], min(asked, key=lambda count: abs(count - 2)))
+            with self.assertRaisesRegex(understory.InputError, "tell: expected the number of the trial"):
+                tuning.tell(tuning.best, None)
+        with self.assertRaisesRegex(understory.CommandFailed, "none.yaml"):
+            understory.Tuning("none.yaml")
+        program("tune", tuning_file, "--plugin", self.mine, "--out", self.folder / "tuned")
+        trials = (self.folder / "tuned" / "trials.jsonl").read_text().splitlines()
+        self.assertEqual([json.loads(line)["parameters"][key] for line in trials[1:3]], asked[:2])
+        climbed = subprocess.run([sys.executable, EXAMPLES / "hill_climb.py", self.folder / "short.yaml", "4"],
+                                 capture_output=True, text=True)
+        self.assertIn("short.yaml", climbed.stderr)
+        (self.folder / "short.yaml").write_text(tuning_file.read_text().replace("wrapped.count", "pushbroom.minimum_edge_sum").replace(
+            "to: 5", "to: 900").replace("scenario.yaml", "forest"))
+        climbed = subprocess.run([sys.executable, EXAMPLES / "hill_climb.py", self.folder / "short.yaml", "4"],
+                                 capture_output=True, text=True)
+        self.assertIn("on validation data", climbed.stdout, climbed.stderr)
 
 
 class Examples(InFolder):
@@ -225,8 +287,6 @@ class Examples(InFolder):
 @unittest.skipUnless(HAS_MYPY, "mypy is not installed")
 class Types(unittest.TestCase):
     def test_the_package_and_its_stubs_agree(self):
-        import subprocess
-
         package = SOURCE / "scenarios" / "python" / "understory"
         ended = subprocess.run(["mypy", "--cache-dir=/dev/null", "--config-file", str(SOURCE / "tests/python/mypy.ini"), str(package)],
                                capture_output=True, text=True, cwd=SOURCE / "scenarios" / "python")

@@ -36,7 +36,7 @@ from _understory import (
     __version__,
 )
 
-from .commands import Campaign, CommandFailed, campaign, evaluate, gate, keys, record
+from .commands import Campaign, CommandFailed, Trial, Tuning, campaign, evaluate, gate, keys, record
 from .flight import Flight, load_scenario
 from .parts import _outlive_parts, _run_plugin, box, course, detector, hits, load_plugin, parts, planner, state_source, trunk
 
@@ -56,7 +56,9 @@ __all__ = [
     "State",
     "StereoFrame",
     "StereoRig",
+    "Trial",
     "Truth",
+    "Tuning",
     "__version__",
     "box",
     "campaign",

@@ -180,19 +180,119 @@ def evaluate(
     plugins: Sequence[str | os.PathLike] = (),
     detectors: Sequence[str] = (),
     disparities: Optional[Mapping[str, str | os.PathLike]] = None,
+    curves: Sequence[str] = (),
     every: int = 1,
     quiet: bool = True,
 ) -> dict[str, Any]:
     """Compare detections on recordings with true depth: Understory's detectors, those of plug-ins by name, and
-    disparities of other programs, {name: folder}. Equals `understory evaluate`; returns evaluation.json."""
+    disparities of other programs, {name: folder}; with further curves of precision over recall,
+    "perception.edges.limit=1,2,4". Equals `understory evaluate`; returns evaluation.json."""
     folders = [inputs] if isinstance(inputs, (str, os.PathLike)) else list(inputs)
     options = _options(set, plugins)
     for name in detectors:
         options += ["--detector", name]
+    for curve in curves:
+        options += ["--curve", curve]
     for name, folder in dict(disparities or {}).items():
         options += ["--disparities", f"{name}={os.fspath(folder)}"]
     run(["evaluate", *folders, "--out", out, "--every", str(every), *options], quiet)
     return json.loads((Path(out) / "evaluation.json").read_text(encoding="utf-8"))
+
+
+class Trial:
+    """A trial of a search: its number, and a value for each key."""
+
+    def __init__(self, number: int, values: dict[str, float]) -> None:
+        self.number = number
+        self.values = values
+
+    def __repr__(self) -> str:
+        return f"<understory.Trial {self.number} {self.values}>"
+
+
+class Tuning:
+    """A tuning step by step (docs/tuning.md): ask() and tell() are the search of the file, and figures may come from
+    anywhere; measure() is the judge of the file, and values may come from anywhere. Recordings are read when they are
+    measured first, and held. Close it, or use it in a `with` statement::
+
+        with understory.Tuning("long.yaml") as tuning:
+            while trial := tuning.ask():
+                tuning.tell(trial, tuning.measure(trial.values))
+            print(tuning.best)
+    """
+
+    def __init__(
+        self,
+        file: str | os.PathLike,
+        out: Optional[str | os.PathLike] = None,
+        plugins: Sequence[str | os.PathLike] = (),
+        jobs: Optional[int] = None,
+    ) -> None:
+        import subprocess
+
+        options = _options(None, plugins)
+        if out is not None:
+            options += ["--out", os.fspath(out)]
+        if jobs is not None:
+            options += ["--jobs", str(jobs)]
+        command = [program(), "tune", os.fspath(file), "--ask", *options]
+        pipe = subprocess.PIPE
+        self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=pipe, text=True)
+        about = self._answer()
+        self.parameters: list[dict[str, Any]] = about["parameters"]
+        """Each with "key", "whole", and either "from", "to" and "log", or "values"."""
+        self.figures: list[str] = about["figures"]
+        self.maximize: list[str] = about["maximize"]
+        self.minimize: list[str] = about["minimize"]
+        self.scenario: dict[str, float] = about["scenario"]
+        """The values of the scenario as it is."""
+        self.best: Optional[Trial] = None
+        """The best trial told, that keeps the limits of the file."""
+        self._told: dict[int, Trial] = {}
+
+    def _answer(self) -> dict[str, Any]:
+        line = self._process.stdout.readline()  # type: ignore[union-attr]
+        if not line:
+            complaint = self._process.stderr.read().strip()  # type: ignore[union-attr]
+            raise CommandFailed(self._process.wait(), complaint.removeprefix("understory: "))
+        answer = json.loads(line)
+        if "error" in answer:
+            raise _understory.InputError(answer["error"])
+        return answer
+
+    def _question(self, question: dict[str, Any]) -> dict[str, Any]:
+        self._process.stdin.write(json.dumps(question) + "\n")  # type: ignore[union-attr]
+        self._process.stdin.flush()  # type: ignore[union-attr]
+        return self._answer()
+
+    def ask(self) -> Optional[Trial]:
+        """The next trial of the search; the same until it is told; None when all are told."""
+        answer = self._question({"ask": True})
+        return None if answer["trial"] is None else Trial(answer["trial"], answer["parameters"])
+
+    def tell(self, trial: Trial, figures: Optional[Mapping[str, float]]) -> None:
+        """The figures of the trial asked last, all of self.figures; None where it could not be measured."""
+        answer = self._question({"tell": trial.number, "figures": None if figures is None else dict(figures)})
+        self._told[trial.number] = trial
+        self.best = self._told[answer["best"]] if answer["best"] else None
+
+    def measure(self, values: Mapping[str, float], data: str = "training") -> Optional[dict[str, float]]:
+        """The figures of any values on "training" or "validation" data, as `understory tune` measures them; None where
+        the detector refuses the values."""
+        answer = self._question({"measure": dict(values), "data": data})
+        return answer.get("figures")
+
+    def close(self) -> None:
+        self._process.stdin.close()  # type: ignore[union-attr]
+        self._process.wait()
+        for pipe in (self._process.stdout, self._process.stderr):
+            pipe.close()  # type: ignore[union-attr]
+
+    def __enter__(self) -> Tuning:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
 
 def record(
