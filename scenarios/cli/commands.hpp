@@ -26,6 +26,7 @@ void add_gate_command(CommandLine& line);
 void add_tune_command(CommandLine& line);
 void add_detect_command(CommandLine& line);
 void add_evaluate_command(CommandLine& line);
+void add_images_command(CommandLine& line);
 void add_rig_command(CommandLine& line);
 void add_bench_command(CommandLine& line);
 void add_keys_command(CommandLine& line);

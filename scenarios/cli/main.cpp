@@ -92,6 +92,7 @@ int run(int argc, char** argv) {
   add_mcap_command(line);
   add_detect_command(line);
   add_evaluate_command(line);
+  add_images_command(line);
   add_campaign_command(line);
   add_shard_command(line);
   add_collect_command(line);

@@ -71,6 +71,19 @@ cv::Mat parse_pfm(const std::string& bytes, const std::string& name) {
   return image;
 }
 
+cv::Mat read_disparity_file(const fs::path& file) try {
+  if (file.extension() == ".pfm") return parse_pfm(read_file(file, maximum_pfm_bytes), file.string());
+  const cv::Mat steps = read_gray_image(file, CV_16U);
+  cv::Mat disparity;
+  steps.convertTo(disparity, CV_32FC1, 1 / steps_per_px);
+  disparity.setTo(std::numeric_limits<float>::quiet_NaN(), steps == 0);
+  return disparity;
+} catch (const MachineError&) {
+  throw;
+} catch (const std::runtime_error& error) {
+  throw ScenarioError(error.what());
+}
+
 cv::Mat read_disparity(const fs::path& folder, std::int64_t t_ns, const StereoRig& rig) {
   std::error_code ignored;
   const fs::path pfm = folder / fmt::format("{}.pfm", t_ns), png = folder / fmt::format("{}.png", t_ns);
@@ -79,20 +92,7 @@ cv::Mat read_disparity(const fs::path& folder, std::int64_t t_ns, const StereoRi
   if (!is_pfm && !fs::exists(png, ignored))
     throw ScenarioError(fmt::format("{}: there is no {}.pfm or {}.png, named as the pair's left image",
                                     folder.string(), t_ns, t_ns));
-  cv::Mat disparity;
-  try {
-    if (is_pfm)
-      disparity = parse_pfm(read_file(file, maximum_pfm_bytes), file.string());
-    else {
-      const cv::Mat steps = read_gray_image(file, CV_16U);
-      steps.convertTo(disparity, CV_32FC1, 1 / steps_per_px);
-      disparity.setTo(std::numeric_limits<float>::quiet_NaN(), steps == 0);
-    }
-  } catch (const MachineError&) {
-    throw;
-  } catch (const std::runtime_error& error) {
-    throw ScenarioError(error.what());
-  }
+  cv::Mat disparity = read_disparity_file(file);
   if (disparity.cols != rig.width_px || disparity.rows != rig.height_px)
     throw ScenarioError(fmt::format("{}: must be {}x{} as the recording's images, is {}x{}", file.string(),
                                     rig.width_px, rig.height_px, disparity.cols, disparity.rows));

@@ -25,6 +25,10 @@ DisparityFolder disparity_folder_of(const std::string& argument);
 /// is none, or none of the rig's size, or a disparity is negative.
 cv::Mat read_disparity(const std::filesystem::path& folder, std::int64_t t_ns, const StereoRig& rig);
 
+/// A file of disparities, PFM or PNG of 16 bits in 1/256 px by its name: CV_32FC1, px; unknown (infinite in
+/// PFM, 0 in PNG) is infinite or NaN. Throws ScenarioError, one line that names the file.
+cv::Mat read_disparity_file(const std::filesystem::path& file);
+
 /// A PFM of one channel: CV_32FC1, top row first. `name` stands for the file in messages. Throws InputError.
 cv::Mat parse_pfm(const std::string& bytes, const std::string& name);
 
