@@ -3,6 +3,7 @@
 #include <memory>
 #include <sstream>
 
+#include "perception/io/calibration_file.hpp"
 #include "perception/io/text_table.hpp"
 #include "perception/perception_config.hpp"
 #include "scenarios/cli/arguments.hpp"
@@ -11,6 +12,7 @@
 #include "scenarios/evaluation/evaluation.hpp"
 #include "scenarios/evaluation/evaluation_report.hpp"
 #include "scenarios/evaluation/evaluation_suite.hpp"
+#include "scenarios/evaluation/pair_evaluation.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/output_folder.hpp"
 #include "scenarios/output/progress_line.hpp"
@@ -28,6 +30,7 @@ struct EvaluateArguments {
   std::vector<std::string> detectors, disparities, curves;
   int every = 1;
   int jobs = 0;
+  bool pairs = false;
 };
 
 /// Throws where one of the names is no detector of a plug-in. Ours are compared anyway.
@@ -67,6 +70,32 @@ CurveSettings curve_of(const std::string& given, const EvaluateArguments& argume
   return curve;
 }
 
+/// Pairs with true disparities, without a calibration: a table.
+void run_pairs(const EvaluateArguments& arguments, EvaluationSettings settings, const fs::path& out) {
+  const StereoRig rig = read_calibrated_rig(rig_path("long"), {}).rig;
+  static_cast<VisionConfig&>(settings) = read_vision_config(arguments.vision, rig.name);
+  std::vector<ImagePair> pairs;
+  std::size_t expected = 0, done = 0;
+  for (const std::string& folder : arguments.inputs)
+    for (ImagePair& pair : read_image_pairs(folder, arguments.every)) {
+      expected += whole_disparities(pair, rig).size();
+      pairs.push_back(std::move(pair));
+    }
+  OutputFolder output(out, evaluation_results, "", Replace::anything);
+  ProgressLine line;
+  const std::vector<PairScore> scores = evaluate_pairs(pairs, settings, rig, [&] {
+    ++done;
+    line.show(fmt::format("{} of {} disparities", done, expected), done, expected - done);
+  });
+  line.clear();
+  const Table table = pair_table(scores);
+  prepare_output_folder(output.path() / "tables");
+  write_whole_file(output.path() / "tables/pairs.csv", to_csv(table));
+  write_whole_file(output.path() / "summary.md", "# Pairs\n\n" + to_markdown(table));
+  output.finish();
+  fmt::print("{}\nfiles: {}\n", to_text(table), out.string());
+}
+
 int run_evaluate(EvaluateArguments arguments) {
   EvaluationOptions options;
   arguments.vision.one_depth = true;  // full stereo is cropped to one depth's interval, to be compared
@@ -91,6 +120,12 @@ int run_evaluate(EvaluateArguments arguments) {
     out = fs::path("evaluations") / (input.has_filename() ? input : input.parent_path()).stem();
   }
   require_separate({out}, {arguments.inputs.begin(), arguments.inputs.end()});
+  if (arguments.pairs) {
+    if (!arguments.disparities.empty() || !arguments.curves.empty())
+      throw ScenarioError("--pairs: takes no --disparities or --curve");
+    run_pairs(arguments, options.settings, out);
+    return exit_goal;
+  }
   OutputFolder output(out, evaluation_results, "", Replace::anything);
   if (is_suite)
     options.folders = record_suite(arguments.inputs[0], out / "recordings", options.jobs, scenario_file,
@@ -138,6 +173,9 @@ void add_evaluate_command(CommandLine& line) {
       "--disparities", "NAME=FOLDER", arguments->disparities,
       "disparities of another program for each pair, PFM or 16-bit PNG in 1/256 px, named as the left "
       "images (docs/evaluate.md); repeatable");
+  command.flag("--pairs", arguments->pairs,
+               "the folders hold pairs with true disparities instead (left.png, right.png, disparity.png or "
+               ".pfm), or folders of such pairs: score the detectors at each whole disparity");
   command.whole("--every", arguments->every, 1, 1000, "use every N-th frame only");
   add_jobs_option(command, arguments->jobs, "recordings");
   command.text("--out", "FOLDER", arguments->out, "results folder (default: evaluations/NAME)");

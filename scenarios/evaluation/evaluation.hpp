@@ -44,6 +44,9 @@ inline constexpr std::array<const char*, algorithm_count> algorithm_names{
 inline constexpr std::array<algorithm::Index, 3> published_algorithms{
     algorithm::our_rule, algorithm::the_papers_rule, algorithm::at_random};
 
+/// The paper's rule, looking where `rule` does.
+PushbroomConfig papers_rule_beside(const PushbroomConfig& rule);
+
 /// The depths at which full stereo is compared with a rule: those of one pixel of disparity, the rule's rows.
 FullStereoCrop crop_beside(const PerceptionSection& perception, const StereoRig& rig);
 

@@ -9,6 +9,7 @@
 
 #include "perception/io/calibration_file.hpp"
 #include "perception/io/image_file.hpp"
+#include "scenarios/config/bad_input.hpp"
 #include "scenarios/evaluation/disparity_files.hpp"
 #include "scenarios/evaluation/evaluation_recording.hpp"
 #include "scenarios/output/errors.hpp"
@@ -77,6 +78,7 @@ ImagePair pair_of_files(const fs::path& folder) {
 }  // namespace
 
 std::vector<ImagePair> read_image_pairs(const fs::path& given, int every) {
+  const QuietStandardError quiet;  // image libraries complain there on their own
   std::error_code ignored;
   const fs::path folder = fs::absolute(given).lexically_normal();
   if (!fs::is_directory(folder, ignored))

@@ -43,7 +43,8 @@ double cost_s(std::size_t index, const ComputeConfig& compute) {
   return compute.factor * compute.pushbroom_s;
 }
 
-/// The paper's rule, and full stereo's crop, looking where `rule` does.
+}  // namespace
+
 PushbroomConfig papers_rule_beside(const PushbroomConfig& rule) {
   PushbroomConfig paper = original_pushbroom();
   paper.depths_m = rule.depths_m;
@@ -52,8 +53,6 @@ PushbroomConfig papers_rule_beside(const PushbroomConfig& rule) {
   paper.right_margin_px = rule.right_margin_px;
   return paper;
 }
-
-}  // namespace
 
 FullStereoCrop crop_beside(const PerceptionSection& perception, const StereoRig& rig) {
   FullStereoCrop crop = one_pixel_crop(rig);

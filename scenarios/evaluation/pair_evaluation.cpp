@@ -1,0 +1,137 @@
+#include "scenarios/evaluation/pair_evaluation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "scenarios/detect/recorded_detector.hpp"
+#include "scenarios/output/errors.hpp"
+
+namespace understory {
+namespace {
+
+/// The rig with images of this size, whose detection depth has this disparity.
+StereoRig rig_looking_at(int disparity_px, const ImagePair& pair, const StereoRig& rig) {
+  StereoRig looking;
+  looking.name = rig.name;
+  looking.width_px = pair.left.cols;
+  looking.height_px = pair.left.rows;
+  looking.focal_px = rig.focal_px * pair.left.cols / rig.width_px;
+  looking.detection_depth_m = rig.detection_depth_m;
+  looking.baseline_m = disparity_px * rig.detection_depth_m / looking.focal_px;
+  looking.center_left_x_px = looking.center_right_x_px = 0.5 * (pair.left.cols - 1);
+  looking.center_y_px = 0.5 * (pair.left.rows - 1);
+  return looking;
+}
+
+TrueImages truth_of(const ImagePair& pair, const StereoRig& rig) {
+  TrueImages truth;
+  truth.depth_mm = cv::Mat::zeros(pair.left.size(), CV_16UC1);
+  for (int row = 0; row < pair.left.rows; ++row)
+    for (int column = 0; column < pair.left.cols; ++column) {
+      const double depth_mm = 1000 * rig.depth_m(pair.disparity_px.at<float>(row, column));
+      // Beyond what 16 bits hold it is only known to be far: a false detection there is false all the same.
+      if (depth_mm > 0)
+        truth.depth_mm.at<std::uint16_t>(row, column) =
+            static_cast<std::uint16_t>(std::lround(std::min(depth_mm, 65'535.0)));
+    }
+  truth.shared_depth_mm = shared_depth(truth.depth_mm, rig);
+  return truth;
+}
+
+struct Algorithm {
+  std::string name, part;
+  VisionConfig config;
+};
+
+std::vector<Algorithm> algorithms_of(const EvaluationSettings& settings) {
+  VisionConfig paper = settings;
+  paper.pushbroom() = papers_rule_beside(settings.pushbroom());
+  std::vector<Algorithm> algorithms{{algorithm_names[algorithm::our_rule], "pushbroom", settings},
+                                    {algorithm_names[algorithm::the_papers_rule], "pushbroom", paper},
+                                    {algorithm_names[algorithm::stereo_bm], "stereo_bm", settings},
+                                    {algorithm_names[algorithm::stereo_sgbm], "stereo_sgbm", settings}};
+  for (const std::string& name : settings.more_detectors) algorithms.push_back({name, name, settings});
+  for (Algorithm& one : algorithms) {
+    one.config.pushbroom().depths_m.clear();
+    one.config.pushbroom().disparities_px.clear();
+  }
+  return algorithms;
+}
+
+std::string percent_text(const Share& share) {
+  return share.of > 0 ? number_text(100 * share.value(), 1) : "-";
+}
+
+}  // namespace
+
+std::vector<int> whole_disparities(const ImagePair& pair, const StereoRig& rig) {
+  if (pair.disparity_px.empty())
+    throw ScenarioError(
+        fmt::format("{}: requires disparity.png or disparity.pfm beside left.png", pair.name));
+  std::vector<double> known;
+  for (int row = 0; row < pair.disparity_px.rows; row += 2)
+    for (int column = 0; column < pair.disparity_px.cols; column += 2)
+      if (const float value = pair.disparity_px.at<float>(row, column); std::isfinite(value))
+        known.push_back(value);
+  if (known.empty()) throw ScenarioError(pair.name + ": no pixel has a true disparity");
+  std::vector<int> disparities;
+  const auto last = static_cast<int>(std::floor(quantile(known, 0.99)));
+  for (auto px = static_cast<int>(std::ceil(quantile(known, 0.01))); px <= last; ++px)
+    if (px > 0 && rig_looking_at(px, pair, rig).can_look_at(px)) disparities.push_back(px);
+  return disparities;
+}
+
+std::vector<PairScore> evaluate_pairs(const std::vector<ImagePair>& pairs, const EvaluationSettings& settings,
+                                      const StereoRig& rig, const std::function<void()>& on_disparity) {
+  const std::vector<Algorithm> algorithms = algorithms_of(settings);
+  std::vector<PairScore> scores;
+  for (const ImagePair& pair : pairs) {
+    const std::size_t first = scores.size();
+    const std::vector<int> disparities = whole_disparities(pair, rig);
+    for (const Algorithm& one : algorithms)
+      scores.push_back({pair.name, one.name, static_cast<int>(disparities.size()), {}});
+    for (const int px : disparities) {
+      const StereoRig looking = rig_looking_at(px, pair, rig);
+      const TrueImages truth = truth_of(pair, looking);
+      const DetectionGrid grid(looking, {}, settings.pushbroom().last_row_px);
+      const std::vector<ExpectedBlock> expected = expected_blocks(truth, grid);
+      for (std::size_t i = 0; i < algorithms.size(); ++i) {
+        VisionConfig config = algorithms[i].config;
+        config.full_stereo = crop_beside(config, looking);
+        RecordedDetector detector(config, algorithms[i].part, looking);
+        std::vector<StereoHit> hits = detector.detector().detect({0, pair.left, pair.right});
+        std::erase_if(hits, [&](const StereoHit& hit) {
+          return !content_between(truth, hit.column_px, hit.row_px, {0.001, 65.535}, Surfaces::any).holds();
+        });
+        count_one_pixel(truth, grid, expected, hits, scores[first + i].rates);
+      }
+      on_disparity();
+    }
+  }
+  return scores;
+}
+
+Table pair_table(const std::vector<PairScore>& scores) {
+  Table table{{"pair", "algorithm", "disparities", "detections", "precision, %", "blocks", "recall, %", "F"}};
+  const auto add = [&](const PairScore& score) {
+    table.add(score.pair, score.algorithm, score.disparities, score.rates.precision.of,
+              percent_text(score.rates.precision), score.rates.recall.of, percent_text(score.rates.recall),
+              number_text(score.rates.f_score(), 3));
+  };
+  std::vector<PairScore> sums;
+  for (const PairScore& score : scores) {
+    add(score);
+    auto sum = std::ranges::find(sums, score.algorithm, &PairScore::algorithm);
+    if (sum == sums.end()) sum = sums.insert(sums.end(), {"all", score.algorithm, 0, {}});
+    sum->disparities += score.disparities;
+    sum->rates.add(score.rates);
+  }
+  for (const PairScore& sum : sums) add(sum);
+  return table;
+}
+
+}  // namespace understory
