@@ -269,7 +269,7 @@ std::array<cv::Mat, 2> SceneRenderer::gray_pair(const std::array<Eye, 2>& eyes) 
 }
 
 cv::Mat SceneRenderer::left_depth(const std::array<Eye, 2>& eyes) {
-  render(eyes);
+  render(eyes, WoodsDrawing::numbers);
   return read_depth(eyes[0]);
 }
 
@@ -301,7 +301,7 @@ cv::Mat SceneRenderer::colour_with_aircraft(const mjData& data, const Eye& eye) 
   begin_picture(eye.width_px, eye.height_px);
   mjr_render({0, 0, eye.width_px, eye.height_px}, &scene_->shown, &scene_->context);
   if (scene_->woods != nullptr)
-    scene_->woods->draw({eye, eye}, 1, WoodsDrawing::shaded, {.near_m = 60}, false);
+    scene_->woods->draw({eye, eye}, 1, WoodsDrawing::colour, {.near_m = 60}, false);
   return colour_with_sky(scene_->gl.finished_pixels(), eye);
 }
 

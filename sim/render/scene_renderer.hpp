@@ -46,7 +46,7 @@ class SceneRenderer {
   void update_scene(const mjData_& data, bool with_aircraft);
   void fill_scene(const std::array<Eye, 2>& eyes);
   /// RGBA of both eyes side by side, as OffscreenContext::finished_pixels.
-  const std::uint8_t* render(const std::array<Eye, 2>& eyes, WoodsDrawing drawing = WoodsDrawing::shaded);
+  const std::uint8_t* render(const std::array<Eye, 2>& eyes, WoodsDrawing drawing = WoodsDrawing::gray);
   /// Of the eye whose picture begins at this column, as last rendered.
   cv::Mat read_depth(const Eye& eye, int from_px = 0);
 

@@ -28,6 +28,7 @@ enum : unsigned {
   gl_texture_2d = 0x0DE1,
   gl_texture0 = 0x84C0,
   gl_rgba_format = 0x1908,
+  gl_nearest = 0x2600,
   gl_linear = 0x2601,
   gl_nearest_mipmap = 0x2700,
   gl_linear_mipmap = 0x2701,
@@ -48,7 +49,7 @@ enum : unsigned {
 
 // Light and haze are worked out at the corners: a fragment costs one texel. What is solid has a program
 // without `discard`, so that hidden fragments are thrown away before they are shaded.
-constexpr const char* vertex_source = R"(#version 110
+constexpr const char* placed_source = R"(#version 110
 attribute vec3 position;
 attribute vec2 texture;
 attribute vec4 tint;
@@ -57,23 +58,50 @@ attribute vec3 ribbon;
 uniform mat4 clip_from_world;
 uniform vec3 eye;
 uniform vec3 turned_to;
+uniform vec3 haze;
 uniform float haze_m;
+vec3 placed() {
+  // A ribbon's corner lies beside its axis, as far as the ribbon is long, and as far before it.
+  vec3 sight = normalize(turned_to - position);
+  vec3 aside = cross(ribbon, sight);
+  float radius = length(ribbon);
+  return position + aside * (radius / max(length(aside), 0.000001)) + sight * radius;
+}
+)";
+constexpr const char* colour_vertex_source = R"(
 varying vec2 at;
 varying vec3 colour;
 varying float haziness;
 varying vec4 number;
 void main() {
-  // A ribbon's corner lies beside its axis, as far as the ribbon is long, and as far before it.
-  vec3 sight = normalize(turned_to - position);
-  vec3 aside = cross(ribbon, sight);
-  float radius = length(ribbon);
-  vec3 place = position + aside * (radius / max(length(aside), 0.000001)) + sight * radius;
+  vec3 place = placed();
   gl_Position = clip_from_world * vec4(place, 1.0);
   at = texture;
   float clear = exp(-distance(place, eye) / haze_m);
   colour = tint.rgb * (2.0 * clear);
   haziness = 1.0 - clear;
   number = object;
+})";
+// Cameras see the green channel alone, and everything that a fragment needs is one varying.
+constexpr const char* gray_vertex_source = R"(
+varying vec4 seen;
+void main() {
+  vec3 place = placed();
+  gl_Position = clip_from_world * vec4(place, 1.0);
+  float clear = exp(-distance(place, eye) / haze_m);
+  seen = vec4(texture, tint.g * (2.0 * clear), haze.g * (1.0 - clear));
+})";
+constexpr const char* gray_solid_source = R"(#version 110
+uniform sampler2D picture;
+varying vec4 seen;
+void main() { gl_FragColor = vec4(vec3(texture2D(picture, seen.xy).g * seen.z + seen.w), 1.0); })";
+constexpr const char* gray_leaves_source = R"(#version 110
+uniform sampler2D picture;
+varying vec4 seen;
+void main() {
+  vec4 texel = texture2D(picture, seen.xy);
+  if (texel.a < 0.4) discard;
+  gl_FragColor = vec4(vec3(texel.g * seen.z + seen.w), 1.0);
 })";
 constexpr const char* solid_source = R"(#version 110
 uniform sampler2D picture;
@@ -231,13 +259,16 @@ struct WoodsPass::Implementation {
   Gl gl;
   std::vector<WoodsPart> parts;
   float haze_m;
-  std::array<unsigned, 3> programs{};  ///< solid, leaves, numbers
+  std::array<unsigned, 5> programs{};  ///< solid and leaves in gray, in colour; numbers
   std::array<unsigned, 2> buffers{};   ///< vertices, indices
   std::array<unsigned, woods_texture_count> textures{};
 
   Implementation(const WoodsMesh& mesh, const OffscreenContext& context)
       : gl(context), parts(mesh.parts), haze_m(static_cast<float>(mesh.haze_m)) {
-    programs = {program_of(solid_source), program_of(leaves_source), program_of(numbers_source)};
+    programs = {
+        program_of(gray_vertex_source, gray_solid_source), program_of(gray_vertex_source, gray_leaves_source),
+        program_of(colour_vertex_source, solid_source), program_of(colour_vertex_source, leaves_source),
+        program_of(colour_vertex_source, numbers_source)};
     gl.GenBuffers(2, buffers.data());
     gl.BindBuffer(gl_array_buffer, buffers[0]);
     gl.BufferData(gl_array_buffer, static_cast<std::ptrdiff_t>(mesh.vertices.size() * sizeof(WoodsVertex)),
@@ -249,17 +280,15 @@ struct WoodsPass::Implementation {
     gl.BindBuffer(gl_array_buffer, 0);
     gl.BindBuffer(gl_element_array_buffer, 0);
     gl.GenTextures(static_cast<int>(textures.size()), textures.data());
-    // A tenth of a pair's cost: ground and leaves, which fill most of it, take the nearest texel.
-    for (std::size_t i = 0; i < woods_texture_count; ++i)
-      upload(textures[i], mesh.textures[i],
-             static_cast<WoodsTexture>(i) >= WoodsTexture::ground ? gl_nearest_mipmap : gl_linear_mipmap);
+    for (std::size_t i = 0; i < woods_texture_count; ++i) upload(textures[i], mesh.textures[i]);
     gl.BindTexture(gl_texture_2d, 0);
   }
 
-  unsigned program_of(const char* fragment_source) const {
+  unsigned program_of(const char* main_of_vertices, const char* fragment_source) const {
     const unsigned program = gl.CreateProgram();
-    for (const auto& [kind, source] :
-         {std::pair(gl_vertex_shader, vertex_source), std::pair(gl_fragment_shader, fragment_source)}) {
+    const std::string vertex_source = std::string(placed_source) + main_of_vertices;
+    for (const auto& [kind, source] : {std::pair(gl_vertex_shader, vertex_source.c_str()),
+                                       std::pair(gl_fragment_shader, fragment_source)}) {
       const unsigned shader = gl.CreateShader(kind);
       gl.ShaderSource(shader, 1, &source, nullptr);
       gl.CompileShader(shader);
@@ -278,12 +307,18 @@ struct WoodsPass::Implementation {
     return program;
   }
 
-  void upload(unsigned texture, WoodsPicture picture, int filter) const {
+  /// Of the texture that is bound. Ground and leaves, which fill most of a picture, take the nearest texel
+  /// where they are made smaller: a tenth of a pair's cost.
+  void set_filter(WoodsTexture texture, bool smooth) const {
+    const bool smooth_if_smaller = smooth && texture < WoodsTexture::ground;
+    gl.TexParameteri(gl_texture_2d, gl_min_filter, smooth_if_smaller ? gl_linear_mipmap : gl_nearest_mipmap);
+    gl.TexParameteri(gl_texture_2d, gl_mag_filter, smooth ? gl_linear : gl_nearest);
+  }
+
+  void upload(unsigned texture, WoodsPicture picture) const {
     if (picture.rgba.empty()) return;
     gl.BindTexture(gl_texture_2d, texture);
     gl.PixelStorei(gl_unpack, 1);
-    gl.TexParameteri(gl_texture_2d, gl_min_filter, filter);
-    gl.TexParameteri(gl_texture_2d, gl_mag_filter, gl_linear);
     for (int level = 0;; ++level) {
       gl.TexImage2D(gl_texture_2d, level, gl_rgba_format, picture.width_px, picture.height_px, 0,
                     gl_rgba_format, gl_unsigned_byte_type, picture.rgba.data());
@@ -303,12 +338,24 @@ struct WoodsPass::Implementation {
     }
   };
 
-  std::array<Batch, woods_texture_count> batches_for(const std::array<Eye, 2>& eyes,
-                                                     const WoodsDetail& detail) const {
+  /// What is drawn after one another: first what hides most of the rest.
+  enum Layer : std::size_t {
+    closed_solids,
+    near_solids,
+    near_leaves,
+    far_solids,
+    ground,
+    far_leaves,
+    layers
+  };
+  /// Of a layer, by whether textures are smoothed, and by texture.
+  using Batches = std::array<std::array<std::array<Batch, woods_texture_count>, 2>, layers>;
+
+  Batches batches_for(const std::array<Eye, 2>& eyes, WoodsDrawing drawing, const WoodsDetail& detail) const {
     std::vector<std::pair<double, const WoodsPart*>> seen;
     for (const WoodsPart& part : parts) {
       const Eigen::Vector3d eye = eyes[0].T_world_camera.translation();
-      const double range_m = part.box_world.exteriorDistance(eye);
+      const double range_m = part.whole_world.exteriorDistance(eye);
       GeomBox box;
       box.T_world_box.translation() = part.box_world.center();
       box.half_size = 0.5 * part.box_world.sizes();
@@ -316,11 +363,20 @@ struct WoodsPass::Implementation {
         seen.emplace_back(range_m, &part);
     }
     std::ranges::stable_sort(seen, {}, [](const auto& one) { return one.first; });
-    std::array<Batch, woods_texture_count> batches;
+    const bool is_gray = drawing == WoodsDrawing::gray;
+    Batches batches;
     for (const auto& [range_m, part] : seen) {
       const std::size_t far = range_m > detail.near_m;
-      batches[static_cast<std::size_t>(part->texture)].add(part->solid[far]);
-      batches[static_cast<std::size_t>(WoodsTexture::leaves)].add(part->leaves[far]);
+      const bool smooth = !is_gray || range_m <= detail.smooth_m;
+      const bool coarse = is_gray && far == 0 && range_m > detail.fine_m && part->coarse.count > 0;
+      const Layer solids = part->texture == WoodsTexture::ground ? ground
+                           : far != 0                            ? far_solids
+                           : part->closed && is_gray             ? closed_solids
+                                                                 : near_solids;
+      const auto texture = static_cast<std::size_t>(part->texture);
+      batches[solids][smooth][texture].add(coarse ? part->coarse : part->solid[far]);
+      constexpr auto leaves = static_cast<std::size_t>(WoodsTexture::leaves);
+      batches[far != 0 ? far_leaves : near_leaves][smooth][leaves].add(part->leaves[far]);
     }
     return batches;
   }
@@ -380,23 +436,36 @@ void WoodsPass::draw(const std::array<Eye, 2>& eyes, std::size_t count, WoodsDra
   const Implementation& my = *implementation_;
   my.gl.PushAttrib(gl_all_attrib_bits);
   my.gl.PushClientAttrib(gl_client_all);
-  const auto batches = my.batches_for(eyes, detail);
+  using My = Implementation;
+  const My::Batches batches = my.batches_for(eyes, drawing, detail);
+  const auto& [gray_solid, gray_leaves, colour_solid, colour_leaves, numbers] = my.programs;
+  const auto program_for = [&](std::size_t layer) {
+    const bool is_leaves = layer == My::near_leaves || layer == My::far_leaves;
+    if (drawing == WoodsDrawing::numbers) return numbers;
+    if (drawing == WoodsDrawing::gray) return is_leaves ? gray_leaves : gray_solid;
+    return is_leaves ? colour_leaves : colour_solid;
+  };
+  const Eigen::Vector3d turned_to = eyes[0].T_world_camera.translation();
   for (std::size_t eye = 0; eye < count; ++eye) {
     my.set_state(eyes[eye], static_cast<int>(eye) * eyes[0].width_px);
     if (clears && eye == 0) {
       my.gl.ClearColor(0, 0, 0, 0);
       my.gl.Clear(gl_color_bit | gl_depth_bit);
     }
-    const auto& [solid, leaves, numbers] = my.programs;
-    const Eigen::Vector3d turned_to = eyes[0].T_world_camera.translation();
-    my.use(drawing == WoodsDrawing::numbers ? numbers : solid, eyes[eye], turned_to);
-    for (std::size_t i = 0; i < batches.size(); ++i) {  // the leaves come last
-      if (batches[i].counts.empty()) continue;
-      if (i == static_cast<std::size_t>(WoodsTexture::leaves) && drawing == WoodsDrawing::shaded)
-        my.use(leaves, eyes[eye], turned_to);
-      my.gl.BindTexture(gl_texture_2d, my.textures[i]);
-      my.gl.MultiDrawElements(gl_triangles, batches[i].counts.data(), gl_unsigned_int,
-                              batches[i].offsets.data(), static_cast<int>(batches[i].counts.size()));
+    unsigned used = 0;
+    for (std::size_t layer = 0; layer < My::layers; ++layer) {
+      if (layer == My::closed_solids) my.gl.Enable(gl_cull_face);
+      if (layer == My::near_solids) my.gl.Disable(gl_cull_face);
+      if (program_for(layer) != used) my.use(used = program_for(layer), eyes[eye], turned_to);
+      for (const bool smooth : {true, false})
+        for (std::size_t texture = 0; texture < woods_texture_count; ++texture) {
+          const My::Batch& batch = batches[layer][smooth][texture];
+          if (batch.counts.empty()) continue;
+          my.gl.BindTexture(gl_texture_2d, my.textures[texture]);
+          my.set_filter(static_cast<WoodsTexture>(texture), smooth);
+          my.gl.MultiDrawElements(gl_triangles, batch.counts.data(), gl_unsigned_int, batch.offsets.data(),
+                                  static_cast<int>(batch.counts.size()));
+        }
     }
   }
   for (unsigned index = 0; index < 5; ++index) my.gl.DisableVertexAttribArray(index);

@@ -11,11 +11,14 @@ namespace understory {
 
 class OffscreenContext;
 
-/// What is drawn of a wood: images shade it, numbers give each pixel the number of its object.
-enum class WoodsDrawing { shaded, numbers };
+/// What is drawn of a wood: gray is what cameras see, in all three channels; numbers give each pixel the
+/// number of its object, and are drawn with every side of every tube, as true depth is.
+enum class WoodsDrawing { gray, colour, numbers };
 /// How far detail is drawn: cameras draw the cheaper design beyond `near_m`.
 struct WoodsDetail {
   double near_m = 11;
+  double fine_m = 4;    ///< gray alone: tubes have half of their sides beyond
+  double smooth_m = 6;  ///< gray alone: textures take the nearest texel beyond
   double reach_m = 80;  ///< nothing is drawn beyond
 };
 

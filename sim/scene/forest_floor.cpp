@@ -28,19 +28,11 @@ class FloorPainter {
         log_(static_cast<std::uint16_t>(numbers.log())) {}
 
   void paint(const Vector2d& corner) {
-    builder_.begin_part(WoodsTexture::ground);
-    WoodsPart& part = builder_.part();
-    add_ground(corner, part);
     std::vector<Plant> plants;
     const int count = static_cast<int>(config_.undergrowth * patch_m * patch_m * 0.9);
     for (int i = 0; i < count; ++i) plant_one(corner, plants);
-    part.leaves[0] = builder_.range_of([&] {
-      for (const Plant& plant : plants) add_plant(plant, true);
-    });
-    part.leaves[1] = builder_.range_of([&] {
-      for (const Plant& plant : plants) add_plant(plant, false);
-    });
-    builder_.end_part();
+    for (const std::size_t row : {0, 2})
+      for (const std::size_t column : {0, 2}) paint_quarter(corner, row, column, plants);
     const double logs = config_.fallen_logs * patch_m * patch_m / 10'000;
     if (builder_.uniform(0, 1) < logs) add_log(corner + patch_m * random_place());
   }
@@ -59,13 +51,32 @@ class FloorPainter {
     return {x, builder_.uniform(0, 1)};
   }
 
-  /// Far away every second row and column is enough. On a patch's rim the corners between lie on the straight
-  /// line, so that no gap opens beside a patch that is drawn the other way.
-  void add_ground(const Vector2d& corner, WoodsPart& part) {
+  /// Quarters are small enough that plants outside of the view, and beyond the near ones, are left out.
+  void paint_quarter(const Vector2d& corner, std::size_t row, std::size_t column,
+                     const std::vector<Plant>& plants) {
+    builder_.begin_part(WoodsTexture::ground);
+    WoodsPart& part = builder_.part();
+    add_ground(corner, row, column, part);
+    const Vector2d low = corner + cell_m * Vector2d(static_cast<double>(column), static_cast<double>(row));
+    const auto add_plants = [&](bool near) {
+      return builder_.range_of([&] {
+        for (const Plant& plant : plants)
+          if (((plant.foot.head<2>() - low) / (2 * cell_m)).array().floor().isZero()) add_plant(plant, near);
+      });
+    };
+    part.leaves[0] = add_plants(true);
+    part.leaves[1] = add_plants(false);
+    builder_.end_part();
+  }
+
+  /// Far away every second row and column is enough. On a quarter's rim the corners between lie on the
+  /// straight line, so that no gap opens beside a patch that is drawn the other way.
+  void add_ground(const Vector2d& corner, std::size_t first_row, std::size_t first_column, WoodsPart& part) {
     const Vector3d leaves_on_soil(124, 100, 72), moss(92, 108, 66);
-    std::array<std::array<std::uint32_t, cells_per_patch + 1>, cells_per_patch + 1> at{};
-    for (std::size_t row = 0; row <= cells_per_patch; ++row)
-      for (std::size_t column = 0; column <= cells_per_patch; ++column) {
+    std::array<std::array<std::uint32_t, 3>, 3> at{};
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) {
+        const std::size_t row = first_row + i, column = first_column + j;
         const Vector2d place =
             corner + cell_m * Vector2d(static_cast<double>(column), static_cast<double>(row));
         const auto slope = [&](const Vector2d& step) {
@@ -74,17 +85,16 @@ class FloorPainter {
         const Vector3d normal = Vector3d(slope({0.5, 0}), slope({0, 0.5}), 1).normalized();
         const double brown =
             std::clamp(config_.litter + 0.35 * noise_at(place / 5, builder_.noise_seed + 7), 0.0, 1.0);
-        at[row][column] =
+        at[i][j] =
             builder_.add_vertex({place.x(), place.y(), height(corner, row, column)},
                                 place.x() / dapple_tile_m, place.y() / dapple_tile_m,
                                 builder_.lit(moss + brown * (leaves_on_soil - moss), normal), object_ground);
       }
     for (const std::size_t step : {1, 2})
       part.solid[step - 1] = builder_.range_of([&] {
-        for (std::size_t row = 0; row < cells_per_patch; row += step)
-          for (std::size_t column = 0; column < cells_per_patch; column += step)
-            builder_.add_quad(at[row][column], at[row][column + step], at[row + step][column + step],
-                              at[row + step][column]);
+        for (std::size_t i = 0; i < 2; i += step)
+          for (std::size_t j = 0; j < 2; j += step)
+            builder_.add_quad(at[i][j], at[i][j + step], at[i + step][j + step], at[i + step][j]);
       });
   }
 
@@ -92,10 +102,8 @@ class FloorPainter {
     const auto z = [&](std::size_t r, std::size_t c) {
       return builder_.ground_z(corner + cell_m * Vector2d(static_cast<double>(c), static_cast<double>(r)));
     };
-    const bool first_or_last_row = row % cells_per_patch == 0,
-               first_or_last_column = column % cells_per_patch == 0;
-    if (first_or_last_row && column % 2 == 1) return 0.5 * (z(row, column - 1) + z(row, column + 1));
-    if (first_or_last_column && row % 2 == 1) return 0.5 * (z(row - 1, column) + z(row + 1, column));
+    if (row % 2 == 0 && column % 2 == 1) return 0.5 * (z(row, column - 1) + z(row, column + 1));
+    if (column % 2 == 0 && row % 2 == 1) return 0.5 * (z(row - 1, column) + z(row + 1, column));
     return z(row, column);
   }
 

@@ -13,6 +13,28 @@ using Eigen::Vector3d;
 constexpr double tile_width_m = 0.7, tile_height_m = 1.4;  ///< of bark
 constexpr double relief_m = 0.12;
 
+/// Where a picture of leaves has leaves, x and y from -1 to 1: what lies outside costs time and shows
+/// nothing.
+std::vector<Vector2d> outline_of(LeafPicture picture) {
+  switch (picture) {
+    case LeafPicture::needles:  // wider to the right
+      return {{-1, -0.46}, {1, -1}, {1, 1}, {-1, 0.46}};
+    case LeafPicture::frond:
+      return {{-0.05, -1}, {0.05, -1}, {0.8, 0.2}, {0.66, 0.94}, {-0.66, 0.94}, {-0.8, 0.2}};
+    case LeafPicture::fern:
+      return {{-1, -1}, {1, -1}, {1, 0.8}, {-1, 0.8}};
+    case LeafPicture::grass:
+      return {{-0.5, -1}, {0.5, -1}, {1, 0.05}, {1, 0.88}, {-1, 0.88}, {-1, 0.05}};
+    case LeafPicture::thicket:
+      return {{-1, -1}, {1, -1}, {1, 0.05}, {0.45, 0.88}, {-1, 0.75}};
+    case LeafPicture::leaves:
+    case LeafPicture::more_leaves:
+    case LeafPicture::twigs:
+      break;
+  }
+  return {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+}
+
 /// Along the line of points, from the one before to the one after.
 Vector3d direction_at(const std::vector<Vector3d>& axis, std::size_t i) {
   return (axis[std::min(i + 1, axis.size() - 1)] - axis[i > 0 ? i - 1 : 0]).normalized();
@@ -71,6 +93,15 @@ double MeshBuilder::sun_at(const Vector3d& place) const {
 void MeshBuilder::begin_part(WoodsTexture texture) {
   part_ = {};
   part_.texture = texture;
+}
+
+Eigen::AlignedBox3d MeshBuilder::box_of(const WoodsRange& range) const {
+  Eigen::AlignedBox3d box;
+  for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
+    const std::array<float, 3>& place = mesh.vertices[mesh.indices[i]].position_world;
+    box.extend(Vector3d(place[0], place[1], place[2]));
+  }
+  return box;
 }
 
 std::uint32_t MeshBuilder::add_vertex(const Vector3d& place, double u, double v, const Vector3d& tint,
@@ -145,14 +176,19 @@ void MeshBuilder::add_ribbon(const std::vector<Vector3d>& axis, const std::vecto
 
 void MeshBuilder::add_card(const Card& card, const Vector3d& low_tint, const Vector3d& high_tint,
                            std::uint16_t object) {
-  const auto index = static_cast<int>(card.picture);
-  const double u = 0.25 * (index % 4), v = 0.5 * (index / 4);
+  const auto cell = static_cast<int>(card.picture);
+  const double u = 0.25 * (cell % 4), v = 0.5 * (cell / 4);
   constexpr double inset_u = 0.002, inset_v = 0.004;
-  const auto& [middle, x, y, picture] = card;
-  add_quad(add_vertex(middle - x - y, u + inset_u, v + inset_v, low_tint, object),
-           add_vertex(middle + x - y, u + 0.25 - inset_u, v + inset_v, low_tint, object),
-           add_vertex(middle + x + y, u + 0.25 - inset_u, v + 0.5 - inset_v, high_tint, object),
-           add_vertex(middle - x + y, u + inset_u, v + 0.5 - inset_v, high_tint, object));
+  const std::vector<Vector2d> outline = outline_of(card.picture);
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const Vector2d& at : outline) {
+    const Vector2d share = 0.5 * (at + Vector2d::Ones());
+    add_vertex(card.middle + at.x() * card.x + at.y() * card.y,
+               u + inset_u + share.x() * (0.25 - 2 * inset_u), v + inset_v + share.y() * (0.5 - 2 * inset_v),
+               low_tint + share.y() * (high_tint - low_tint), object);
+  }
+  for (std::uint32_t corner = 2; corner < outline.size(); ++corner)
+    for (const std::uint32_t index : {0u, corner - 1, corner}) mesh.indices.push_back(first + index);
 }
 
 }  // namespace understory

@@ -34,7 +34,10 @@ class MeshBuilder {
   Eigen::Vector3d lit(const Eigen::Vector3d& tint, const Eigen::Vector3d& normal) const;
 
   void begin_part(WoodsTexture texture);
-  void end_part() { mesh.parts.push_back(part_); }
+  void end_part() {
+    part_.whole_world = part_.box_world;
+    mesh.parts.push_back(part_);
+  }
   WoodsPart& part() { return part_; }
 
   /// Calls `add` and returns the indices that it added as a range.
@@ -45,6 +48,9 @@ class MeshBuilder {
     range.count = static_cast<std::uint32_t>(mesh.indices.size()) - range.first;
     return range;
   }
+
+  /// Around the corners of these triangles.
+  Eigen::AlignedBox3d box_of(const WoodsRange& range) const;
 
   std::uint32_t add_vertex(const Eigen::Vector3d& place, double u, double v, const Eigen::Vector3d& tint,
                            std::uint16_t object);

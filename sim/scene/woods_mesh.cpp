@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "sim/scene/mesh_builder.hpp"
 #include "sim/scene/meshes.hpp"
@@ -67,25 +68,51 @@ class TreePainter {
     builder_.begin_part(static_cast<WoodsTexture>(tree_.kind));
     read_stem();
     WoodsPart& part = builder_.part();
-    part.solid[0] = builder_.range_of([&] {
-      builder_.add_tube(axis_, radii_m_, sides_of(radii_m_[1]), bark_,
-                        obstacles_[tree_.first].texture_turn_rad, trunk_);
-      for (std::size_t i = first_branch(); i < first_branch() + tree_.branches; ++i)
-        builder_.add_tube({obstacles_[i].from_world, obstacles_[i].to_world},
-                          {obstacles_[i].radius_m, obstacles_[i].radius_m}, sides_of(obstacles_[i].radius_m),
-                          0.85 * bark_, 0, branch_);
-    });
+    const auto tubes = [&](int divided_by) {
+      return builder_.range_of([&] {
+        const auto sides = [&](double radius_m) { return std::max(5, sides_of(radius_m) / divided_by); };
+        builder_.add_tube(axis_, radii_m_, sides(radii_m_[1]), bark_,
+                          obstacles_[tree_.first].texture_turn_rad, trunk_);
+        for (std::size_t i = first_branch(); i < first_branch() + tree_.branches; ++i)
+          builder_.add_tube({obstacles_[i].from_world, obstacles_[i].to_world},
+                            {obstacles_[i].radius_m, obstacles_[i].radius_m}, sides(obstacles_[i].radius_m),
+                            0.85 * bark_, 0, branch_);
+      });
+    };
+    part.closed = true;
+    part.solid[0] = tubes(1);
+    part.coarse = tubes(2);
     part.solid[1] = builder_.range_of(
         [&] { builder_.add_ribbon(every_fourth(axis_), every_fourth(radii_m_), bark_, trunk_); });
-    place_clumps();
-    part.leaves[0] = builder_.range_of([&] {
-      for (const Clump& clump : clumps_) add_clump(clump);
-      add_leaves_of_branches();
-    });
-    part.leaves[1] = builder_.range_of([&] {
-      for (const Clump& clump : clumps_) add_far_clump(clump);
-    });
     builder_.end_part();
+    place_clumps();
+    // Three storeys: what hangs above the view is not drawn.
+    constexpr std::size_t storeys = 3;
+    std::array<WoodsPart, storeys> crown;
+    const auto clumps_of = [&](std::size_t storey) {
+      const std::size_t from = storey * clumps_.size() / storeys,
+                        to = (storey + 1) * clumps_.size() / storeys;
+      return std::span(clumps_).subspan(from, to - from);
+    };
+    for (std::size_t i = 0; i < storeys; ++i)
+      crown[i].leaves[0] = builder_.range_of([&] {
+        for (const Clump& clump : clumps_of(i)) add_clump(clump);
+        if (i + 1 == storeys) add_leaves_of_branches();
+      });
+    for (std::size_t i = 0; i < storeys; ++i)
+      crown[i].leaves[1] = builder_.range_of([&] {
+        for (const Clump& clump : clumps_of(i)) add_far_clump(clump);
+      });
+    std::vector<WoodsPart>& parts = builder_.mesh.parts;
+    Eigen::AlignedBox3d whole_world = parts.back().box_world;
+    for (WoodsPart& storey : crown) {
+      storey.texture = static_cast<WoodsTexture>(tree_.kind);
+      for (const WoodsRange& range : storey.leaves) storey.box_world.extend(builder_.box_of(range));
+      whole_world.extend(storey.box_world);
+    }
+    parts.insert(parts.end(), crown.begin(), crown.end());
+    for (std::size_t i = parts.size() - storeys - 1; i < parts.size(); ++i)
+      parts[i].whole_world = whole_world;
   }
 
  private:

@@ -28,11 +28,15 @@ struct WoodsRange {
   std::uint32_t count = 0;
 };
 
-/// What is culled and drawn as a whole: a tree, a piece of ground with its plants, a tree of the far wood.
+/// What is culled and drawn as a whole: a stem, a crown, a piece of ground with its plants, a tree of the far
+/// wood.
 struct WoodsPart {
   Eigen::AlignedBox3d box_world;
+  Eigen::AlignedBox3d whole_world;  ///< of the tree that it is a piece of: says how far away it is
   /// Solid pieces near and far, cut-out leaves near and far.
   std::array<WoodsRange, 2> solid, leaves;
+  WoodsRange coarse;    ///< the near solid pieces with half of their sides; empty: as they are
+  bool closed = false;  ///< the near solid pieces show their outsides alone
   WoodsTexture texture = WoodsTexture::ground;  ///< of the solid pieces
 };
 
