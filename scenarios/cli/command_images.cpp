@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "scenarios/cli/arguments.hpp"
@@ -21,13 +22,16 @@ struct ImagesArguments {
 int run_images(const ImagesArguments& arguments) {
   for (const std::string& output : {arguments.csv, arguments.page}) require_writable(output);
   require_separate({arguments.csv, arguments.page}, {});
-  std::vector<ImageStatistics> all;
+  std::vector<std::pair<std::string, std::vector<ImagePair>>> sources;
   for (const std::string& folder : arguments.folders) {
-    std::vector<ImagePair> pairs = read_image_pairs(folder, arguments.every);
-    if (arguments.width_px > 0)
-      for (ImagePair& pair : pairs) pair = narrowed(pair, arguments.width_px);
-    all.push_back(image_statistics(recording_name(folder), pairs));
+    const std::string scene = scene_of(folder);
+    auto source = std::ranges::find(sources, scene, &decltype(sources)::value_type::first);
+    if (source == sources.end()) source = sources.insert(sources.end(), {scene, {}});
+    for (const ImagePair& pair : read_image_pairs(folder, arguments.every))
+      source->second.push_back(arguments.width_px > 0 ? narrowed(pair, arguments.width_px) : pair);
   }
+  std::vector<ImageStatistics> all;
+  for (const auto& [scene, pairs] : sources) all.push_back(image_statistics(scene, pairs));
   const Table table = image_table(all);
   if (!arguments.csv.empty()) write_whole_file(arguments.csv, to_csv(table));
   if (!arguments.page.empty()) write_whole_file(arguments.page, image_page(all, data_root()));
@@ -46,7 +50,7 @@ void add_images_command(CommandLine& line) {
   command.texts(
       "FOLDER", "FOLDER", arguments->folders,
       "recordings in EuRoC layout; folders with left.png and right.png (and disparity.png or .pfm), or "
-      "folders of these",
+      "folders of these; recordings of one scene (woods-1, woods-2) are one source",
       1);
   command.whole("--width", arguments->width_px, 32, 8192,
                 "make wider images this wide first, so that sources are alike in size");

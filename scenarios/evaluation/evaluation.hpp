@@ -118,6 +118,8 @@ struct RecordingEvaluation {
 
 /// What a recording is called: its folder, "rec" of "/data/rec/".
 std::string recording_name(const std::filesystem::path& folder);
+/// "level-1203" is of the scene "level": what stands behind the last hyphen is a seed, where it is a number.
+std::string scene_of(const std::filesystem::path& folder);
 
 /// Throws ScenarioError as EvaluationRecording does, or where the rule does not fit the rig. `on_frame` is
 /// called after each.

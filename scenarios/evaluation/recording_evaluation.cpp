@@ -26,15 +26,6 @@ namespace fs = std::filesystem;
 constexpr std::int64_t compared_every = 8;  // the paper's evaluations: 15 frames a second
 constexpr std::size_t worst_kept = 8;
 
-/// "level-1203" is of the scene "level": what stands behind the last hyphen is a seed, where it is a number.
-std::string scene_of(const fs::path& folder) {
-  const std::string name = recording_name(folder);
-  const std::size_t hyphen = name.find_last_of('-');
-  const bool numbered = hyphen != std::string::npos && hyphen > 0 && hyphen + 1 < name.size() &&
-                        name.find_first_not_of("0123456789", hyphen + 1) == std::string::npos;
-  return numbered ? name.substr(0, hyphen) : name;
-}
-
 /// Of a frame, on the aircraft's computer. What disparities cost nobody knows.
 double cost_s(std::size_t index, const ComputeConfig& compute) {
   if (index >= algorithm_count) return 0;
@@ -354,6 +345,14 @@ class Evaluator {
 
 std::string recording_name(const fs::path& folder) {
   return folder.has_filename() ? folder.filename().string() : folder.parent_path().filename().string();
+}
+
+std::string scene_of(const fs::path& folder) {
+  const std::string name = recording_name(folder);
+  const std::size_t hyphen = name.find_last_of('-');
+  const bool numbered = hyphen != std::string::npos && hyphen > 0 && hyphen + 1 < name.size() &&
+                        name.find_first_not_of("0123456789", hyphen + 1) == std::string::npos;
+  return numbered ? name.substr(0, hyphen) : name;
 }
 
 RecordingEvaluation evaluate_recording(const fs::path& folder, const EvaluationSettings& settings,

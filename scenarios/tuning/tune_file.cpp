@@ -1,6 +1,7 @@
 #include "scenarios/tuning/tune_file.hpp"
 
 #include <fmt/format.h>
+#include <glob.h>
 
 #include <algorithm>
 #include <array>
@@ -198,17 +199,27 @@ void check_search(const ConfigNode& top, TuneFile& tune) {
   tune.search.trials = static_cast<int>(size);
 }
 
+/// The folders of this name; in the place of `*` and `?` anything may stand, as in a shell. By name.
+std::vector<fs::path> folders_named(const fs::path& name) {
+  std::vector<fs::path> folders;
+  glob_t found{};
+  if (glob(name.c_str(), GLOB_ONLYDIR, nullptr, &found) == 0)
+    for (std::size_t i = 0; i < found.gl_pathc; ++i)
+      if (std::error_code ignored; fs::is_directory(found.gl_pathv[i], ignored))
+        folders.push_back(fs::canonical(found.gl_pathv[i]));
+  globfree(&found);
+  return folders;
+}
+
 /// Folders as they are, beside the file or where they are said to be, links resolved.
 std::vector<fs::path> folders_of(const std::vector<std::string>& words, const ConfigNode& top,
                                  const std::string& key, const fs::path& file) {
   std::vector<fs::path> folders;
   for (const std::string& word : words) {
-    std::error_code ignored;
-    const fs::path beside = file.parent_path() / word;
-    const fs::path folder = fs::is_directory(beside, ignored) ? beside : fs::path(word);
-    if (!fs::is_directory(folder, ignored))
-      refuse_key_since(top, key, fmt::format("there is no folder {}", word));
-    folders.push_back(fs::canonical(folder));
+    std::vector<fs::path> named = folders_named(file.parent_path() / word);
+    if (named.empty()) named = folders_named(word);
+    if (named.empty()) refuse_key_since(top, key, fmt::format("there is no folder {}", word));
+    folders.insert(folders.end(), named.begin(), named.end());
   }
   return folders;
 }
