@@ -33,19 +33,25 @@ struct TuneArguments {
   bool ask = false;
 };
 
+std::unique_ptr<Judge> judge_of_flights(const char* part, const std::vector<std::uint64_t>& seeds,
+                                        const TuneFile& file, const TuneArguments& arguments,
+                                        const fs::path& folder) {
+  rig_of(file.scenario, data_root() / "models");  // before anything is flown: every flight would fail
+  return flight_judge({folder / "flown" / part, seeds,
+                       std::string(word_for(opened_renderer(arguments.renderer).kind)), file.timeout_s,
+                       jobs_or_cores(arguments.jobs)});
+}
+
 /// The judge of training or validation data.
 std::unique_ptr<Judge> judge_of(bool validation, const TuneFile& file, const TuneArguments& arguments,
                                 const fs::path& folder) {
-  const int jobs = jobs_or_cores(arguments.jobs);
-  if (file.over == TuningData::recordings)
-    return bad_input_if_refused([&] {
-      return vision_judge(validation ? file.validation_folders : file.training_folders, file.every, jobs);
-    });
-  rig_of(file.scenario, data_root() / "models");  // before anything is flown: every flight would fail
-  return flight_judge({folder / "flown" / (validation ? "validation" : "training"),
-                       validation ? file.validation_seeds : file.training_seeds,
-                       std::string(word_for(opened_renderer(arguments.renderer).kind)), file.timeout_s,
-                       jobs});
+  if (file.over == TuningData::flights)
+    return validation ? judge_of_flights("validation", file.validation_seeds, file, arguments, folder)
+                      : judge_of_flights("training", file.training_seeds, file, arguments, folder);
+  return bad_input_if_refused([&] {
+    return vision_judge(validation ? file.validation_folders : file.training_folders, file.every,
+                        jobs_or_cores(arguments.jobs));
+  });
 }
 
 /// Answers another program, a line for a line, until its questions end.
@@ -110,6 +116,8 @@ int run_tune(const TuneArguments& arguments) {
   prepare_tune_folder(mark, folder, file, arguments.resume, identity);
   if (arguments.ask) return answer_questions(file, arguments, folder);
   if (file.over == TuningData::flights) take_judges();
+  std::unique_ptr<Judge> flights;
+  if (!file.fly.empty()) flights = judge_of_flights("best", file.fly, file, arguments, folder);
   const StopSignals stop_signals;
   ProgressLine line;
   TuneOptions options;
@@ -117,7 +125,7 @@ int run_tune(const TuneArguments& arguments) {
   options.stop_asked = [&] { return stop_signals.asked(); };
   options.on_progress = [&](const TuneProgress& progress) { show(line, file, progress); };
   try {
-    const Tuned tuned = tune(file, *training, *validation, options);
+    const Tuned tuned = tune(file, *training, *validation, options, flights.get());
     write_tune_report(folder, file, tuned, data_root());
     line.clear();
     fmt::print("{}{}", to_text(comparison_table(file, tuned)),

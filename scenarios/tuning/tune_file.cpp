@@ -42,7 +42,7 @@ struct TuneText {
   ConfigNode parameters;
   ObjectiveText objective;
   TuneFile tune;  ///< the keys that need no more than reading
-  std::vector<std::string> training, validation;
+  std::vector<std::string> training, validation, fly;
 };
 
 void visit_fields(FieldVisitor& visit, TuneText& text) {
@@ -55,6 +55,7 @@ void visit_fields(FieldVisitor& visit, TuneText& text) {
   visit("over", text.tune.over, data_names);
   visit("training", text.training, data);
   visit("validation", text.validation, data);
+  visit("fly", text.fly, "seeds, for instance 1100..1119");
   visit("every", text.tune.every, 1, 1000);
   visit("timeout_s", text.tune.timeout_s, 1, 86400);
 }
@@ -230,6 +231,7 @@ bool holds(const fs::path& folder, const fs::path& other) {
 
 void take_data(const TuneText& text, const ConfigNode& top, const fs::path& file, TuneFile& tune) {
   if (tune.over == TuningData::flights) {
+    if (!text.fly.empty()) refuse_key_since(top, "fly", "is for tunings over recordings: these fly anyway");
     tune.training_seeds = seeds_in(text.training, top, "training");
     tune.validation_seeds = seeds_in(text.validation, top, "validation");
     for (const std::uint64_t seed : tune.validation_seeds)
@@ -237,6 +239,7 @@ void take_data(const TuneText& text, const ConfigNode& top, const fs::path& file
         refuse_key_since(top, "validation", fmt::format("seed {} is a seed of training, too", seed));
     return;
   }
+  if (!text.fly.empty()) tune.fly = seeds_in(text.fly, top, "fly");
   std::set<fs::path> seen;
   for (const auto& [key, words, folders] :
        {std::tuple("training", &text.training, &tune.training_folders),

@@ -40,7 +40,8 @@ struct TuneFile {
   std::vector<std::filesystem::path> training_folders, validation_folders;  ///< over recordings
   int every = 1;  ///< over recordings: every n-th frame is used, in training and validation
   std::vector<std::uint64_t> training_seeds, validation_seeds;  ///< over flights
-  double timeout_s = 300;                                       ///< of a flight, wall time
+  std::vector<std::uint64_t> fly;  ///< over recordings: seeds that the best few fly in the end; none: none
+  double timeout_s = 300;          ///< of a flight, wall time
 };
 
 /// Reads a file:
@@ -57,7 +58,8 @@ struct TuneFile {
 ///     training: [folder, folder]       # over flights: seeds, 1000..1019
 ///     validation: [folder]             # none of them in training
 ///     every: 1                         # optional, over recordings: look at one of so many frames
-///     timeout_s: 300                   # optional, over flights
+///     fly: 1100..1119                  # optional, over recordings: seeds that the best few fly in the end
+///     timeout_s: 300                   # optional, of a flight
 ///     name: forest                     # optional; otherwise the file's
 ///
 /// Throws ScenarioError in one line, "file:line: key: expected ...": an unknown key, a parameter that is no

@@ -108,7 +108,7 @@ Table sensitivity_table(const TuneFile& file, const Tuned& tuned) {
 /// What the paired flights say, in a sentence.
 std::string flights_sentence(const TuneFile& file, const Tuned& tuned) {
   if (file.over != TuningData::flights || tuned.scenario_units.empty() || tuned.best_units.empty()) return "";
-  const PairedOutcomes goals = paired_goals(tuned);
+  const PairedOutcomes goals = paired_goals(tuned.scenario_units, tuned.best_units);
   const Interval before = wilson_interval(goals.first(), goals.pairs()),
                  after = wilson_interval(goals.second(), goals.pairs());
   return fmt::format(
@@ -117,6 +117,27 @@ std::string flights_sentence(const TuneFile& file, const Tuned& tuned) {
       goals.first(), goals.pairs(), 100 * before.minimum, 100 * before.maximum, goals.second(),
       100 * after.minimum, 100 * after.maximum, goals.only_second, goals.only_first, mcnemar_exact_p(goals));
 }
+
+/// What the best few fly.
+Table flown_table(const Tuned& tuned) {
+  Table table{
+      {"configuration", "trial", "goals", "of", "goals, 95 %", "won", "lost", "p", "progress, %", "m/s"}};
+  for (const FlownTrial& one : tuned.flown) {
+    const PairedOutcomes goals = paired_goals(tuned.flown.front().flights, one.flights);
+    const Interval interval = wilson_interval(goals.second(), goals.pairs());
+    double progress = 0, speed_mps = 0;
+    for (const Counts& flight : one.flights) progress += flight[1], speed_mps += flight[2];
+    const double flights = std::max<double>(1, static_cast<double>(one.flights.size()));
+    table.add(one.name, one.trial.number, goals.second(), goals.pairs(),
+              fmt::format("{:.0f} to {:.0f} %", 100 * interval.minimum, 100 * interval.maximum),
+              goals.only_second, goals.only_first, fmt::format("{:.2g}", mcnemar_exact_p(goals)),
+              number(100 * progress / flights), number(speed_mps / flights));
+  }
+  return table;
+}
+
+constexpr const char* about_flown =
+    "The same seeds, in pairs with the scenario as it is: won and lost seeds, McNemar's exact p.";
 
 std::string limits_sentence(const TuneFile& file, const Tuned& tuned) {
   if (file.objective.limits.empty()) return "";
@@ -200,6 +221,8 @@ std::string tune_summary(const TuneFile& file, const Tuned& tuned) {
   if (tuned.best_units.size() < 15)
     text += fmt::format("\nIntervals come from {} units: below about 15 they are too narrow.\n",
                         tuned.best_units.size());
+  if (!tuned.flown.empty())
+    text += fmt::format("\n## In flight\n{}\n\n{}", about_flown, to_markdown(flown_table(tuned)));
   text +=
       "\n## Pareto front\nOf the training figures; nothing tried is better in one without being worse in "
       "another. `front/trial-N.yaml` flies each.\n\n" +
@@ -224,15 +247,18 @@ void write_tune_report(const std::filesystem::path& folder, const TuneFile& file
   write_whole_file(folder / "pareto.csv", to_csv(front));
   write_whole_file(folder / "summary.md", tune_summary(file, tuned));
   write_whole_file(folder / "tune.svg", tune_svg(file, tuned));
-  write_whole_file(
-      folder / "report.html",
-      sheet_page(data_root, "Tuning " + file.name,
-                 gains(file, tuned) ? "The search found better than the scenario as it is."
-                                    : "No trial is better than the scenario as it is.",
-                 {{.title = "The scenario as it is, and tuned", .table = comparison_table(file, tuned)},
-                  {.title = "Front", .plots = {pareto_plot(file, tuned)}, .table = front},
-                  {.title = "Each parameter alone", .plots = sensitivity_plots(file, tuned)},
-                  {.title = "Trials", .table = trials}}));
+  std::vector<SheetSection> page{
+      {.title = "The scenario as it is, and tuned", .table = comparison_table(file, tuned)}};
+  if (!tuned.flown.empty())
+    page.push_back({.title = std::string("In flight. ") + about_flown, .table = flown_table(tuned)});
+  page.push_back({.title = "Front", .plots = {pareto_plot(file, tuned)}, .table = front});
+  page.push_back({.title = "Each parameter alone", .plots = sensitivity_plots(file, tuned)});
+  page.push_back({.title = "Trials", .table = trials});
+  write_whole_file(folder / "report.html",
+                   sheet_page(data_root, "Tuning " + file.name,
+                              gains(file, tuned) ? "The search found better than the scenario as it is."
+                                                 : "No trial is better than the scenario as it is.",
+                              page));
   if (gains(file, tuned)) write_whole_file(folder / "best.yaml", tuned_config(file, tuned.best));
   prepare_output_folder(folder / "front");
   for (const JudgedTrial& member : tuned.front)

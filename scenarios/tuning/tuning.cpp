@@ -182,6 +182,22 @@ std::vector<Sensitivity> vary(const TuneFile& file, Tuning& tuning, Judge& train
   return all;
 }
 
+/// Nobody should tune for detections that no flight needs.
+std::vector<FlownTrial> fly_best(const Tuned& tuned, Tuning& tuning, Judge& flights) {
+  std::vector<FlownTrial> flown{{"as it is", tuned.scenario.training, {}},
+                                {"tuned", tuned.best.training, {}}};
+  if (!tuned.front.empty())
+    for (const JudgedTrial* end : {&tuned.front.front(), &tuned.front.back()})
+      if (std::ranges::none_of(flown,
+                               [&](const FlownTrial& one) { return one.trial.point == end->training.point; }))
+        flown.push_back({"end of the front", end->training, {}});
+  for (std::size_t i = 0; i < flown.size(); ++i) {
+    flown[i].flights = tuning.measure("flight", flown[i].trial.number, flown[i].trial.point, flights).units;
+    tuning.report("flying", i + 1, flown.size(), 0);
+  }
+  return flown;
+}
+
 std::vector<Counts> drawn(const std::vector<Counts>& units, std::span<const double> places) {
   std::vector<Counts> some;
   for (const double place : places) some.push_back(units[static_cast<std::size_t>(place)]);
@@ -201,14 +217,16 @@ std::vector<FigureChange> changes_on(const TuneFile& file, const Tuned& tuned, c
     const BootstrapEstimate estimate = bootstrap(places, change, {.resamples = 2000});
     changes.push_back({estimate.value, estimate.interval});
     if (file.over == TuningData::flights && file.figures[i] == "success")
-      changes.back().interval = paired_difference_interval(paired_goals(tuned));
+      changes.back().interval =
+          paired_difference_interval(paired_goals(tuned.scenario_units, tuned.best_units));
   }
   return changes;
 }
 
 }  // namespace
 
-Tuned tune(const TuneFile& file, Judge& training, Judge& validation, const TuneOptions& options) {
+Tuned tune(const TuneFile& file, Judge& training, Judge& validation, const TuneOptions& options,
+           Judge* flights) {
   Tuning tuning(file, options);
   Tuned tuned;
   tuned.trials = run_search(file, tuning, training);
@@ -228,13 +246,14 @@ Tuned tune(const TuneFile& file, Judge& training, Judge& validation, const TuneO
   tuned.scenario_units = tuning.measure("validation", 0, tuned.scenario.training.point, validation).units;
   tuned.best_units = tuning.measure("validation", 1, tuned.best.training.point, validation).units;
   tuned.changes = changes_on(file, tuned, validation);
+  if (flights != nullptr) tuned.flown = fly_best(tuned, tuning, *flights);
   return tuned;
 }
 
-PairedOutcomes paired_goals(const Tuned& tuned) {
+PairedOutcomes paired_goals(const std::vector<Counts>& before, const std::vector<Counts>& after) {
   PairedOutcomes goals;
-  for (std::size_t i = 0; i < tuned.best_units.size(); ++i)
-    goals.count(tuned.scenario_units[i].front() > 0, tuned.best_units[i].front() > 0);
+  for (std::size_t i = 0; i < std::min(before.size(), after.size()); ++i)
+    goals.count(before[i].front() > 0, after[i].front() > 0);
   return goals;
 }
 

@@ -81,6 +81,13 @@ struct FigureChange {
   Interval interval;  ///< 95 %; -infinity .. infinity where the data cannot say
 };
 
+/// What a configuration flies: flights' counts, in the order of the seeds.
+struct FlownTrial {
+  std::string name;  ///< "as it is", "tuned", "front"
+  Trial trial;
+  std::vector<Counts> flights;  ///< empty where one could not be flown
+};
+
 struct Tuned {
   std::vector<Trial> trials;  ///< 0: the scenario as it is; then the search's
   bool keeps_limits = true;   ///< the best, on training data; otherwise it misses them by the smallest amount
@@ -90,6 +97,7 @@ struct Tuned {
   /// Counts on validation data, for statements about the difference; empty where one was refused.
   std::vector<Counts> scenario_units, best_units;
   std::vector<FigureChange> changes;  ///< of the figures, in their order; empty likewise
+  std::vector<FlownTrial> flown;      ///< over recordings, if asked for: the first is the scenario as it is
 };
 
 inline constexpr std::size_t maximum_front = 20;
@@ -109,12 +117,14 @@ struct TuneOptions {
   std::function<void(const TuneProgress&)> on_progress = [](const TuneProgress&) {};
 };
 
-/// Searches on training data, then measures the results on validation data, then varies each parameter. What
-/// the folder's logs hold is not measured again. Throws Stopped if `stop_asked`, ScenarioError if the logs
+/// Searches on training data, then measures the results on validation data, then varies each parameter, then
+/// flies the scenario as it is, the best, and the front's ends, where there is a judge of flights. What the
+/// folder's logs hold is not measured again. Throws Stopped if `stop_asked`, ScenarioError if the logs
 /// are another tuning's or every trial was refused.
-Tuned tune(const TuneFile& file, Judge& training, Judge& validation, const TuneOptions& options);
+Tuned tune(const TuneFile& file, Judge& training, Judge& validation, const TuneOptions& options,
+           Judge* flights = nullptr);
 
-/// Flights only: which seeds reached the goal; first: the scenario, second: the tuned one.
-PairedOutcomes paired_goals(const Tuned& tuned);
+/// Of flights with the same seeds: which reached the goal.
+PairedOutcomes paired_goals(const std::vector<Counts>& before, const std::vector<Counts>& after);
 
 }  // namespace understory

@@ -121,6 +121,23 @@ TEST_F(TuningTest, ARaceMeasuresFewTrialsWholeAndFindsTheSame) {
   for (const JudgedTrial& member : tuned.front) EXPECT_FALSE(member.training.dropped);
 }
 
+TEST_F(TuningTest, TheBestFewFlyWithTheSameSeeds) {
+  TuneFile file = load(tuning_text("{method: cma_es, trials: 60, seed: 2}"));
+  file.objective = {.goals = {{2, true}, {0, true}}};
+  file.search = {.method = SearchMethod::random, .trials = 60};
+  ClosedForm training(0.2), validation(0.2), flights(0.2);
+  const Tuned tuned = tune(file, training, validation, {.folder = results("r")}, &flights);
+  ASSERT_GE(tuned.flown.size(), 3u);
+  EXPECT_EQ(tuned.flown[0].trial.point, file.scenario_point);
+  EXPECT_EQ(tuned.flown[1].trial.point, tuned.best.training.point);
+  EXPECT_EQ(flights.measured, static_cast<int>(tuned.flown.size()));  // each configuration once
+  const PairedOutcomes goals = paired_goals(tuned.flown[0].flights, tuned.flown[1].flights);
+  EXPECT_EQ(goals.pairs(), 20);
+  write_tune_report(folder.path() / "r", file, tuned, UNDERSTORY_SOURCE_DIR);
+  expect_part(content_of(folder.path() / "r/summary.md"), "## In flight");
+  expect_part(content_of(folder.path() / "r/report.html"), "In flight.");
+}
+
 TEST_F(TuningTest, VariesEachParameterAloneOverItsRange) {
   const TuneFile file = load(tuning_text());
   ClosedForm training(0.2), validation(0.2);
@@ -253,7 +270,7 @@ TEST_F(TuningTest, APairedStatementAboutFlightsIsMcNemars) {
     tuned.scenario_units.push_back({i < 11 ? 1.0 : 0.0, 0, 0, 0});
     tuned.best_units.push_back({i < 10 || (i >= 11 && i < 17) ? 1.0 : 0.0, 0, 0, 0});
   }
-  const PairedOutcomes goals = paired_goals(tuned);
+  const PairedOutcomes goals = paired_goals(tuned.scenario_units, tuned.best_units);
   EXPECT_EQ(goals.both, 10);
   EXPECT_EQ(goals.only_second, 6);
   EXPECT_EQ(goals.only_first, 1);
