@@ -64,9 +64,16 @@ bool Race::loses_to(const std::vector<Counts>& rival, const std::vector<Counts>&
                              [&](const Goal& goal) { return is_clearly_worse(goal.figure, goal.maximize); });
 }
 
-bool Race::drops(const std::vector<Counts>& glance) const {
-  return std::ranges::any_of(rivals_,
-                             [&](const Trial& rival) { return loses_to(glance_at_(rival), glance); });
+std::optional<Figures> Race::dropped(const std::vector<Counts>& glance) const {
+  for (const Trial& rival : rivals_) {
+    const std::vector<Counts>& rivals_glance = glance_at_(rival);
+    if (!loses_to(rivals_glance, glance)) continue;
+    Figures figures = rival.figures;
+    const Figures one = judge_.figures(glance), other = judge_.figures(rivals_glance);
+    for (std::size_t i = 0; i < figures.size(); ++i) figures[i] += one[i] - other[i];
+    return figures;
+  }
+  return {};
 }
 
 void Race::add(const Trial& trial) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "scenarios/tuning/tuning.hpp"
@@ -26,7 +27,10 @@ class Race {
   Race(const Objective& objective, const Judge& judge, GlanceAt glance_at)
       : objective_(objective), judge_(judge), glance_at_(std::move(glance_at)) {}
 
-  bool drops(const std::vector<Counts>& glance) const;
+  /// The figures that a trial would probably have, if it is dropped; nothing if it is to be measured whole. A
+  /// glance's own figures would mislead the search: they are those of a small part of the data. So they are
+  /// the rival's on all data and the difference at the glance, which the data hardly affect.
+  std::optional<Figures> dropped(const std::vector<Counts>& glance) const;
   /// A trial that was measured whole.
   void add(const Trial& trial);
 

@@ -45,12 +45,14 @@ class Tuning {
     return TrialLog(options_.folder / (part + ".jsonl"), keys_of(file_.space), file_.figures,
                     [this, part, &judge, &race](int number, const Point& point) {
                       const Measured glance = glance_at(part, number, point, judge);
-                      if (!glance.refused.empty() || (number > 0 && race.drops(glance.units))) {
-                        Trial trial = trial_of(glance, judge);
-                        trial.dropped = trial.refused.empty();
-                        return trial;
-                      }
-                      return trial_of(measure(part, number, point, judge), judge);
+                      if (!glance.refused.empty()) return trial_of(glance, judge);
+                      const std::optional<Figures> figures =
+                          number > 0 ? race.dropped(glance.units) : std::nullopt;
+                      if (!figures) return trial_of(measure(part, number, point, judge), judge);
+                      Trial trial;
+                      trial.figures = *figures;
+                      trial.dropped = true;
+                      return trial;
                     });
   }
   /// Measured anew where a search goes on: the logs hold no units.

@@ -21,7 +21,7 @@ struct Trial {
   Point point;
   Figures figures;       ///< empty where it was refused
   std::string refused;   ///< why, one line
-  bool dropped = false;  ///< after a glance (race.hpp), which the figures are of
+  bool dropped = false;  ///< after a glance (race.hpp), by which the figures are estimated
 };
 
 /// Trials in their order, each a line of a JSON Lines file on disk before the next begins. Evaluating a point

@@ -81,12 +81,14 @@ TEST(Race, DropsWhatIsClearlyWorseOnTheSameUnitsAndKeepsTheRest) {
   const Objective faster{.goals = {{2, true}}};
   std::vector<Counts> of_the_rival = units_losing(0, 0);
   Race race(faster, judge, [&](const Trial&) -> const std::vector<Counts>& { return of_the_rival; });
-  EXPECT_FALSE(race.drops(units_losing(1, 0.1)));  // nothing to compare with
+  EXPECT_FALSE(race.dropped(units_losing(1, 0.1)));  // nothing to compare with
   race.add({1, {}, {0.5, 0.5, 13, 0.5}, ""});
   // Units differ by 2 among each other, a pair by 0.1: its mean of 30 by 0.018.
-  EXPECT_TRUE(race.drops(units_losing(0.05, 0.1)));
-  EXPECT_FALSE(race.drops(units_losing(0.03, 0.1)));
-  EXPECT_FALSE(race.drops(units_losing(-1, 0.1)));
+  EXPECT_TRUE(race.dropped(units_losing(0.05, 0.1)));
+  EXPECT_FALSE(race.dropped(units_losing(0.03, 0.1)));
+  EXPECT_FALSE(race.dropped(units_losing(-1, 0.1)));
+  // On all data the rival has 13, whatever the glance shows of it.
+  EXPECT_NEAR(race.dropped(units_losing(0.5, 0.1)).value()[2], 12.5, 1e-9);
 }
 
 TEST(Race, LimitsDropOnlyWhatMissesThemAndGoalsOnlyWhatIsBetterInNone) {
@@ -103,11 +105,11 @@ TEST(Race, LimitsDropOnlyWhatMissesThemAndGoalsOnlyWhatIsBetterInNone) {
     units[0][0] -= 0.01, units[1][0] += 0.01, units[0][2] -= 0.01, units[1][2] += 0.01;
     return units;
   };
-  EXPECT_TRUE(race_for(limited).drops(trial(0.7, 20)));
-  EXPECT_FALSE(race_for(limited).drops(trial(0.85, 20)));  // worse than the rival, and allowed
+  EXPECT_TRUE(race_for(limited).dropped(trial(0.7, 20)));
+  EXPECT_FALSE(race_for(limited).dropped(trial(0.85, 20)));  // worse than the rival, and allowed
   const Objective both{.goals = {{2, true}, {0, true}}};
-  EXPECT_TRUE(race_for(both).drops(trial(0.8, 9)));
-  EXPECT_FALSE(race_for(both).drops(trial(0.8, 10.1)));
+  EXPECT_TRUE(race_for(both).dropped(trial(0.8, 9)));
+  EXPECT_FALSE(race_for(both).dropped(trial(0.8, 10.1)));
 }
 
 TEST_F(TuningTest, ARaceMeasuresFewTrialsWholeAndFindsTheSame) {
