@@ -11,7 +11,8 @@ namespace understory {
 struct ImagePair {
   std::string name;
   cv::Mat left, right;   ///< CV_8UC1, of one size
-  cv::Mat disparity_px;  ///< CV_32FC1, true u_left - u_right of the left image, NaN where unknown; or empty
+  cv::Mat disparity_px;  ///< CV_32FC1, true u_left - u_right of the left image, not finite where unknown; or
+                         ///< empty
 };
 
 /// The pairs of a folder; of a recording every `every`-th:

@@ -29,15 +29,8 @@ StereoRig rig_looking_at(int disparity_px, const ImagePair& pair, const StereoRi
 
 TrueImages truth_of(const ImagePair& pair, const StereoRig& rig) {
   TrueImages truth;
-  truth.depth_mm = cv::Mat::zeros(pair.left.size(), CV_16UC1);
-  for (int row = 0; row < pair.left.rows; ++row)
-    for (int column = 0; column < pair.left.cols; ++column) {
-      const double depth_mm = 1000 * rig.depth_m(pair.disparity_px.at<float>(row, column));
-      // Beyond what 16 bits hold it is only known to be far: a false detection there is false all the same.
-      if (depth_mm > 0)
-        truth.depth_mm.at<std::uint16_t>(row, column) =
-            static_cast<std::uint16_t>(std::lround(std::min(depth_mm, 65'535.0)));
-    }
+  // What 16 bits do not hold becomes their largest number: a false detection there is false all the same.
+  depth_of_disparity(pair.disparity_px, rig).convertTo(truth.depth_mm, CV_16UC1, 1000);
   truth.shared_depth_mm = shared_depth(truth.depth_mm, rig);
   return truth;
 }

@@ -2,30 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/config/config_tree.hpp"
-#include "scenarios/scenario/scenario_io.hpp"
+#include "scenarios/tuning/tuning.hpp"
 
 namespace understory {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::vector<std::string> keys_of(const Space& space) {
-  std::vector<std::string> keys;
-  for (const Parameter& parameter : space.parameters) keys.push_back(parameter.key);
-  return keys;
-}
-
-Json named(const std::vector<std::string>& names, const std::vector<double>& values) {
-  Json json = Json::object();
-  for (std::size_t i = 0; i < values.size(); ++i)
-    json[names[i]] = std::isfinite(values[i]) ? Json(values[i]) : Json();
-  return json;
-}
 
 /// Throws ScenarioError unless `json` has a number, or null, of each name and nothing else.
 std::vector<double> numbers_in(const Json& json, const std::vector<std::string>& names, const char* what) {
@@ -61,15 +47,16 @@ std::optional<Point> next_point(const TuneFile& file, const std::vector<Figures>
 
 Json answer_to(const Measured& measured, const Judge& judge, const std::vector<std::string>& names) {
   if (!measured.refused.empty()) return {{"refused", measured.refused}};
-  return {{"figures", named(names, judge.figures(measured.units))}};
+  return {{"figures", numbers_of(names, judge.figures(measured.units))}};
 }
 
 }  // namespace
 
 std::string AskedTuning::greeting() const {
-  Json json{{"parameters", Json::array()},   {"figures", file_.figures},
-            {"maximize", Json::array()},     {"minimize", Json::array()},
-            {"trials", file_.search.trials}, {"scenario", named(keys_of(file_.space), file_.scenario_point)}};
+  Json json{
+      {"parameters", Json::array()},   {"figures", file_.figures},
+      {"maximize", Json::array()},     {"minimize", Json::array()},
+      {"trials", file_.search.trials}, {"scenario", numbers_of(keys_of(file_.space), file_.scenario_point)}};
   for (const Parameter& parameter : file_.space.parameters) {
     Json one{{"key", parameter.key}, {"whole", parameter.whole}};
     if (parameter.values.empty())
@@ -83,17 +70,6 @@ std::string AskedTuning::greeting() const {
   return json_text(json);
 }
 
-Measured AskedTuning::measure(Judge& judge, const Point& point) {
-  Scenario scenario;
-  try {
-    const ConfigNode keys = parse_yaml(to_yaml(file_.space, point), "measure");
-    scenario = load_changed_scenario(file_.scenario_file, {keys});
-  } catch (const ScenarioError& error) {
-    return {{}, error.what()};
-  }
-  return judge.measure(fmt::format("asked-{}", ++measured_), scenario);
-}
-
 std::string AskedTuning::answer(const std::string& question) try {
   const Json json = parse_json(question);
   const std::vector<std::string> keys = keys_of(file_.space);
@@ -101,7 +77,7 @@ std::string AskedTuning::answer(const std::string& question) try {
   if (is("ask")) {
     if (!asked_) asked_ = next_point(file_, figures_);
     if (!asked_) return json_text({{"trial", Json()}});
-    return json_text({{"trial", points_.size() + 1}, {"parameters", named(keys, *asked_)}});
+    return json_text({{"trial", points_.size() + 1}, {"parameters", numbers_of(keys, *asked_)}});
   }
   if (is("tell")) {
     if (!asked_ || json["tell"] != points_.size() + 1)
@@ -119,7 +95,8 @@ std::string AskedTuning::answer(const std::string& question) try {
       throw ScenarioError("data: expected training | validation, got " + data);
     const Point point = numbers_in(json["measure"], keys, "measure");
     Judge& judge = judge_of_(data == "validation");
-    return json_text(answer_to(measure(judge, point), judge, file_.figures));
+    const Measured measured = measure_at(point, file_, judge, fmt::format("asked-{}", ++measured_));
+    return json_text(answer_to(measured, judge, file_.figures));
   }
   throw ScenarioError(R"(expected {"ask": true}, {"tell": N, "figures": {...}} or {"measure": {...}})");
 } catch (const ScenarioError& error) {

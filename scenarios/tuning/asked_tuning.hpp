@@ -26,8 +26,6 @@ class AskedTuning {
   std::string answer(const std::string& question);
 
  private:
-  Measured measure(Judge& judge, const Point& point);
-
   const TuneFile& file_;
   JudgeOf judge_of_;
   std::optional<Point> asked_;  ///< the trial that is to be told

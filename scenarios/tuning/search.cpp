@@ -94,6 +94,12 @@ std::vector<double> spread_values(const Parameter& parameter, int steps) {
   return values;
 }
 
+std::vector<std::string> keys_of(const Space& space) {
+  std::vector<std::string> keys;
+  for (const Parameter& parameter : space.parameters) keys.push_back(parameter.key);
+  return keys;
+}
+
 std::string to_yaml(const Space& space, const Point& point) {
   std::string yaml, open;  // the group that is open: "perception.pushbroom."
   for (const auto& [key, value] : written_values(space, point)) {

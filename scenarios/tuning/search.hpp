@@ -42,6 +42,7 @@ struct Space {
   std::map<std::string, std::vector<double>> lists = {};
 };
 
+std::vector<std::string> keys_of(const Space& space);
 /// The keys of a point as YAML in groups, for load_scenario's `with`.
 std::string to_yaml(const Space& space, const Point& point);
 /// As people read it: "minimum_edge_sum 215, score_limit 0.25".

@@ -21,13 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-Json numbers_of(const std::vector<std::string>& names, const std::vector<double>& values) {
-  Json json = Json::object();
-  for (std::size_t i = 0; i < values.size(); ++i)
-    json[names[i]] = std::isfinite(values[i]) ? Json(values[i]) : Json(nullptr);
-  return json;
-}
-
 std::string line_of(const Trial& trial, const std::vector<std::string>& parameters,
                     const std::vector<std::string>& figures) {
   Json json{{"trial", trial.number}, {"parameters", numbers_of(parameters, trial.point)}};
@@ -70,6 +63,13 @@ Json manifest_of(const TuneFile& file, const Identity& identity) {
 }
 
 }  // namespace
+
+Json numbers_of(const std::vector<std::string>& names, const std::vector<double>& values) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < values.size(); ++i)
+    json[names[i]] = std::isfinite(values[i]) ? Json(values[i]) : Json(nullptr);
+  return json;
+}
 
 TrialLog::TrialLog(fs::path file, std::vector<std::string> parameters, std::vector<std::string> figures,
                    Measure measure)

@@ -14,12 +14,6 @@
 namespace understory {
 namespace {
 
-std::vector<std::string> keys_of(const Space& space) {
-  std::vector<std::string> keys;
-  for (const Parameter& parameter : space.parameters) keys.push_back(parameter.key);
-  return keys;
-}
-
 /// Nothing of those that were dropped, nor of the scenario as it is, which stands beside the search.
 std::vector<Figures> figures_to_choose_from(const std::vector<Trial>& trials) {
   std::vector<Figures> figures;
@@ -66,14 +60,7 @@ class Tuning {
                    Look look = Look::whole) {
     if (options_.stop_asked()) throw Stopped{};
     ++progress_.measured;
-    Scenario scenario;
-    try {
-      const std::string text = to_yaml(file_.space, point);
-      scenario = load_changed_scenario(file_.scenario_file, {parse_yaml(text, "trial")});
-    } catch (const ScenarioError& error) {  // keys that contradict each other
-      return {{}, error.what()};
-    }
-    return judge.measure(fmt::format("{}-{}", part, number), scenario, look);
+    return measure_at(point, file_, judge, fmt::format("{}-{}", part, number), look);
   }
 
   /// `after`: what is still to be measured when this part is done, as far as known.
@@ -250,6 +237,18 @@ Tuned tune(const TuneFile& file, Judge& training, Judge& validation, const TuneO
   tuned.changes = changes_on(file, tuned, validation);
   if (flights != nullptr) tuned.flown = fly_best(tuned, tuning, *flights);
   return tuned;
+}
+
+Measured measure_at(const Point& point, const TuneFile& file, Judge& judge, const std::string& name,
+                    Look look) {
+  Scenario scenario;
+  try {
+    const std::string text = to_yaml(file.space, point);
+    scenario = load_changed_scenario(file.scenario_file, {parse_yaml(text, "trial")});
+  } catch (const ScenarioError& error) {  // keys that contradict each other
+    return {{}, error.what()};
+  }
+  return judge.measure(name, scenario, look);
 }
 
 PairedOutcomes paired_goals(const std::vector<Counts>& before, const std::vector<Counts>& after) {

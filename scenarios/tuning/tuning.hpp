@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,13 @@ struct Trial {
   std::string refused;   ///< why, one line
   bool dropped = false;  ///< after a glance (race.hpp), by which the figures are estimated
 };
+
+/// Measures the scenario with a point's values; refused, too, where these contradict each other.
+Measured measure_at(const Point& point, const TuneFile& file, Judge& judge, const std::string& name,
+                    Look look = Look::whole);
+
+/// Each number under its name; null where it is not finite.
+nlohmann::ordered_json numbers_of(const std::vector<std::string>& names, const std::vector<double>& values);
 
 /// Trials in their order, each a line of a JSON Lines file on disk before the next begins. Evaluating a point
 /// again gives what the file holds: a search that is repeated with the same arguments goes on where it was

@@ -286,13 +286,14 @@ struct WoodsPass::Implementation {
     for (const auto& [range_m, part] : seen) {
       const std::size_t far = range_m > detail.near_m;
       const bool smooth = !is_gray || range_m <= detail.smooth_m;
-      const bool coarse = is_gray && far == 0 && range_m > detail.fine_m && part->coarse.count > 0;
+      const bool tubes = is_gray && far == 0 && part->coarse.count > 0;
       const Layer solids = part->texture == WoodsTexture::ground ? ground
                            : far != 0                            ? far_solids
-                           : part->closed && is_gray             ? closed_solids
+                           : tubes                               ? closed_solids
                                                                  : near_solids;
       const auto texture = static_cast<std::size_t>(part->texture);
-      batches[solids][smooth][texture].add(coarse ? part->coarse : part->solid[far]);
+      batches[solids][smooth][texture].add(tubes && range_m > detail.fine_m ? part->coarse
+                                                                            : part->solid[far]);
       constexpr auto leaves = static_cast<std::size_t>(WoodsTexture::leaves);
       batches[far != 0 ? far_leaves : near_leaves][smooth][leaves].add(part->leaves[far]);
     }

@@ -79,7 +79,6 @@ class TreePainter {
                             0.85 * bark_, 0, branch_);
       });
     };
-    part.closed = true;
     part.solid[0] = tubes(1);
     part.coarse = tubes(2);
     part.solid[1] = builder_.range_of(

@@ -35,8 +35,9 @@ struct WoodsPart {
   Eigen::AlignedBox3d whole_world;  ///< of the tree that it is a piece of: says how far away it is
   /// Solid pieces near and far, cut-out leaves near and far.
   std::array<WoodsRange, 2> solid, leaves;
-  WoodsRange coarse;    ///< the near solid pieces with half of their sides; empty: as they are
-  bool closed = false;  ///< the near solid pieces show their outsides alone
+  /// The near solid pieces with half of their sides: of tubes, whose insides nobody sees. Empty: they have
+  /// none.
+  WoodsRange coarse;
   WoodsTexture texture = WoodsTexture::ground;  ///< of the solid pieces
 };
 
