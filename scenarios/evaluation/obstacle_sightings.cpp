@@ -55,20 +55,20 @@ void ObstacleSightings::add(const EvaluationFrame& frame, const DetectionGrid& g
   }
 }
 
-bool ObstacleSightings::would_touch(const RecordedObject& object, std::size_t at) const {
+bool ObstacleSightings::would_touch(int object, std::size_t at) const {
   const std::size_t to = std::min(at + 1, path_world_.size() - 1), from = to > 0 ? to - 1 : 0;
   const Eigen::Vector3d step = path_world_[to] - path_world_[from];
   if (step.norm() < 1e-9) return false;
   const Segment ahead{path_world_[at], path_world_[at] + straight_on_m * step.normalized()};
   return std::ranges::any_of(objects_, [&](const RecordedObject& piece) {
-    return piece.number == object.number &&
+    return piece.number == object &&
            segment_distance_m(ahead, {piece.from_world, piece.to_world}) - piece.radius_m <= half_span_m;
   });
 }
 
-std::vector<ObstacleSighting> ObstacleSightings::passed() const {
-  std::vector<ObstacleSighting> sightings;
-  if (path_world_.size() < 2) return sightings;
+std::vector<Passing> ObstacleSightings::passings() const {
+  std::vector<Passing> passings;
+  if (path_world_.size() < 2) return passings;
   std::set<int> done;
   for (const RecordedObject& object : objects_) {
     if (!object.is_obstacle() || object.kind == "branch" || !done.insert(object.number).second) continue;
@@ -85,16 +85,22 @@ std::vector<ObstacleSighting> ObstacleSightings::passed() const {
         nearest = i;
       }
     }
-    if ((path_world_.back() - path_world_[nearest]).norm() < passed_by_m) continue;
-    const auto found = gathered_.find(object.number);
-    ObstacleSighting sighting;
-    if (found != gathered_.end()) {
+    if ((path_world_.back() - path_world_[nearest]).norm() >= passed_by_m)
+      passings.push_back({object.number, minimum_m});
+  }
+  return passings;
+}
+
+std::vector<ObstacleSighting> ObstacleSightings::passed(const std::vector<Passing>& passings) const {
+  std::vector<ObstacleSighting> sightings;
+  for (const Passing& passing : passings) {
+    ObstacleSighting& sighting = sightings.emplace_back();
+    if (const auto found = gathered_.find(passing.object); found != gathered_.end()) {
       sighting = found->second.sighting;
-      sighting.on_the_path = would_touch(object, found->second.seen_at);
+      sighting.on_the_path = would_touch(passing.object, found->second.seen_at);
     }
-    sighting.object = object.number;
-    sighting.miss_m = minimum_m;
-    sightings.push_back(sighting);
+    sighting.object = passing.object;
+    sighting.miss_m = passing.miss_m;
   }
   return sightings;
 }

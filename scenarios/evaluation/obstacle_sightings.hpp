@@ -26,6 +26,12 @@ struct ObstacleSighting {
   bool found() const { return hits >= 3; }
 };
 
+/// An obstacle that the path passes: the path comes nearest to it before its end.
+struct Passing {
+  int object = 0;
+  double miss_m = 0;  ///< as in ObstacleSighting
+};
+
 /// Of the obstacles that the path came within `reach_m` of and that were not hidden: how many, and how many
 /// were found. The number of hidden ones is added to `hidden`, if given.
 Share found_within(const std::vector<ObstacleSighting>& sightings, double reach_m,
@@ -40,16 +46,18 @@ class ObstacleSightings {
   /// One frame: its expected blocks at one pixel and the hits. Frames without a pose are skipped.
   void add(const EvaluationFrame& frame, const DetectionGrid& grid,
            const std::vector<ExpectedBlock>& expected, const std::vector<StereoHit>& hits);
-  /// Those that were passed: the path comes nearest to them before its end. In the objects' order. Branches
-  /// are left out: they seldom matter to an aircraft that avoids the trunk.
-  std::vector<ObstacleSighting> passed() const;
+  /// In the objects' order; the same for every algorithm on a recording. Branches are left out: they seldom
+  /// matter to an aircraft that avoids the trunk.
+  std::vector<Passing> passings() const;
+  /// Those that were passed.
+  std::vector<ObstacleSighting> passed(const std::vector<Passing>& passings) const;
 
  private:
   struct Gathered {
     ObstacleSighting sighting;
     std::size_t seen_at = 0;  ///< index into the path of the first block in view
   };
-  bool would_touch(const RecordedObject& object, std::size_t at) const;
+  bool would_touch(int object, std::size_t at) const;
 
   std::vector<RecordedObject> objects_;
   double baseline_m_;
@@ -74,7 +82,9 @@ class PacedSightings {
   /// `next_t_ns`: the moment of the frame after this one.
   void add(const EvaluationFrame& frame, std::int64_t next_t_ns, const DetectionGrid& grid,
            const std::vector<ExpectedBlock>& expected, const std::vector<StereoHit>& hits);
-  PacedResult result() const { return {frames_, sightings_.passed()}; }
+  PacedResult result(const std::vector<Passing>& passings) const {
+    return {frames_, sightings_.passed(passings)};
+  }
 
  private:
   FlightComputer computer_;

@@ -310,10 +310,11 @@ class Evaluator {
 
   void finish() {
     EvaluationSum& sum = result_.sum;
+    const std::vector<Passing> passings = sightings_.front().passings();
     for (std::size_t i = 0; i < hits_.size(); ++i) {
       sum.tallies[i].seconds = sum.seconds;
-      if (result_.has_objects) sum.sightings[i] = sightings_[i].passed();
-      if (is_computed(i)) sum.paced[i] = paced_[i].result();
+      if (result_.has_objects) sum.sightings[i] = sightings_[i].passed(passings);
+      if (is_computed(i)) sum.paced[i] = paced_[i].result(passings);
     }
     for (std::size_t i = 0; i < published_.size(); ++i) sum.published[i] = published_[i].scores();
     if (sweeps_) sum.curves = sweeps_->curves();

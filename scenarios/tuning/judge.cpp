@@ -81,6 +81,7 @@ class FlightJudge : public Judge {
 struct HeldRecording {
   std::vector<RecordedObject> objects;
   std::vector<EvaluationFrame> frames;
+  std::optional<std::vector<Passing>> passings;  ///< once they are known
   /// The blocks due in each frame where the last configuration looked: they seldom change with the next.
   std::vector<double> looked_at_m;
   int last_row_px = 0;
@@ -172,7 +173,8 @@ class VisionJudge : public Judge {
       count_one_pixel(frame.truth, grid, expected, hits, rates);
       sightings.add(frame, grid, expected, hits);
     }
-    const std::vector<ObstacleSighting> passed = sightings.passed();
+    if (!recording.passings) recording.passings = sightings.passings();
+    const std::vector<ObstacleSighting> passed = sightings.passed(*recording.passings);
     Counts counts{static_cast<double>(to - from)};
     for (const Share& share : {rates.precision, rates.recall, found_within(passed, 1),
                                found_within(passed, 3), rates.trunk_precision})

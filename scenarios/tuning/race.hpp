@@ -11,13 +11,13 @@ namespace understory {
 /// Drops trials that a glance at the data shows to be worse, so that a search measures few of them whole.
 ///
 /// A trial is compared with rivals on the same part of the data, unit by unit (flights, recordings): the best
-/// of those that were measured whole, or the Pareto front of several goals. It is dropped where its estimates
-/// are not better in any goal and worse by more than two standard errors in one; or where it misses a limit,
-/// and is worse in that figure by more than two standard errors. Standard errors are the jackknife's of the
-/// paired difference, since a figure is a share of all counts, not a mean of units (Efron & Stein 1981,
-/// Annals of Statistics 9, 586). That is the idea of Hoeffding and F-races (Maron & Moore 1993; Birattari et
-/// al. 2002). Successive halving would need a whole generation side by side and would drop half of it,
-/// however alike; here a trial that is as good as its rivals is never dropped for want of room.
+/// of those that were measured whole, or the Pareto front of several goals. Its figures on all data are
+/// expected to be the rival's and the difference at the glance, and the search's own costs of them decide: it
+/// is dropped where none is lower than the rival's and one is higher by more than 1.645 standard errors.
+/// These are the jackknife's, since a figure is a share of all counts, not a mean of units (Efron & Stein
+/// 1981, Annals of Statistics 9, 586). That is the idea of Hoeffding and F-races (Maron & Moore 1993;
+/// Birattari et al. 2002). Successive halving would need a whole generation side by side and would drop half
+/// of it, however alike; here a trial that is as good as its rivals is never dropped for want of room.
 class Race {
  public:
   /// Gives the units of a glance at a trial; a trial may be asked for again and again.
@@ -35,7 +35,9 @@ class Race {
   void add(const Trial& trial);
 
  private:
-  bool loses_to(const std::vector<Counts>& rival, const std::vector<Counts>& glance) const;
+  /// Of a trial on all data: the rival's, and the difference at the glance.
+  Figures expected(const Trial& rival, const std::vector<Counts>& rivals_glance,
+                   const std::vector<Counts>& glance) const;
 
   const Objective& objective_;
   const Judge& judge_;

@@ -266,7 +266,7 @@ TEST(Evaluation, ObstaclesAreFollowedUntilTheyArePassed) {
   flight.for_each_frame([&](const EvaluationFrame& frame, const auto& due, const auto& hits) {
     sightings.add(frame, flight.grid, due, hits);
   });
-  const auto passed = sightings.passed();
+  const auto passed = sightings.passed(sightings.passings());
   ASSERT_EQ(passed.size(), 2u);  // neither the ground nor what lies beyond the path's end
   EXPECT_EQ(passed[0].object, trunk);
   EXPECT_NEAR(passed[0].miss_m, 1.0, 1e-6);
@@ -282,10 +282,12 @@ TEST(Evaluation, ASlowComputerLosesWhatPassesBetweenItsLooks) {
   const TrunkPassed flight;
   constexpr double four_frames_s = 0.032;  // frames 0, 4 ... 300: of the trunk's four it looks at 100
   PacedSightings paced(flight.objects, 0, four_frames_s);
+  ObstacleSightings unpaced(flight.objects, 0);
   flight.for_each_frame([&](const EvaluationFrame& frame, const auto& due, const auto& hits) {
     paced.add(frame, frame.pair.t_ns + 8'000'000, flight.grid, due, hits);
+    unpaced.add(frame, flight.grid, due, hits);
   });
-  const PacedResult result = paced.result();
+  const PacedResult result = paced.result(unpaced.passings());
   EXPECT_EQ(result.frames, 76);
   ASSERT_EQ(result.sightings.size(), 2u);
   EXPECT_EQ(result.sightings[0].hits, 1);
