@@ -20,6 +20,7 @@ struct PushbroomConfig {
   std::optional<int> infinity_px;
   int threads = 1;
   int stride_px = 5;
+  int cell_px = 0;
   int last_row_px = 200;
   int right_margin_px = 1;
   int minimum_edge_sum = 860;
@@ -54,8 +55,9 @@ PushbroomConfig robust_pushbroom();
 /// Rigs that nobody has tuned for get robust_pushbroom().
 PushbroomConfig tuned_pushbroom(std::string_view rig);
 
-/// The tuned rule with the numbers found on recordings of woods, seen through a lens (docs/woods.md), for the
-/// rigs `long` and `paper`. Other rigs get tuned_pushbroom().
+/// Blocks that overlap, at most one detection in 5x5 px, and the numbers found for that on recordings of
+/// woods, seen through a lens (docs/woods.md), for the rigs `long` and `paper`. Other rigs get
+/// tuned_pushbroom().
 PushbroomConfig woods_pushbroom(std::string_view rig);
 
 /// which numbers a pushbroom detector starts from

@@ -147,20 +147,24 @@ PushbroomConfig tuned_pushbroom(std::string_view rig) {
 PushbroomConfig woods_pushbroom(std::string_view rig) {
   PushbroomConfig config = tuned_pushbroom(rig);
   if (rig == "paper") {
-    config.minimum_edge_sum = 67;
-    config.score_limit = 0.185741;
-    config.uniqueness_ratio = 1.49557;
-    config.uniqueness_minimum_depth_m = 3.03517;
-    config.isolation_minimum_points = 8;
-    config.isolation_radius_m = 1.43383;
+    config.minimum_edge_sum = 73;
+    config.score_limit = 0.331764;
+    config.uniqueness_ratio = 1.18678;
+    config.uniqueness_minimum_depth_m = 2.86826;
+    config.isolation_minimum_points = 13;
+    config.isolation_radius_m = 0.340077;
   } else if (rig == "long") {
-    config.minimum_edge_sum = 110;
-    config.score_limit = 0.2;
-    config.uniqueness_ratio = 1.6;
-    config.uniqueness_minimum_depth_m = 2.29342;
-    config.isolation_minimum_points = 8;
-    config.isolation_radius_m = 1.35376;
+    config.minimum_edge_sum = 111;
+    config.score_limit = 0.259742;
+    config.uniqueness_ratio = 1.5332;
+    config.uniqueness_minimum_depth_m = 1.90221;
+    config.isolation_minimum_points = 13;
+    config.isolation_radius_m = 0.524387;
+  } else {
+    return config;
   }
+  config.stride_px = 3;
+  config.cell_px = 5;
   return config;
 }
 
@@ -233,9 +237,33 @@ const std::vector<StereoHit>& PushbroomStereo::detect(const StereoFrame& frame) 
   all_hits_.clear();
   for (const Band& band : bands_)
     for (const BlockMatch& match : *band.matches) all_hits_.push_back(hit_of(match));
-  if (!config_.isolation) return all_hits_;
-  without_isolated(all_hits_, config_.isolation_minimum_points, config_.isolation_radius_m, hits_);
+  if (config_.isolation)
+    without_isolated(all_hits_, config_.isolation_minimum_points, config_.isolation_radius_m, hits_);
+  else
+    hits_.swap(all_hits_);
+  if (config_.cell_px > 0) keep_best_of_cells();
   return hits_;
+}
+
+void PushbroomStereo::keep_best_of_cells() {
+  const int columns = rig_.width_px / config_.cell_px + 1, rows = rig_.height_px / config_.cell_px + 1;
+  const auto cell_of = [&](const StereoHit& hit) {
+    const auto depth =
+        std::ranges::find(depths_, hit.depth.near_m, [](const Depth& one) { return one.interval.near_m; });
+    const int row = (hit.row_px + block_px / 2) / config_.cell_px,
+              column = (hit.column_px + block_px / 2) / config_.cell_px;
+    return static_cast<std::size_t>(((depth - depths_.begin()) * rows + row) * columns + column);
+  };
+  constexpr std::size_t none = SIZE_MAX;
+  best_of_cells_.assign(depths_.size() * static_cast<std::size_t>(rows * columns), none);
+  for (std::size_t i = 0; i < hits_.size(); ++i) {
+    std::size_t& best = best_of_cells_[cell_of(hits_[i])];
+    if (best == none || hits_[i].score < hits_[best].score) best = i;
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < hits_.size(); ++i)
+    if (best_of_cells_[cell_of(hits_[i])] == i) hits_[kept++] = hits_[i];
+  hits_.resize(kept);
 }
 
 void PushbroomStereo::search(const GrayView& left, const GrayView& right, int index) {

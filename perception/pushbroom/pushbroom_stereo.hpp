@@ -70,6 +70,7 @@ class PushbroomStereo : public ObstacleDetector {
   BlockRule block_rule() const;
   void search(const GrayView& left, const GrayView& right, int index);
   StereoHit hit_of(const BlockMatch& match) const;
+  void keep_best_of_cells();
 
   StereoRig rig_;
   PushbroomConfig config_;
@@ -78,6 +79,7 @@ class PushbroomStereo : public ObstacleDetector {
   std::optional<Maps> maps_;  ///< where pairs come raw
   std::vector<Band> bands_;   ///< one for each thread
   std::vector<StereoHit> all_hits_, hits_;
+  std::vector<std::size_t> best_of_cells_;  ///< indices of hits_
 };
 
 }  // namespace understory

@@ -16,9 +16,11 @@ void visit_fields(FieldVisitor& visit, ComputeConfig& config) {
         "the other perception.compute keys. 8.3: the original detector takes 1.0 ms on that machine, and on "
         "a 1.7 GHz quad ARM Cortex-A9 it filled the 8.3 ms of a frame at 120 Hz. A larger factor is a slower "
         "computer. | Barry & Tedrake 2015");
-  visit("pushbroom_s", config.pushbroom_s, 0.0, 1.0,
-        "pushbroom detector's time per pair at one depth, rectification included, before compute.factor | "
-        "docs/sources.md [17]");
+  visit(
+      "pushbroom_s", config.pushbroom_s, 0.0, 1.0,
+      "pushbroom detector's time per pair at one depth with a stride of 5 px, rectification included, before "
+      "compute.factor; with a smaller stride it is (5 / stride)^1.5 of this | "
+      "docs/sources.md [17]");
   visit("more_depths", config.more_depths, 0.0, 1.0,
         "pushbroom detector's time for each further depth, as a share of compute.pushbroom_s | "
         "docs/benchmarks.md");

@@ -371,6 +371,47 @@ TEST(PushbroomStereo, RefusesImagesOfAnotherSizeOrKind) {
   EXPECT_TRUE(detector.detect({0, right_size, right_size}).empty());
 }
 
+TEST(PushbroomStereo, OfEachCellTheBestIsKept) {
+  const CalibratedRig rig{house_rig("paper.yaml"), {}};
+  std::mt19937 generator(5);
+  cv::Mat left(240, 376, CV_8UC1), right(240, 376, CV_8UC1, cv::Scalar(0));
+  for (int v = 0; v < 240; ++v)
+    for (int u = 0; u < 376; ++u) left.at<std::uint8_t>(v, u) = static_cast<std::uint8_t>(generator() % 256);
+  PushbroomConfig config = original_pushbroom();
+  config.horizontal_invariance = false;
+  config.stride_px = 2;
+  config.depths_m = {4.8, 3};
+  const auto hits_of = [&](int cell_px) {
+    config.cell_px = cell_px;
+    PushbroomStereo detector(rig.rig, config);
+    // The upper half of the scene stands at the first depth, the lower at the second; noise tells scores
+    // apart.
+    for (int depth : {0, 1}) {
+      const int disparity_px = detector.detection_disparity_px(depth);
+      for (int v = 120 * depth; v < 120 * depth + 120; ++v)
+        for (int u = disparity_px; u < 376; ++u)
+          right.at<std::uint8_t>(v, u - disparity_px) =
+              static_cast<std::uint8_t>(left.at<std::uint8_t>(v, u) ^ ((u + v) % 7));
+    }
+    return std::vector<StereoHit>(detector.detect({0, left, right}));
+  };
+  const std::vector<StereoHit> all = hits_of(0), kept = hits_of(7);
+  std::map<std::tuple<int, int, double>, const StereoHit*> best;
+  for (const StereoHit& hit : all) {
+    const StereoHit*& one = best[{(hit.row_px + 2) / 7, (hit.column_px + 2) / 7, hit.disparity_px}];
+    if (one == nullptr || hit.score < one->score) one = &hit;
+  }
+  ASSERT_EQ(kept.size(), best.size());
+  EXPECT_LT(kept.size(), all.size() / 5);
+  const StereoHit* before = nullptr;
+  for (const StereoHit& hit : kept) {
+    const StereoHit* one = best[{(hit.row_px + 2) / 7, (hit.column_px + 2) / 7, hit.disparity_px}];
+    EXPECT_EQ(std::pair(hit.column_px, hit.row_px), std::pair(one->column_px, one->row_px));
+    EXPECT_LT(before, one);  // the order stays
+    before = one;
+  }
+}
+
 TEST(Isolation, KeepsExactlyTheHitsWithCompany) {
   std::vector<StereoHit> hits(6);
   const double x[] = {0.0, 0.9, 5.0,

@@ -114,6 +114,7 @@ TEST(Compute, CostsAreTheDetectorsTimesTheFactor) {
   const std::string on = "perception.compute.enabled=true";
   EXPECT_DOUBLE_EQ(cost_s({on}), 0.0083);
   EXPECT_LT(cost_s({on}), 1.0 / 120);
+  EXPECT_NEAR(cost_s({on, "perception.pushbroom.stride_px=2"}) / 0.0083, 3.95, 0.01);
   EXPECT_DOUBLE_EQ(cost_s({on, "perception.detector=stereo_bm", "perception.compute.factor=2",
                            "perception.compute.stereo_bm_s=0.03"}),
                    0.06);
