@@ -147,12 +147,12 @@ PushbroomConfig tuned_pushbroom(std::string_view rig) {
 PushbroomConfig woods_pushbroom(std::string_view rig) {
   PushbroomConfig config = tuned_pushbroom(rig);
   if (rig == "paper") {
-    config.minimum_edge_sum = 73;
-    config.score_limit = 0.331764;
-    config.uniqueness_ratio = 1.18678;
-    config.uniqueness_minimum_depth_m = 2.86826;
-    config.isolation_minimum_points = 13;
-    config.isolation_radius_m = 0.340077;
+    config.minimum_edge_sum = 74;
+    config.score_limit = 0.26;
+    config.uniqueness_ratio = 1.35;
+    config.uniqueness_minimum_depth_m = 2.9;
+    config.isolation_minimum_points = 12;
+    config.isolation_radius_m = 0.5;
   } else if (rig == "long") {
     config.minimum_edge_sum = 111;
     config.score_limit = 0.259742;
