@@ -100,6 +100,7 @@ void add_detectors(const CalibratedRig& rig, const std::vector<StereoFrame>& raw
   detect_raw("rectify and detect", paper);
   detect_raw("rectify and detect, two threads", two_threads);
   detect_raw("rectify and detect, robust parameters", ours);
+  detect_raw("rectify and detect, parameters for woods", woods_pushbroom("long"));
 }
 
 }  // namespace

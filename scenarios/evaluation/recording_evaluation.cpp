@@ -27,11 +27,13 @@ constexpr std::int64_t compared_every = 8;  // the paper's evaluations: 15 frame
 constexpr std::size_t worst_kept = 8;
 
 /// Of a frame, on the aircraft's computer. What disparities cost nobody knows.
-double cost_s(std::size_t index, const ComputeConfig& compute) {
-  if (index >= algorithm_count) return 0;
+double cost_s(std::size_t index, const VisionConfig& config) {
+  if (index == algorithm::our_rule)
+    return config.compute.factor * parts().detectors.find("pushbroom")->cost_s(config);
+  const ComputeConfig& compute = config.compute;
   if (index == algorithm::stereo_bm) return compute.factor * compute.stereo_bm_s;
   if (index == algorithm::stereo_sgbm) return compute.factor * compute.stereo_sgbm_s;
-  return compute.factor * compute.pushbroom_s;
+  return index < algorithm_count ? compute.factor * compute.pushbroom_s : 0;
 }
 
 }  // namespace
@@ -184,7 +186,7 @@ class Evaluator {
     detectors_[algorithm::stereo_bm] = std::move(block_matching);
     detectors_[algorithm::stereo_sgbm] = std::move(semi_global);
     std::vector<double> costs_s(count);
-    for (std::size_t i = 0; i < count; ++i) costs_s[i] = cost_s(i, settings.compute);
+    for (std::size_t i = 0; i < count; ++i) costs_s[i] = cost_s(i, settings);
     std::size_t next = algorithm_count;
     for (const std::string& name : settings.more_detectors) {
       brought_.push_back(std::make_unique<RecordedDetector>(settings, name, rig));
