@@ -88,7 +88,7 @@ double acceleration(std::span<const double> sample, const Statistic& statistic) 
 /// Equation 14.14, equal values counted half (a mean of few values takes few): how far off the middle the
 /// resamples lie, as a normal quantile.
 double bias_correction(const std::vector<double>& sorted, double value) {
-  const auto [first, last] = std::ranges::equal_range(sorted, value);
+  const auto [first, last] = std::equal_range(sorted.begin(), sorted.end(), value);
   const auto count = static_cast<double>(sorted.size());
   const double below = 0.5 * static_cast<double>((first - sorted.begin()) + (last - sorted.begin()));
   return normal_quantile(std::clamp(below, 0.5, count - 0.5) / count);

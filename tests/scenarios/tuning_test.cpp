@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <random>
 
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
+#include "scenarios/tuning/asked_tuning.hpp"
 #include "scenarios/tuning/race.hpp"
 #include "scenarios/tuning/tune_report.hpp"
 #include "tests/scenarios/tuning_cases.hpp"
@@ -121,6 +124,38 @@ TEST_F(TuningTest, ARaceMeasuresFewTrialsWholeAndFindsTheSame) {
   EXPECT_FALSE(tuned.trials[static_cast<std::size_t>(tuned.best.training.number)].dropped);
   EXPECT_NEAR(tuned.best.training.point[0], 300, 3);
   for (const JudgedTrial& member : tuned.front) EXPECT_FALSE(member.training.dropped);
+}
+
+TEST_F(TuningTest, EveryQuestionGetsAnAnswerInJson) {
+  const TuneFile file = load(tuning_text("{method: random, trials: 50}"));
+  ClosedForm judge(0.2);
+  const std::vector<std::string> questions{
+      R"({"ask": true})",
+      R"({"tell": 1, "figures": {"success": 1, "progress": 1, "mean_speed_mps": 12,)"
+      R"( "position_error_m": null}})",
+      R"({"tell": 1, "figures": null})",
+      R"({"measure": {"perception.pushbroom.score_limit": 0.2}, "data": "validation"})"};
+  const std::string bytes = "{}[]\":,0129.-eE+ntrue\\u \x80\xff";
+  std::mt19937 generator(1);
+  int errors = 0;
+  for (int i = 0; i < 4000; ++i) {
+    AskedTuning asked(file, [&](bool) -> Judge& { return judge; });
+    for (int line = 0; line < 3; ++line) {
+      std::string question = questions[generator() % questions.size()];
+      for (auto edits = generator() % 4; edits > 0; --edits) {
+        const auto at = generator() % question.size();
+        if (generator() % 2 == 0)
+          question[at] = bytes[generator() % bytes.size()];
+        else
+          question.erase(at, 1 + generator() % 5);
+        question += ' ';
+      }
+      const auto answer = nlohmann::json::parse(asked.answer(question));
+      ASSERT_TRUE(answer.is_object()) << question;
+      errors += answer.contains("error");
+    }
+  }
+  EXPECT_GT(errors, 3000);
 }
 
 TEST_F(TuningTest, TheBestFewFlyWithTheSameSeeds) {
