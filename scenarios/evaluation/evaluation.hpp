@@ -40,6 +40,16 @@ enum Index : std::size_t { our_rule, the_papers_rule, stereo_bm, stereo_sgbm, tr
 inline constexpr std::size_t algorithm_count = 6, computed_count = 4;
 inline constexpr std::array<const char*, algorithm_count> algorithm_names{
     "pushbroom", "pushbroom, original", "StereoBM", "StereoSGBM", "true depth", "random"};
+/// One that is computed: the algorithm's name, its part and keys.
+struct ComparedDetector {
+  std::string name, part;
+  VisionConfig config;
+};
+
+/// The first four algorithms and the settings' detectors, in their order; full stereo is cropped to what the
+/// pushbroom looks at.
+std::vector<ComparedDetector> compared_detectors(const EvaluationSettings& settings, const StereoRig& rig);
+
 /// Those that go through the paper's own evaluations.
 inline constexpr std::array<algorithm::Index, 3> published_algorithms{
     algorithm::our_rule, algorithm::the_papers_rule, algorithm::at_random};

@@ -35,26 +35,6 @@ TrueImages truth_of(const ImagePair& pair, const StereoRig& rig) {
   return truth;
 }
 
-struct Algorithm {
-  std::string name, part;
-  VisionConfig config;
-};
-
-std::vector<Algorithm> algorithms_of(const EvaluationSettings& settings) {
-  VisionConfig paper = settings;
-  paper.pushbroom() = papers_rule_beside(settings.pushbroom());
-  std::vector<Algorithm> algorithms{{algorithm_names[algorithm::our_rule], "pushbroom", settings},
-                                    {algorithm_names[algorithm::the_papers_rule], "pushbroom", paper},
-                                    {algorithm_names[algorithm::stereo_bm], "stereo_bm", settings},
-                                    {algorithm_names[algorithm::stereo_sgbm], "stereo_sgbm", settings}};
-  for (const std::string& name : settings.more_detectors) algorithms.push_back({name, name, settings});
-  for (Algorithm& one : algorithms) {
-    one.config.pushbroom().depths_m.clear();
-    one.config.pushbroom().disparities_px.clear();
-  }
-  return algorithms;
-}
-
 std::string percent_text(const Share& share) {
   return share.of > 0 ? number_text(100 * share.value(), 1) : "-";
 }
@@ -80,27 +60,28 @@ std::vector<int> whole_disparities(const ImagePair& pair, const StereoRig& rig) 
 
 std::vector<PairScore> evaluate_pairs(const std::vector<ImagePair>& pairs, const EvaluationSettings& settings,
                                       const StereoRig& rig, const std::function<void()>& on_disparity) {
-  const std::vector<Algorithm> algorithms = algorithms_of(settings);
+  EvaluationSettings at_the_rigs_depth = settings;
+  at_the_rigs_depth.pushbroom().depths_m.clear();
+  at_the_rigs_depth.pushbroom().disparities_px.clear();
   std::vector<PairScore> scores;
   for (const ImagePair& pair : pairs) {
     const std::size_t first = scores.size();
     const std::vector<int> disparities = whole_disparities(pair, rig);
-    for (const Algorithm& one : algorithms)
+    for (const ComparedDetector& one : compared_detectors(at_the_rigs_depth, rig))
       scores.push_back({pair.name, one.name, static_cast<int>(disparities.size()), {}});
     for (const int px : disparities) {
       const StereoRig looking = rig_looking_at(px, pair, rig);
       const TrueImages truth = truth_of(pair, looking);
       const DetectionGrid grid(looking, {}, settings.pushbroom().last_row_px);
       const std::vector<ExpectedBlock> expected = expected_blocks(truth, grid);
-      for (std::size_t i = 0; i < algorithms.size(); ++i) {
-        VisionConfig config = algorithms[i].config;
-        config.full_stereo = crop_beside(config, looking);
-        RecordedDetector detector(config, algorithms[i].part, looking);
+      std::size_t place = first;
+      for (const ComparedDetector& one : compared_detectors(at_the_rigs_depth, looking)) {
+        RecordedDetector detector(one.config, one.part, looking);
         std::vector<StereoHit> hits = detector.detector().detect({0, pair.left, pair.right});
         std::erase_if(hits, [&](const StereoHit& hit) {
           return !content_between(truth, hit.column_px, hit.row_px, {0.001, 65.535}, Surfaces::any).holds();
         });
-        count_one_pixel(truth, grid, expected, hits, scores[first + i].rates);
+        count_one_pixel(truth, grid, expected, hits, scores[place++].rates);
       }
       on_disparity();
     }

@@ -26,16 +26,6 @@ namespace fs = std::filesystem;
 constexpr std::int64_t compared_every = 8;  // the paper's evaluations: 15 frames a second
 constexpr std::size_t worst_kept = 8;
 
-/// Of a frame, on the aircraft's computer. What disparities cost nobody knows.
-double cost_s(std::size_t index, const VisionConfig& config) {
-  if (index == algorithm::our_rule)
-    return config.compute.factor * parts().detectors.find("pushbroom")->cost_s(config);
-  const ComputeConfig& compute = config.compute;
-  if (index == algorithm::stereo_bm) return compute.factor * compute.stereo_bm_s;
-  if (index == algorithm::stereo_sgbm) return compute.factor * compute.stereo_sgbm_s;
-  return index < algorithm_count ? compute.factor * compute.pushbroom_s : 0;
-}
-
 }  // namespace
 
 PushbroomConfig papers_rule_beside(const PushbroomConfig& rule) {
@@ -55,6 +45,19 @@ FullStereoCrop crop_beside(const PerceptionSection& perception, const StereoRig&
   return crop;
 }
 
+std::vector<ComparedDetector> compared_detectors(const EvaluationSettings& settings, const StereoRig& rig) {
+  VisionConfig ours = settings;
+  ours.full_stereo = crop_beside(settings, rig);
+  VisionConfig paper = ours;
+  paper.pushbroom() = papers_rule_beside(settings.pushbroom());
+  std::vector<ComparedDetector> detectors{{algorithm_names[algorithm::our_rule], "pushbroom", ours},
+                                          {algorithm_names[algorithm::the_papers_rule], "pushbroom", paper},
+                                          {algorithm_names[algorithm::stereo_bm], "stereo_bm", ours},
+                                          {algorithm_names[algorithm::stereo_sgbm], "stereo_sgbm", ours}};
+  for (const std::string& name : settings.more_detectors) detectors.push_back({name, name, ours});
+  return detectors;
+}
+
 namespace {
 
 /// Every algorithm at several thresholds over the same frames: score limit or uniqueness of the pushbroom,
@@ -62,22 +65,24 @@ namespace {
 class CurveSweeps {
  public:
   CurveSweeps(const StereoRig& rig, const DetectionGrid& grid, const EvaluationSettings& settings)
-      : grid_(grid) {
-    const FullStereoCrop crop = crop_beside(settings, rig);
-    add_rule(rig, algorithm_names[algorithm::our_rule], settings.pushbroom());
-    add_rule(rig, algorithm_names[algorithm::the_papers_rule], papers_rule_beside(settings.pushbroom()));
-    add_full_stereo(rig, algorithm_names[algorithm::stereo_bm],
-                    settings.detectors.of<StereoBmConfig>("stereo_bm"), crop, {0, 5, 10, 18, 30, 50});
-    add_full_stereo(rig, algorithm_names[algorithm::stereo_sgbm],
-                    settings.detectors.of<StereoSgbmConfig>("stereo_sgbm"), crop, {0, 10, 30, 60});
+      : rig_(rig), grid_(grid) {
+    const std::vector<ComparedDetector> compared = compared_detectors(settings, rig);
+    for (const auto place : {algorithm::our_rule, algorithm::the_papers_rule})
+      if (compared[place].config.pushbroom().uniqueness)
+        add(compared[place], "uniqueness_ratio", {1.05, 1.2, 1.4, 1.6, 2.0, 2.5, 3.2, 4.0},
+            [](VisionConfig& config, double ratio) { config.pushbroom().uniqueness_ratio = ratio; });
+      else
+        add(compared[place], "score_limit", {0.4, 0.3, 0.22, 54.0 / 333.0, 0.12, 0.09, 0.06, 0.04},
+            [](VisionConfig& config, double limit) { config.pushbroom().score_limit = limit; });
+    add(compared[algorithm::stereo_bm], "uniqueness_percent", {0, 5, 10, 18, 30, 50},
+        set_uniqueness<StereoBmConfig>);
+    add(compared[algorithm::stereo_sgbm], "uniqueness_percent", {0, 10, 30, 60},
+        set_uniqueness<StereoSgbmConfig>);
     for (const CurveSettings& curve : settings.curves) {
-      curves_.push_back({curve.detector, curve.threshold});
-      detectors_.emplace_back();
+      begin(curve.detector, curve.threshold);
       for (auto [threshold, config] : curve.points) {
-        config.full_stereo = crop;
-        curves_.back().points.push_back({threshold});
-        brought_.push_back(std::make_unique<RecordedDetector>(config, curve.detector, rig));
-        detectors_.back().push_back(&brought_.back()->detector());
+        config.full_stereo = compared[0].config.full_stereo;
+        add_point(threshold, curve.detector, config);
       }
     }
   }
@@ -85,48 +90,38 @@ class CurveSweeps {
   void add(const EvaluationFrame& frame, const std::vector<ExpectedBlock>& expected) {
     for (std::size_t curve = 0; curve < curves_.size(); ++curve)
       for (std::size_t point = 0; point < curves_[curve].points.size(); ++point)
-        count_one_pixel(frame.truth, grid_, expected, detectors_[curve][point]->detect(frame.pair),
+        count_one_pixel(frame.truth, grid_, expected, detectors_[curve][point]->detector().detect(frame.pair),
                         curves_[curve].points[point].rates);
   }
   const std::vector<PrecisionRecallCurve>& curves() const { return curves_; }
 
  private:
-  /// By what the rule rejects with: uniqueness where it has it, else the score.
-  void add_rule(const StereoRig& rig, const std::string& name, const PushbroomConfig& rule) {
-    curves_.push_back({name, rule.uniqueness ? "uniqueness_ratio" : "score_limit"});
-    detectors_.emplace_back();
-    for (const double threshold :
-         rule.uniqueness ? std::vector<double>{1.05, 1.2, 1.4, 1.6, 2.0, 2.5, 3.2, 4.0}
-                         : std::vector<double>{0.4, 0.3, 0.22, 54.0 / 333.0, 0.12, 0.09, 0.06, 0.04}) {
-      PushbroomConfig config = rule;
-      (rule.uniqueness ? config.uniqueness_ratio : config.score_limit) = threshold;
-      curves_.back().points.push_back({threshold});
-      add(std::make_unique<PushbroomStereo>(rig, config));
-    }
-  }
-
   template <typename Config>
-  void add_full_stereo(const StereoRig& rig, const std::string& name, Config config,
-                       const FullStereoCrop& crop, const std::vector<int>& uniqueness_percent) {
-    curves_.push_back({name, "uniqueness_percent"});
+  static void set_uniqueness(VisionConfig& config, double percent) {
+    const char* part = std::is_same_v<Config, StereoBmConfig> ? "stereo_bm" : "stereo_sgbm";
+    config.detectors.of<Config>(part).uniqueness_percent = static_cast<int>(percent);
+  }
+  void begin(const std::string& name, const std::string& threshold) {
+    curves_.push_back({name, threshold});
     detectors_.emplace_back();
-    for (const int percent : uniqueness_percent) {
-      config.uniqueness_percent = percent;
-      curves_.back().points.push_back({static_cast<double>(percent)});
-      add(std::make_unique<FullStereoDetector>(rig, config, crop));
+  }
+  void add_point(double threshold, const std::string& part, const VisionConfig& config) {
+    curves_.back().points.push_back({threshold});
+    detectors_.back().push_back(std::make_unique<RecordedDetector>(config, part, rig_));
+  }
+  void add(ComparedDetector one, const std::string& key, const std::vector<double>& thresholds,
+           void (*set)(VisionConfig&, double)) {
+    begin(one.name, key);
+    for (const double threshold : thresholds) {
+      set(one.config, threshold);
+      add_point(threshold, one.part, one.config);
     }
   }
 
-  void add(std::unique_ptr<ObstacleDetector> detector) {
-    detectors_.back().push_back(detector.get());
-    own_.push_back(std::move(detector));
-  }
-
+  StereoRig rig_;
   DetectionGrid grid_;
   std::vector<PrecisionRecallCurve> curves_;
-  std::vector<std::vector<ObstacleDetector*>> detectors_;  ///< a curve's, point by point
-  std::vector<std::unique_ptr<ObstacleDetector>> own_;
-  std::vector<std::unique_ptr<RecordedDetector>> brought_;
+  std::vector<std::vector<std::unique_ptr<RecordedDetector>>> detectors_;  ///< a curve's, point by point
 };
 
 /// What another program has found, in a detector's place.
@@ -173,29 +168,22 @@ class Evaluator {
           folder.string()));
     result_.sum.make_room(settings);
     const std::size_t count = result_.sum.algorithms.size();
-    auto block_matching =
-        std::make_unique<FullStereoDetector>(rig, settings.detectors.of<StereoBmConfig>("stereo_bm"), crop);
-    auto semi_global = std::make_unique<FullStereoDetector>(
-        rig, settings.detectors.of<StereoSgbmConfig>("stereo_sgbm"), crop);
-    dense_ = {{algorithm::stereo_bm, &block_matching->depth_m()},
-              {algorithm::stereo_sgbm, &semi_global->depth_m()}};
     detectors_.resize(count);
-    detectors_[algorithm::our_rule] = std::make_unique<PushbroomStereo>(rig, settings.pushbroom());
-    detectors_[algorithm::the_papers_rule] = std::make_unique<PushbroomStereo>(rig, paper);
-    stereo_bm_ = block_matching.get();
-    detectors_[algorithm::stereo_bm] = std::move(block_matching);
-    detectors_[algorithm::stereo_sgbm] = std::move(semi_global);
-    std::vector<double> costs_s(count);
-    for (std::size_t i = 0; i < count; ++i) costs_s[i] = cost_s(i, settings);
-    std::size_t next = algorithm_count;
-    for (const std::string& name : settings.more_detectors) {
-      brought_.push_back(std::make_unique<RecordedDetector>(settings, name, rig));
-      costs_s[next++] = brought_.back()->cost_s();
+    std::vector<double> costs_s(count, 0);  // what disparities cost nobody knows
+    std::size_t next = 0;
+    for (const ComparedDetector& one : compared_detectors(settings, rig)) {
+      if (next == computed_count) next = algorithm_count;
+      computed_.push_back(std::make_unique<RecordedDetector>(one.config, one.part, rig));
+      detectors_[next] = &computed_.back()->detector();
+      costs_s[next++] = computed_.back()->cost_s();
     }
+    for (const auto place : {algorithm::stereo_bm, algorithm::stereo_sgbm})
+      dense_.emplace_back(place, &dynamic_cast<const FullStereoDetector&>(*detectors_[place]).depth_m());
+    next = algorithm_count + settings.more_detectors.size();
     for (const DisparityFolder& given : settings.disparities) {
-      auto detector = std::make_unique<GivenDisparities>(given, recording_name(folder), rig, crop);
-      dense_.emplace_back(next, &detector->depth_m());
-      detectors_[next++] = std::move(detector);
+      given_.push_back(std::make_unique<GivenDisparities>(given, recording_name(folder), rig, crop));
+      dense_.emplace_back(next, &given_.back()->depth_m());
+      detectors_[next++] = given_.back().get();
     }
     hits_.resize(count);
     for (std::size_t i = 0; i < published_algorithms.size(); ++i)
@@ -244,10 +232,8 @@ class Evaluator {
   void detect(const EvaluationFrame& frame) {
     for (std::size_t i = 0; i < hits_.size(); ++i) {
       if (!is_computed(i)) continue;
-      const std::size_t further = i - algorithm_count;
-      ObstacleDetector& detector = detectors_[i] != nullptr ? *detectors_[i] : brought_[further]->detector();
       const auto begin = std::chrono::steady_clock::now();
-      const std::vector<StereoHit>& seen = detector.detect(frame.pair);
+      const std::vector<StereoHit>& seen = detectors_[i]->detect(frame.pair);
       result_.sum.cost_ms[i].push_back(1e3 * seconds_since(begin));
       hits_[i] = seen;
     }
@@ -305,7 +291,8 @@ class Evaluator {
     for (std::size_t i = 0; i < published_.size(); ++i) {
       const std::vector<StereoHit>& hits = hits_[published_algorithms[i]];
       published_[i].remember(frame, hits);
-      if (result_.sum.frames % compared_every == 0) published_[i].compare(frame, hits, stereo_bm_->depth_m());
+      if (result_.sum.frames % compared_every == 0)
+        published_[i].compare(frame, hits, *dense_.front().second);
     }
     ++result_.sum.frames;
   }
@@ -330,11 +317,12 @@ class Evaluator {
   EvaluationRecording recording_;
   DetectionGrid grid_;
   std::map<int, std::string> kinds_;
-  std::vector<std::unique_ptr<ObstacleDetector>> detectors_;   ///< null: not computed, or brought
-  std::vector<std::unique_ptr<RecordedDetector>> brought_;     ///< the settings' detectors
-  std::vector<std::pair<std::size_t, const cv::Mat*>> dense_;  ///< places and depths of this frame
-  const FullStereoDetector* stereo_bm_ = nullptr;              ///< one of them
-  std::vector<std::vector<StereoHit>> hits_;                   ///< of this frame
+  std::vector<std::unique_ptr<RecordedDetector>> computed_;
+  std::vector<std::unique_ptr<GivenDisparities>> given_;
+  std::vector<ObstacleDetector*> detectors_;  ///< of these; null: not computed
+  std::vector<std::pair<std::size_t, const cv::Mat*>>
+      dense_;                                 ///< places and depths of this frame, StereoBM's first
+  std::vector<std::vector<StereoHit>> hits_;  ///< of this frame
   std::mt19937_64 random_{1};
   std::vector<PublishedEvaluations> published_;
   std::vector<ObstacleSightings> sightings_;
