@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <utility>
@@ -11,7 +10,6 @@
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "scenarios/evaluation/evaluation_recording.hpp"
 #include "scenarios/report/line_plot.hpp"
-#include "scenarios/report/pictures.hpp"
 
 namespace understory {
 namespace {
