@@ -1,9 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
-#include <string_view>
-#include <utility>
 
 namespace understory {
 

@@ -1,7 +1,6 @@
 #include "estimation/measurements.hpp"
 
 #include <cmath>
-#include <vector>
 
 #include "estimation/samples.hpp"
 #include "estimation/so3.hpp"

@@ -1,6 +1,5 @@
 #include "estimation/measurements.hpp"
 
-#include <cmath>
 
 namespace understory {
 namespace {

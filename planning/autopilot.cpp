@@ -1,6 +1,5 @@
 #include "planning/autopilot.hpp"
 
-#include <cmath>
 #include <utility>
 #include <variant>
 

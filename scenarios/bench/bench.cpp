@@ -15,6 +15,15 @@
 namespace understory {
 namespace {
 
+/// An algorithm to time: run(i) runs it on pair i.
+struct BenchCase {
+  std::string name;
+  int threads = 1;
+  std::string yardstick;  ///< name of the case it is measured against; empty for a yardstick itself
+  int every_rounds = 1;   ///< slow ones skip most rounds
+  std::function<void(std::size_t)> run;
+};
+
 constexpr int passes_in_turn = 10;
 constexpr const char* remap_name = "OpenCV remap of the pair, nearest";
 constexpr const char* matching_name = "OpenCV StereoBM, 64 disparities, block 9";
@@ -103,32 +112,27 @@ void add_detectors(const CalibratedRig& rig, const std::vector<StereoFrame>& raw
   detect_raw("rectify and detect, parameters for woods", woods_pushbroom("long"));
 }
 
-}  // namespace
-
-BenchPairs bench_pairs(const CalibratedRig& rig, const std::vector<StereoFrame>& frames) {
-  BenchPairs pairs{frames, frames};
-  if (!rig.calibration) return pairs;
+/// The frames themselves where they come rectified.
+std::vector<StereoFrame> rectified_pairs(const CalibratedRig& rig, std::vector<StereoFrame> frames) {
+  if (!rig.calibration) return frames;
   Rectifier rectifier(*rig.calibration, Interpolation::nearest);
-  for (StereoFrame& frame : pairs.rectified) {
+  for (StereoFrame& frame : frames) {
     const StereoFrame turned = rectifier.rectify(frame);
     frame = {frame.t_ns, turned.left.clone(), turned.right.clone()};
   }
-  return pairs;
+  return frames;
 }
 
-std::vector<BenchCase> bench_cases(const CalibratedRig& rig, const BenchPairs& pairs) {
-  cv::setNumThreads(1);
-  std::vector<BenchCase> cases;
-  add_yardsticks(rig, pairs.delivered, pairs.rectified, cases);
-  add_full_stereo(rig, pairs.rectified, cases);
-  add_detectors(rig, pairs.delivered, pairs.rectified, cases);
-  return cases;
-}
+}  // namespace
 
 std::vector<BenchRow> bench_detectors(const CalibratedRig& rig, const std::vector<StereoFrame>& frames,
                                       int rounds, const std::function<void(int round)>& on_round) {
-  const BenchPairs pairs = bench_pairs(rig, frames);
-  std::vector<BenchCase> cases = bench_cases(rig, pairs);
+  const std::vector<StereoFrame> rectified = rectified_pairs(rig, frames);
+  cv::setNumThreads(1);
+  std::vector<BenchCase> cases;  // a yardstick comes before the cases measured against it
+  add_yardsticks(rig, frames, rectified, cases);
+  add_full_stereo(rig, rectified, cases);
+  add_detectors(rig, frames, rectified, cases);
   std::vector<std::vector<double>> times_ms(cases.size());
   for (int round = 0; round < rounds; ++round) {
     on_round(round);

@@ -63,26 +63,6 @@ std::string to_json(const std::vector<BenchRow>& rows);
 std::string to_table(const std::vector<ClosedLoopRow>& rows);
 std::string to_json(const std::vector<ClosedLoopRow>& rows);
 
-/// An algorithm to time: run(i) runs it on pair i.
-struct BenchCase {
-  std::string name;
-  int threads = 1;
-  std::string yardstick;  ///< name of the case it is measured against; empty for a yardstick itself
-  int every_rounds = 1;   ///< slow ones skip most rounds
-  std::function<void(std::size_t)> run;
-};
-
-/// The pairs to time on, as the cameras deliver them and rectified (the same where they come so).
-struct BenchPairs {
-  std::vector<StereoFrame> delivered, rectified;
-};
-
-BenchPairs bench_pairs(const CalibratedRig& rig, const std::vector<StereoFrame>& frames);
-
-/// OpenCV's yardsticks, then the detector's variants; a yardstick comes before the cases measured against it.
-/// `pairs` must outlive the cases. Sets OpenCV to one thread.
-std::vector<BenchCase> bench_cases(const CalibratedRig& rig, const BenchPairs& pairs);
-
 /// Times OpenCV's remap, StereoBM and StereoSGBM and the detector's variants on `frames` (as the rig delivers
 /// them: raw where it has raw cameras), all in one run, taking turns round by round, so that other load
 /// affects all alike. In its turn each goes over all pairs a few times, the first untimed: a pair is used

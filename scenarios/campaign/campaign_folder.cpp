@@ -164,6 +164,11 @@ void prepare_campaign_folder(FolderMark& mark, const CampaignFolder& folder, con
   write_whole_file(folder.path / manifest_name, manifest_of(campaign));  // last: now it is a campaign
 }
 
+bool holds_campaign(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::exists(folder / manifest_name, ignored);
+}
+
 Campaign read_campaign(const CampaignFolder& folder) {
   const Json json = manifest_in(folder);
   Campaign campaign;

@@ -94,6 +94,9 @@ void prepare_campaign_folder(FolderMark& mark, const CampaignFolder& folder, con
 /// Throws ScenarioError where the flights of `held`, which the folder holds, began with another identity.
 void require_identity(const CampaignFolder& folder, const Campaign& held, const Identity& identity);
 
+/// Whether a campaign has left this folder.
+bool holds_campaign(const std::filesystem::path& folder);
+
 /// The campaign that a folder holds. Throws ScenarioError where it holds none or one of another format.
 Campaign read_campaign(const CampaignFolder& folder);
 

@@ -84,12 +84,10 @@ std::string titled(const std::string& scenario, const std::string& title) {
 }
 
 LinePlot success_plot(const std::string& title, const std::string& x_label) {
-  LinePlot plot;
-  plot.title = title;
-  plot.x_label = x_label;
-  plot.y_label = "goal reached (%), 95 % Wilson";
-  plot.y_range = percent_range;
-  return plot;
+  return {.title = title,
+          .x_label = x_label,
+          .y_label = "goal reached (%), 95 % Wilson",
+          .y_range = percent_range};
 }
 
 double span_of(const std::vector<FlightRow>& rows, const PlotAxis& axis) {
@@ -181,11 +179,10 @@ std::vector<LinePlot> survival_curves(const std::vector<FlightRow>& all_rows, co
     const bool begins = panels.empty() || (!fits_one && condition.scenario != scenario);
     if (begins || panels.back().series.size() == to_a_panel) {
       scenario = fits_one ? scenario_of_rows(rows, conditions) : condition.scenario;
-      panels.emplace_back();
-      panels.back().title = titled(scenario, begins ? "survival over distance" : "survival, continued");
-      panels.back().x_label = "progress (m)";
-      panels.back().y_label = "still flying (%), 95 %";
-      panels.back().y_range = percent_range;
+      panels.push_back({.title = titled(scenario, begins ? "survival over distance" : "survival, continued"),
+                        .x_label = "progress (m)",
+                        .y_label = "still flying (%), 95 %",
+                        .y_range = percent_range});
     }
     panels.back().series.push_back(steps_of(one));
     panels.back().series.back().name = words_of(condition, scenario);

@@ -3,12 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "scenarios/statistics/statistics.hpp"
 
 namespace understory {
 namespace {
+
+/// The distance over which a flight was observed, in m of progress: to its end, or, censored, to its goal.
+Lifetime lifetime_of(const FlightRow& row) {
+  if (row.reached_goal()) return {row.goal_m, false};
+  return {std::max(row.progress_m, 0.0), true};
+}
 
 ConditionSummary summary_of(const std::vector<FlightRow>& rows) {
   ConditionSummary summary;
@@ -59,13 +64,7 @@ std::string ompl_text(const ConditionSummary& summary) {
                                    static_cast<double>(summary.obstacle_ahead));
 }
 
-}  // namespace
-
-Lifetime lifetime_of(const FlightRow& row) {
-  if (row.reached_goal()) return {row.goal_m, false};
-  return {std::max(row.progress_m, 0.0), true};
-}
-
+/// The rows of each condition, conditions in order of appearance.
 std::vector<std::vector<FlightRow>> rows_by_condition(const std::vector<FlightRow>& rows) {
   std::vector<std::vector<FlightRow>> groups;
   for (const FlightRow& row : rows) {
@@ -79,6 +78,8 @@ std::vector<std::vector<FlightRow>> rows_by_condition(const std::vector<FlightRo
   }
   return groups;
 }
+
+}  // namespace
 
 std::vector<ConditionSummary> summarise(const std::vector<FlightRow>& rows) {
   std::vector<ConditionSummary> summaries;

@@ -25,12 +25,6 @@ struct ConditionSummary {
   SurvivalCurve survival;  ///< over true progress, m
 };
 
-/// The distance over which a flight was observed, in m of progress: to its end, or, censored, to its goal.
-Lifetime lifetime_of(const FlightRow& row);
-
-/// The rows of each condition, conditions in order of appearance.
-std::vector<std::vector<FlightRow>> rows_by_condition(const std::vector<FlightRow>& rows);
-
 /// A summary per condition, in order of appearance.
 std::vector<ConditionSummary> summarise(const std::vector<FlightRow>& rows);
 

@@ -38,6 +38,9 @@ bool fly_locally(const CampaignFolder& folder, const Campaign& campaign,
                  const std::vector<CampaignTask>& tasks, const LocalEngineConfig& config,
                  const OnCampaignProgress& on_progress);
 
+/// For a shell: nothing within is special.
+std::string quoted(const std::string& word);
+
 /// How a campaign becomes a job array: each task is a shard, which flies a share of the flights one after the
 /// other. The folder and this program must be where every node sees them, under the same names.
 struct SlurmConfig {

@@ -13,11 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool holds_campaign(const fs::path& folder) {
-  std::error_code ignored;
-  return fs::exists(folder / "campaign.json", ignored);
-}
-
 std::vector<fs::path> campaigns_in(const fs::path& folder) {
   std::error_code ignored;
   if (holds_campaign(folder) || !fs::is_directory(folder, ignored)) return {folder};

@@ -103,10 +103,7 @@ std::string shown_text(const GateVerdict& verdict, int pairs) {
                      verdict.smallest_shown * pairs, percent(verdict.smallest_shown));
 }
 
-Json json_of(const Interval& interval) {
-  const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
-  return {number(interval.minimum), number(interval.maximum)};
-}
+Json json_of(const Interval& interval) { return {interval.minimum, interval.maximum}; }
 
 Json json_of(const ConditionComparison& condition) {
   const PairedOutcomes& goals = condition.goals;

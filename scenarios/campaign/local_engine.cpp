@@ -7,12 +7,9 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <fstream>
 #include <map>
 #include <thread>
 
-#include "scenarios/config/config_tree.hpp"
-#include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/folder_mark.hpp"
 #include "scenarios/output/program.hpp"

@@ -19,13 +19,6 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds checked_every{1};
 
-/// For a shell: nothing within is special.
-std::string quoted(const std::string& word) {
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 struct Answer {
   int status = -1;
   std::string text;  ///< both streams, without the last newline
@@ -52,6 +45,12 @@ CampaignProgress progress_of(const CampaignFolder& folder, const std::vector<Cam
 }
 
 }  // namespace
+
+std::string quoted(const std::string& word) {
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
 
 std::vector<CampaignTask> tasks_of_shard(const Campaign& campaign, int number, int shards) {
   const std::vector<CampaignTask> all = in_flying_order(campaign);

@@ -10,7 +10,6 @@
 #include "perception/io/calibration_file.hpp"
 #include "perception/io/text_table.hpp"
 #include "scenarios/campaign/gate.hpp"
-#include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/errors.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 

@@ -68,9 +68,9 @@ int print_tasks(const CampaignFolder& folder, const Campaign& campaign) {
   const fs::path program = fs::read_symlink("/proc/self/exe");
   for (const CampaignTask& task : tasks_of(campaign)) {
     if (const auto file = read_flight(folder, task); file && file->row.flown()) continue;
-    std::string line = fmt::format("'{}'", program.string());
+    std::string line = quoted(program.string());
     for (const std::string& argument : flight_arguments(folder, campaign, task, false))
-      line += " '" + argument + "'";
+      line += " " + quoted(argument);
     fmt::print("{}\n", line);
   }
   return 0;
@@ -114,15 +114,9 @@ void require_engine(const CampaignArguments& arguments) {
   refuse(on_slurm && arguments.keeps_runs, "--keep-runs", "local");
 }
 
-/// Whether what is to be flown is a folder that a campaign has left.
-bool is_results(const fs::path& file) {
-  std::error_code ignored;
-  return fs::exists(file / campaign_results.manifest, ignored);
-}
-
 /// Of a campaign file, or of the folder of a campaign that is to go on.
 Campaign campaign_of(const CampaignArguments& arguments, const std::vector<ConfigNode>& over) {
-  if (is_results(arguments.file)) {
+  if (holds_campaign(arguments.file)) {
     if (!over.empty())
       throw ScenarioError(fmt::format(
           "{}: --set and --with change a campaign file, not a campaign that has begun", arguments.file));
@@ -143,15 +137,15 @@ int run_campaign(const CampaignArguments& arguments) {
   Campaign campaign = campaign_of(arguments, over);
   campaign.files.insert(campaign.files.end(), arguments.with.begin(), arguments.with.end());
   if (!arguments.seeds.empty()) {
-    if (!is_results(arguments.file)) campaign.seeds.clear();
+    if (!holds_campaign(arguments.file)) campaign.seeds.clear();
     std::set<std::uint64_t> known(campaign.seeds.begin(), campaign.seeds.end());
     std::ranges::copy_if(seeds_of(arguments.seeds, "--seeds"), std::back_inserter(campaign.seeds),
                          [&](std::uint64_t seed) { return known.insert(seed).second; });
   }
   const std::vector<Scenario> scenarios = scenarios_of(campaign, arguments.file);
-  const CampaignFolder folder{!arguments.out.empty()       ? fs::path(arguments.out)
-                              : is_results(arguments.file) ? fs::path(arguments.file)
-                                                           : fs::path("results") / campaign.name};
+  const CampaignFolder folder{!arguments.out.empty()           ? fs::path(arguments.out)
+                              : holds_campaign(arguments.file) ? fs::path(arguments.file)
+                                                               : fs::path("results") / campaign.name};
   if (folder.path.string().find('\n') != std::string::npos)  // --print-tasks prints a line for each flight
     throw ScenarioError(fmt::format("{}: the folder's name must not hold line breaks", folder.path.string()));
   require_separate({arguments.junit}, campaign.files);

@@ -6,7 +6,6 @@
 #include "scenarios/campaign/campaign_summary.hpp"
 #include "scenarios/campaign/gate.hpp"
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/folder_mark.hpp"
 

@@ -5,7 +5,6 @@
 
 #include "perception/io/calibration_file.hpp"
 #include "perception/io/text_table.hpp"
-#include "perception/perception_config.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"

@@ -7,14 +7,12 @@
 #include <cstdio>
 #include <memory>
 
-#include "perception/io/field_reader.hpp"
 #include "scenarios/campaign/campaign_page.hpp"
 #include "scenarios/campaign/campaign_summary.hpp"
 #include "scenarios/campaign/gate.hpp"
 #include "scenarios/campaign/gate_history.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/signals.hpp"
 

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <unistd.h>
 #include <memory>
 
 #include "scenarios/cli/arguments.hpp"

@@ -197,8 +197,7 @@ int report_campaign(const ReportArguments& arguments) {
 }
 
 int run_report_of_either(const ReportArguments& arguments) {
-  std::error_code ignored;
-  if (fs::exists(fs::path(arguments.folder) / "campaign.json", ignored)) return report_campaign(arguments);
+  if (holds_campaign(arguments.folder)) return report_campaign(arguments);
   if (!arguments.baseline.empty())
     throw ScenarioError("--baseline requires the folder of a campaign before it");
   return run_report(arguments);

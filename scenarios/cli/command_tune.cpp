@@ -3,11 +3,9 @@
 #include <iostream>
 #include <memory>
 
-#include "scenarios/campaign/engines.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/bad_input.hpp"
-#include "scenarios/config/config_tree.hpp"
 #include "scenarios/flight/flight_identity.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/folder_mark.hpp"

@@ -2,10 +2,8 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "scenarios/cli/command_line.hpp"
-#include "sim/render/renderer_kind.hpp"
 
 namespace understory {
 

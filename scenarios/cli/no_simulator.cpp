@@ -1,5 +1,4 @@
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/config/config_tree.hpp"
 #include "scenarios/evaluation/evaluation_suite.hpp"
 
 /// The commands of a build without the simulator (UNDERSTORY_SIM=OFF).

@@ -71,17 +71,13 @@ cv::Mat parse_pfm(const std::string& bytes, const std::string& name) {
   return image;
 }
 
-cv::Mat read_disparity_file(const fs::path& file) try {
+cv::Mat read_disparity_file(const fs::path& file) {
   if (file.extension() == ".pfm") return parse_pfm(read_file(file, maximum_pfm_bytes), file.string());
   const cv::Mat steps = read_gray_image(file, CV_16U);
   cv::Mat disparity;
   steps.convertTo(disparity, CV_32FC1, 1 / steps_per_px);
   disparity.setTo(std::numeric_limits<float>::quiet_NaN(), steps == 0);
   return disparity;
-} catch (const MachineError&) {
-  throw;
-} catch (const std::runtime_error& error) {
-  throw ScenarioError(error.what());
 }
 
 cv::Mat read_disparity(const fs::path& folder, std::int64_t t_ns, const StereoRig& rig) {

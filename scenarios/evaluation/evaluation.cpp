@@ -12,7 +12,6 @@
 
 #include "perception/io/calibration_file.hpp"
 #include "scenarios/config/bad_input.hpp"
-#include "scenarios/config/config_tree.hpp"
 #include "scenarios/evaluation/evaluation_recording.hpp"
 
 namespace understory {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <utility>
@@ -11,7 +10,6 @@
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "scenarios/evaluation/evaluation_recording.hpp"
 #include "scenarios/report/line_plot.hpp"
-#include "scenarios/report/pictures.hpp"
 
 namespace understory {
 namespace {
@@ -54,10 +52,7 @@ std::vector<double> in_percent(const DistanceHistogram& histogram, std::vector<d
 
 LinePlot histogram_panel(const char* title, const Evaluation& evaluation,
                          const DistanceHistogram PublishedScores::*histogram) {
-  LinePlot plot;
-  plot.title = title;
-  plot.x_label = "distance, m (the last: 10 m and more)";
-  plot.y_label = "% per half metre";
+  LinePlot plot{title, "distance, m (the last: 10 m and more)", "% per half metre"};
   for (std::size_t i = 0; i < published_algorithms.size(); ++i) {
     Series series{.name = algorithm_names[published_algorithms[i]], .mark = Mark::line_and_dots};
     series.y = in_percent(evaluation.all.published[i].*histogram, series.x);
@@ -149,13 +144,11 @@ std::vector<WorstPicture> worst_pictures(const Evaluation& evaluation) {
 }
 
 LinePlot precision_recall_plot(const Evaluation& evaluation) {
-  LinePlot plot;
   const DetectionDepth& depth = evaluation.recordings.front().detection_depth;
-  plot.title =
+  LinePlot plot{
       fmt::format("Blocks at {:.2f} m, within one pixel ({:.2f} to {:.2f} m), {} frames", depth.depth_m,
-                  depth.one_pixel.near_m, depth.one_pixel.far_m, evaluation.all.frames);
-  plot.x_label = "recall, %";
-  plot.y_label = "precision, %";
+                  depth.one_pixel.near_m, depth.one_pixel.far_m, evaluation.all.frames),
+      "recall, %", "precision, %"};
   for (const PrecisionRecallCurve& curve : evaluation.all.curves) {
     Series series{.name = curve.algorithm + " over " + curve.threshold, .mark = Mark::line_and_dots};
     for (const auto& [threshold, rates] : curve.points) {
@@ -182,10 +175,7 @@ std::vector<LinePlot> distances_plots(const Evaluation& evaluation) {
 
 LinePlot response_plot(const Evaluation& evaluation) {
   constexpr double bin_m = 0.5;
-  LinePlot plot;
-  plot.title = "Recall over the true distance of the blocks";
-  plot.x_label = "true distance, m";
-  plot.y_label = "recall, %";
+  LinePlot plot{"Recall over the true distance of the blocks", "true distance, m", "recall, %"};
   for (std::size_t i = 0; i < evaluation.all.algorithms.size(); ++i) {
     if (!is_computed(i)) continue;
     Series series{.name = evaluation.all.algorithms[i], .mark = Mark::line};
@@ -202,10 +192,7 @@ LinePlot response_plot(const Evaluation& evaluation) {
 }
 
 LinePlot first_hits_plot(const Evaluation& evaluation) {
-  LinePlot plot;
-  plot.title = "Obstacles within 3 m of the path: found by then";
-  plot.x_label = "true distance, m";
-  plot.y_label = "% of obstacles";
+  LinePlot plot{"Obstacles within 3 m of the path: found by then", "true distance, m", "% of obstacles"};
   std::vector<std::size_t> places{algorithm::our_rule, algorithm::the_papers_rule, algorithm::stereo_bm};
   for (std::size_t i = algorithm_count; i < evaluation.all.algorithms.size(); ++i) places.push_back(i);
   for (const std::size_t i : places) {

@@ -14,7 +14,6 @@
 #include "perception/io/image_file.hpp"
 #include "perception/io/text_file.hpp"
 #include "perception/io/text_table.hpp"
-#include "scenarios/config/config_tree.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {

@@ -43,20 +43,16 @@ std::vector<ImagePair> pairs_of_recording(const fs::path& folder, int every) {
   return pairs;
 }
 
-cv::Mat read_image(const fs::path& file) try { return read_gray_image(file); } catch (const MachineError&) {
-  throw;
-} catch (const std::runtime_error& error) {
-  throw ScenarioError(error.what());
-}
-
 bool holds_a_pair(const fs::path& folder) {
   std::error_code ignored;
   return fs::exists(folder / "left.png", ignored) && fs::exists(folder / "right.png", ignored);
 }
 
 ImagePair pair_of_files(const fs::path& folder) {
-  ImagePair pair{
-      folder.filename().string(), read_image(folder / "left.png"), read_image(folder / "right.png"), {}};
+  ImagePair pair{folder.filename().string(),
+                 read_gray_image(folder / "left.png"),
+                 read_gray_image(folder / "right.png"),
+                 {}};
   for (const char* name : {"disparity.png", "disparity.pfm"})
     if (std::error_code ignored; fs::exists(folder / name, ignored))
       pair.disparity_px = read_disparity_file(folder / name);

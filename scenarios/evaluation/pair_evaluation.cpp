@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <memory>
 
 #include "scenarios/detect/recorded_detector.hpp"
 #include "scenarios/output/errors.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 
 namespace understory {
@@ -35,6 +34,16 @@ std::string distance_name(const ExpectedBlock& block, const DetectionGrid& grid,
 std::string kind_in(const std::map<int, std::string>& kinds, int object) {
   const auto found = kinds.find(object);
   return found == kinds.end() ? "surface" : found->second;
+}
+
+/// Counts a hit that is true or not at one pixel in both precisions.
+void count_precision(const StereoHit& hit, bool is_true, const TrueImages& truth, const DetectionGrid& grid,
+                     Rates& rates) {
+  rates.precision.count(is_true);
+  const DepthInterval depths = grid.depths[grid.depth_of(hit)].one_pixel;
+  const bool on_obstacle =
+      is_true && content_between(truth, hit.column_px, hit.row_px, depths, Surfaces::obstacles).holds();
+  if (on_obstacle || !is_true) rates.trunk_precision.count(is_true);
 }
 
 struct FrameTally {
@@ -139,15 +148,6 @@ std::array<bool, tolerance_count> true_within(const StereoHit& hit, const TrueIm
     is_true[i] = borne_out({claimed_m - tolerances_m[i], claimed_m + tolerances_m[i]});
   is_true[one_pixel] = borne_out(grid.depths[grid.depth_of(hit)].one_pixel);
   return is_true;
-}
-
-void count_precision(const StereoHit& hit, bool is_true, const TrueImages& truth, const DetectionGrid& grid,
-                     Rates& rates) {
-  rates.precision.count(is_true);
-  const DepthInterval depths = grid.depths[grid.depth_of(hit)].one_pixel;
-  const bool on_obstacle =
-      is_true && content_between(truth, hit.column_px, hit.row_px, depths, Surfaces::obstacles).holds();
-  if (on_obstacle || !is_true) rates.trunk_precision.count(is_true);
 }
 
 void count_one_pixel(const TrueImages& truth, const DetectionGrid& grid,

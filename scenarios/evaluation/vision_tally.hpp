@@ -43,10 +43,6 @@ std::array<bool, tolerance_count> true_within(const StereoHit& hit, const TrueIm
 /// and something at least a metre farther). `kinds`: by object number; "surface" if unknown.
 std::string lies_on(const StereoHit& hit, const TrueImages& truth, const std::map<int, std::string>& kinds);
 
-/// Counts a hit that is true or not at one pixel in both precisions.
-void count_precision(const StereoHit& hit, bool is_true, const TrueImages& truth, const DetectionGrid& grid,
-                     Rates& rates);
-
 /// Adds one frame's hits to the rates at one pixel. `expected`: expected_blocks of the frame.
 void count_one_pixel(const TrueImages& truth, const DetectionGrid& grid,
                      const std::vector<ExpectedBlock>& expected, const std::vector<StereoHit>& hits,

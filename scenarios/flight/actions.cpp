@@ -4,7 +4,6 @@
 
 #include <array>
 #include <optional>
-#include <utility>
 
 #include "perception/io/text_table.hpp"
 

@@ -6,7 +6,6 @@
 #include <set>
 
 #include "scenarios/flight/flight.hpp"
-#include "scenarios/output/errors.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"

@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <concepts>
 #include <nlohmann/json.hpp>
-#include <type_traits>
 
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/errors.hpp"

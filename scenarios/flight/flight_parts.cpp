@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
-#include <utility>
 
 #include "perception/io/text_file.hpp"
 #include "perception/pushbroom/pushbroom_stereo.hpp"
@@ -12,10 +11,8 @@
 #include "scenarios/config/field_writer.hpp"
 #include "scenarios/config/named_seed.hpp"
 #include "scenarios/flight/actions.hpp"
-#include "scenarios/output/file_output.hpp"
 #include "scenarios/parts/checked_parts.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
-#include "scenarios/scenario/scenario_rig.hpp"
 
 namespace understory {
 World world_of(const Scenario& scenario, const std::filesystem::path& models_folder) {

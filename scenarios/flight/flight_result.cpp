@@ -32,9 +32,6 @@ std::uint64_t word_at(const std::byte* bytes) {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON has no infinity.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 std::string clearance_text(double clearance_m) {
   return std::isfinite(clearance_m) ? fmt::format("{:.2f} m", clearance_m) : "no obstacles";
 }
@@ -78,26 +75,9 @@ const char* const trajectory_columns =
     "left_elevon_rad,right_elevon_rad,thrust_n,clearance_m\n";
 
 std::optional<Outcome> outcome_named(std::string_view word) {
-  for (const Outcome outcome :
-       {Outcome::goal, Outcome::collision, Outcome::ground, Outcome::out_of_bounds, Outcome::time})
-    if (word == word_for(outcome)) return outcome;
-  return {};
-}
-
-std::string_view word_for(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::goal:
-      return "goal";
-    case Outcome::collision:
-      return "collision";
-    case Outcome::ground:
-      return "ground";
-    case Outcome::out_of_bounds:
-      return "out_of_bounds";
-    case Outcome::time:
-      return "time";
-  }
-  return "unknown";
+  const auto found = std::ranges::find(outcome_names, word);
+  if (found == outcome_names.end()) return {};
+  return static_cast<Outcome>(found - outcome_names.begin());
 }
 
 std::string to_json(const FlightResult& result) {
@@ -107,8 +87,6 @@ std::string to_json(const FlightResult& result) {
     Json& to = json[std::string(name)];
     if constexpr (std::is_same_v<Value, Outcome>)
       to = word_for(value);
-    else if constexpr (std::floating_point<Value>)
-      to = number(value);
     else if constexpr (std::is_same_v<Value, std::int64_t>)
       to = value < 0 ? Json(nullptr) : Json(value);
     else
@@ -125,7 +103,7 @@ std::string to_json(const FlightResult& result) {
         {"total_s", timing.total_s}};
   }
   json["versions"] = {{"understory", understory_version}, {"opencv", CV_VERSION}, {"compiler", __VERSION__}};
-  return json_text(json, 2) + "\n";
+  return json_text(json, 2) + "\n";  // null for infinity, which JSON has not
 }
 
 FlightResult result_from_json(const std::string& text, const std::string& name) try {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -42,7 +43,11 @@ enum class Outcome {
   time            ///< ran out of simulated time
 };
 
-std::string_view word_for(Outcome outcome);
+inline constexpr std::array<std::string_view, 5> outcome_names{"goal", "collision", "ground", "out_of_bounds",
+                                                               "time"};
+constexpr std::string_view word_for(Outcome outcome) {
+  return outcome_names[static_cast<std::size_t>(outcome)];
+}
 /// Empty if no outcome has this name.
 std::optional<Outcome> outcome_named(std::string_view word);
 

@@ -7,7 +7,6 @@
 
 #include <memory>
 #include <opencv2/core/mat.hpp>
-#include <stdexcept>
 #include <string>
 #include <vector>
 

@@ -11,7 +11,6 @@
 #include "perception/assertion.hpp"
 #include "perception/io/text_file.hpp"
 #include "scenarios/config/bad_input.hpp"
-#include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/named_seed.hpp"
 #include "scenarios/flight/clearance.hpp"
 

@@ -6,7 +6,6 @@
 #include <limits>
 #include <opencv2/core.hpp>
 
-#include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/named_seed.hpp"
 #include "scenarios/flight/flight.hpp"
 #include "scenarios/output/file_output.hpp"

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "estimation/samples.hpp"
 #include "perception/io/calibration_file.hpp"

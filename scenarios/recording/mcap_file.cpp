@@ -4,7 +4,6 @@
 
 #include <bit>
 #include <boost/crc.hpp>
-#include <cstring>
 #include <numeric>
 
 #include "scenarios/output/errors.hpp"

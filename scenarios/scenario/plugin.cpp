@@ -20,7 +20,6 @@
 #include <vector>
 
 #include "perception/io/text_file.hpp"
-#include "scenarios/config/config_tree.hpp"
 #include "scenarios/config/keys.hpp"
 #include "scenarios/output/program.hpp"
 #include "scenarios/scenario/scenario_io.hpp"

@@ -6,7 +6,6 @@
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "scenarios/campaign/campaign_folder.hpp"
 #include "scenarios/campaign/engines.hpp"
-#include "scenarios/config/config_tree.hpp"
 #include "scenarios/detect/recorded_detector.hpp"
 #include "scenarios/evaluation/evaluation.hpp"
 #include "scenarios/evaluation/evaluation_recording.hpp"

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -66,8 +65,7 @@ Json manifest_of(const TuneFile& file, const Identity& identity) {
 
 Json numbers_of(const std::vector<std::string>& names, const std::vector<double>& values) {
   Json json = Json::object();
-  for (std::size_t i = 0; i < values.size(); ++i)
-    json[names[i]] = std::isfinite(values[i]) ? Json(values[i]) : Json(nullptr);
+  for (std::size_t i = 0; i < values.size(); ++i) json[names[i]] = values[i];
   return json;
 }
 

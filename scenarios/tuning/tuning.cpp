@@ -27,21 +27,15 @@ class Tuning {
  public:
   Tuning(const TuneFile& file, const TuneOptions& options) : file_(file), options_(options) {}
 
-  /// A log of what `judge` says of points.
-  TrialLog log(const std::string& part, Judge& judge) {
+  /// A log of what `judge` says of points; with `race`, most of them are dropped after a glance.
+  TrialLog log(const std::string& part, Judge& judge, const Race* race = nullptr) {
     return TrialLog(options_.folder / (part + ".jsonl"), keys_of(file_.space), file_.figures,
-                    [this, part, &judge](int number, const Point& point) {
-                      return trial_of(measure(part, number, point, judge), judge);
-                    });
-  }
-  /// The same, where most points are dropped after a glance.
-  TrialLog log(const std::string& part, Judge& judge, const Race& race) {
-    return TrialLog(options_.folder / (part + ".jsonl"), keys_of(file_.space), file_.figures,
-                    [this, part, &judge, &race](int number, const Point& point) {
+                    [this, part, &judge, race](int number, const Point& point) {
+                      if (race == nullptr) return trial_of(measure(part, number, point, judge), judge);
                       const Measured glance = glance_at(part, number, point, judge);
                       if (!glance.refused.empty()) return trial_of(glance, judge);
                       const std::optional<Figures> figures =
-                          number > 0 ? race.dropped(glance.units) : std::nullopt;
+                          number > 0 ? race->dropped(glance.units) : std::nullopt;
                       if (!figures) return trial_of(measure(part, number, point, judge), judge);
                       Trial trial;
                       trial.figures = *figures;
@@ -97,7 +91,7 @@ std::vector<Trial> run_search(const TuneFile& file, Tuning& tuning, Judge& train
     return tuning.glance_at("trials", trial.number, trial.point, training).units;
   };
   Race race(file.objective, training, glance_at);
-  TrialLog log = tuning.log("trials", training, race);
+  TrialLog log = tuning.log("trials", training, &race);
   double minimum = std::numeric_limits<double>::infinity();
   const auto of = static_cast<std::size_t>(file.search.trials);
   const auto evaluate = [&](const Point& point) {

@@ -29,7 +29,7 @@ struct Trial {
 Measured measure_at(const Point& point, const TuneFile& file, Judge& judge, const std::string& name,
                     Look look = Look::whole);
 
-/// Each number under its name; null where it is not finite.
+/// Each number under its name; as text null where it is not finite.
 nlohmann::ordered_json numbers_of(const std::vector<std::string>& names, const std::vector<double>& values);
 
 /// Trials in their order, each a line of a JSON Lines file on disk before the next begins. Evaluating a point

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <string>
 
 #include "planning/airframe.hpp"
 #include "sim/aircraft/aerodynamics.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>

@@ -6,7 +6,7 @@ import json
 import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Mapping, NamedTuple, Optional, Sequence
 
 import _understory
 
@@ -64,12 +64,16 @@ def run(arguments: Sequence[str | os.PathLike], quiet: bool = True, accepted: Se
     return process.returncode, printed
 
 
-def _options(set: Optional[Mapping[str, Any]], plugins: Sequence[str | os.PathLike]) -> list[str]:
+def _options(set: Optional[Mapping[str, Any]], plugins: Sequence[str | os.PathLike], **named: Any) -> list[str]:
+    """named: options by their names, left out where None."""
     options = []
     for setting in settings_of(set):
         options += ["--set", setting]
     for plugin in plugins:
         options += ["--plugin", os.fspath(plugin)]
+    for name, value in named.items():
+        if value is not None:
+            options += [f"--{name}", os.fspath(value) if isinstance(value, os.PathLike) else str(value)]
     return options
 
 
@@ -138,9 +142,7 @@ def campaign(
     """Fly a campaign: a file, a name of the library, or what would stand in the file as a dictionary,
     {"scenario": "forest", "seeds": "1000..1019"}. Equals `understory campaign`. Flights that could not be flown have a
     reason in their rows."""
-    options = _options(set, plugins) + ["--out", os.fspath(out)]
-    if jobs is not None:
-        options += ["--jobs", str(jobs)]
+    options = _options(set, plugins, out=os.fspath(out), jobs=jobs)
     if resume:
         options.append("--resume")
     if isinstance(file, Mapping):
@@ -199,15 +201,11 @@ def evaluate(
     return json.loads((Path(out) / "evaluation.json").read_text(encoding="utf-8"))
 
 
-class Trial:
+class Trial(NamedTuple):
     """A trial of a search: its number, and a value for each key."""
 
-    def __init__(self, number: int, values: dict[str, float]) -> None:
-        self.number = number
-        self.values = values
-
-    def __repr__(self) -> str:
-        return f"<understory.Trial {self.number} {self.values}>"
+    number: int
+    values: dict[str, float]
 
 
 class Tuning:
@@ -230,11 +228,7 @@ class Tuning:
     ) -> None:
         import subprocess
 
-        options = _options(None, plugins)
-        if out is not None:
-            options += ["--out", os.fspath(out)]
-        if jobs is not None:
-            options += ["--jobs", str(jobs)]
+        options = _options(None, plugins, out=out, jobs=jobs)
         command = [program(), "tune", os.fspath(file), "--ask", *options]
         pipe = subprocess.PIPE
         self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=pipe, text=True)
@@ -306,11 +300,7 @@ def record(
 ) -> Path:
     """Record a flight, or cameras carried along the poses of `path`, as a EuRoC data set. Returns its folder. Equals
     `understory record`."""
-    options = _options(set, plugins) + ["--out", os.fspath(out)]
-    if seed is not None:
-        options += ["--seed", str(seed)]
-    if path is not None:
-        options += ["--path", os.fspath(path)]
+    options = _options(set, plugins, out=os.fspath(out), seed=seed, path=path)
     run(["record", scenario, *options], quiet, (0, 1))
     return Path(out)
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 import copy
 import functools
 import os
-from typing import Any, Mapping, Optional, Sequence
+from typing import Any, Callable, Mapping, Optional, Sequence
 
 import numpy as np
 
@@ -247,28 +247,18 @@ class FlightEnv(_Base):
         core = self._core
         assert core is not None
         imu, air, gravity = core.observation(self._imu_rows)
-        observation = {}
-        for name in self._observe:
-            if name == "imu":
-                observation[name] = imu
-            elif name == "airspeed":
-                observation[name] = air[:1]
-            elif name == "altitude":
-                observation[name] = air[1:2]
-            elif name == "course":
-                observation[name] = air[2:]
-            elif name == "gravity":
-                observation[name] = gravity
-            elif name == "images":
-                observation[name] = self._images_of(core)
-            elif name == "hits":
-                observation[name] = _padded(core.hits["position_camera"], MOST_HITS, (0.0, 0.0, 0.0))
-            elif name == "map":
-                observation[name] = _map_of(core)
-            else:
-                depth = core.depth
-                observation[name] = np.where(np.isfinite(depth), np.clip(depth, 0, FAR_M), FAR_M).astype(np.float32)
-        return observation
+        of: dict[str, Callable[[], np.ndarray]] = {
+            "imu": lambda: imu,
+            "airspeed": lambda: air[:1],
+            "altitude": lambda: air[1:2],
+            "course": lambda: air[2:],
+            "gravity": lambda: gravity,
+            "images": lambda: self._images_of(core),
+            "hits": lambda: _padded(core.hits["position_camera"], MOST_HITS, (0.0, 0.0, 0.0)),
+            "map": lambda: _map_of(core),
+            "depth": lambda: _depth_of(core),
+        }
+        return {name: of[name]() for name in self._observe}  # only what is asked is worked out
 
     def _images_of(self, core: _understory.Flight) -> np.ndarray:
         frame = core.frame
@@ -302,6 +292,11 @@ def _padded(rows: np.ndarray, count: int, filler: tuple[float, float, float]) ->
     array[:] = filler
     array[: min(count, len(rows))] = rows[:count]
     return array
+
+
+def _depth_of(core: _understory.Flight) -> np.ndarray:
+    depth = core.depth
+    return np.where(np.isfinite(depth), np.clip(depth, 0, FAR_M), FAR_M).astype(np.float32)
 
 
 def _map_of(core: _understory.Flight) -> np.ndarray:

@@ -38,6 +38,18 @@ def _file(factory: _Factory) -> str:
     return "Python" if file is None else os.path.abspath(file)
 
 
+def _registered(
+    add: Callable[..., None], name: str, keys: Sequence[_understory.Key], *more: Any
+) -> Callable[[_Factory], _Factory]:
+    """The decorator that adds a part; more: what `add` takes after the factory."""
+
+    def register(factory: _Factory) -> _Factory:
+        add(name, _meaning(factory), _file(factory), list(keys), factory, *more)
+        return factory
+
+    return register
+
+
 def detector(
     name: str,
     keys: Sequence[_understory.Key] = (),
@@ -49,25 +61,13 @@ def detector(
 
     cost_s: time that a pair costs the aircraft's computer, before perception.compute.factor.
     """
-
-    def register(factory: _Factory) -> _Factory:
-        _understory.add_detector(
-            name, _meaning(factory), _file(factory), list(keys), factory, needs_images, float(cost_s)
-        )
-        return factory
-
-    return register
+    return _registered(_understory.add_detector, name, keys, needs_images, float(cost_s))
 
 
 def state_source(name: str, keys: Sequence[_understory.Key] = ()) -> Callable[[_Factory], _Factory]:
     """Name a state source. What the factory makes has on(sample), state() and state_at(t_ns), which return a State;
     context.make_state_source("filter") gives one of ours to build on."""
-
-    def register(factory: _Factory) -> _Factory:
-        _understory.add_state_source(name, _meaning(factory), _file(factory), list(keys), factory)
-        return factory
-
-    return register
+    return _registered(_understory.add_state_source, name, keys)
 
 
 def planner(name: str, keys: Sequence[_understory.Key] = ()) -> Callable[[_Factory], _Factory]:
@@ -75,23 +75,13 @@ def planner(name: str, keys: Sequence[_understory.Key] = ()) -> Callable[[_Facto
     makes one from commands (bank_rad, climb_mps, duration_s), with its clearance_m. It may have
     concerns(position_world, plan): whether a new point of the map makes the plan outdated.
     counts: a dict of whole numbers of its own, for planner_counts of result.json."""
-
-    def register(factory: _Factory) -> _Factory:
-        _understory.add_planner(name, _meaning(factory), _file(factory), list(keys), factory)
-        return factory
-
-    return register
+    return _registered(_understory.add_planner, name, keys)
 
 
 def course(name: str, keys: Sequence[_understory.Key] = ()) -> Callable[[_Factory], _Factory]:
     """Name a course: a function of (seed, goal_x_m, **keys) that returns a list of Obstacle. Equal arguments must give
     equal obstacles."""
-
-    def register(factory: _Factory) -> _Factory:
-        _understory.add_course(name, _meaning(factory), _file(factory), list(keys), factory)
-        return factory
-
-    return register
+    return _registered(_understory.add_course, name, keys)
 
 
 def trunk(x_m: float, y_m: float, radius_m: float = 0.15, height_m: float = 12.0, name: str = "trunk") -> Any:
