@@ -1,6 +1,5 @@
 #include "estimation/measurements.hpp"
 
-
 namespace understory {
 namespace {
 

@@ -70,7 +70,7 @@ int print_tasks(const CampaignFolder& folder, const Campaign& campaign) {
     if (const auto file = read_flight(folder, task); file && file->row.flown()) continue;
     std::string line = quoted(program.string());
     for (const std::string& argument : flight_arguments(folder, campaign, task, false))
-      line += " " + quoted(argument);
+      line += fmt::format(" {}", quoted(argument));
     fmt::print("{}\n", line);
   }
   return 0;

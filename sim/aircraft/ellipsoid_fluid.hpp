@@ -1,6 +1,5 @@
 #pragma once
 
-
 #include "planning/airframe.hpp"
 #include "sim/aircraft/aerodynamics.hpp"
 #include "sim/scene/world.hpp"
