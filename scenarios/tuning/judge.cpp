@@ -114,6 +114,11 @@ class VisionJudge : public Judge {
     VisionConfig config;
     static_cast<PerceptionSection&>(config) = scenario.perception;
     config.full_stereo = crop_beside(config, rig_);
+    if (config.detector == "stereo_bm" || config.detector == "stereo_sgbm") {
+      // Cropped to the rig's depth, it can find nothing at those that the pushbroom looks at in flight.
+      config.pushbroom().depths_m.clear();
+      config.pushbroom().disparities_px.clear();
+    }
     Measured measured;
     measured.units.resize(recordings_.size());
     try {
