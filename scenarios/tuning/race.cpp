@@ -6,7 +6,8 @@
 namespace understory {
 namespace {
 
-constexpr double clearly = 1.645;  // standard errors: wrong for one in twenty
+constexpr double fewest_units = 6;  // fewer say nothing of their scatter
+constexpr double clearly = 1.645;   // standard errors: wrong for one in twenty
 
 std::vector<Counts> without(std::vector<Counts> units, std::size_t left_out) {
   units.erase(units.begin() + static_cast<std::ptrdiff_t>(left_out));
@@ -25,7 +26,7 @@ Figures Race::expected(const Trial& rival, const std::vector<Counts>& rivals_gla
 
 std::optional<Figures> Race::dropped(const std::vector<Counts>& glance) const {
   const auto units = static_cast<double>(glance.size());
-  if (units < 2) return {};
+  if (units < fewest_units) return {};
   for (const Trial& rival : rivals_) {
     const std::vector<Counts>& rivals_glance = glance_at_(rival);
     const Figures figures = expected(rival, rivals_glance, glance);

@@ -147,10 +147,13 @@ void add_limits(const ConfigNode& bounds, const ConfigNode& top, const std::stri
   if (bounds.kind != ConfigNode::Kind::map || bounds.children.empty())
     refuse_key(top, key, "bounds of figures: {precision: 0.97}");
   std::vector<double> values(tune.figures.size());
+  const std::set<std::string> shares{"precision", "recall",  "f_score",         "trunks_1m",
+                                     "trunks_3m", "success", "trunk_precision", "progress"};
   read_fields(
       bounds,
       [&](FieldVisitor& visit) {
-        for (std::size_t i = 0; i < values.size(); ++i) visit(tune.figures[i], values[i], -1e9, 1e9);
+        for (std::size_t i = 0; i < values.size(); ++i)
+          visit(tune.figures[i], values[i], 0.0, shares.contains(tune.figures[i]) ? 1.0 : 1e9);
       },
       key);
   for (const ConfigNode& bound : bounds.children) {

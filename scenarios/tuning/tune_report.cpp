@@ -8,6 +8,7 @@
 
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/report/sheet_page.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 namespace {
@@ -142,7 +143,7 @@ constexpr const char* about_flown =
 std::string limits_sentence(const TuneFile& file, const Tuned& tuned) {
   if (file.objective.limits.empty()) return "";
   if (!tuned.keeps_limits)
-    return "\nNo trial keeps the limits: this one misses them by the smallest amount.\n";
+    return "\nNo trial of the search keeps the limits: this one misses them by the smallest amount.\n";
   return keeps_limits(file, tuned.best.validation) ? "\nThe limits are kept on validation data too.\n"
                                                    : "\nOn validation data the limits are not kept.\n";
 }
@@ -151,6 +152,20 @@ std::string gain_sentence(const TuneFile& file, const Tuned& tuned) {
   if (gains(file, tuned)) return "";
   return "\nNo trial is better than the scenario as it is, on training data: leave it so. There is no "
          "best.yaml.\n";
+}
+
+/// Of trials without figures of their own; empty if there are none.
+std::string trials_sentence(const std::vector<Trial>& trials) {
+  std::string text;
+  const auto dropped = std::ranges::count_if(trials, &Trial::dropped);
+  if (dropped > 0)
+    text += fmt::format(
+        "\n{} trials were dropped after a glance; trials.csv has the figures expected of them.\n", dropped);
+  const auto is_refused = [](const Trial& trial) { return !trial.refused.empty(); };
+  if (const auto first = std::ranges::find_if(trials, is_refused); first != trials.end())
+    text += fmt::format("\n{} trials were refused, the first because of this: {}\n",
+                        std::ranges::count_if(trials, is_refused), first->refused);
+  return text;
 }
 
 std::string cell(const Trial& trial, std::size_t i) {
@@ -173,19 +188,24 @@ Table trials_table(const TuneFile& file, const std::vector<Item>& items,
     for (const double value : sides.front()->point) row.push_back(fmt::format("{}", value));
     for (const Trial* side : sides)
       for (std::size_t i = 0; i < file.figures.size(); ++i) row.push_back(cell(*side, i));
-    row.push_back(sides.front()->dropped ? "glance" : "whole");
+    const bool is_refused = !sides.front()->refused.empty();
+    row.push_back(is_refused ? "refused" : sides.front()->dropped ? "glance" : "whole");
   }
   return table;
 }
 
-/// The tuned keys as `fly --with` reads them.
+/// The tuned keys as `fly --with` reads them, and the detector that they are of.
 std::string tuned_config(const TuneFile& file, const JudgedTrial& trial) {
   std::string text = fmt::format("# {}: trial {} of a search for {}; over {}.\n", file.name,
                                  trial.training.number, objective_in_words(file), data_in_words(file));
   for (std::size_t i = 0; i < file.figures.size(); ++i)
     text += fmt::format("# {} {} (training {})\n", file.figures[i], figure(trial.validation, i),
                         figure(trial.training, i));
-  return text + to_yaml(file.space, trial.training.point);
+  std::string keys = to_yaml(file.space, trial.training.point);
+  const std::string detector = load_changed_scenario(file.scenario_file, {}).perception.detector;
+  if (file.over == TuningData::recordings && detector != "pushbroom")
+    keys.replace(0, std::string_view("perception:").size(), "perception:\n  detector: " + detector);
+  return text + keys;
 }
 
 }  // namespace
@@ -217,15 +237,17 @@ std::string tune_summary(const TuneFile& file, const Tuned& tuned) {
       data_in_words(file), tuned.trials.size() - 1, method_name(file), file.search.seed,
       tuned.best.training.number);
   text += to_markdown(comparison_table(file, tuned));
-  text += flights_sentence(file, tuned) + limits_sentence(file, tuned) + gain_sentence(file, tuned);
+  text += flights_sentence(file, tuned) + limits_sentence(file, tuned) + gain_sentence(file, tuned) +
+          trials_sentence(tuned.trials);
   if (tuned.best_units.size() < 15)
     text += fmt::format("\nIntervals come from {} units: below about 15 they are too narrow.\n",
                         tuned.best_units.size());
   if (!tuned.flown.empty())
     text += fmt::format("\n## In flight\n{}\n\n{}", about_flown, to_markdown(flown_table(tuned)));
   text +=
-      "\n## Pareto front\nOf the training figures; nothing tried is better in one without being worse in "
-      "another. `front/trial-N.yaml` flies each.\n\n" +
+      "\n## Pareto front\nOf the training figures: no other trial of the search is better in one without "
+      "being worse "
+      "in another. `front/trial-N.yaml` flies each.\n\n" +
       to_markdown(front_table(file, tuned));
   text += "\n## Sensitivity\nEach parameter alone varied from the tuned ones, on training data.\n\n" +
           to_markdown(sensitivity_table(file, tuned));

@@ -1,4 +1,5 @@
 """Our judge, and an optimiser by hand: steps at random from the best so far, shorter where they do not help.
+It climbs the first goal alone and heeds no bounds; a parameter with values gets one of them at random.
 
 Run: python3 hill_climb.py TUNING.yaml [TRIALS]
 """
@@ -16,6 +17,9 @@ with understory.Tuning(sys.argv[1]) as tuning:
     for trial in range(int(sys.argv[2]) if len(sys.argv) > 2 else 60):
         values = {}
         for parameter in tuning.parameters:
+            if "values" in parameter:
+                values[parameter["key"]] = chance.choice(parameter["values"])
+                continue
             low, high = parameter["from"], parameter["to"]
             value = best[parameter["key"]] + step * (high - low) * chance.gauss(0, 1)
             values[parameter["key"]] = min(high, max(low, round(value) if parameter["whole"] else value))
