@@ -135,7 +135,9 @@ void add_goals(const std::vector<std::string>& words, const ConfigNode& top, con
   for (const std::string& word : words) {
     const Goal goal{figure_of(word, tune), key.ends_with("maximize")};
     if (goal.figure == tune.figures.size())
-      refuse_key(top, key, fmt::format("one of {}, got '{}'", fmt::join(tune.figures, ", "), word));
+      refuse_key(top, key,
+                 fmt::format("one of {}, got '{}'{}", fmt::join(tune.figures, ", "), word,
+                             did_you_mean(word, tune.figures)));
     if (std::ranges::find(tune.objective.goals, goal.figure, &Goal::figure) != tune.objective.goals.end())
       refuse_key_since(top, key, "this figure is named twice");
     tune.objective.goals.push_back(goal);
@@ -251,7 +253,9 @@ void take_data(const TuneText& text, const ConfigNode& top, const fs::path& file
     *folders = folders_of(*words, top, key, file);
     for (const fs::path& folder : *folders)
       if (!seen.insert(folder).second)
-        refuse_key_since(top, key, fmt::format("{} is given twice", folder.string()));
+        refuse_key_since(
+            top, key,
+            fmt::format("{} is given twice (training and validation need different data)", folder.string()));
   }
   for (const fs::path& one : tune.validation_folders)
     for (const fs::path& other : tune.training_folders)
