@@ -9,12 +9,11 @@ void visit_fields(FieldVisitor& visit, PushbroomConfig& config) {
         "number of threads that search one stereo pair; it does not change the detections");
   visit("stride_px", config.stride_px, 1, 100,
         "Step from one block to the next along rows and columns. 5: side by side. Steps of 3 and 2 find more "
-        "of "
-        "an obstacle, since a block is more likely to fit it, and take 2 and 4 times as long.");
-  visit("cell_px", config.cell_px, 0, 100,
-        "Side of the square image cells, each of which gives at most one detection for each depth: the one "
-        "with "
-        "the lowest score, chosen after all tests. For blocks that overlap. 0: all detections are given.");
+        "of an obstacle, since a block is more likely to fit it, and take 2 and 4 times as long.");
+  visit(
+      "cell_px", config.cell_px, 0, 100,
+      "Side of the square image cells, each of which gives at most one detection for each depth: the one "
+      "with the lowest score, chosen after all tests. For blocks that overlap. 0: all detections are given.");
   visit("last_row_px", config.last_row_px, 0, 240,
         "Top edge of the lowest row of blocks, for an image of 240 rows; it scales with the image's height. "
         "Lower rows show the ground. The original's lastValidPixelRow, 205, is the bottom edge of its lowest "

@@ -320,8 +320,8 @@ class Evaluator {
   std::vector<std::unique_ptr<RecordedDetector>> computed_;
   std::vector<std::unique_ptr<GivenDisparities>> given_;
   std::vector<ObstacleDetector*> detectors_;  ///< of these; null: not computed
-  std::vector<std::pair<std::size_t, const cv::Mat*>>
-      dense_;                                 ///< places and depths of this frame, StereoBM's first
+  /// Places and depths of this frame, StereoBM's first.
+  std::vector<std::pair<std::size_t, const cv::Mat*>> dense_;
   std::vector<std::vector<StereoHit>> hits_;  ///< of this frame
   std::mt19937_64 random_{1};
   std::vector<PublishedEvaluations> published_;
