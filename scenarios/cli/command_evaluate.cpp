@@ -15,6 +15,7 @@
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/output_folder.hpp"
 #include "scenarios/output/progress_line.hpp"
+#include "scenarios/scenario/plugin.hpp"
 
 namespace understory {
 
@@ -32,17 +33,31 @@ struct EvaluateArguments {
   bool pairs = false;
 };
 
-/// Throws where one of the names is no detector of a plug-in. Ours are compared anyway.
-void require_detectors(const std::vector<std::string>& names) {
-  for (const std::string& name : names) {
-    const DetectorPart* part = parts().detectors.find(name);
+/// "edges", a plug-in's; or "tuned=best.yaml", what this file's keys describe.
+std::vector<ComparedDetector> detectors_of(const EvaluateArguments& arguments, const std::string& rig) {
+  std::vector<ComparedDetector> detectors;
+  for (const std::string& given : arguments.detectors) {
+    const std::size_t at = given.find('=');
+    const std::string name = given.substr(0, at);
+    VisionConfigSources sources = arguments.vision;
+    if (at != std::string::npos) sources.with.push_back(given.substr(at + 1));
+    const VisionConfig config = read_vision_config(sources, rig);
+    const std::string part_name = at == std::string::npos ? name : config.detector;
+    const DetectorPart* part = parts().detectors.find(part_name);
     if (part == nullptr)
-      throw ScenarioError(fmt::format("--detector {}: there is no such detector{}", name,
-                                      did_you_mean(name, parts().detectors.names())));
-    if (part->plugin.empty())
-      throw ScenarioError(
-          fmt::format("--detector {}: must be of a plug-in; Understory's own are compared anyway", name));
+      throw ScenarioError(fmt::format("--detector {}: there is no such detector{}{}", name,
+                                      did_you_mean(name, parts().detectors.names()),
+                                      given_plugins().empty() ? "; --plugin loads others" : ""));
+    const bool is_plain = !name.empty() && name.front() != '.' && name.find('/') == std::string::npos;
+    if (!is_plain || !part->needs_images || (part->plugin.empty() && at == std::string::npos))
+      throw ScenarioError(fmt::format(
+          "--detector {}: expected a plug-in's detector, or NAME=FILE with a file of keys whose "
+          "perception.detector uses images and a NAME without '/' and without '.' first; Understory's own "
+          "detectors are compared anyway",
+          given));
+    detectors.push_back({name, part_name, config});
   }
+  return detectors;
 }
 
 /// "perception.edges.uniqueness=1.1,1.5,2"
@@ -52,8 +67,8 @@ CurveSettings curve_of(const std::string& given, const EvaluateArguments& argume
   if (at == std::string::npos || dot == std::string::npos || !given.starts_with("perception.") || dot < 11)
     throw ScenarioError(fmt::format("--curve {}: {}", given, expected));
   CurveSettings curve{given.substr(11, dot - 11), given.substr(dot + 1, at - dot - 1), {}};
-  std::vector<std::string> names = arguments.detectors;
-  names.insert(names.end(), {"pushbroom", "stereo_bm", "stereo_sgbm"});
+  std::vector<std::string> names{"pushbroom", "stereo_bm", "stereo_sgbm"};
+  for (const ComparedDetector& one : detectors_of(arguments, rig)) names.push_back(one.part);
   if (std::ranges::find(names, curve.detector) == names.end())
     throw ScenarioError(fmt::format("--curve {}: no detector {} is compared here{}", given, curve.detector,
                                     did_you_mean(curve.detector, names)));
@@ -73,6 +88,7 @@ CurveSettings curve_of(const std::string& given, const EvaluateArguments& argume
 void run_pairs(const EvaluateArguments& arguments, EvaluationSettings settings, const fs::path& out) {
   const StereoRig rig = read_calibrated_rig(rig_path("long"), {}).rig;
   static_cast<VisionConfig&>(settings) = read_vision_config(arguments.vision, rig.name);
+  settings.more_detectors = detectors_of(arguments, rig.name);
   std::vector<ImagePair> pairs;
   std::size_t expected = 0, done = 0;
   for (const std::string& folder : arguments.inputs)
@@ -100,13 +116,12 @@ int run_evaluate(EvaluateArguments arguments) {
   arguments.vision.one_depth = true;  // full stereo is cropped to one depth's interval, to be compared
   // What is wrong there shows before anything is recorded.
   if (const std::string detector = read_vision_config(arguments.vision, "").detector; detector != "pushbroom")
-    throw ScenarioError("perception.detector: must be pushbroom here; --detector adds another, got " +
-                        detector);
-  require_detectors(arguments.detectors);
+    throw ScenarioError(
+        "perception.detector: must be pushbroom here; --detector NAME=FILE adds another, got " + detector);
+  options.settings.more_detectors = detectors_of(arguments, "");
   for (const std::string& given : arguments.curves) curve_of(given, arguments, "");
   for (const std::string& given : arguments.disparities)
     options.settings.disparities.push_back(disparity_folder_of(given));
-  options.settings.more_detectors = arguments.detectors;
   EvaluationSum().make_room(options.settings);
   options.jobs = jobs_or_cores(arguments.jobs);
   fs::path out = arguments.out;
@@ -131,11 +146,12 @@ int run_evaluate(EvaluateArguments arguments) {
                                    data_root() / "models");
   else
     options.folders.assign(arguments.inputs.begin(), arguments.inputs.end());
-  static_cast<VisionConfig&>(options.settings) =
-      read_vision_config(arguments.vision, rig_named_in(options.folders.front()));
+  const std::string rig = rig_named_in(options.folders.front());
+  static_cast<VisionConfig&>(options.settings) = read_vision_config(arguments.vision, rig);
+  options.settings.more_detectors = detectors_of(arguments, rig);
   options.settings.every = arguments.every;
   for (const std::string& given : arguments.curves)
-    options.settings.curves.push_back(curve_of(given, arguments, rig_named_in(options.folders.front())));
+    options.settings.curves.push_back(curve_of(given, arguments, rig));
   ProgressLine line;
   options.on_progress = [&](std::int64_t frames, std::int64_t expected) {
     line.show(fmt::format("{} of {} frames", frames, expected), static_cast<std::size_t>(frames),
@@ -163,8 +179,9 @@ void add_evaluate_command(CommandLine& line) {
                 1);
   add_vision_options(command, arguments->vision);
   add_plugin_option(command);
-  command.texts("--detector", "NAME", arguments->detectors,
-                "also compare this detector of a plug-in; repeatable");
+  command.texts("--detector", "NAME[=FILE]", arguments->detectors,
+                "also compare this detector of a plug-in, or under NAME the detector that a file of keys "
+                "describes, for example best.yaml written by tune; repeatable");
   command.texts("--curve", "KEY=VALUES", arguments->curves,
                 "also draw precision over recall for these values of a detector's key, for example "
                 "perception.stereo_bm.texture_threshold=0,200,400; repeatable");

@@ -58,7 +58,7 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
 
 void EvaluationSum::make_room(const EvaluationSettings& settings) {
   algorithms.assign(algorithm_names.begin(), algorithm_names.end());
-  append(algorithms, settings.more_detectors);
+  for (const ComparedDetector& one : settings.more_detectors) algorithms.push_back(one.name);
   for (const DisparityFolder& given : settings.disparities) algorithms.push_back(given.name);
   for (auto one = algorithms.begin(); one != algorithms.end(); ++one)
     if (std::find(algorithms.begin(), one, *one) != one)

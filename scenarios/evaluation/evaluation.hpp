@@ -15,6 +15,12 @@
 
 namespace understory {
 
+/// One that is computed: the algorithm's name, its part and keys.
+struct ComparedDetector {
+  std::string name, part;
+  VisionConfig config;
+};
+
 /// A detector with several values of one of its keys, from lax to strict: a curve of precision over recall.
 struct CurveSettings {
   std::string detector;   ///< a part's name
@@ -25,10 +31,10 @@ struct CurveSettings {
 /// What is evaluated, and how: `pushbroom` is the detector's parameter set, `map` the one of the evaluations
 /// with memory, `compute` the aircraft's computer, for results at its own pace, even if not `enabled`.
 struct EvaluationSettings : VisionConfig {
-  int every = 1;                                  ///< every n-th frame only
-  std::vector<std::string> more_detectors = {};   ///< further ones, by the names of their parts
-  std::vector<DisparityFolder> disparities = {};  ///< of other programs
-  std::vector<CurveSettings> curves = {};         ///< besides those of the algorithms below
+  int every = 1;                                      ///< every n-th frame only
+  std::vector<ComparedDetector> more_detectors = {};  ///< further ones
+  std::vector<DisparityFolder> disparities = {};      ///< of other programs
+  std::vector<CurveSettings> curves = {};             ///< besides those of the algorithms below
 };
 
 /// The algorithms that every evaluation has; the first four have to be computed, and so have those that
@@ -40,11 +46,6 @@ enum Index : std::size_t { our_rule, the_papers_rule, stereo_bm, stereo_sgbm, tr
 inline constexpr std::size_t algorithm_count = 6, computed_count = 4;
 inline constexpr std::array<const char*, algorithm_count> algorithm_names{
     "pushbroom", "pushbroom, original", "StereoBM", "StereoSGBM", "true depth", "random"};
-/// One that is computed: the algorithm's name, its part and keys.
-struct ComparedDetector {
-  std::string name, part;
-  VisionConfig config;
-};
 
 /// The first four algorithms and the settings' detectors, in their order; full stereo is cropped to what the
 /// pushbroom looks at.
@@ -53,9 +54,6 @@ std::vector<ComparedDetector> compared_detectors(const EvaluationSettings& setti
 /// Those that go through the paper's own evaluations.
 inline constexpr std::array<algorithm::Index, 3> published_algorithms{
     algorithm::our_rule, algorithm::the_papers_rule, algorithm::at_random};
-
-/// The paper's rule, looking where `rule` does.
-PushbroomConfig papers_rule_beside(const PushbroomConfig& rule);
 
 /// The depths at which full stereo is compared with a rule: those of one pixel of disparity, the rule's rows.
 FullStereoCrop crop_beside(const PerceptionSection& perception, const StereoRig& rig);

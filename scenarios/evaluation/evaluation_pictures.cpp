@@ -145,10 +145,9 @@ std::vector<WorstPicture> worst_pictures(const Evaluation& evaluation) {
 
 LinePlot precision_recall_plot(const Evaluation& evaluation) {
   const DetectionDepth& depth = evaluation.recordings.front().detection_depth;
-  LinePlot plot{
-      fmt::format("Blocks at {:.2f} m, within one pixel ({:.2f} to {:.2f} m), {} frames", depth.depth_m,
-                  depth.one_pixel.near_m, depth.one_pixel.far_m, evaluation.all.frames),
-      "recall, %", "precision, %"};
+  LinePlot plot{fmt::format("{:.2f} m, one pixel ({:.2f} to {:.2f} m), {} frames", depth.depth_m,
+                            depth.one_pixel.near_m, depth.one_pixel.far_m, evaluation.all.frames),
+                "recall, %", "precision, %"};
   for (const PrecisionRecallCurve& curve : evaluation.all.curves) {
     Series series{.name = curve.algorithm + " over " + curve.threshold, .mark = Mark::line_and_dots};
     for (const auto& [threshold, rates] : curve.points) {

@@ -26,8 +26,7 @@ namespace fs = std::filesystem;
 constexpr std::int64_t compared_every = 8;  // the paper's evaluations: 15 frames a second
 constexpr std::size_t worst_kept = 8;
 
-}  // namespace
-
+/// The paper's rule, looking where `rule` does.
 PushbroomConfig papers_rule_beside(const PushbroomConfig& rule) {
   PushbroomConfig paper = original_pushbroom();
   paper.depths_m = rule.depths_m;
@@ -36,6 +35,8 @@ PushbroomConfig papers_rule_beside(const PushbroomConfig& rule) {
   paper.right_margin_px = rule.right_margin_px;
   return paper;
 }
+
+}  // namespace
 
 FullStereoCrop crop_beside(const PerceptionSection& perception, const StereoRig& rig) {
   FullStereoCrop crop = one_pixel_crop(rig);
@@ -54,17 +55,29 @@ std::vector<ComparedDetector> compared_detectors(const EvaluationSettings& setti
                                           {algorithm_names[algorithm::the_papers_rule], "pushbroom", paper},
                                           {algorithm_names[algorithm::stereo_bm], "stereo_bm", ours},
                                           {algorithm_names[algorithm::stereo_sgbm], "stereo_sgbm", ours}};
-  for (const std::string& name : settings.more_detectors) detectors.push_back({name, name, ours});
+  for (ComparedDetector one : settings.more_detectors) {
+    one.config.full_stereo = crop_beside(one.config, rig);
+    detectors.push_back(std::move(one));
+  }
   return detectors;
 }
 
 namespace {
 
-/// Every algorithm at several thresholds over the same frames: score limit or uniqueness of the pushbroom,
-/// uniqueness of StereoBM and StereoSGBM, and the settings' curves.
+/// A detector that matches every pixel, and which of these become detections.
+struct DenseDetector {
+  std::size_t place;  ///< among the algorithms
+  const cv::Mat* depth_m;
+  FullStereoCrop crop;
+};
+
+/// Every algorithm at several thresholds over the same frames: score limit or uniqueness of the pushbroom, of
+/// those that match every pixel how many of a cell's pixels make a detection, and the settings' curves.
 class CurveSweeps {
  public:
-  CurveSweeps(const StereoRig& rig, const DetectionGrid& grid, const EvaluationSettings& settings)
+  /// `dense`: have looked at a frame before it is added here.
+  CurveSweeps(const StereoRig& rig, const DetectionGrid& grid, const EvaluationSettings& settings,
+              const std::vector<std::string>& names, const std::vector<DenseDetector>& dense)
       : rig_(rig), grid_(grid) {
     const std::vector<ComparedDetector> compared = compared_detectors(settings, rig);
     for (const auto place : {algorithm::our_rule, algorithm::the_papers_rule})
@@ -74,12 +87,9 @@ class CurveSweeps {
       else
         add(compared[place], "score_limit", {0.4, 0.3, 0.22, 54.0 / 333.0, 0.12, 0.09, 0.06, 0.04},
             [](VisionConfig& config, double limit) { config.pushbroom().score_limit = limit; });
-    add(compared[algorithm::stereo_bm], "uniqueness_percent", {0, 5, 10, 18, 30, 50},
-        set_uniqueness<StereoBmConfig>);
-    add(compared[algorithm::stereo_sgbm], "uniqueness_percent", {0, 10, 30, 60},
-        set_uniqueness<StereoSgbmConfig>);
+    for (const DenseDetector& one : dense) add_cells(names[one.place], one);
     for (const CurveSettings& curve : settings.curves) {
-      begin(curve.detector, curve.threshold);
+      curves_.push_back({curve.detector, curve.threshold});
       for (auto [threshold, config] : curve.points) {
         config.full_stereo = compared[0].config.full_stereo;
         add_point(threshold, curve.detector, config);
@@ -88,40 +98,45 @@ class CurveSweeps {
   }
 
   void add(const EvaluationFrame& frame, const std::vector<ExpectedBlock>& expected) {
-    for (std::size_t curve = 0; curve < curves_.size(); ++curve)
-      for (std::size_t point = 0; point < curves_[curve].points.size(); ++point)
-        count_one_pixel(frame.truth, grid_, expected, detectors_[curve][point]->detector().detect(frame.pair),
-                        curves_[curve].points[point].rates);
+    auto look = looks_.begin();
+    for (PrecisionRecallCurve& curve : curves_)
+      for (PrecisionRecallCurve::Point& point : curve.points)
+        count_one_pixel(frame.truth, grid_, expected, (*look++)(frame.pair), point.rates);
   }
   const std::vector<PrecisionRecallCurve>& curves() const { return curves_; }
 
  private:
-  template <typename Config>
-  static void set_uniqueness(VisionConfig& config, double percent) {
-    const char* part = std::is_same_v<Config, StereoBmConfig> ? "stereo_bm" : "stereo_sgbm";
-    config.detectors.of<Config>(part).uniqueness_percent = static_cast<int>(percent);
-  }
-  void begin(const std::string& name, const std::string& threshold) {
-    curves_.push_back({name, threshold});
-    detectors_.emplace_back();
-  }
   void add_point(double threshold, const std::string& part, const VisionConfig& config) {
     curves_.back().points.push_back({threshold});
-    detectors_.back().push_back(std::make_unique<RecordedDetector>(config, part, rig_));
+    looks_.push_back([detector = std::make_shared<RecordedDetector>(config, part, rig_)](
+                         const StereoFrame& pair) { return detector->detector().detect(pair); });
   }
   void add(ComparedDetector one, const std::string& key, const std::vector<double>& thresholds,
            void (*set)(VisionConfig&, double)) {
-    begin(one.name, key);
+    curves_.push_back({one.name, key});
     for (const double threshold : thresholds) {
       set(one.config, threshold);
       add_point(threshold, one.part, one.config);
+    }
+  }
+  void add_cells(const std::string& name, DenseDetector one) {
+    curves_.push_back({name, "minimum_pixels_per_cell"});
+    const int pixels = one.crop.cell_px * one.crop.cell_px;
+    for (int part = 1; part <= 10; ++part) {
+      one.crop.minimum_pixels_per_cell = std::max(1, pixels * part / 10);
+      curves_.back().points.push_back({static_cast<double>(one.crop.minimum_pixels_per_cell)});
+      looks_.push_back([this, one](const StereoFrame&) {
+        std::vector<StereoHit> hits;
+        hits_of_depth(*one.depth_m, rig_, one.crop, hits);
+        return hits;
+      });
     }
   }
 
   StereoRig rig_;
   DetectionGrid grid_;
   std::vector<PrecisionRecallCurve> curves_;
-  std::vector<std::vector<std::unique_ptr<RecordedDetector>>> detectors_;  ///< a curve's, point by point
+  std::vector<std::function<std::vector<StereoHit>(const StereoFrame&)>> looks_;  ///< of all their points
 };
 
 /// What another program has found, in a detector's place.
@@ -159,8 +174,6 @@ class Evaluator {
     const StereoRig& rig = recording_.rig();
     check_depths(settings.pushbroom(), rig, "perception.depths_m", "perception.pushbroom");
     for (const RecordedObject& object : recording_.objects()) kinds_[object.number] = object.kind;
-    const PushbroomConfig paper = papers_rule_beside(settings.pushbroom());
-    const FullStereoCrop crop = crop_beside(settings, rig);
     if (recording_.is_raw() && !settings.disparities.empty())
       throw ScenarioError(fmt::format(
           "{}: --disparities requires a recording of rectified images; this one has raw ones (record without "
@@ -171,18 +184,20 @@ class Evaluator {
     detectors_.resize(count);
     std::vector<double> costs_s(count, 0);  // what disparities cost nobody knows
     std::size_t next = 0;
-    for (const ComparedDetector& one : compared_detectors(settings, rig)) {
+    const std::vector<ComparedDetector> compared = compared_detectors(settings, rig);
+    for (const ComparedDetector& one : compared) {
       if (next == computed_count) next = algorithm_count;
       computed_.push_back(std::make_unique<RecordedDetector>(one.config, one.part, rig));
       detectors_[next] = &computed_.back()->detector();
+      if (const auto* full = dynamic_cast<const FullStereoDetector*>(detectors_[next]))
+        dense_.push_back({next, &full->depth_m(), one.config.full_stereo});
       costs_s[next++] = computed_.back()->cost_s();
     }
-    for (const auto place : {algorithm::stereo_bm, algorithm::stereo_sgbm})
-      dense_.emplace_back(place, &dynamic_cast<const FullStereoDetector&>(*detectors_[place]).depth_m());
     next = algorithm_count + settings.more_detectors.size();
     for (const DisparityFolder& given : settings.disparities) {
+      const FullStereoCrop& crop = compared.front().config.full_stereo;
       given_.push_back(std::make_unique<GivenDisparities>(given, recording_name(folder), rig, crop));
-      dense_.emplace_back(next, &given_.back()->depth_m());
+      dense_.push_back({next, &given_.back()->depth_m(), crop});
       detectors_[next++] = given_.back().get();
     }
     hits_.resize(count);
@@ -193,14 +208,15 @@ class Evaluator {
       paced_.emplace_back(recording_.objects(), rig.baseline_m, costs_s[i]);
     }
     for (const bool on : {false, true})
-      for (const auto& [name, rule] :
-           {std::pair("original", paper), std::pair("as given", settings.pushbroom())}) {
-        PushbroomConfig filtered = rule;
+      for (const auto& [name, place] :
+           {std::pair("original", algorithm::the_papers_rule), std::pair("as given", algorithm::our_rule)}) {
+        PushbroomConfig filtered = compared[place].config.pushbroom();
         filtered.horizontal_invariance = on;
         invariance_.emplace_back(rig, filtered);
         result_.sum.invariance.push_back({name, on});
       }
-    if (recording_.has_depth()) sweeps_ = std::make_unique<CurveSweeps>(rig, grid_, settings);
+    if (recording_.has_depth())
+      sweeps_ = std::make_unique<CurveSweeps>(rig, grid_, settings, result_.sum.algorithms, dense_);
 
     result_.folder = folder;
     result_.rig = rig;
@@ -273,8 +289,8 @@ class Evaluator {
     DueBlocks due;
     if (recording_.has_depth()) {
       due = due_blocks(frame.truth, grid_);
-      for (const auto& [place, depth_m] : dense_)
-        result_.sum.disparities[place].count(*depth_m, frame.truth.depth_mm, recording_.rig());
+      for (const DenseDetector& one : dense_)
+        result_.sum.disparities[one.place].count(*one.depth_m, frame.truth.depth_mm, recording_.rig());
       for (std::size_t i = 0; i < hits_.size(); ++i) {
         tally(frame, grid_, recording_.rig(), kinds_, due, hits_[i], result_.sum.tallies[i]);
         sightings_[i].add(frame, grid_, due[one_pixel], hits_[i]);
@@ -292,7 +308,7 @@ class Evaluator {
       const std::vector<StereoHit>& hits = hits_[published_algorithms[i]];
       published_[i].remember(frame, hits);
       if (result_.sum.frames % compared_every == 0)
-        published_[i].compare(frame, hits, *dense_.front().second);
+        published_[i].compare(frame, hits, *dense_.front().depth_m);
     }
     ++result_.sum.frames;
   }
@@ -320,8 +336,7 @@ class Evaluator {
   std::vector<std::unique_ptr<RecordedDetector>> computed_;
   std::vector<std::unique_ptr<GivenDisparities>> given_;
   std::vector<ObstacleDetector*> detectors_;  ///< of these; null: not computed
-  /// Places and depths of this frame, StereoBM's first.
-  std::vector<std::pair<std::size_t, const cv::Mat*>> dense_;
+  std::vector<DenseDetector> dense_;          ///< with depths of this frame; StereoBM first
   std::vector<std::vector<StereoHit>> hits_;  ///< of this frame
   std::mt19937_64 random_{1};
   std::vector<PublishedEvaluations> published_;

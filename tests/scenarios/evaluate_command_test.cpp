@@ -25,7 +25,9 @@ recordings:
   - {name: short, scenario: forest, seeds: 1007..1008, walk_mps: 5, height_m: 3, set: {world.bark_contrast: 0.5}}
 )";
 
-/// The curve's point at the algorithm's own setting, which is `threshold`.
+const char* strict = "perception: {detector: stereo_bm, full_stereo: {minimum_pixels_per_cell: 20}}\n";
+
+/// The algorithm's point at this threshold of its curve.
 nlohmann::json point_at(const nlohmann::json& sum, const std::string& algorithm, double threshold) {
   for (const nlohmann::json& curve : sum["curves"])
     for (const nlohmann::json& point : curve["points"])
@@ -59,18 +61,23 @@ TEST_F(EvaluateCommand, RecordsASuiteAndJudgesIt) {
     }
 
   // Curves are drawn over the frames of the table, however few: at each algorithm's own setting they meet it.
-  const Outcome sparse = expect_success("evaluate " + (out / "recordings/short-1007").string() +
-                                        " --every 8 --out " + path("sparse"));
+  const Outcome sparse =
+      expect_success("evaluate " + (out / "recordings/short-1007").string() +
+                     " --every 8 --detector strict=" + folder.write("strict.yaml", strict).string() +
+                     " --out " + path("sparse"));
   const nlohmann::json few = figures(folder.path() / "sparse")["all"];
   EXPECT_EQ(few["frames"], 4);
   for (const nlohmann::json* sum : {&all, &few})
-    for (const auto& [name, threshold] : {std::pair("StereoBM", 18.0), std::pair("StereoSGBM", 10.0)})
+    for (const auto& [name, threshold] : {std::pair("StereoBM", 5.0), std::pair("StereoSGBM", 5.0)})
       for (const nlohmann::json& algorithm : (*sum)["algorithms"]) {
         if (algorithm["name"] != name) continue;
         const nlohmann::json point = point_at(*sum, name, threshold);
         EXPECT_EQ(point["precision"], algorithm["precision"]["one pixel"]) << name;
         EXPECT_EQ(point["recall"], algorithm["recall"]["one pixel"]) << name;
       }
+  // A detector that a file describes has the figures of that point of the curve.
+  EXPECT_EQ(few["algorithms"].back()["precision"]["one pixel"], point_at(few, "StereoBM", 20)["precision"]);
+  EXPECT_EQ(few["algorithms"].back()["name"], "strict");
   expect_part(content_of(folder.path() / "sparse/precision_recall.svg"), ", 4 frames<");
 
   // The same recordings given as folders, one after the other: the same figures.
