@@ -70,8 +70,8 @@ CurveSettings curve_of(const std::string& given, const EvaluateArguments& argume
   std::vector<std::string> names{"pushbroom", "stereo_bm", "stereo_sgbm"};
   for (const ComparedDetector& one : detectors_of(arguments, rig)) names.push_back(one.part);
   if (std::ranges::find(names, curve.detector) == names.end())
-    throw ScenarioError(fmt::format("--curve {}: no detector {} is compared here{}", given, curve.detector,
-                                    did_you_mean(curve.detector, names)));
+    throw ScenarioError(fmt::format("--curve {}: no detector {} is compared here{}; --detector adds others",
+                                    given, curve.detector, did_you_mean(curve.detector, names)));
   std::istringstream values(given.substr(at + 1));
   for (std::string value; std::getline(values, value, ',');) {
     const auto number = number_in(value);

@@ -127,7 +127,7 @@ int run_tune(const TuneArguments& arguments) {
     write_tune_report(folder, file, tuned, data_root());
     line.clear();
     fmt::print("{}{}", to_text(comparison_table(file, tuned)),
-               tuned.keeps_limits ? "" : "no trial keeps the limits\n");
+               tuned.keeps_limits ? "" : "no trial keeps the bounds\n");
     if (gains(file, tuned))
       fmt::print("tables, plots and best.yaml: {}\n", folder.string());
     else

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "scenarios/campaign/campaign_folder.hpp"
@@ -141,10 +142,11 @@ class VisionJudge : public Judge {
     Counts sum(units.front().size(), 0);
     for (const Counts& counts : units)
       for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += counts[i];
-    const auto share = [&](std::size_t i) { return sum[i + 1] > 0 ? sum[i] / sum[i + 1] : 0; };
+    // A share of nothing is not known: no detector may win by finding nothing.
+    const auto share = [&](std::size_t i) { return sum[i + 1] > 0 ? sum[i] / sum[i + 1] : NAN; };
     const double precision = share(1), recall = share(3), both = precision + recall;
-    const double f_score = both > 0 ? 2 * precision * recall / both : 0;
-    const double hits_per_frame = sum[0] > 0 ? sum[2] / sum[0] : 0;
+    const double f_score = both > 0 ? 2 * precision * recall / both : both;
+    const double hits_per_frame = sum[0] > 0 ? sum[2] / sum[0] : NAN;
     return {precision, recall, f_score, share(5), share(7), hits_per_frame, share(9)};
   }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -16,9 +17,12 @@ double figure_or_nan(const Figures& figures, std::size_t i) {
   return figures.empty() ? std::numeric_limits<double>::quiet_NaN() : figures[i];
 }
 
+/// Where both figures are known.
 void add_point(Series& series, const Trial& trial, std::size_t x, std::size_t y) {
-  series.x.push_back(figure_or_nan(trial.figures, x));
-  series.y.push_back(figure_or_nan(trial.figures, y));
+  if (!std::isfinite(figure_or_nan(trial.figures, x)) || !std::isfinite(figure_or_nan(trial.figures, y)))
+    return;
+  series.x.push_back(trial.figures[x]);
+  series.y.push_back(trial.figures[y]);
 }
 
 Series one_point(const char* name, int colour, const Trial& trial, std::size_t x, std::size_t y) {
@@ -67,6 +71,16 @@ LinePlot trials_plot(const TuneFile& file, const Tuned& tuned) {
   return plot;
 }
 
+/// What these values span, and a little more: trials far away would press the rest into a corner.
+AxisRange around(const std::vector<Series>& shown, std::vector<double> Series::*values) {
+  AxisRange range{HUGE_VAL, -HUGE_VAL};
+  for (const Series& series : shown)
+    for (const double value : series.*values)
+      if (std::isfinite(value)) range = {std::min(range.minimum, value), std::max(range.maximum, value)};
+  const double margin = std::max(0.1 * (range.maximum - range.minimum), 0.005);
+  return {range.minimum - margin, range.maximum + margin};
+}
+
 /// Parameters on a logarithmic scale are drawn over their logarithm.
 double on_axis(const Parameter& parameter, double value) {
   return parameter.logarithmic ? std::log10(value) : value;
@@ -85,9 +99,12 @@ LinePlot pareto_plot(const TuneFile& file, const Tuned& tuned) {
     add_point(training, member.training, x, y);
     add_point(validation, member.validation, x, y);
   }
-  plot.series = {all_trials(tuned, x, y), std::move(training), std::move(validation),
+  plot.series = {std::move(training), std::move(validation),
                  one_point("as it is (validation)", black, tuned.scenario.validation, x, y),
                  one_point("tuned (validation)", orange, tuned.best.validation, x, y)};
+  plot.x_range = around(plot.series, &Series::x);
+  plot.y_range = around(plot.series, &Series::y);
+  plot.series.insert(plot.series.begin(), all_trials(tuned, x, y));
   for (const Limit& limit : file.objective.limits) {
     const std::string label = fmt::format("{} {:g}", limit.at_least ? "at least" : "at most", limit.bound);
     if (limit.figure == x) plot.references.push_back({limit.bound, label, true});

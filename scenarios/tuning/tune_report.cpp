@@ -82,7 +82,7 @@ Table sensitivity_table(const TuneFile& file, const Tuned& tuned) {
   Table table{
       {"parameter", "range", "the scenario's", "tuned", file.figures[goal] + " over the range", "spread"},
       {}};
-  if (!file.objective.limits.empty()) table.head.push_back("limits kept from .. to");
+  if (!file.objective.limits.empty()) table.head.push_back("bounds kept from .. to");
   for (std::size_t i = 0; i < tuned.sensitivity.size(); ++i) {
     const Sensitivity& one = tuned.sensitivity[i];
     double minimum = HUGE_VAL, maximum = -HUGE_VAL, kept_from = NAN, kept_to = NAN;
@@ -143,9 +143,9 @@ constexpr const char* about_flown =
 std::string limits_sentence(const TuneFile& file, const Tuned& tuned) {
   if (file.objective.limits.empty()) return "";
   if (!tuned.keeps_limits)
-    return "\nNo trial of the search keeps the limits: this one misses them by the smallest amount.\n";
-  return keeps_limits(file, tuned.best.validation) ? "\nThe limits are kept on validation data too.\n"
-                                                   : "\nOn validation data the limits are not kept.\n";
+    return "\nNo trial of the search keeps the bounds: this one misses them by the smallest amount.\n";
+  return keeps_limits(file, tuned.best.validation) ? "\nThe bounds are kept on validation data too.\n"
+                                                   : "\nOn validation data the bounds are not kept.\n";
 }
 
 std::string gain_sentence(const TuneFile& file, const Tuned& tuned) {
@@ -194,6 +194,16 @@ Table trials_table(const TuneFile& file, const std::vector<Item>& items,
   return table;
 }
 
+std::string search_in_words(const TuneFile& file, const Tuned& tuned) {
+  return fmt::format(
+      "{} parameters of {}, tuned for {} over {}: {} trials, {}, seed {}. Training chose trial {}; the "
+      "figures "
+      "that count are those of validation.",
+      file.space.parameters.size(), file.scenario_file.stem().string(), objective_in_words(file),
+      data_in_words(file), tuned.trials.size() - 1, method_name(file), file.search.seed,
+      tuned.best.training.number);
+}
+
 /// The tuned keys as `fly --with` reads them, and the detector that they are of.
 std::string tuned_config(const TuneFile& file, const JudgedTrial& trial) {
   std::string text = fmt::format("# {}: trial {} of a search for {}; over {}.\n", file.name,
@@ -230,12 +240,7 @@ Table comparison_table(const TuneFile& file, const Tuned& tuned) {
 }
 
 std::string tune_summary(const TuneFile& file, const Tuned& tuned) {
-  std::string text = fmt::format(
-      "# {}\n\n{} parameters of {}, tuned for {} over {}: {} trials, {}, seed {}. Training chose trial {}; "
-      "what counts is validation.\n\n",
-      file.name, file.space.parameters.size(), file.scenario_file.stem().string(), objective_in_words(file),
-      data_in_words(file), tuned.trials.size() - 1, method_name(file), file.search.seed,
-      tuned.best.training.number);
+  std::string text = fmt::format("# {}\n\n{}\n\n", file.name, search_in_words(file, tuned));
   text += to_markdown(comparison_table(file, tuned));
   text += flights_sentence(file, tuned) + limits_sentence(file, tuned) + gain_sentence(file, tuned) +
           trials_sentence(tuned.trials);
@@ -278,8 +283,8 @@ void write_tune_report(const std::filesystem::path& folder, const TuneFile& file
   page.push_back({.title = "Trials", .table = trials});
   write_whole_file(folder / "report.html",
                    sheet_page(data_root, "Tuning " + file.name,
-                              gains(file, tuned) ? "The search found better than the scenario as it is."
-                                                 : "No trial is better than the scenario as it is.",
+                              (gains(file, tuned) ? "" : "No trial is better than the scenario as it is. ") +
+                                  search_in_words(file, tuned),
                               page));
   if (gains(file, tuned)) write_whole_file(folder / "best.yaml", tuned_config(file, tuned.best));
   prepare_output_folder(folder / "front");

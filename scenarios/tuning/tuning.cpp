@@ -134,7 +134,9 @@ std::size_t choose_best(const TuneFile& file, const std::vector<Trial>& trials,
 }
 
 std::vector<std::size_t> choose_front(const TuneFile& file, const std::vector<Trial>& trials) {
-  return thinned(pareto_front(file.objective, figures_to_choose_from(trials)), maximum_front);
+  std::vector<Figures> figures = figures_to_choose_from(trials);
+  figures.front() = trials.front().figures;  // the scenario as it is may be on it
+  return thinned(pareto_front(file.objective, figures), maximum_front);
 }
 
 /// The values of each parameter alone: spread over its range, and the best's own.

@@ -203,7 +203,7 @@ TEST_F(TuningTest, SaysSoWhereNoTrialKeepsTheLimits) {
   const Tuned tuned = tune(file, training, validation, {.folder = results("r")});
   EXPECT_FALSE(tuned.keeps_limits);
   EXPECT_EQ(tuned.best.training.figures[0], 1);  // misses it by the smallest amount
-  expect_part(tune_summary(file, tuned), "No trial of the search keeps the limits");
+  expect_part(tune_summary(file, tuned), "No trial of the search keeps the bounds");
 }
 
 TEST_F(TuningTest, RecommendsNothingWhereTheScenarioIsAsGoodAsItsBestTrial) {
