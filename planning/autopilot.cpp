@@ -14,15 +14,26 @@ Autopilot::Autopilot(const AutopilotConfig& config, const Airframe& airframe, co
                      ObstacleDetector& detector, StateSource& state_source, Planner& planner)
     : config_(config),
       rig_(rig),
-      detector_(detector),
-      state_source_(state_source),
+      detector_(&detector),
+      state_source_(&state_source),
       model_(airframe, config.flight_model),
       planner_(planner),
       map_(config.map),
       resightings_(config.resightings) {}
 
+void Autopilot::change(const AutopilotConfig& config, ObstacleDetector& detector, StateSource& state_source,
+                       const std::function<Eigen::Vector3d(const ObstaclePoint&)>& place) {
+  config_ = config;
+  detector_ = &detector;
+  state_source_ = &state_source;
+  map_.change(config.map);
+  if (!place) return;
+  map_.move(place);
+  plan_outdated_ = true;
+}
+
 void Autopilot::on(const Sample& sample) {
-  state_source_.on(sample);
+  state_source_->on(sample);
   const auto* imu = std::get_if<ImuSample>(&sample);
   if (imu == nullptr) return;
   const bool strong = imu->specific_force_body_mps2.x() > config_.launch_acceleration_mps2;
@@ -35,16 +46,16 @@ bool Autopilot::in_flight(std::int64_t t_ns) const {
 }
 
 void Autopilot::on(const StereoFrame& frame) {
-  const State seen = state_source_.state_at(frame.t_ns);  // the image's moment, not now
-  hits_ = detector_.detect(frame);
+  const State seen = state_source_->state_at(frame.t_ns);  // the image's moment, not now
+  hits_ = detector_->detect(frame);
   detections_ += static_cast<std::int64_t>(hits_.size());
   resightings_.insert(hits_, seen.T_world_body * rig_.T_body_camera, frame.t_ns);
   for (const Resighting& again : resightings_.completed())
-    state_source_.on(
+    state_source_->on(
         ResightingSample{again.t_ns, again.earlier_ns, again.discrepancy_world_m, again.covariance_m2});
   map_.insert(hits_, seen.T_world_body * rig_.T_body_camera, frame.t_ns, seen.distance_flown_m);
   plan_outdated_ = plan_outdated_ || concerns_the_plan(frame.t_ns);
-  map_.forget_passed(state_source_.state().T_world_body, frame.t_ns);
+  map_.forget_passed(state_source_->state().T_world_body, frame.t_ns);
 }
 
 // Whether the frame of `t_ns` added a point that may change the newest plan, in force or about to be.
@@ -70,7 +81,7 @@ void Autopilot::replan(std::int64_t t_ns) {
   // where the aircraft will be then under the commands given until then.
   const std::int64_t effective_ns =
       t_ns + nanoseconds(config_.plan_latency_s) + nanoseconds(model_.airframe().input_delay_s);
-  const State& state = state_source_.state();
+  const State& state = state_source_->state();
   FlightState start = flight_state(state);
   for (std::int64_t at_ns = state.t_ns; at_ns < effective_ns; at_ns += nanoseconds(predict_step_s))
     start = model_.advance(start, command_at(plan_, at_ns), predict_step_s);
@@ -91,11 +102,11 @@ Controls Autopilot::controls(std::int64_t t_ns) {
     next_plan_due_ns_ = -1;
   }
   const std::int64_t effective_ns = t_ns + nanoseconds(model_.airframe().input_delay_s);
-  const State& state = state_source_.state();
+  const State& state = state_source_->state();
   const Controls controls = pilot_ != nullptr
                                 ? pilot_->controls(t_ns, state)
                                 : follow(model_, config_.follower, command_at(plan_, effective_ns), state);
-  state_source_.on(ThrustSample{t_ns, controls.thrust_n});
+  state_source_->on(ThrustSample{t_ns, controls.thrust_n});
   return controls;
 }
 

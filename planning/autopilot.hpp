@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "estimation/samples.hpp"
@@ -26,6 +27,11 @@ class Autopilot {
   /// From now on `pilot`, which must outlive this, gives the controls; no plans are made.
   void hand_over(Pilot& pilot) { pilot_ = &pilot; }
 
+  /// From now on these settings of map and latency, and these parts, which must outlive this; map, plan and
+  /// launch stay. `place` moves the map's points into the frame of the new state source; null: they stay.
+  void change(const AutopilotConfig& config, ObstacleDetector& detector, StateSource& state_source,
+              const std::function<Eigen::Vector3d(const ObstaclePoint&)>& place);
+
   void on(const Sample& sample);
   void on(const StereoFrame& frame);
   /// Plans for the moment at which the plan will take effect. Does nothing while a plan is being computed
@@ -35,7 +41,7 @@ class Autopilot {
   Controls controls(std::int64_t t_ns);
 
   bool in_flight(std::int64_t t_ns) const;
-  const State& state() const { return state_source_.state(); }
+  const State& state() const { return state_source_->state(); }
   const std::vector<StereoHit>& hits() const { return hits_; }  ///< of the newest frame
   std::int64_t detections() const { return detections_; }       ///< hits of all frames so far
   const LocalMap& map() const { return map_; }
@@ -47,8 +53,8 @@ class Autopilot {
 
   AutopilotConfig config_;
   StereoRig rig_;
-  ObstacleDetector& detector_;
-  StateSource& state_source_;
+  ObstacleDetector* detector_;
+  StateSource* state_source_;
   FlightModel model_;
   Planner& planner_;
   Pilot* pilot_ = nullptr;  ///< null: planner and path follower fly

@@ -22,6 +22,10 @@ class AvoidancePlanner : public Planner {
   /// If the request is not outdated and the plan in force is free, a new search is made only when the refresh
   /// is due.
   Plan plan(const PlanRequest& request) override;
+  void change(const PlannerConfig& config, std::uint64_t seed) override {
+    config_ = config;
+    seed_ = seed;
+  }
   bool concerns(const ObstaclePoint& point, const Plan& plan) const override {
     return is_near(point, plan, config_);
   }

@@ -38,6 +38,10 @@ class Planner {
   /// then requests a new plan at the next opportunity, instead of at the end of the period.
   virtual bool concerns(const ObstaclePoint& /*point*/, const Plan& /*plan*/) const { return true; }
 
+  /// From now on other settings and other random numbers; the plan in force stays. A planner that does not
+  /// know how goes on as before.
+  virtual void change(const PlannerConfig& /*config*/, std::uint64_t /*seed*/) {}
+
   /// How the plans came about. A planner counts what applies to it; all other counts stay zero.
   const PlannerCounts& counts() const { return counts_; }
 

@@ -94,6 +94,17 @@ void LocalMap::forget_passed(const Eigen::Isometry3d& T_world_body, std::int64_t
   if (removed > 0) rebuild_voxels();
 }
 
+void LocalMap::change(const LocalMapConfig& config) {
+  const double voxel_m = config_.voxel_m;
+  config_ = config;
+  config_.voxel_m = voxel_m;
+}
+
+void LocalMap::move(const std::function<Eigen::Vector3d(const ObstaclePoint&)>& place) {
+  for (ObstaclePoint& point : points_) point.position_world = place(point);
+  rebuild_voxels();
+}
+
 void LocalMap::keep_newest() {
   // The oldest by last sighting, earlier in the order among equals: a strict order, so the choice is unique.
   std::vector<std::pair<std::int64_t, std::size_t>> by_age(points_.size());

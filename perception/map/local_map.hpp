@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "perception/obstacle_point.hpp"
@@ -66,7 +67,7 @@ class PointGrid {
 
 /// Remembers hits in the estimator's world frame (its continuous odometry frame) until the aircraft has
 /// passed them (Barry & Tedrake 2015: past detections carried by odometry). Points never move except when
-/// seen again. Deterministic: the same calls give the same points in the same order.
+/// seen again, and by move(). Deterministic: the same calls give the same points in the same order.
 class LocalMap {
  public:
   explicit LocalMap(const LocalMapConfig& config);
@@ -81,6 +82,11 @@ class LocalMap {
   /// distance is measured along the horizontal projection of body x. So neither bank nor pitch changes it,
   /// and a point abreast of a wing stays at any attitude. With the nose straight up or down only age counts.
   void forget_passed(const Eigen::Isometry3d& T_world_body, std::int64_t t_ns);
+
+  /// From now on these settings; voxel_m stays.
+  void change(const LocalMapConfig& config);
+  /// Moves each remembered point to where `place` says that it is.
+  void move(const std::function<Eigen::Vector3d(const ObstaclePoint&)>& place);
 
   /// Every remembered point, in order of first sighting.
   const std::vector<ObstaclePoint>& points() const { return points_; }

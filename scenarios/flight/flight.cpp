@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "planning/path_follower.hpp"
 #include "scenarios/config/named_seed.hpp"
+#include "scenarios/parts/ideal.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
 
@@ -14,7 +16,9 @@ namespace {
 
 /// An image that nobody looks at is not rendered: rendering is most of a flight's cost.
 bool needs_images(const Scenario& scenario, const std::vector<FlightObserver*>& observers) {
-  return scenario.perception.part().needs_images ||
+  const bool never_looks =
+      !scenario.ideal.hits.empty() && (is_ideal(scenario, "detection") || is_ideal(scenario, "sight"));
+  return (scenario.perception.part().needs_images && !never_looks) ||
          std::ranges::any_of(observers, [](const auto* observer) { return observer->needs_images(); });
 }
 
@@ -59,9 +63,51 @@ FlightParts Flight::with_rest(FlightParts parts) const {
 
 bool Flight::in_leaves() const { return leaves_ && leaves_->touches(truth().T_world_body); }
 
+/// The scenario's ideal parts take the place of its own, and noise is drawn anew.
+void Flight::begin_ideal() {
+  ideal_ = true;
+  const std::uint64_t redraw = scenario_.ideal.redraw;
+  if (redraw != 0) {
+    sensors_.redraw(redraw);
+    drops_ = FrameDrops(scenario_.cameras.drop_probability, seed_for(redraw, "camera_drops"));
+    if (cameras_) cameras_->redraw({seed_for(redraw, "cameras"), seed_for(redraw, "camera_shot_noise")});
+  }
+  const AutopilotConfig config = with_ideal_parts(autopilot_config_of(scenario_, rig_.rig), scenario_);
+  if (redraw != 0 || is_ideal(scenario_, "search"))
+    parts_.planner->change(config.planner,
+                           seed_for(redraw != 0 ? redraw : scenario_.planner_seed(), "planner"));
+  if (auto ideal = ideal_detector(scenario_, rig_.rig, world_.obstacles, history_)) {
+    if (auto* known = dynamic_cast<KnownDetector*>(parts_.detector.get()))
+      known->replace(std::move(ideal));
+    else
+      parts_.detector = std::move(ideal);
+  }
+  std::function<Eigen::Vector3d(const ObstaclePoint&)> place;
+  if (is_ideal(scenario_, "state")) {
+    const double distance_m = state().distance_flown_m;
+    auto source = std::make_unique<TrueState>(history_, distance_m);
+    if (const auto& imu = newest<ImuSample>()) source->on(*imu);
+    parts_.state_source = std::move(source);
+    place = [this](const ObstaclePoint& point) -> Eigen::Vector3d {
+      const auto frame = T_true_estimated_.find(point.t_ns);
+      return frame == T_true_estimated_.end() ? point.position_world : frame->second * point.position_world;
+    };
+  }
+  if (is_ideal(scenario_, "latency")) computer_.hurry(clock_.t_ns());
+  autopilot_.change(config, *parts_.detector, *parts_.state_source, place);
+}
+
+bool Flight::is_ideal_now(std::string_view part) const { return ideal_ && is_ideal(scenario_, part); }
+
+std::int64_t Flight::latency_ns() const {
+  return is_ideal_now("latency") ? 0 : nanoseconds(scenario_.cameras.latency_s);
+}
+
 void Flight::step() {
   if (outcome_) return;
   history_.observe(truth());
+  if (!ideal_ && scenario_.ideal.acts() && clock_.t_ns() >= nanoseconds(scenario_.ideal.from_s))
+    begin_ideal();
   sense();
   expose();
   while (std::optional<StereoFrame> frame = computer_.next_frame(clock_.t_ns())) process(std::move(*frame));
@@ -87,26 +133,30 @@ void Flight::expose() {
   const std::int64_t t_ns = clock_.t_ns();
   if (cameras_) cameras_->observe(truth().T_world_body, t_ns);
   if (!clock_.camera() || drops_.next()) return;
-  const std::int64_t latency_ns = nanoseconds(scenario_.cameras.latency_s);
-  const std::int64_t arrival_ns = t_ns + latency_ns;
-  const bool taken = computer_.will_take(arrival_ns, clock_.next_camera_t_ns() + latency_ns) ||
+  const std::int64_t arrival_ns = t_ns + latency_ns();
+  const bool taken = computer_.will_take(arrival_ns, clock_.next_camera_t_ns() + latency_ns()) ||
                      !scenario_.every_frame_arrives();
   StereoFrame frame{t_ns - scenario_.cameras.exposure_lag_ns(), {}, {}};
   if (cameras_ && taken && is_looked_at()) {
     const auto timed = stopwatch_.time("render");
     frame = cameras_->capture(truth().T_world_body, t_ns);
   }
-  if (sensors_.faults().pass(frame)) computer_.send(std::move(frame), arrival_ns);
+  if (sensors_.faults().pass(frame)) computer_.send(std::move(frame), arrival_ns, taken);
 }
 
 /// A detector that was handed over looks at all of them.
 bool Flight::is_looked_at() const {
-  return has_own_detector_ || scenario_.perception.part().needs_images ||
-         std::ranges::any_of(observers_, &FlightObserver::wants_frame);
+  if (std::ranges::any_of(observers_, &FlightObserver::wants_frame)) return true;
+  const bool is_known = !scenario_.ideal.hits.empty() && !ideal_;
+  const bool by_truth = is_ideal_now("detection") || is_ideal_now("sight");
+  return !is_known && !by_truth && (has_own_detector_ || scenario_.perception.part().needs_images);
 }
 
 void Flight::process(StereoFrame frame) {
   frame_ = std::move(frame);
+  if (!ideal_ && is_ideal(scenario_, "state"))
+    T_true_estimated_[frame_.t_ns] =
+        truth_at(frame_.t_ns).T_world_body * state_at(frame_.t_ns).T_world_body.inverse();
   {
     const auto timed = stopwatch_.time("detect");
     autopilot_.on(frame_);
@@ -132,10 +182,29 @@ void Flight::tell(void (FlightObserver::*event)(const Flight&)) {
   }
 }
 
+/// As the planner's own model says.
+void Flight::follow_plan() {
+  const FlightModel model(scenario_.airframe, scenario_.autopilot.flight_model);
+  const Truth& now = truth();
+  const Eigen::Matrix3d R_body_world = now.T_world_body.linear().transpose();
+  const FlightState next =
+      model.advance(flight_state(now.T_world_body, R_body_world * now.velocity_world_mps,
+                                 now.angular_rate_body_radps, now.wind_world_mps.head<2>()),
+                    command_at(plan(), clock_.t_ns()), 1.0 / physics_rate_hz);
+  const Eigen::Isometry3d pose = pose_of(next);
+  const Eigen::AngleAxisd turned(R_body_world * pose.linear());
+  Eigen::Vector3d velocity_world_mps = next.speed_mps * flight_direction_world(next);
+  velocity_world_mps.head<2>() += next.wind_world_mps;
+  aircraft_.carry(pose, velocity_world_mps, turned.angle() * physics_rate_hz * turned.axis(), controls_);
+}
+
 void Flight::advance() {
   const auto timed = stopwatch_.time("physics");
   try {
-    aircraft_.step(controls_);
+    if (is_ideal_now("tracking") && launched() && !plan().points.empty())
+      follow_plan();
+    else
+      aircraft_.step(controls_);
   } catch (const SimulationError& error) {
     throw ScenarioError(fmt::format(
         "{}: airframe: {}, {:.3f} s into the flight; the aircraft must be one that steps of 1/1200 "

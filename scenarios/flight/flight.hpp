@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -120,12 +121,16 @@ class Flight {
 
  private:
   FlightParts with_rest(FlightParts parts) const;
+  void begin_ideal();
+  bool is_ideal_now(std::string_view part) const;
+  std::int64_t latency_ns() const;
   void sense();
   void expose();
   bool is_looked_at() const;
   void process(StereoFrame frame);
   void act();
   void tell(void (FlightObserver::*event)(const Flight&));
+  void follow_plan();
   void advance();
 
   Stopwatch stopwatch_;
@@ -141,6 +146,9 @@ class Flight {
   FrameDrops drops_;
   FlightComputer computer_;
   TruthHistory history_;
+  bool ideal_ = false;  ///< the scenario's ideal parts are in place
+  /// From where the estimate places a frame's points to their true places, by the frame's moment.
+  std::map<std::int64_t, Eigen::Isometry3d> T_true_estimated_;
   FlightParts parts_;
   Autopilot autopilot_;
   Referee referee_;

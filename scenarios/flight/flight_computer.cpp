@@ -12,8 +12,16 @@ bool FlightComputer::will_take(std::int64_t arrival_ns, std::int64_t next_arriva
   return true;
 }
 
-void FlightComputer::send(StereoFrame frame, std::int64_t arrival_ns) {
-  arrivals_.push_back({std::move(frame), arrival_ns});
+void FlightComputer::send(StereoFrame frame, std::int64_t arrival_ns, bool taken) {
+  arrivals_.push_back({std::move(frame), arrival_ns, taken});
+}
+
+void FlightComputer::hurry(std::int64_t t_ns) {
+  cost_ns_ = 0;
+  std::erase_if(arrivals_, [](const Arrival& arrival) { return !arrival.taken; });
+  for (Arrival& arrival : arrivals_) arrival.t_ns = std::min(arrival.t_ns, t_ns);
+  free_ns_ = std::min(free_ns_, t_ns);
+  planned_free_ns_ = std::min(planned_free_ns_, t_ns);
 }
 
 std::optional<StereoFrame> FlightComputer::next_frame(std::int64_t t_ns) {

@@ -22,8 +22,10 @@ class FlightComputer {
   /// every frame, in order.
   bool will_take(std::int64_t arrival_ns, std::int64_t next_arrival_ns);
 
-  /// Adds a frame, not later than its arrival.
-  void send(StereoFrame frame, std::int64_t arrival_ns);
+  /// Adds a frame, not later than its arrival. `taken`: as will_take() said.
+  void send(StereoFrame frame, std::int64_t arrival_ns, bool taken = true);
+  /// From now on frames cost nothing, and those under way have arrived and been looked at.
+  void hurry(std::int64_t t_ns);
   /// The next frame that has been looked at by t_ns; to be called until there is none. t_ns never decreases,
   /// and frames that arrived by then have been sent.
   std::optional<StereoFrame> next_frame(std::int64_t t_ns);
@@ -32,6 +34,7 @@ class FlightComputer {
   struct Arrival {
     StereoFrame frame;
     std::int64_t t_ns = 0;
+    bool taken = true;
   };
 
   std::int64_t cost_ns_;

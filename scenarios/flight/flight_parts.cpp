@@ -12,6 +12,7 @@
 #include "scenarios/config/named_seed.hpp"
 #include "scenarios/flight/actions.hpp"
 #include "scenarios/parts/checked_parts.hpp"
+#include "scenarios/parts/ideal.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
@@ -62,7 +63,13 @@ std::unique_ptr<ObstacleDetector> detector_of(const Scenario& scenario, const Ca
                                               const std::vector<Obstacle>& obstacles,
                                               const TruthHistory& history) {
   const DetectorPart& part = scenario.perception.part();
-  return checked(part, {scenario, rig, obstacles, history, seed_for(scenario.seed, "detector")});
+  auto detector = checked(part, {scenario, rig, obstacles, history, seed_for(scenario.seed, "detector")});
+  const std::string& hits = scenario.ideal.hits;
+  if (hits.empty()) return detector;
+  return bad_input_if_refused([&]() -> std::unique_ptr<ObstacleDetector> {
+    return std::make_unique<KnownDetector>(known_hits_from_bytes(read_file(hits, maximum_table_bytes), hits),
+                                           nanoseconds(scenario.ideal.from_s), std::move(detector));
+  });
 }
 
 std::unique_ptr<StateSource> state_source_of(const Scenario& scenario, const CalibratedRig& rig,
@@ -77,7 +84,8 @@ std::unique_ptr<Planner> planner_of(const Scenario& scenario) {
   const FlightModel model(scenario.airframe, autopilot.flight_model);
   const Mission mission = scenario.mission();
   const PlannerPart& part = *parts().planners.find(autopilot.method);
-  const PlannerContext context{autopilot.planner, model, mission, seed_for(scenario.seed, "planner")};
+  const PlannerContext context{autopilot.planner, model, mission,
+                               seed_for(scenario.planner_seed(), "planner")};
   return checked(part, {context, scenario});
 }
 

@@ -59,6 +59,8 @@ class OnboardSensors {
   /// now. A GPS fix arrives late.
   template <typename Receiver>
   void deliver(const FlightClock& clock, const Truth& truth, Receiver& receiver);
+  /// From now on other noise; the errors that are constant in a flight stay.
+  void redraw(std::uint64_t seed);
   /// The newest sample of its kind that was handed over.
   template <typename Sample>
   const std::optional<Sample>& newest() const {
@@ -90,6 +92,14 @@ inline OnboardSensors::OnboardSensors(const Scenario& scenario)
       gps_(scenario.sensors.gps, seed_for(scenario.sensor_seed(), "gps")),
       gps_delay_ns_(nanoseconds(scenario.sensors.gps.delay_s)),
       faults_(scenario.faults) {}
+
+inline void OnboardSensors::redraw(std::uint64_t seed) {
+  imu_.redraw(seed_for(seed, "imu"));
+  pitot_.redraw(seed_for(seed, "pitot"));
+  barometer_.redraw(seed_for(seed, "barometer"));
+  magnetometer_.redraw(seed_for(seed, "magnetometer"));
+  gps_.redraw(seed_for(seed, "gps"));
+}
 
 template <typename Receiver>
 void OnboardSensors::deliver(const FlightClock& clock, const Truth& truth, Receiver& receiver) {

@@ -230,6 +230,9 @@ class CheckedPlanner : public Planner {
     }
     return plan;
   }
+  void change(const PlannerConfig& config, std::uint64_t seed) override {
+    callee_.call("change()", [&] { planner_->change(config, seed); });
+  }
   bool concerns(const ObstaclePoint& point, const Plan& plan) const override {
     return callee_.call("concerns()", [&] { return planner_->concerns(point, plan); });
   }

@@ -162,9 +162,11 @@ double ray_meets(const Eigen::Vector3d& origin_world, const Eigen::Vector3d& dir
   return multiple;
 }
 
-TrueDepth::TrueDepth(const StereoRig& rig, std::vector<Obstacle> obstacles, const TruthHistory& history)
-    : rig_(rig), obstacles_(std::move(obstacles)), history_(history) {
-  interval_ = rig.depths_around(std::round(rig.disparity_px(rig.detection_depth_m)));
+TrueDepth::TrueDepth(const StereoRig& rig, std::vector<Obstacle> obstacles, const TruthHistory& history,
+                     std::vector<DepthInterval> intervals)
+    : rig_(rig), obstacles_(std::move(obstacles)), history_(history), intervals_(std::move(intervals)) {
+  if (intervals_.empty())
+    intervals_.push_back(rig.depths_around(std::round(rig.disparity_px(rig.detection_depth_m))));
 }
 
 const std::vector<StereoHit>& TrueDepth::detect(const StereoFrame& frame) {
@@ -173,7 +175,9 @@ const std::vector<StereoHit>& TrueDepth::detect(const StereoFrame& frame) {
   const double corner_x =
       std::max(rig_.center_left_x_px, rig_.width_px - rig_.center_left_x_px) / rig_.focal_px;
   const double corner_y = std::max(rig_.center_y_px, rig_.height_px - rig_.center_y_px) / rig_.focal_px;
-  const double reach_m = interval_.far_m * std::sqrt(1 + corner_x * corner_x + corner_y * corner_y);
+  double far_m = 0;
+  for (const DepthInterval& interval : intervals_) far_m = std::max(far_m, interval.far_m);
+  const double reach_m = far_m * std::sqrt(1 + corner_x * corner_x + corner_y * corner_y);
   const int last_row_px = std::min(rig_.scaled_row_px(last_row_of_240), rig_.height_px - block_px);
   const int rows = last_row_px < 0 ? 0 : last_row_px / block_px + 1, columns = rig_.width_px / block_px;
   depths_m_.assign(static_cast<std::size_t>(rows * columns), infinity);
@@ -205,7 +209,10 @@ const std::vector<StereoHit>& TrueDepth::detect(const StereoFrame& frame) {
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
       const double depth_m = depths_m_[static_cast<std::size_t>(row * columns + column)];
-      if (depth_m < interval_.near_m || depth_m > interval_.far_m || depth_m == infinity) continue;
+      const auto holds = [depth_m](const DepthInterval& interval) {
+        return depth_m >= interval.near_m && depth_m <= interval.far_m;
+      };
+      if (depth_m == infinity || std::ranges::none_of(intervals_, holds)) continue;
       hits_.push_back({depth_m * ray_of(row, column),
                        column * block_px,
                        row * block_px,

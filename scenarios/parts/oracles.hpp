@@ -27,7 +27,10 @@ class TruthHistory {
 /// The truth in place of the filter: no error, no covariance. Keeps a reference to the history.
 class TrueState : public StateSource {
  public:
-  explicit TrueState(const TruthHistory& history) : history_(history) {}
+  /// `distance_flown_m`: the odometer at its start.
+  explicit TrueState(const TruthHistory& history, double distance_flown_m = 0) : history_(history) {
+    state_.distance_flown_m = distance_flown_m;
+  }
   void on(const Sample& sample) override;
   const State& state() const override { return state_; }
   State state_at(std::int64_t t_ns) const override;
@@ -49,18 +52,21 @@ class NoDetector : public ObstacleDetector {
   std::vector<StereoHit> none_;
 };
 
-/// Perfect detection at the pushbroom's depth: a hit for every 5x5 block of the left image (rows 0..205, as
-/// the original detector) whose centre ray first meets an obstacle within one pixel of disparity of
-/// the detection depth. The depth is analytic (ray against the obstacle's shape); images are not used, and
+/// Perfect detection at one depth or several: a hit for every 5x5 block of the left image (rows 0..205, as
+/// the original detector) whose centre ray first meets an obstacle within one of the
+/// intervals. The depth is analytic (ray against the obstacle's shape); images are not used, and
 /// leaves, which do not stop the aircraft, are not seen. Hits carry the true point.
 class TrueDepth : public ObstacleDetector {
  public:
   /// Keeps a reference to the history, which must cover the time of every frame.
-  TrueDepth(const StereoRig& rig, std::vector<Obstacle> obstacles, const TruthHistory& history);
+  /// `intervals`: of depths that have hits; none: one pixel of disparity either side of the whole disparity
+  /// nearest to the rig's detection depth.
+  TrueDepth(const StereoRig& rig, std::vector<Obstacle> obstacles, const TruthHistory& history,
+            std::vector<DepthInterval> intervals = {});
   const std::vector<StereoHit>& detect(const StereoFrame& frame) override;
 
-  /// The depth interval of a hit, m: one pixel either side of the nearest whole disparity.
-  DepthInterval interval() const { return interval_; }
+  /// The first depth interval of a hit, m.
+  DepthInterval interval() const { return intervals_.front(); }
 
  private:
   Eigen::Vector3d ray_of(int row, int column) const;
@@ -68,7 +74,7 @@ class TrueDepth : public ObstacleDetector {
   StereoRig rig_;
   std::vector<Obstacle> obstacles_;
   const TruthHistory& history_;
-  DepthInterval interval_;
+  std::vector<DepthInterval> intervals_;
   std::vector<double> depths_m_;  ///< of the nearest obstacle, by block
   std::vector<StereoHit> hits_;
 };

@@ -114,17 +114,39 @@ void visit_fields(FieldVisitor& visit, AutopilotSection& section) {
         "File with the controls of a flight that somebody else flew, which are flown again in place of the "
         "planner's; empty: the planner flies. A relative path is looked for beside the scenario file, then "
         "in the working directory. | docs/python.md");
+  visit("seed", section.seed, std::uint64_t{0}, maximum_seed,
+        "seed of the planner's random numbers; 0: the scenario's seed");
   visit("replan_rate_hz", section.replan_rate_hz, 1, 1200,
         "highest rate at which the autopilot starts plans; must divide 1200");
   visit_fields(visit, static_cast<AutopilotConfig&>(section));
   visit_parts(visit, section.planners);
 }
 
+void visit_fields(FieldVisitor& visit, IdealConfig& ideal) {
+  visit(
+      "parts", ideal.parts,
+      "Parts of the stack that are replaced by ideal ones from from_s on: detection finds every obstacle at "
+      "the depths in use and nothing else; sight finds all that stands within 40 m; map forgets and filters "
+      "nothing away; state is the truth; latency is none; search is 20 times as long; tracking flies the "
+      "plan "
+      "as the planner predicts it. Understory explain uses it. | docs/explain.md");
+  visit("from_s", ideal.from_s, 0.0, 600.0,
+        "simulated time from which the parts are ideal and noise is redrawn");
+  visit("redraw", ideal.redraw, std::uint64_t{0}, maximum_seed,
+        "seed from which the noise of sensors and cameras and the planner's random numbers are drawn anew at "
+        "from_s; 0: they go on as they were");
+  visit("hits", ideal.hits,
+        "File with the hits of an earlier flight until from_s, as explain writes it: images of that time are "
+        "not "
+        "drawn. It requires redraw.");
+}
+
 void visit_fields(FieldVisitor& visit, Scenario& scenario) {
   visit("name", scenario.name,
         "name of the run, whose folder is runs/NAME-SEED; letters, digits, '-', '_' and '.'");
   visit("seed", scenario.seed, std::uint64_t{0}, maximum_seed,
-        "seed of course, wind and the planner's search; also of sensor noise if sensors.seed is 0");
+        "seed of course and wind; also of sensor noise if sensors.seed is 0, and of the planner's search if "
+        "autopilot.seed is 0");
   visit("rig", scenario.rig,
         "stereo rig: a name in models/rigs, or the path of a rig file relative to the scenario file");
   visit("course", scenario.course, parts().courses.names(),
@@ -150,6 +172,7 @@ void visit_fields(FieldVisitor& visit, Scenario& scenario) {
   visit("perception", scenario.perception);
   visit("estimation", scenario.estimation);
   visit("autopilot", scenario.autopilot);
+  visit("ideal", scenario.ideal);
 }
 
 }  // namespace understory

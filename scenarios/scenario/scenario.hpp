@@ -102,6 +102,7 @@ struct EstimationSection {
 };
 
 struct AutopilotSection : AutopilotConfig {
+  std::uint64_t seed = 0;
   PlanningPreset preset = PlanningPreset::economical;
   std::string method = "sst";
   std::string actions;
@@ -111,6 +112,20 @@ struct AutopilotSection : AutopilotConfig {
 
 /// The numbers that a preset stands for (docs/decisions/015, 024).
 AutopilotSection planning_of(PlanningPreset preset);
+
+/// Parts of the stack that are ideal from a moment on, and noise that is drawn anew then (docs/explain.md).
+struct IdealConfig {
+  std::vector<std::string> parts;
+  double from_s = 0;
+  std::uint64_t redraw = 0;
+  std::string hits;
+  /// Whether it changes anything.
+  bool acts() const { return !parts.empty() || redraw != 0; }
+};
+
+/// What `ideal.parts` may name.
+inline constexpr std::array<std::string_view, 7> ideal_part_names{"detection", "sight",  "map",     "state",
+                                                                  "latency",   "search", "tracking"};
 
 inline constexpr std::uint64_t maximum_seed = std::uint64_t{1} << 32;
 
@@ -148,6 +163,7 @@ struct Scenario {
   PerceptionSection perception;
   EstimationSection estimation;
   AutopilotSection autopilot = planning_of(PlanningPreset::economical);
+  IdealConfig ideal;
 
   /// The mission as the stack gets it.
   Mission mission() const {
@@ -187,6 +203,7 @@ struct Scenario {
            });
   }
   std::uint64_t sensor_seed() const { return sensors.seed == 0 ? seed : sensors.seed; }
+  std::uint64_t planner_seed() const { return autopilot.seed == 0 ? seed : autopilot.seed; }
 };
 
 void visit_fields(FieldVisitor& visit, BandConfig& band);
@@ -195,6 +212,7 @@ void visit_fields(FieldVisitor& visit, SensorSection& section);
 void visit_fields(FieldVisitor& visit, PerceptionSection& section);
 void visit_fields(FieldVisitor& visit, EstimationSection& section);
 void visit_fields(FieldVisitor& visit, AutopilotSection& section);
+void visit_fields(FieldVisitor& visit, IdealConfig& ideal);
 void visit_fields(FieldVisitor& visit, Scenario& scenario);
 
 }  // namespace understory

@@ -93,6 +93,14 @@ void check_detectors(const Scenario& scenario, Expect&& expect) {
          "perception.full_stereo.minimum_depth_m: must be less than maximum_depth_m");
 }
 
+template <typename Expect>
+void check_ideal(const IdealConfig& ideal, Expect&& expect) {
+  for (const std::string& part : ideal.parts)
+    expect(std::ranges::find(ideal_part_names, part) != ideal_part_names.end(),
+           fmt::format("ideal.parts: expected some of {}, got {}", fmt::join(ideal_part_names, ", "), part));
+  expect(ideal.hits.empty() || ideal.redraw != 0, "ideal.hits: requires ideal.redraw to be at least 1");
+}
+
 /// Conditions between several keys.
 void check(const Scenario& scenario, const Sources& sources, const std::string& name) {
   const auto expect = expecting(sources, name);
@@ -136,6 +144,7 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
   const double cost_s = perception.cost_s();
   expect(scenario.cameras.latency_s + cost_s + std::min(cost_s, 1.0 / scenario.cameras.rate_hz) <= 0.5,
          "perception.compute.factor: a frame must be processed within 0.5 s of its exposure");
+  check_ideal(scenario.ideal, expect);
   for (std::size_t i = 0; i < scenario.faults.size(); ++i) {
     const FaultConfig& fault = scenario.faults[i];
     expect(can_have(fault.sensor, fault.kind),
@@ -197,6 +206,7 @@ Files files_of(const Scenario& scenario, const Sources& sources) {
       add(file.string(), "rig");
   add(scenario.forest.trees_file, "forest.trees_file");
   add(scenario.autopilot.actions, "autopilot.actions");
+  add(scenario.ideal.hits, "ideal.hits");
   for (const FileConfig& plugin : scenario.plugins)
     for (const FileConfig& imported : load_plugin(plugin.file, "plugins").imported) files.push_back(imported);
   return files;
@@ -283,6 +293,7 @@ Scenario compose(const Sources& sources, const std::string& name) {
       found_trees_file(scenario.forest.trees_file, origin_of(sources, "forest.trees_file"));
   scenario.autopilot.actions =
       found_file(scenario.autopilot.actions, origin_of(sources, "autopilot.actions"));
+  scenario.ideal.hits = found_file(scenario.ideal.hits, origin_of(sources, "ideal.hits"));
   const Files files = files_of(scenario, sources);
   require_hashes("files", scenario.files, files, sources);
   scenario.files = files;

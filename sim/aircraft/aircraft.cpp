@@ -81,6 +81,21 @@ void Aircraft::step(const Controls& controls) {
   read_truth((velocity_now - velocity_before) / step_s_);
 }
 
+void Aircraft::carry(const Eigen::Isometry3d& T_world_body, const Eigen::Vector3d& velocity_world_mps,
+                     const Eigen::Vector3d& angular_rate_body_radps, const Controls& controls) {
+  actuators_.advance(delayed(within_limits(controls, airframe_)), step_s_);
+  const Eigen::Vector3d force_world_mps2 = (velocity_world_mps - truth_.velocity_world_mps) / step_s_ +
+                                           Eigen::Vector3d(0, 0, airframe_.gravity_mps2);
+  ++step_;
+  data_->time = static_cast<double>(step_) * step_s_;
+  set_body(T_world_body, velocity_world_mps, angular_rate_body_radps);
+  set_elevons();
+  update_moment();
+  wind_.advance(t_ns(), step_s_, vector_at(data_->qpos), velocity_world_mps);
+  read_truth(Eigen::Vector3d::Zero());
+  truth_.specific_force_body_mps2 = truth_.T_world_body.linear().transpose() * force_world_mps2;
+}
+
 void Aircraft::read_outline() {
   for (int geom = 0; geom < model_.ngeom; ++geom) {
     const Eigen::Map<const Eigen::Vector3d> centre(model_.geom_pos + 3 * geom);

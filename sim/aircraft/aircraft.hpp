@@ -64,6 +64,10 @@ class Aircraft {
   /// are those of the new moment. Throws std::logic_error on controls that are not finite.
   void step(const Controls& controls);
 
+  /// The same, but the body is carried to this pose and motion, whatever the air does.
+  void carry(const Eigen::Isometry3d& T_world_body, const Eigen::Vector3d& velocity_world_mps,
+             const Eigen::Vector3d& angular_rate_body_radps, const Controls& controls);
+
   /// The acceleration in truth() is the mean over the step just taken.
   const Truth& truth() const { return truth_; }
   bool launched() const { return step_ >= release_step_; }  ///< has left the rail

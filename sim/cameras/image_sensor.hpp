@@ -19,6 +19,8 @@ class ImageNoise {
   ImageNoise(double deviation_gray, std::uint64_t seed);
   /// Adds to every pixel, clamped to 0 .. 255.
   void add_to(cv::Mat& gray);
+  /// From now on other noise.
+  void redraw(std::uint64_t seed) { generator_.seed(seed); }
 
  private:
   bool silent_;
@@ -39,6 +41,7 @@ class PixelResponse {
   /// Changes the image in place, CV_8UC1; rounds to the nearest gray level, clamped to 0 .. 255. Does nothing
   /// if light and gain are 1 and there is neither falloff nor shot noise. eye: 0 left, 1 right.
   void apply(int eye, cv::Mat& gray);
+  void redraw(std::uint64_t seed) { generator_.seed(seed); }
 
  private:
   bool neutral_;

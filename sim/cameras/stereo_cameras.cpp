@@ -212,6 +212,11 @@ StereoFrame StereoCameras::capture(const Eigen::Isometry3d& T_world_body, std::i
   return frame;
 }
 
+void StereoCameras::redraw(CameraSeeds seeds) {
+  implementation_->noise.redraw(seeds.noise);
+  implementation_->response.redraw(seeds.shot);
+}
+
 cv::Mat StereoCameras::depth(const Eigen::Isometry3d& T_world_body) const {
   return implementation_->scene.left_depth(eyes_of(implementation_->rig, T_world_body));
 }

@@ -43,6 +43,8 @@ class StereoCameras {
   /// Both images, gray 8-bit with noise, with the body at this pose and the exposure's end at t_ns; the
   /// frame's own time is CameraConfig::exposure_lag_ns() earlier.
   StereoFrame capture(const Eigen::Isometry3d& T_world_body, std::int64_t t_ns);
+  /// From now on other noise.
+  void redraw(CameraSeeds seeds);
   /// Depth in the left image, rectified, with the body at this pose: CV_32FC1, metres along the optical axis.
   cv::Mat depth(const Eigen::Isometry3d& T_world_body) const;
   /// The true view of the left image, rectified, with the body at this pose: the same depth, and the objects.

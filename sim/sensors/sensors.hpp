@@ -15,6 +15,8 @@ class Imu {
  public:
   Imu(const ImuConfig& config, std::uint64_t seed);
   ImuSample measure(const Truth& truth);
+  /// From now on other noise; the constant errors stay. The other sensors have the same.
+  void redraw(std::uint64_t seed) { noise_ = NoiseSource(seed); }
   /// The constant errors of the flight, for scoring; wandering errors are added to them.
   const Eigen::Vector3d& gyro_bias_radps() const { return gyro_bias_radps_; }
   const Eigen::Vector3d& accelerometer_bias_mps2() const { return accelerometer_bias_mps2_; }
@@ -41,6 +43,7 @@ class Pitot {
   /// The density converts speed into pressure and back, so without errors the reading is the true airspeed.
   Pitot(const PitotConfig& config, double air_density_kgpm3, std::uint64_t seed);
   PitotSample measure(const Truth& truth);
+  void redraw(std::uint64_t seed) { noise_ = NoiseSource(seed); }
 
  private:
   PitotConfig config_;
@@ -53,6 +56,7 @@ class Barometer {
  public:
   Barometer(const BarometerConfig& config, std::uint64_t seed);
   BarometerSample measure(const Truth& truth);
+  void redraw(std::uint64_t seed) { noise_ = NoiseSource(seed); }
 
  private:
   BarometerConfig config_;
@@ -65,6 +69,7 @@ class Magnetometer {
  public:
   Magnetometer(const MagnetometerConfig& config, std::uint64_t seed);
   MagnetometerSample measure(const Truth& truth);
+  void redraw(std::uint64_t seed) { noise_ = NoiseSource(seed); }
 
  private:
   MagnetometerConfig config_;
@@ -78,6 +83,7 @@ class Gps {
   Gps(const GpsConfig& config, std::uint64_t seed);
   /// A fix of this moment. The caller delivers it delay_s later.
   GpsSample measure(const Truth& truth);
+  void redraw(std::uint64_t seed) { noise_ = NoiseSource(seed); }
 
  private:
   GpsConfig config_;
