@@ -21,6 +21,7 @@ void add_campaign_command(CommandLine& line);
 void add_shard_command(CommandLine& line);
 void add_collect_command(CommandLine& line);
 void add_gate_command(CommandLine& line);
+void add_explain_command(CommandLine& line);
 void add_tune_command(CommandLine& line);
 void add_detect_command(CommandLine& line);
 void add_evaluate_command(CommandLine& line);

@@ -97,6 +97,7 @@ int run(int argc, char** argv) {
   add_shard_command(line);
   add_collect_command(line);
   add_gate_command(line);
+  add_explain_command(line);
   add_tune_command(line);
   add_rig_command(line);
   add_bench_command(line);

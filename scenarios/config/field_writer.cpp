@@ -37,6 +37,12 @@ class FieldWriter : public FieldVisitor {
   void seed(std::string_view name, std::uint64_t& value, std::uint64_t, std::string_view) override {
     line(name, fmt::format("{}", value));
   }
+  /// A list without words is left out: it cannot be read.
+  void words(std::string_view name, std::vector<std::string>& values, std::string_view) override {
+    std::string list;
+    for (const std::string& word : values) list += (list.empty() ? "" : ", ") + in_quotes(word);
+    if (!values.empty()) line(name, "[" + list + "]");
+  }
   void group(std::string_view name, const Fields& fields) override {
     line(name, "");
     indent_ += 2;

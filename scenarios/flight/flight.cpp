@@ -187,14 +187,15 @@ void Flight::follow_plan() {
   const FlightModel model(scenario_.airframe, scenario_.autopilot.flight_model);
   const Truth& now = truth();
   const Eigen::Matrix3d R_body_world = now.T_world_body.linear().transpose();
-  const FlightState next =
-      model.advance(flight_state(now.T_world_body, R_body_world * now.velocity_world_mps,
-                                 now.angular_rate_body_radps, now.wind_world_mps.head<2>()),
-                    command_at(plan(), clock_.t_ns()), 1.0 / physics_rate_hz);
-  const Eigen::Isometry3d pose = pose_of(next);
+  if (!carried_)
+    carried_ = flight_state(now.T_world_body, R_body_world * now.velocity_world_mps,
+                            now.angular_rate_body_radps, now.wind_world_mps.head<2>());
+  carried_->wind_world_mps = now.wind_world_mps.head<2>();
+  carried_ = model.advance(*carried_, command_at(plan(), clock_.t_ns()), 1.0 / physics_rate_hz);
+  const Eigen::Isometry3d pose = pose_of(*carried_);
   const Eigen::AngleAxisd turned(R_body_world * pose.linear());
-  Eigen::Vector3d velocity_world_mps = next.speed_mps * flight_direction_world(next);
-  velocity_world_mps.head<2>() += next.wind_world_mps;
+  Eigen::Vector3d velocity_world_mps = carried_->speed_mps * flight_direction_world(*carried_);
+  velocity_world_mps.head<2>() += carried_->wind_world_mps;
   aircraft_.carry(pose, velocity_world_mps, turned.angle() * physics_rate_hz * turned.axis(), controls_);
 }
 

@@ -147,6 +147,7 @@ class Flight {
   FlightComputer computer_;
   TruthHistory history_;
   bool ideal_ = false;  ///< the scenario's ideal parts are in place
+  std::optional<FlightState> carried_;  ///< of the planner's model, where tracking is ideal
   /// From where the estimate places a frame's points to their true places, by the frame's moment.
   std::map<std::int64_t, Eigen::Isometry3d> T_true_estimated_;
   FlightParts parts_;

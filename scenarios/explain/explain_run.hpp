@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "scenarios/explain/explanation.hpp"
+#include "scenarios/flight/flight_log.hpp"
+#include "sim/render/renderer_kind.hpp"
+
+namespace understory {
+
+struct ExplainOptions {
+  std::filesystem::path models_folder;
+  /// For the flights' files; made if it is not there, and left.
+  std::filesystem::path work_folder;
+  RendererKind renderer = RendererKind::osmesa;
+  int jobs = 1;       ///< flights at a time
+  int flights = 150;  ///< at most so many beside the lost one
+  std::function<void(std::size_t flown, std::size_t asked)> on_progress = {};  ///< may be empty
+};
+
+/// A lost flight and why it was lost.
+struct ExplainedFlight {
+  FlightLog log;
+  Explanation explanation;
+};
+
+/// Flies the scenario, keeps its hits, and asks with flights that go on from its moments. Throws
+/// ScenarioError where it reaches its goal or has ideal parts already, MachineError where a flight fails,
+/// Stopped at a signal.
+ExplainedFlight explain_flight(const Scenario& scenario, const ExplainOptions& options);
+
+}  // namespace understory

@@ -1,0 +1,245 @@
+#include "scenarios/explain/explanation.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "scenarios/scenario/scenario.hpp"
+
+namespace understory {
+namespace {
+
+constexpr double small_chance = 0.2;  ///< below it there was no return
+constexpr int first_look = 4, parts_look = 6, close_look = 16;
+/// A part that sees everything can make up for most faults of others: it is the cause only where no other
+/// part has this share of its effect. Detection at the depths in use comes before it, too.
+constexpr double enough_of_sight = 0.5;
+
+std::vector<std::string> all_parts() { return {ideal_part_names.begin(), ideal_part_names.end()}; }
+
+std::string name_of(const std::vector<std::string>& parts) {
+  if (parts.empty()) return std::string(the_control);
+  if (parts.size() == 1) return parts.front();
+  std::string name(all_ideal);
+  for (const std::string_view part : ideal_part_names)
+    if (std::ranges::find(parts, part) == parts.end()) name += " but " + std::string(part);
+  return name;
+}
+
+/// One explanation while it is made.
+class Inquiry {
+ public:
+  Inquiry(const ExplanationOptions& options, const FlyRedraws& fly) : options_(options), fly_(fly) {}
+
+  Explanation run() {
+    for (const double moment_s : options_.moments_s) ask({}, moment_s, first_look);
+    answer();
+    find_decisive_moments();
+    for (const double moment_s : result_.decisive_s) {
+      ask({}, moment_s, parts_look);
+      for (const std::string& part : all_parts()) ask({part}, moment_s, parts_look);
+      ask(all_parts(), moment_s, parts_look);
+    }
+    answer();
+    look_closely();
+    decide();
+    return std::move(result_);
+  }
+
+ private:
+  /// Wants the first `count` redraws of these parts at this moment; those that were flown count.
+  void ask(const std::vector<std::string>& parts, double before_end_s, int count) {
+    for (int seed = 1; seed <= count; ++seed) {
+      Redraw redraw{parts, before_end_s, static_cast<std::uint64_t>(seed), false};
+      const auto is_it = [&](const Redraw& one) {
+        return one.parts == redraw.parts && one.before_end_s == before_end_s && one.seed == redraw.seed;
+      };
+      if (std::ranges::any_of(result_.flights, is_it) || std::ranges::any_of(asked_, is_it)) continue;
+      const std::size_t so_far = result_.flights.size() + asked_.size();
+      if (so_far < static_cast<std::size_t>(options_.flights)) asked_.push_back(std::move(redraw));
+    }
+  }
+
+  void answer() {
+    if (!asked_.empty()) fly_(asked_);
+    result_.flights.insert(result_.flights.end(), asked_.begin(), asked_.end());
+    asked_.clear();
+    result_.chances = chances();
+    result_.effects = effects();
+    const auto is_hopeful = [](const Chance& chance) {
+      return chance.part == the_control && chance.fitted >= small_chance;
+    };
+    const auto latest = std::ranges::find_if(result_.chances, is_hopeful);
+    result_.no_return_s =
+        latest == result_.chances.end() ? std::nullopt : std::optional(latest->before_end_s);
+  }
+
+  std::vector<Chance> chances() const {
+    std::map<std::string, std::map<double, Share>> flown;
+    for (const Redraw& one : result_.flights) flown[name_of(one.parts)][one.before_end_s].count(one.survived);
+    std::vector<Chance> all;
+    for (const auto& [part, moments] : flown) {
+      std::vector<Share> shares;
+      for (const auto& [moment_s, share] : moments) shares.push_back(share);
+      const std::vector<double> fitted = monotone_fit(shares);
+      auto fit = fitted.begin();
+      for (const auto& [moment_s, share] : moments) all.push_back({part, moment_s, share, *fit++});
+    }
+    return all;
+  }
+
+  /// The last moment from which the control seldom survives, and the one before it.
+  void find_decisive_moments() {
+    std::vector<double> hopeless, hopeful;
+    for (const Chance& chance : result_.chances)
+      if (chance.part == the_control)
+        (chance.fitted < small_chance ? hopeless : hopeful).push_back(chance.before_end_s);
+    if (!hopeless.empty()) result_.decisive_s.push_back(hopeless.back());
+    if (!hopeful.empty()) result_.decisive_s.push_back(hopeful.front());
+    if (hopeful.empty() && hopeless.size() > 1)  // it had no chance all along: with some time left
+      result_.decisive_s.insert(result_.decisive_s.begin(), hopeless[hopeless.size() - 2]);
+  }
+
+  bool survived(const std::vector<std::string>& parts, double moment_s, std::uint64_t seed,
+                bool& known) const {
+    const auto flight = std::ranges::find_if(result_.flights, [&](const Redraw& one) {
+      return one.parts == parts && one.before_end_s == moment_s && one.seed == seed;
+    });
+    known = known && flight != result_.flights.end();
+    return flight != result_.flights.end() && flight->survived;
+  }
+
+  /// Over the same noise, at the decisive moments.
+  PairedOutcomes pairs_of(const std::vector<std::string>& parts) const {
+    PairedOutcomes pairs;
+    for (const Redraw& one : result_.flights) {
+      if (one.parts != parts ||
+          std::ranges::find(result_.decisive_s, one.before_end_s) == result_.decisive_s.end())
+        continue;
+      bool known = true;
+      const bool by_control = survived({}, one.before_end_s, one.seed, known);
+      if (known) pairs.count(by_control, one.survived);
+    }
+    return pairs;
+  }
+
+  std::vector<Effect> effects() const {
+    std::vector<Effect> all;
+    for (const std::string& part : all_parts()) all.push_back({part, pairs_of({part})});
+    all.push_back({std::string(all_ideal), pairs_of(all_parts())});
+    std::ranges::stable_sort(all, std::ranges::greater{}, &Effect::difference);
+    return all;
+  }
+
+  const Effect& effect_of(std::string_view part) const {
+    return *std::ranges::find(result_.effects, part, &Effect::part);
+  }
+
+  /// The two parts that lead, sight apart, and sight, get more flights.
+  void look_closely() {
+    std::vector<std::string> leading;
+    for (const Effect& effect : result_.effects)
+      if (effect.part != all_ideal && (effect.part == "sight" || leading.size() < 2) &&
+          effect.difference() > 0)
+        leading.push_back(effect.part);
+    for (const double moment_s : result_.decisive_s) {
+      if (!leading.empty()) ask({}, moment_s, close_look);
+      for (const std::string& part : leading) ask({part}, moment_s, close_look);
+    }
+    answer();
+  }
+
+  void decide() {
+    const Effect* best = nullptr;
+    for (const Effect& effect : result_.effects)
+      if (effect.part != all_ideal && effect.part != "sight" && effect.is_told_from_zero()) {
+        best = &effect;
+        break;
+      }
+    const Effect& sight = effect_of("sight");
+    if (sight.is_told_from_zero() &&
+        (best == nullptr || best->difference() < enough_of_sight * sight.difference()))
+      best = &sight;
+    if (best != nullptr) {
+      result_.cause = best->part;
+      return;
+    }
+    if (effect_of(all_ideal).is_told_from_zero()) {
+      find_joint_parts();
+      return;
+    }
+    ask(all_parts(), options_.moments_s.back(), parts_look);
+    answer();
+    Share saved;
+    for (const Redraw& one : result_.flights)
+      if (one.parts == all_parts() && one.before_end_s == options_.moments_s.back())
+        saved.count(one.survived);
+    result_.cause = saved.value() < 0.5 ? "infeasible" : "chance";
+  }
+
+  /// The parts without which everything else does not save it.
+  void find_joint_parts() {
+    result_.cause = "joint";
+    const double moment_s = result_.decisive_s.front();
+    for (const std::string& part : all_parts()) {
+      std::vector<std::string> others = all_parts();
+      std::erase(others, part);
+      ask(others, moment_s, parts_look);
+    }
+    answer();
+    Share whole;
+    for (const Redraw& one : result_.flights)
+      if (one.parts == all_parts() && one.before_end_s == moment_s) whole.count(one.survived);
+    for (const std::string& part : all_parts()) {
+      std::vector<std::string> others = all_parts();
+      std::erase(others, part);
+      Share without;
+      for (const Redraw& one : result_.flights)
+        if (one.parts == others && one.before_end_s == moment_s) without.count(one.survived);
+      if (without.of > 0 && without.value() < 0.5 * whole.value()) result_.parts.push_back(part);
+    }
+  }
+
+  const ExplanationOptions& options_;
+  const FlyRedraws& fly_;
+  std::vector<Redraw> asked_;
+  Explanation result_;
+};
+
+}  // namespace
+
+std::vector<double> moments_of(double flown_s) {
+  std::vector<double> moments;
+  for (const double moment_s : {0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0})
+    if (moments.empty() || moment_s < flown_s - 0.2) moments.push_back(moment_s);
+  return moments;
+}
+
+Explanation explain(const ExplanationOptions& options, const FlyRedraws& fly) {
+  return Inquiry(options, fly).run();
+}
+
+std::vector<double> monotone_fit(std::span<const Share> shares) {
+  struct Block {
+    Share share;
+    std::size_t entries = 0;
+  };
+  std::vector<Block> blocks;
+  for (const Share& share : shares) {
+    blocks.push_back({share, 1});
+    const auto falls = [&] {
+      const Block &last = blocks.back(), &before = blocks[blocks.size() - 2];
+      return last.share.of == 0 || before.share.of == 0 || last.share.value() < before.share.value();
+    };
+    while (blocks.size() > 1 && falls()) {
+      blocks[blocks.size() - 2].share.add(blocks.back().share);
+      blocks[blocks.size() - 2].entries += blocks.back().entries;
+      blocks.pop_back();
+    }
+  }
+  std::vector<double> fitted;
+  for (const Block& block : blocks) fitted.insert(fitted.end(), block.entries, block.share.value());
+  return fitted;
+}
+
+}  // namespace understory
