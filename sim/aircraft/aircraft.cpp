@@ -93,7 +93,11 @@ void Aircraft::carry(const Eigen::Isometry3d& T_world_body, const Eigen::Vector3
   update_moment();
   wind_.advance(t_ns(), step_s_, vector_at(data_->qpos), velocity_world_mps);
   read_truth(Eigen::Vector3d::Zero());
+  // Across the body the air's own force: the planner's model turns about the nose a little otherwise than a
+  // body does, and a filter that reads sideslip from that force would drift.
+  const double lateral_mps2 = truth_.specific_force_body_mps2.y();
   truth_.specific_force_body_mps2 = truth_.T_world_body.linear().transpose() * force_world_mps2;
+  truth_.specific_force_body_mps2.y() = lateral_mps2;
 }
 
 void Aircraft::read_outline() {
