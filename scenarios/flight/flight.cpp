@@ -72,7 +72,8 @@ void Flight::begin_ideal() {
     drops_ = FrameDrops(scenario_.cameras.drop_probability, seed_for(redraw, "camera_drops"));
     if (cameras_) cameras_->redraw({seed_for(redraw, "cameras"), seed_for(redraw, "camera_shot_noise")});
   }
-  const AutopilotConfig config = with_ideal_parts(autopilot_config_of(scenario_, rig_.rig), scenario_);
+  if (is_ideal(scenario_, "map")) forgets_ = false;
+  const AutopilotConfig config = autopilot_config();
   if (redraw != 0 || is_ideal(scenario_, "search"))
     parts_.planner->change(config.planner,
                            seed_for(redraw != 0 ? redraw : scenario_.planner_seed(), "planner"));
@@ -93,14 +94,34 @@ void Flight::begin_ideal() {
       return frame == T_true_estimated_.end() ? point.position_world : frame->second * point.position_world;
     };
   }
-  if (is_ideal(scenario_, "latency")) computer_.hurry(clock_.t_ns());
+  if (is_ideal(scenario_, "latency")) {
+    computer_.hurry(clock_.t_ns());
+    last_arrival_ns_ = clock_.t_ns();
+  }
   autopilot_.change(config, *parts_.detector, *parts_.state_source, place);
 }
 
 bool Flight::is_ideal_now(std::string_view part) const { return ideal_ && is_ideal(scenario_, part); }
 
-std::int64_t Flight::latency_ns() const {
-  return is_ideal_now("latency") ? 0 : nanoseconds(scenario_.cameras.latency_s);
+std::int64_t Flight::latency_ns(std::int64_t t_ns) const {
+  if (is_ideal_now("latency")) return 0;
+  const auto delay_s = faults().value(FaultySensor::camera, FaultKind::delay, t_ns);
+  return nanoseconds(scenario_.cameras.latency_s + std::clamp(delay_s.value_or(0), 0.0, 0.3));
+}
+
+AutopilotConfig Flight::autopilot_config() const {
+  AutopilotConfig config = autopilot_config_of(scenario_, rig_.rig);
+  if (ideal_) config = with_ideal_parts(config, scenario_);
+  if (forgets_) config.map.max_age_s = 0;
+  return config;
+}
+
+void Flight::follow_map_fault() {
+  const bool forgets =
+      faults().has(FaultySensor::map, FaultKind::dropout, clock_.t_ns()) && !is_ideal_now("map");
+  if (forgets == forgets_) return;
+  forgets_ = forgets;
+  autopilot_.change(autopilot_config(), *parts_.detector, *parts_.state_source, nullptr);
 }
 
 void Flight::step() {
@@ -108,6 +129,7 @@ void Flight::step() {
   history_.observe(truth());
   if (!ideal_ && scenario_.ideal.acts() && clock_.t_ns() >= nanoseconds(scenario_.ideal.from_s))
     begin_ideal();
+  follow_map_fault();
   sense();
   expose();
   while (std::optional<StereoFrame> frame = computer_.next_frame(clock_.t_ns())) process(std::move(*frame));
@@ -133,9 +155,11 @@ void Flight::expose() {
   const std::int64_t t_ns = clock_.t_ns();
   if (cameras_) cameras_->observe(truth().T_world_body, t_ns);
   if (!clock_.camera() || drops_.next()) return;
-  const std::int64_t arrival_ns = t_ns + latency_ns();
-  const bool taken = computer_.will_take(arrival_ns, clock_.next_camera_t_ns() + latency_ns()) ||
-                     !scenario_.every_frame_arrives();
+  const std::int64_t arrival_ns = std::max(t_ns + latency_ns(t_ns), last_arrival_ns_);
+  last_arrival_ns_ = arrival_ns;
+  const std::int64_t next_t_ns = clock_.next_camera_t_ns();
+  const bool taken =
+      computer_.will_take(arrival_ns, next_t_ns + latency_ns(next_t_ns)) || !scenario_.every_frame_arrives();
   StereoFrame frame{t_ns - scenario_.cameras.exposure_lag_ns(), {}, {}};
   if (cameras_ && taken && is_looked_at()) {
     const auto timed = stopwatch_.time("render");
@@ -199,13 +223,22 @@ void Flight::follow_plan() {
   aircraft_.carry(pose, velocity_world_mps, turned.angle() * physics_rate_hz * turned.axis(), controls_);
 }
 
+Controls Flight::controls_in_force() const {
+  Controls controls = controls_;
+  if (const auto share = faults().value(FaultySensor::elevons, FaultKind::weaken, clock_.t_ns())) {
+    controls.left_elevon_rad *= *share;
+    controls.right_elevon_rad *= *share;
+  }
+  return controls;
+}
+
 void Flight::advance() {
   const auto timed = stopwatch_.time("physics");
   try {
     if (is_ideal_now("tracking") && launched() && !plan().points.empty())
       follow_plan();
     else
-      aircraft_.step(controls_);
+      aircraft_.step(controls_in_force());
   } catch (const SimulationError& error) {
     throw ScenarioError(fmt::format(
         "{}: airframe: {}, {:.3f} s into the flight; the aircraft must be one that steps of 1/1200 "

@@ -123,7 +123,12 @@ class Flight {
   FlightParts with_rest(FlightParts parts) const;
   void begin_ideal();
   bool is_ideal_now(std::string_view part) const;
-  std::int64_t latency_ns() const;
+  AutopilotConfig autopilot_config() const;  ///< now
+  void follow_map_fault();
+  const Faults& faults() const { return sensors_.faults(); }
+  /// Of a frame whose exposure ends at t_ns, until the computer has it.
+  std::int64_t latency_ns(std::int64_t t_ns) const;
+  Controls controls_in_force() const;  ///< at the elevons
   void sense();
   void expose();
   bool is_looked_at() const;
@@ -146,7 +151,9 @@ class Flight {
   FrameDrops drops_;
   FlightComputer computer_;
   TruthHistory history_;
-  bool ideal_ = false;  ///< the scenario's ideal parts are in place
+  bool ideal_ = false;    ///< the scenario's ideal parts are in place
+  bool forgets_ = false;  ///< the map, by a fault
+  std::int64_t last_arrival_ns_ = 0;
   std::optional<FlightState> carried_;  ///< of the planner's model, where tracking is ideal
   /// From where the estimate places a frame's points to their true places, by the frame's moment.
   std::map<std::int64_t, Eigen::Isometry3d> T_true_estimated_;

@@ -68,6 +68,7 @@ class OnboardSensors {
   }
   /// For the cameras' frames, which the flight delivers.
   Faults& faults() { return faults_; }
+  const Faults& faults() const { return faults_; }
 
  private:
   Imu imu_;

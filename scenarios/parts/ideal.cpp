@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "scenarios/output/errors.hpp"
+#include "sim/sensors/faults.hpp"
 
 namespace understory {
 namespace {
@@ -71,6 +72,30 @@ void add_faces(const Obstacle& obstacle, const Eigen::Vector3d& eye_world, std::
       }
 }
 
+/// No detector sees what a camera's cover hides.
+class UncoveredDetector : public ObstacleDetector {
+ public:
+  UncoveredDetector(std::unique_ptr<ObstacleDetector> detector, const std::vector<FaultConfig>& faults,
+                    int width_px)
+      : detector_(std::move(detector)), faults_(faults), width_px_(width_px) {}
+  const std::vector<StereoHit>& detect(const StereoFrame& frame) override {
+    hits_ = detector_->detect(frame);
+    if (const auto cover = faults_.value(FaultySensor::camera, FaultKind::cover, frame.t_ns)) {
+      const auto [first, end] = free_columns(*cover, width_px_);
+      std::erase_if(hits_, [first, end](const StereoHit& hit) {
+        return hit.column_px < first || hit.column_px >= end;
+      });
+    }
+    return hits_;
+  }
+
+ private:
+  std::unique_ptr<ObstacleDetector> detector_;
+  Faults faults_;
+  int width_px_;
+  std::vector<StereoHit> hits_;
+};
+
 template <typename Value>
 void append(std::string& bytes, const Value& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -97,7 +122,9 @@ std::unique_ptr<ObstacleDetector> ideal_detector(const Scenario& scenario, const
                                                  const TruthHistory& truth) {
   if (is_ideal(scenario, "sight")) return std::make_unique<AllAround>(rig, obstacles, truth);
   if (is_ideal(scenario, "detection"))
-    return std::make_unique<TrueDepth>(rig, obstacles, truth, intervals_of(scenario, rig));
+    return std::make_unique<UncoveredDetector>(
+        std::make_unique<TrueDepth>(rig, obstacles, truth, intervals_of(scenario, rig)), scenario.faults,
+        rig.width_px);
   return nullptr;
 }
 

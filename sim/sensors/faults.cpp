@@ -25,10 +25,16 @@ void set(Eigen::Vector3d& reading, double value) { reading.setConstant(value); }
 
 }  // namespace
 
-bool Faults::has(FaultySensor sensor, FaultKind kind, std::int64_t t_ns) const {
-  return std::any_of(schedule_.begin(), schedule_.end(), [&](const FaultConfig& fault) {
-    return fault.sensor == sensor && fault.kind == kind && in_force(fault, t_ns);
+std::optional<double> Faults::value(FaultySensor sensor, FaultKind kind, std::int64_t t_ns) const {
+  const auto fault = std::find_if(schedule_.begin(), schedule_.end(), [&](const FaultConfig& one) {
+    return one.sensor == sensor && one.kind == kind && in_force(one, t_ns);
   });
+  return fault == schedule_.end() ? std::nullopt : std::optional(fault->value);
+}
+
+std::pair<int, int> free_columns(double cover, int width_px) {
+  const auto covered = static_cast<int>(std::lround(std::min(std::abs(cover), 1.0) * width_px));
+  return cover > 0 ? std::pair(0, width_px - covered) : std::pair(covered, width_px);
 }
 
 template <typename Reading>
@@ -103,6 +109,12 @@ bool Faults::pass(StereoFrame& frame) {
   if (has(camera, FaultKind::dropout, t_ns)) return false;
   frame = held(has(camera, FaultKind::freeze, t_ns), std::move(frame), last_.frame);
   frame.t_ns = t_ns;
+  if (const auto cover = value(camera, FaultKind::cover, t_ns); cover && !frame.left.empty()) {
+    const auto [first, end] = free_columns(*cover, frame.left.cols);
+    for (cv::Mat* image : {&frame.left, &frame.right})
+      for (const cv::Range& covered : {cv::Range(0, first), cv::Range(end, image->cols)})
+        image->colRange(covered).setTo(0);
+  }
   return true;
 }
 

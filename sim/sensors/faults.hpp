@@ -11,6 +11,9 @@
 
 namespace understory {
 
+/// The columns of an image that a camera's cover leaves free: from the first, to the one behind the last.
+std::pair<int, int> free_columns(double cover, int width_px);
+
 /// Stands between sensors and autopilot and applies the scheduled faults to samples. It does not know the
 /// truth.
 class Faults {
@@ -26,6 +29,12 @@ class Faults {
   bool pass(GpsSample& sample);
   bool pass(StereoFrame& frame);
 
+  bool has(FaultySensor sensor, FaultKind kind, std::int64_t t_ns) const {
+    return value(sensor, kind, t_ns).has_value();
+  }
+  /// The fault's value; nothing where it is not in force.
+  std::optional<double> value(FaultySensor sensor, FaultKind kind, std::int64_t t_ns) const;
+
  private:
   /// A sensor's last reading before it froze.
   struct LastReadings {
@@ -35,7 +44,6 @@ class Faults {
     std::optional<StereoFrame> frame;
   };
 
-  bool has(FaultySensor sensor, FaultKind kind, std::int64_t t_ns) const;
   template <typename Reading>
   Reading altered(FaultySensor sensor, std::int64_t t_ns, Reading reading) const;
   template <typename Reading>

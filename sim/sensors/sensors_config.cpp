@@ -93,8 +93,13 @@ SensorsConfig sensors_of_grade(SensorGrade grade) {
 std::string_view fault_kinds_of(FaultySensor sensor) {
   switch (sensor) {
     case FaultySensor::imu:
-    case FaultySensor::camera:
       return "freeze | dropout";
+    case FaultySensor::camera:
+      return "freeze | dropout | cover | delay";
+    case FaultySensor::elevons:
+      return "weaken";
+    case FaultySensor::map:
+      return "dropout";
     case FaultySensor::gps:
       return "freeze | dropout | bias";
     case FaultySensor::pitot:
@@ -232,14 +237,19 @@ void visit_fields(FieldVisitor& visit, SensorsConfig& config) {
 }
 
 void visit_fields(FieldVisitor& visit, FaultConfig& fault) {
-  visit("sensor", fault.sensor, faulty_sensor_names, "sensor that fails");
+  visit("sensor", fault.sensor, faulty_sensor_names,
+        "what fails: a sensor, the elevons, or the map, whose points are then forgotten at once");
   visit("kind", fault.kind, fault_kind_names, "kind of the failure | docs/sensors.md");
   visit("at_s", fault.at_s, 0.0, 1000.0,
         "simulated time at which the sensor fails; by default the catapult fires at 0.25 s");
   visit("duration_s", fault.duration_s, 0.0, 1000.0,
         "time for which the sensor fails; the default is longer than any flight");
   visit("value", fault.value, -10000.0, 10000.0,
-        "bias: what is added to the reading; saturate: its limit; block: the reading; in the sensor's unit");
+        "bias: what is added to the reading; saturate: its limit; block: the reading; in the sensor's unit. "
+        "cover: "
+        "the share of the images that is black, on the right, below 0 on the left; delay: how much later "
+        "frames "
+        "arrive, s, at most 0.3; weaken: the share of a command that the elevons follow.");
 }
 
 }  // namespace understory

@@ -125,7 +125,19 @@ enum class SensorGrade {
 
 SensorsConfig sensors_of_grade(SensorGrade grade);
 
-enum class FaultySensor { imu, gyro, accelerometer, pitot, barometer, magnetometer, gps, camera };
+/// What fails: a sensor, the elevons, or the autopilot's map.
+enum class FaultySensor {
+  imu,
+  gyro,
+  accelerometer,
+  pitot,
+  barometer,
+  magnetometer,
+  gps,
+  camera,
+  elevons,
+  map
+};
 
 enum class FaultKind {
   freeze,    ///< repeats its last reading (the camera its last pair) under new times
@@ -133,9 +145,12 @@ enum class FaultKind {
   bias,      ///< adds `value`, to every axis; on a satellite fix to its position
   saturate,  ///< limits readings to +- `value` on every axis
   block,     ///< of the pitot: ice or an insect in the mouth, the drain open; reads `value`
+  cover,     ///< of the camera: the right part of both images is black, a share of `value`; below 0: the left
+  delay,     ///< of the camera: frames arrive `value` seconds later
+  weaken,    ///< of the elevons: they deflect by `value` of what is commanded
 };
 
-inline constexpr std::array<std::pair<std::string_view, FaultySensor>, 8> faulty_sensor_names{
+inline constexpr std::array<std::pair<std::string_view, FaultySensor>, 10> faulty_sensor_names{
     {{"imu", FaultySensor::imu},
      {"gyro", FaultySensor::gyro},
      {"accelerometer", FaultySensor::accelerometer},
@@ -143,13 +158,18 @@ inline constexpr std::array<std::pair<std::string_view, FaultySensor>, 8> faulty
      {"barometer", FaultySensor::barometer},
      {"magnetometer", FaultySensor::magnetometer},
      {"gps", FaultySensor::gps},
-     {"camera", FaultySensor::camera}}};
-inline constexpr std::array<std::pair<std::string_view, FaultKind>, 5> fault_kind_names{
+     {"camera", FaultySensor::camera},
+     {"elevons", FaultySensor::elevons},
+     {"map", FaultySensor::map}}};
+inline constexpr std::array<std::pair<std::string_view, FaultKind>, 8> fault_kind_names{
     {{"freeze", FaultKind::freeze},
      {"dropout", FaultKind::dropout},
      {"bias", FaultKind::bias},
      {"saturate", FaultKind::saturate},
-     {"block", FaultKind::block}}};
+     {"block", FaultKind::block},
+     {"cover", FaultKind::cover},
+     {"delay", FaultKind::delay},
+     {"weaken", FaultKind::weaken}}};
 
 /// One entry of a scenario's `faults`: at_s <= t < at_s + duration_s, by the moment of measurement.
 struct FaultConfig {
