@@ -150,9 +150,9 @@ TEST(Layering, FoldersReachOnlyWhomTheyMay) {
 /// apart.
 bool arrow_points_down(const std::string& from, const std::string& to) {
   static const std::map<std::string, int> floors{
-      {"config", 1},     {"course", 2}, {"parts", 3}, {"scenario", 4}, {"flight", 5},
-      {"recording", 6},  {"detect", 6}, {"bench", 6}, {"tuning", 7},   {"campaign", 7},
-      {"evaluation", 7}, {"cli", 8},    {"python", 8}};
+      {"config", 1},     {"course", 2},  {"parts", 3}, {"scenario", 4}, {"flight", 5},
+      {"recording", 6},  {"detect", 6},  {"bench", 6}, {"tuning", 7},   {"campaign", 7},
+      {"evaluation", 7}, {"explain", 8}, {"cli", 9},   {"python", 9}};
   if (from == "statistics" || from == "output") return false;  // they know nobody
   if (to == "statistics" || to == "output") return true;
   if (from == "report") return to == "config";

@@ -5,7 +5,8 @@
 
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/explain/explain_run.hpp"
+#include "scenarios/explain/explain_report.hpp"
+#include "scenarios/output/file_output.hpp"
 #include "scenarios/output/progress_line.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
@@ -33,15 +34,13 @@ int run_explain(const ExplainArguments& arguments) {
   const ExplainedFlight explained =
       explain_flight(load_scenario(fs::path(arguments.folder) / "scenario.yaml"), options);
   line.clear();
-  const Explanation& why = explained.explanation;
-  for (const Chance& chance : why.chances)
-    fmt::print("{:12} {:5.2f} s  {:2} of {:2}  {:.2f}\n", chance.part, chance.before_end_s, chance.flown.with,
-               chance.flown.of, chance.fitted);
-  for (const Effect& effect : why.effects)
-    fmt::print("{:12} {:+.2f} ({:+.2f} to {:+.2f}) of {}\n", effect.part, effect.difference(),
-               effect.interval().minimum, effect.interval().maximum, effect.pairs.pairs());
-  fmt::print("no return {:.2f} s before the end; {} flights; cause: {} {}\n", why.no_return_s.value_or(-1),
-             why.flights.size(), why.cause, fmt::join(why.parts, " "));
+  const std::vector<Evidence> evidence = evidence_in(explained.log);
+  const Conclusion conclusion = conclusion_of(explained.explanation, evidence);
+  write_whole_file(fs::path(arguments.folder) / "explain.json", to_json(explained, evidence, conclusion));
+  fs::remove_all(options.work_folder);
+  fmt::print("{}\n{}\n{}\n{}{}{}\n", conclusion.sentence, to_text(effects_table(explained.explanation)),
+             to_text(chances_table(explained.explanation)), conclusion.disagreement,
+             conclusion.disagreement.empty() ? "" : "\n", explained.explanation.flights.size());
   return exit_goal;
 }
 

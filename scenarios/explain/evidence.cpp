@@ -1,0 +1,166 @@
+#include "scenarios/explain/evidence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenarios/flight/clearance.hpp"
+#include "scenarios/flight/flight_story.hpp"
+
+namespace understory {
+namespace {
+
+constexpr std::int64_t lately_ns = 1'500'000'000;  ///< before the end: what can have mattered
+constexpr double wrong_m = 0.3, wrong_bank_rad = 0.35, late_s = 0.03;
+constexpr std::size_t many_false = 10;
+
+std::int64_t end_ns(const FlightLog& log) { return log.moments.back().t_ns; }
+
+/// A sensor of the schedule that had failed by the end; its words.
+std::string failed_sensors(const FlightLog& log) {
+  std::vector<std::string> words;
+  for (const FaultConfig& fault : log.scenario.faults) {
+    const bool is_sensor = fault.sensor != FaultySensor::camera && fault.sensor != FaultySensor::elevons &&
+                           fault.sensor != FaultySensor::map;
+    if (is_sensor && fault.at_s < seconds(end_ns(log)))
+      words.push_back(fmt::format("{} {} at {:.2f} s",
+                                  faulty_sensor_names[static_cast<std::size_t>(fault.sensor)].first,
+                                  fault_kind_names[static_cast<std::size_t>(fault.kind)].first, fault.at_s));
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+Evidence of_false_points(const FlightLog& log) {
+  std::size_t wrong = 0, all = 0;
+  for (const LogPoint& one : log.points) {
+    if (one.from_ns < end_ns(log) - lately_ns || one.point.sightings > 1) continue;
+    ++all;
+    wrong += std::ranges::none_of(log.obstacles, [&](const Obstacle& obstacle) {
+      return belongs_to(one.true_position_world, obstacle);
+    });
+  }
+  return {"false obstacle", "detection", wrong >= many_false && 2 * wrong > all,
+          fmt::format("In the last {:.1f} s {} of {} new points lay on no obstacle.", 1e-9 * lately_ns, wrong,
+                      all)};
+}
+
+/// Of what was touched.
+std::vector<Evidence> of_obstacle(const ObstacleStory& touched, const FlightLog& log) {
+  const std::string& name = log.obstacles[touched.obstacle].name;
+  const bool was_in_view = touched.in_view_s.has_value(), was_detected = touched.detected_s.has_value();
+  const double end_s = seconds(end_ns(log));
+  std::vector<Evidence> all;
+  const bool never_at_depth = !was_in_view || touched.in_view_at_depth == false;
+  all.push_back(
+      {"never in view", "sight", never_at_depth || (was_detected && end_s - *touched.detected_s < 0.6),
+       !was_in_view     ? fmt::format("{} was never in view.", name)
+       : never_at_depth ? fmt::format("{} was never in view at a depth that the detector looks at.", name)
+       : was_detected   ? fmt::format("{} was first detected {:.2f} s before the end, {:.1f} m away.", name,
+                                      end_s - *touched.detected_s, touched.detected_m)
+                        : fmt::format("{} was in view at a depth that the detector looks at.", name)});
+  all.push_back({"not detected", "detection", was_in_view && touched.frames_with_hits < 3,
+                 fmt::format("{} was detected in {} frames, with {} hits.", name, touched.frames_with_hits,
+                             touched.hits)});
+  all.push_back({"forgotten", "map", was_detected && (touched.forgotten_s.has_value() || touched.points == 0),
+                 fmt::format("The map held {} points of {} at the end.", touched.points, name)});
+  return all;
+}
+
+Evidence of_place(const FlightLog& log, const std::optional<ObstacleStory>& touched) {
+  const double error_m = position_error_m(log.moments.back()).norm();
+  const double off_m = touched && touched->points > 0 ? touched->points_off_world.head<2>().norm() : 0;
+  std::string sentence = fmt::format("The estimate was {:.2f} m off at the end", error_m);
+  if (off_m > 0) sentence += fmt::format(", the points of what it touched {:.2f} m", off_m);
+  return {"wrong place", "state", off_m > wrong_m || error_m > 2 * wrong_m, sentence + "."};
+}
+
+Evidence of_lateness(const FlightLog& log) {
+  double sum_s = 0;
+  std::size_t frames = 0;
+  for (const LogFrame& frame : log.frames) {
+    if (frame.t_ns < end_ns(log) - lately_ns) continue;
+    sum_s += seconds(frame.arrival_ns - frame.t_ns);
+    ++frames;
+  }
+  const double mean_s = frames > 0 ? sum_s / static_cast<double>(frames) : 0;
+  return {"too late", "latency", mean_s > late_s,
+          fmt::format("Frames were {:.0f} ms old when the autopilot had them.", 1e3 * mean_s)};
+}
+
+Evidence of_search(const FlightLog& log) {
+  std::size_t fallbacks = 0, plans = 0;
+  for (const LogPlan& plan : log.plans) {
+    if (plan.t_ns < end_ns(log) - lately_ns) continue;
+    ++plans;
+    fallbacks += plan.origin == PlanOrigin::fallback;
+  }
+  return {"not found", "search", fallbacks > 0,
+          fmt::format("Of its last {} plans {} were emergency manoeuvres, since no free way was found.",
+                      plans, fallbacks)};
+}
+
+Evidence of_tracking(const FlightLog& log) {
+  double square = 0;
+  std::size_t count = 0;
+  for (const LogMoment& moment : log.moments) {
+    if (moment.t_ns < end_ns(log) - lately_ns) continue;
+    const double error_rad = bank_rad(moment.T_world_body) - moment.commanded_bank_rad;
+    square += error_rad * error_rad;
+    ++count;
+  }
+  const double rms_rad = count > 0 ? std::sqrt(square / static_cast<double>(count)) : 0;
+  return {"not flown", "tracking", rms_rad > wrong_bank_rad,
+          fmt::format("Its bank was {:.0f} degrees (root mean square) from the plan's.", 57.29578 * rms_rad)};
+}
+
+}  // namespace
+
+std::vector<Evidence> evidence_in(const FlightLog& log) {
+  const FlightStory story = story_of(log);
+  std::vector<Evidence> all;
+  if (story.touched) all = of_obstacle(*story.touched, log);
+  all.push_back(of_false_points(log));
+  const std::string failed = failed_sensors(log);
+  all.push_back({"sensor's fault", "state", !failed.empty(),
+                 failed.empty() ? "No sensor failed." : fmt::format("A sensor failed: {}.", failed)});
+  all.push_back(of_place(log, story.touched));
+  all.push_back(of_lateness(log));
+  all.push_back(of_search(log));
+  all.push_back(of_tracking(log));
+  return all;
+}
+
+Conclusion conclusion_of(const Explanation& explanation, const std::vector<Evidence>& evidence) {
+  const std::string no_return =
+      explanation.no_return_s
+          ? fmt::format("{:.2f} s before its end the flight was past return", *explanation.no_return_s)
+          : "At no moment that was tried had the flight a chance of one in five";
+  if (explanation.cause == "infeasible")
+    return {"infeasible", "Not even an aircraft that knows everything got through.", ""};
+  if (explanation.cause == "chance")
+    return {"chance", no_return + ", and no part would have helped: with other noise it might have arrived.",
+            ""};
+  if (explanation.cause == "joint")
+    return {"joint",
+            fmt::format("{}; no single part would have helped, but {} together.", no_return,
+                        fmt::join(explanation.parts, ", ")),
+            ""};
+  const Effect& effect = *std::ranges::find(explanation.effects, explanation.cause, &Effect::part);
+  Conclusion conclusion;
+  const auto of_part = [&](const Evidence& one) { return one.part == explanation.cause; };
+  auto shown =
+      std::ranges::find_if(evidence, [&](const Evidence& one) { return of_part(one) && one.is_there; });
+  const bool is_shown = shown != evidence.end();
+  if (!is_shown) shown = std::ranges::find_if(evidence, of_part);
+  conclusion.cause = shown != evidence.end() ? shown->cause : explanation.cause;
+  conclusion.sentence = fmt::format("{}: with an ideal {} {:.0f} % more of its redraws survived. {}",
+                                    conclusion.cause, explanation.cause, 100 * effect.difference(),
+                                    shown != evidence.end() ? shown->sentence : "");
+  if (!is_shown)
+    conclusion.disagreement = fmt::format(
+        "The log itself does not show it: what it shows of {} is within bounds.", explanation.cause);
+  return conclusion;
+}
+
+}  // namespace understory

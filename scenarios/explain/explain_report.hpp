@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenarios/explain/evidence.hpp"
+#include "scenarios/explain/explain_run.hpp"
+#include "scenarios/report/table.hpp"
+
+namespace understory {
+
+/// An explanation with all that it rests on, as explain.json of a run.
+std::string to_json(const ExplainedFlight& explained, const std::vector<Evidence>& evidence,
+                    const Conclusion& conclusion);
+
+/// A row for each part: its effect with its interval, and the chances at the decisive moments.
+Table effects_table(const Explanation& explanation);
+/// A row for each moment: how many of the control's redraws survived, and the fitted chance.
+Table chances_table(const Explanation& explanation);
+
+}  // namespace understory
