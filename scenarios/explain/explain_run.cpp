@@ -8,9 +8,9 @@
 #include "scenarios/flight/flight.hpp"
 #include "scenarios/flight/flight_logger.hpp"
 #include "scenarios/flight/fly.hpp"
+#include "scenarios/flight/ideal_parts.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/signals.hpp"
-#include "scenarios/parts/ideal.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {

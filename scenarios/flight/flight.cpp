@@ -7,7 +7,7 @@
 
 #include "planning/path_follower.hpp"
 #include "scenarios/config/named_seed.hpp"
-#include "scenarios/parts/ideal.hpp"
+#include "scenarios/flight/ideal_parts.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
 

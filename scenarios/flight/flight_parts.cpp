@@ -11,8 +11,8 @@
 #include "scenarios/config/field_writer.hpp"
 #include "scenarios/config/named_seed.hpp"
 #include "scenarios/flight/actions.hpp"
+#include "scenarios/flight/ideal_parts.hpp"
 #include "scenarios/parts/checked_parts.hpp"
-#include "scenarios/parts/ideal.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {

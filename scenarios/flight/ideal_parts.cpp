@@ -1,4 +1,4 @@
-#include "scenarios/parts/ideal.hpp"
+#include "scenarios/flight/ideal_parts.hpp"
 
 #include <fmt/format.h>
 
