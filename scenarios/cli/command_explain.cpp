@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 struct ExplainArguments {
   std::string folder;
   RendererKind renderer = RendererKind::osmesa;
-  int jobs = 0, flights = 150;
+  int jobs = 0, flights = 200;
 };
 
 int run_explain(const ExplainArguments& arguments) {

@@ -15,7 +15,7 @@ struct ExplainOptions {
   std::filesystem::path work_folder;
   RendererKind renderer = RendererKind::osmesa;
   int jobs = 1;       ///< flights at a time
-  int flights = 150;  ///< at most so many beside the lost one
+  int flights = 200;  ///< at most so many beside the lost one
   std::function<void(std::size_t flown, std::size_t asked)> on_progress = {};  ///< may be empty
 };
 

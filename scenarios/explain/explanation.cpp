@@ -11,6 +11,8 @@ namespace {
 
 constexpr double small_chance = 0.2;  ///< below it there was no return
 constexpr int first_look = 4, parts_look = 6, close_look = 16;
+constexpr double promising = 0.15;  ///< an effect that deserves a close look
+constexpr int kept_back = 50;       ///< of the flights, for the question which parts act together
 /// A part that sees everything can make up for most faults of others: it is the cause only where no other
 /// part has this share of its effect. Detection at the depths in use comes before it, too.
 constexpr double enough_of_sight = 0.5;
@@ -48,7 +50,8 @@ class Inquiry {
 
  private:
   /// Wants the first `count` redraws of these parts at this moment; those that were flown count.
-  void ask(const std::vector<std::string>& parts, double before_end_s, int count) {
+  /// `kept`: so many flights are left for later questions.
+  void ask(const std::vector<std::string>& parts, double before_end_s, int count, int kept = 0) {
     for (int seed = 1; seed <= count; ++seed) {
       Redraw redraw{parts, before_end_s, static_cast<std::uint64_t>(seed), false};
       const auto is_it = [&](const Redraw& one) {
@@ -56,7 +59,8 @@ class Inquiry {
       };
       if (std::ranges::any_of(result_.flights, is_it) || std::ranges::any_of(asked_, is_it)) continue;
       const std::size_t so_far = result_.flights.size() + asked_.size();
-      if (so_far < static_cast<std::size_t>(options_.flights)) asked_.push_back(std::move(redraw));
+      if (so_far + static_cast<std::size_t>(kept) < static_cast<std::size_t>(options_.flights))
+        asked_.push_back(std::move(redraw));
     }
   }
 
@@ -140,11 +144,11 @@ class Inquiry {
     std::vector<std::string> leading;
     for (const Effect& effect : result_.effects)
       if (effect.part != all_ideal && (effect.part == "sight" || leading.size() < 2) &&
-          effect.difference() > 0)
+          effect.difference() > promising)
         leading.push_back(effect.part);
     for (const double moment_s : result_.decisive_s) {
-      if (!leading.empty()) ask({}, moment_s, close_look);
-      for (const std::string& part : leading) ask({part}, moment_s, close_look);
+      if (!leading.empty()) ask({}, moment_s, close_look, kept_back);
+      for (const std::string& part : leading) ask({part}, moment_s, close_look, kept_back);
     }
     answer();
   }

@@ -63,7 +63,7 @@ struct Explanation {
 
 struct ExplanationOptions {
   std::vector<double> moments_s;  ///< before the end, increasing
-  int flights = 150;              ///< at most so many
+  int flights = 200;              ///< at most so many
 };
 
 /// Moments to try for a flight that was in the air for `flown_s`.

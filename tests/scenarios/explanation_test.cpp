@@ -1,0 +1,105 @@
+#include "scenarios/explain/explanation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "scenarios/config/named_seed.hpp"
+#include "scenarios/scenario/scenario.hpp"
+
+namespace understory {
+namespace {
+
+using Parts = std::vector<std::string>;
+/// The true chance to survive.
+using Law = std::function<double(const Parts& parts, double before_end_s)>;
+
+bool has(const Parts& parts, std::string_view part) { return std::ranges::find(parts, part) != parts.end(); }
+
+/// Draws by the law; the same noise has the same luck, whatever the parts.
+Explanation explained(const Law& law, std::uint64_t luck = 1) {
+  const FlyRedraws fly = [&](std::vector<Redraw>& asked) {
+    for (Redraw& one : asked) {
+      const std::uint64_t mixed = seed_for(luck * 1000 + one.seed, std::to_string(one.before_end_s));
+      one.survived = static_cast<double>(mixed >> 11) * 0x1p-53 < law(one.parts, one.before_end_s);
+    }
+  };
+  return explain({moments_of(8), 200}, fly);
+}
+
+/// The control survives from 1.5 s before the end in six of ten.
+double chaotic(double before_end_s) { return before_end_s < 1 ? 0 : before_end_s < 1.5 ? 0.1 : 0.6; }
+
+TEST(Explanation, TheMonotoneFitPoolsWhatFalls) {
+  const std::vector<Share> shares{{4, 0}, {4, 2}, {4, 1}, {0, 0}, {4, 4}};
+  const std::vector<double> fitted = monotone_fit(shares);
+  ASSERT_EQ(fitted.size(), 5);
+  EXPECT_DOUBLE_EQ(fitted[0], 0);
+  EXPECT_DOUBLE_EQ(fitted[1], 3.0 / 8);  // two of four and one of four
+  EXPECT_DOUBLE_EQ(fitted[2], 3.0 / 8);
+  EXPECT_DOUBLE_EQ(fitted[3], 3.0 / 8);
+  EXPECT_DOUBLE_EQ(fitted[4], 1);
+  EXPECT_TRUE(std::ranges::is_sorted(fitted));
+  EXPECT_EQ(monotone_fit(std::vector<Share>{{0, 0}, {0, 0}}), (std::vector<double>{0, 0}));
+}
+
+TEST(Explanation, ThePartThatSavesIsTheCauseWhateverTheLuck) {
+  for (const std::string_view guilty : ideal_part_names) {
+    int right = 0;
+    for (std::uint64_t luck = 1; luck <= 20; ++luck) {
+      const Explanation why = explained(
+          [&](const Parts& parts, double before_end_s) {
+            return has(parts, guilty) && before_end_s >= 0.75 ? 0.9 : chaotic(before_end_s);
+          },
+          luck);
+      right += why.cause == guilty;
+      EXPECT_LE(why.flights.size(), 200);
+    }
+    EXPECT_GE(right, 19) << guilty;
+  }
+}
+
+TEST(Explanation, WhereNothingHelpsAndARedrawArrivesItWasChance) {
+  int chance = 0;
+  for (std::uint64_t luck = 1; luck <= 20; ++luck)
+    chance +=
+        explained([](const Parts&, double before_end_s) { return chaotic(before_end_s); }, luck).cause ==
+        "chance";
+  EXPECT_GE(chance, 18);
+}
+
+TEST(Explanation, WhereNotEvenEverythingHelpsItWasInfeasible) {
+  const Explanation why = explained([](const Parts&, double) { return 0.02; });
+  EXPECT_EQ(why.cause, "infeasible");
+  EXPECT_FALSE(why.no_return_s.has_value());
+}
+
+TEST(Explanation, TwoPartsThatHelpOnlyTogetherAreJoint) {
+  const Explanation why = explained([](const Parts& parts, double before_end_s) {
+    return has(parts, "state") && has(parts, "search") && before_end_s >= 0.75 ? 0.95 : chaotic(before_end_s);
+  });
+  EXPECT_EQ(why.cause, "joint");
+  EXPECT_EQ(why.parts, (Parts{"state", "search"}));
+}
+
+TEST(Explanation, SightIsTheCauseOnlyWhereNoOtherPartHelpsHalfAsMuch) {
+  const auto law = [](double by_latency) {
+    return [by_latency](const Parts& parts, double before_end_s) {
+      if (before_end_s < 0.75) return 0.0;
+      return has(parts, "sight") ? 0.95 : has(parts, "latency") ? by_latency : chaotic(before_end_s);
+    };
+  };
+  EXPECT_EQ(explained(law(0.8)).cause, "latency");
+  EXPECT_EQ(explained(law(0.3)).cause, "sight");
+}
+
+TEST(Explanation, EqualAnswersGiveEqualQuestions) {
+  const Law law = [](const Parts& parts, double before_end_s) {
+    return has(parts, "map") ? 0.7 : chaotic(before_end_s);
+  };
+  EXPECT_EQ(explained(law).flights, explained(law).flights);
+}
+
+}  // namespace
+}  // namespace understory
