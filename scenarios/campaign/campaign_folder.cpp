@@ -254,6 +254,7 @@ Collected gather(const CampaignFolder& folder, const Campaign& campaign) {
       continue;
     }
     collected.rows.push_back(file->row);
+    collected.rows.back().grid = campaign.conditions[task.condition].grid;
     collected.costs.push_back(file->cost);
   }
   return collected;

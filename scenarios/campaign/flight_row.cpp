@@ -71,6 +71,7 @@ void put_columns(const FlightRow& row, Put&& put) {
 Json json_of(const FlightRow& row) {
   Json json;
   put_columns(row, [&](std::string_view name, const auto& value) { json[std::string(name)] = value; });
+  for (const auto& [key, value] : row.grid) json[key] = value;
   return json;
 }
 
@@ -105,8 +106,22 @@ bool take_row(FlightRow& row, TextOf&& text_of) {
   visit_columns(row, [&](std::string_view name, auto& value, std::string_view) {
     is_measured = is_measured || name == "outcome";
     const std::string text = text_of(name);
-    constexpr std::array<std::string_view, 5> optional{"reason", "renderer", "minimum_clearance_m",
-                                                       "minimum_points_on_an_obstacle", "digest"};
+    constexpr std::array<std::string_view, 16> optional{"reason",
+                                                        "renderer",
+                                                        "minimum_clearance_m",
+                                                        "minimum_points_on_an_obstacle",
+                                                        "digest",
+                                                        "left_through",
+                                                        "touched",
+                                                        "touched_by",
+                                                        "in_view_m",
+                                                        "in_view_s",
+                                                        "detected_m",
+                                                        "detected_s",
+                                                        "points_of_touched",
+                                                        "points_off_m",
+                                                        "last_plan",
+                                                        "last_plan_clearance_m"};
     const bool may_be_empty =
         (is_measured && !row.flown()) || std::ranges::find(optional, name) != optional.end();
     is_whole = (text.empty() ? may_be_empty : take(text, value)) && is_whole;
@@ -176,13 +191,18 @@ std::string to_csv(const std::vector<FlightRow>& rows) {
   for (const FlightRow& row : rows) {
     std::vector<std::string>& cells = table.rows.emplace_back();
     put_columns(row, [&](std::string_view, const auto& value) { cells.push_back(cell_of(value)); });
+    for (const auto& [key, value] : row.grid) {
+      if (table.rows.size() == 1) table.head.push_back(key);
+      cells.push_back(value);
+    }
   }
   return to_csv(table);
 }
 
 std::vector<FlightRow> rows_from_csv(const std::string& text, const std::string& name) {
   const Table expected = empty_table(), table = table_from_csv(text, name);
-  if (table.head != expected.head)
+  if (table.head.size() < expected.head.size() ||
+      !std::equal(expected.head.begin(), expected.head.end(), table.head.begin()))
     throw ScenarioError(fmt::format("{}:1: must name the columns of results format {}: {}", name,
                                     results_format, fmt::join(expected.head, ",")));
   std::vector<FlightRow> rows;

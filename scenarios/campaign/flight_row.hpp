@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenarios/config/keys.hpp"
@@ -37,6 +38,8 @@ struct FlightRow : FlightMeasures {
   double cruise_speed_mps = 0;
   double square_metres_per_tree = 0;
   double goal_m = 0;
+  /// Keys of the campaign's grid and their values: the last columns, which are not read back.
+  std::vector<std::pair<std::string, std::string>> grid = {};
   bool flown() const { return status == RunStatus::flown; }
   bool reached_goal() const { return flown() && outcome == "goal"; }
 };

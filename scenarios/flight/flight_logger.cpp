@@ -9,6 +9,7 @@
 
 #include "planning/path_follower.hpp"
 #include "scenarios/flight/clearance.hpp"
+#include "scenarios/flight/flight_story.hpp"
 
 namespace understory {
 namespace {
@@ -194,6 +195,7 @@ void FlightLogger::on_end(const Flight& flight) {
   result.timings = flight.stopwatch().timings();
   result.wall_s = flight.stopwatch().elapsed_s();
   result.digest = digest_.hex();
+  add_loss(log_, result);
 }
 
 /// On a course of few named obstacles: the points seen on each.

@@ -72,6 +72,13 @@ struct FlightMeasures {
   std::int64_t detections = 0;
   std::int64_t remembered_points = 0;
   std::int64_t minimum_points_on_an_obstacle = -1;
+  // Of a lost flight.
+  std::string left_through, touched, touched_by, last_plan;
+  double last_plan_clearance_m = std::numeric_limits<double>::quiet_NaN();
+  double in_view_m = last_plan_clearance_m, in_view_s = last_plan_clearance_m;
+  double detected_m = last_plan_clearance_m, detected_s = last_plan_clearance_m;
+  std::int64_t points_of_touched = -1;
+  double points_off_m = last_plan_clearance_m;
   PlannerCounts planner;
   double simulated_s = 0;
   std::string digest;
@@ -98,6 +105,24 @@ void visit_fields(Visitor& visit, Measures& measures) {
   visit("minimum_points_on_an_obstacle", measures.minimum_points_on_an_obstacle,
         "Number of points added to the map within 0.5 m of the obstacle that has the fewest. Empty in CSV "
         "and null in JSON on a course with no obstacle or more than eight.");
+  visit("left_through", measures.left_through,
+        "bound through which a lost flight left the course: upper, lower, left, right or back; else empty");
+  visit("touched", measures.touched,
+        "name of the obstacle nearest to the aircraft at a collision; empty without a collision");
+  visit("touched_by", measures.touched_by, "part of the aircraft that touched it, or the ground");
+  visit("in_view_m", measures.in_view_m,
+        "distance to the touched obstacle when the left camera first saw 25 pixels of it");
+  visit("in_view_s", measures.in_view_s, "time before the end at which that was");
+  visit("detected_m", measures.detected_m, "distance to the touched obstacle at the first detection on it");
+  visit("detected_s", measures.detected_s, "time before the end at which that was");
+  visit("points_of_touched", measures.points_of_touched,
+        "points in the map for the touched obstacle at the end; empty without a collision");
+  visit("points_off_m", measures.points_off_m,
+        "horizontal distance from the touched obstacle to the middle of its points in the map");
+  visit("last_plan", measures.last_plan,
+        "how the plan in force at the end of a lost flight came about: straight, solved, kept or fallback");
+  visit("last_plan_clearance_m", measures.last_plan_clearance_m,
+        "clearance that this plan expected; empty if it was comfortable");
   visit_fields(visit, measures.planner);
   visit("simulated_s", measures.simulated_s,
         "simulated time from the start at rest to the end of the flight");
@@ -113,7 +138,6 @@ struct FlightResult : FlightMeasures {
   std::uint64_t sensor_seed = 0;
   std::string detector;
   std::string state_source;
-  std::string touched;
   double position_error_end_m = 0;
   double attitude_error_max_rad = 0;
   double velocity_error_mean_mps = 0;
@@ -141,8 +165,6 @@ void visit_fields(Visitor& visit, Result& result) {
   visit("sensor_seed", result.sensor_seed, "seed of the sensors' noise");
   visit("detector", result.detector, "value of perception.detector");
   visit("state_source", result.state_source, "value of estimation.source");
-  visit("touched", result.touched,
-        "name of the obstacle nearest to the aircraft at a collision; empty without a collision");
   visit_fields(visit, static_cast<Measures&>(result));
   visit("position_error_end_m", result.position_error_end_m,
         "distance between estimated and true position at the end of the flight");

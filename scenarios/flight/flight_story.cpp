@@ -8,6 +8,7 @@
 
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "scenarios/flight/clearance.hpp"
+#include "scenarios/flight/obstacle_view.hpp"
 #include "scenarios/parts/oracles.hpp"
 
 namespace understory {
@@ -59,11 +60,11 @@ std::string outcome_sentence(const FlightLog& log) {
   };
   const BandConfig& band = scenario.band;
   const double half_width_m = scenario.forest.half_width_m;
-  if (place.z() > band.maximum_altitude_m)
-    return beyond("the upper bound", band.maximum_altitude_m, place.z());
-  if (std::abs(place.y()) > half_width_m)
-    return beyond(place.y() > 0 ? "the left side" : "the right side", half_width_m, std::abs(place.y()));
-  if (place.x() < -half_width_m)
+  const std::string_view bound = bound_left(log);
+  if (bound == "upper") return beyond("the upper bound", band.maximum_altitude_m, place.z());
+  if (bound == "left" || bound == "right")
+    return beyond(bound == "left" ? "the left side" : "the right side", half_width_m, std::abs(place.y()));
+  if (bound == "back")
     return fmt::format("It left the course backwards: {:.1f} m behind the launch after {:.2f} s.", -place.x(),
                        seconds(end.t_ns));
   return beyond("the lower bound", band.minimum_altitude_m, place.z());
@@ -309,70 +310,44 @@ void tell_of_plans(const FlightLog& log, FlightStory& story) {
     story.before.push_back(way + " It led through what the map held.");
 }
 
-/// Columns and rows of the left image within which the obstacle lies, at most; empty where it lies elsewhere.
-struct ImageWindow {
-  int first_column = 0, last_column = -1, first_row = 0, last_row = -1;
-};
-
-ImageWindow window_of(const StereoRig& rig, const Eigen::Isometry3d& T_camera_world,
-                      const Obstacle& obstacle) {
-  constexpr double nearest_m = 0.05;
-  const Eigen::Vector3d& from = obstacle.from_world;
-  const Eigen::Vector3d& to = obstacle.to_world;
-  std::vector<Eigen::Vector3d> corners{from, to};
-  if (obstacle.kind == ObstacleKind::wall) {
-    corners.emplace_back(from.x(), from.y(), to.z());
-    corners.emplace_back(to.x(), to.y(), from.z());
-  }
-  Eigen::AlignedBox2d seen;
-  bool is_ahead = false, is_behind = false;
-  for (const Eigen::Vector3d& corner_world : corners) {
-    const Eigen::Vector3d corner = T_camera_world * corner_world;
-    (corner.z() > nearest_m ? is_ahead : is_behind) = true;
-    if (corner.z() <= nearest_m) continue;
-    const Eigen::Vector2d at(rig.focal_px * corner.x() / corner.z() + rig.center_left_x_px,
-                             rig.focal_px * corner.y() / corner.z() + rig.center_y_px);
-    const Eigen::Vector2d wide = Eigen::Vector2d::Constant(rig.focal_px * obstacle.radius_m / corner.z() + 1);
-    seen.extend(at - wide).extend(at + wide);
-  }
-  if (!is_ahead) return {};
-  if (is_behind) return {0, rig.width_px - 1, 0, rig.height_px - 1};
-  const auto within = [](double at, int size) { return static_cast<int>(std::clamp(at, -1.0, 1.0 * size)); };
-  return {std::max(0, within(seen.min().x(), rig.width_px)),
-          std::min(rig.width_px - 1, within(seen.max().x(), rig.width_px)),
-          std::max(0, within(seen.min().y(), rig.height_px)),
-          std::min(rig.height_px - 1, within(seen.max().y(), rig.height_px))};
-}
-
 }  // namespace
-
-int pixels_in_view(const FlightLog& log, const Eigen::Isometry3d& T_world_body, std::size_t obstacle,
-                   int enough) {
-  const StereoRig& rig = log.rig.rig;
-  const Eigen::Isometry3d T_world_camera = T_world_body * rig.T_body_camera;
-  const Eigen::Vector3d eye_world = T_world_camera.translation();
-  const Obstacle& target = log.obstacles[obstacle];
-  if (distance_m(eye_world, target) > log.scenario.cameras.view_distance_m) return 0;
-  const ImageWindow window = window_of(rig, T_world_camera.inverse(), target);
-  int pixels = 0;
-  for (int row = window.first_row; row <= window.last_row; ++row)
-    for (int column = window.first_column; column <= window.last_column; ++column) {
-      const Eigen::Vector3d ray_world =
-          T_world_camera.linear() * Eigen::Vector3d((column - rig.center_left_x_px) / rig.focal_px,
-                                                    (row - rig.center_y_px) / rig.focal_px, 1);
-      const double reach = ray_meets(eye_world, ray_world, target);
-      if (!std::isfinite(reach)) continue;
-      const bool is_hidden = std::ranges::any_of(log.obstacles, [&](const Obstacle& other) {
-        return &other != &target && ray_meets(eye_world, ray_world, other) < reach;
-      });
-      if (!is_hidden && ++pixels >= enough) return pixels;
-    }
-  return pixels;
-}
 
 std::vector<double> compared_depths_m(const FlightLog& log) {
   const auto& depths_m = log.scenario.perception.part().depths_m;
   return depths_m ? depths_m(log.scenario, log.rig.rig) : std::vector<double>{};
+}
+
+std::string_view bound_left(const FlightLog& log) {
+  const Eigen::Vector3d place = log.moments.back().T_world_body.translation();
+  const double half_width_m = log.scenario.forest.half_width_m;
+  if (place.z() > log.scenario.band.maximum_altitude_m) return "upper";
+  if (std::abs(place.y()) > half_width_m) return place.y() > 0 ? "left" : "right";
+  return place.x() < -half_width_m ? "back" : "lower";
+}
+
+void add_loss(const FlightLog& log, FlightResult& result) {
+  if (result.outcome == Outcome::goal) return;
+  if (result.outcome == Outcome::out_of_bounds) result.left_through = bound_left(log);
+  result.touched_by = log.touch.part;
+  if (!log.plans.empty()) {
+    result.last_plan = word_for(log.plans.back().origin);
+    result.last_plan_clearance_m = log.plans.back().clearance_m;
+  }
+  const auto touched = std::ranges::find(log.obstacles, result.touched, &Obstacle::name);
+  if (touched == log.obstacles.end()) return;
+  const ObstacleStory story =
+      story_of_obstacle(log, static_cast<std::size_t>(touched - log.obstacles.begin()));
+  const double end_s = seconds(log.moments.back().t_ns);
+  if (story.in_view_s) {
+    result.in_view_m = story.in_view_m;
+    result.in_view_s = end_s - *story.in_view_s;
+  }
+  if (story.detected_s) {
+    result.detected_m = story.detected_m;
+    result.detected_s = end_s - *story.detected_s;
+  }
+  result.points_of_touched = story.points;
+  if (story.points > 0) result.points_off_m = story.points_off_world.head<2>().norm();
 }
 
 FlightStory story_of(const FlightLog& log) {

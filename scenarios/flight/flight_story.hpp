@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenarios/flight/flight_log.hpp"
@@ -45,12 +46,14 @@ struct FlightStory {
 /// Of a log that is complete.
 FlightStory story_of(const FlightLog& log);
 
+/// The bound through which a flight that is out of bounds left its course: "upper", "lower", "left", "right"
+/// or "back".
+std::string_view bound_left(const FlightLog& log);
+
+/// Fills in what a result says of a lost flight.
+void add_loss(const FlightLog& log, FlightResult& result);
+
 /// Depths at which the pushbroom compares images; none for other detectors.
 std::vector<double> compared_depths_m(const FlightLog& log);
-
-/// How many pixels of the left image show an obstacle from a pose, counted up to `enough`: rays through the
-/// pixels' centres, the nearest obstacle counts. Nothing beyond the cameras' view distance is seen.
-int pixels_in_view(const FlightLog& log, const Eigen::Isometry3d& T_world_body, std::size_t obstacle,
-                   int enough);
 
 }  // namespace understory

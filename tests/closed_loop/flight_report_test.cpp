@@ -14,6 +14,7 @@
 #include "scenarios/flight/flight_logger.hpp"
 #include "scenarios/flight/flight_page.hpp"
 #include "scenarios/flight/flight_story.hpp"
+#include "scenarios/flight/obstacle_view.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
