@@ -11,6 +11,7 @@
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/explain/explain_report.hpp"
 #include "scenarios/flight/flight_logger.hpp"
 #include "scenarios/flight/flight_page.hpp"
 #include "scenarios/flight/fly.hpp"
@@ -79,6 +80,14 @@ FlightLog log_of_run(const fs::path& run) {
   return flight_log_from_bytes(read_file(file, maximum_log_bytes), file.string(), data_root() / "models");
 }
 
+/// Why the run was lost, where explain has found it out.
+std::vector<SheetSection> chapter_of(const fs::path& run) {
+  const fs::path file = run / "explain.json";
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return {};
+  return explanation_chapter(explanation_from_json(read_file(file, maximum_json_bytes), file.string()));
+}
+
 /// The run's result must be the log's: somebody may have put files of two runs together.
 std::string warning_of_log(const FlightLog& log, const fs::path& run) {
   return warning_of_digest(log.result, digest_of(run));
@@ -145,6 +154,7 @@ int report_from_log(const ReportArguments& arguments) {
   const FlightLog log = log_of_run(run);
   FlightPageExtras extras{data_root()};
   extras.warning = warning_of_log(log, run);
+  extras.chapter = chapter_of(run);
   write_whole_file(output.file, flight_page(log, extras), output.listed_in());
   return told(output.file, extras.warning, arguments.quiet);
 }
@@ -157,6 +167,7 @@ int run_report(const ReportArguments& arguments) {
   options.expected_digest = digest_of(run);
   options.report = true;
   options.video = true;
+  options.chapter = chapter_of(run);
   AgainOutput output(arguments, flight_results, "report.html");
   require_writable(output.file);
   // The film, too, is made as a file first: beside the page, or where that is a device.

@@ -50,6 +50,56 @@ std::string to_json(const ExplainedFlight& explained, const std::vector<Evidence
   return json_text(json, 1) + "\n";
 }
 
+ToldExplanation explanation_from_json(const std::string& text, const std::string& name) try {
+  const Json json = parse_json(text);
+  ToldExplanation told;
+  told.conclusion = {json.at("cause"), json.at("sentence"), json.at("disagreement")};
+  told.explanation.cause = json.at("part");
+  told.explanation.parts = json.at("parts").get<std::vector<std::string>>();
+  told.explanation.decisive_s = json.at("decisive_s").get<std::vector<double>>();
+  for (const Json& one : json.at("flights"))
+    told.explanation.flights.push_back({one.at("parts").get<std::vector<std::string>>(),
+                                        one.at("before_end_s"), one.at("redraw"), one.at("survived")});
+  summarise(told.explanation);
+  return told;
+} catch (const Json::exception&) {
+  throw ScenarioError(fmt::format("{}: not an explanation of this version; explain the run again", name));
+}
+
+std::vector<SheetSection> explanation_chapter(const ToldExplanation& told) {
+  const Explanation& why = told.explanation;
+  LinePlot plot{.title = "Chance to survive", .x_label = "before the end, s", .y_label = "survived, %"};
+  const auto add = [&](const std::string& part, const std::string& name, Mark mark) {
+    Series series{.name = name, .mark = mark};
+    for (const Chance& chance : why.chances) {
+      if (chance.part != part) continue;
+      const Interval interval =
+          wilson_interval(static_cast<int>(chance.flown.with), static_cast<int>(chance.flown.of));
+      series.x.push_back(chance.before_end_s);
+      series.y.push_back(100 * (mark == Mark::line ? chance.fitted : chance.flown.value()));
+      if (mark == Mark::line) continue;
+      series.low.push_back(100 * interval.minimum);
+      series.high.push_back(100 * interval.maximum);
+    }
+    plot.series.push_back(std::move(series));
+  };
+  add(std::string(the_control), "control, fitted", Mark::line);
+  add(std::string(the_control), "control", Mark::dots);
+  std::size_t shown = 0;
+  for (const Effect& effect : why.effects)
+    if (effect.part == why.cause || (effect.part != all_ideal && shown < 3)) {
+      add(effect.part, "ideal " + effect.part, Mark::dots);
+      ++shown;
+    }
+  if (why.no_return_s) plot.references.push_back({*why.no_return_s, "point of no return", true});
+  std::vector<SheetSection> sections{{.title = "Why it was lost: " + told.conclusion.cause,
+                                      .text = told.conclusion.sentence,
+                                      .plots = {plot},
+                                      .table = effects_table(why)}};
+  if (!told.conclusion.disagreement.empty()) sections.front().text += " " + told.conclusion.disagreement;
+  return sections;
+}
+
 Table effects_table(const Explanation& explanation) {
   Table table{{"ideal part", "more survive, %", "95 %", "pairs"}};
   for (const Effect& effect : explanation.effects)

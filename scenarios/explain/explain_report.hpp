@@ -5,6 +5,7 @@
 
 #include "scenarios/explain/evidence.hpp"
 #include "scenarios/explain/explain_run.hpp"
+#include "scenarios/report/sheet_page.hpp"
 #include "scenarios/report/table.hpp"
 
 namespace understory {
@@ -12,6 +13,17 @@ namespace understory {
 /// An explanation with all that it rests on, as explain.json of a run.
 std::string to_json(const ExplainedFlight& explained, const std::vector<Evidence>& evidence,
                     const Conclusion& conclusion);
+
+/// What explain.json says, for pages.
+struct ToldExplanation {
+  Explanation explanation;
+  Conclusion conclusion;
+};
+/// Throws ScenarioError, naming `name`, where the text is none.
+ToldExplanation explanation_from_json(const std::string& text, const std::string& name);
+
+/// The chapter of a flight's page: one sentence, the chances over the moments, the effects.
+std::vector<SheetSection> explanation_chapter(const ToldExplanation& told);
 
 /// A row for each part: its effect with its interval, and the chances at the decisive moments.
 Table effects_table(const Explanation& explanation);

@@ -28,6 +28,48 @@ std::string name_of(const std::vector<std::string>& parts) {
   return name;
 }
 
+std::vector<Chance> chances_of(const std::vector<Redraw>& flights) {
+  std::map<std::string, std::map<double, Share>> flown;
+  for (const Redraw& one : flights) flown[name_of(one.parts)][one.before_end_s].count(one.survived);
+  std::vector<Chance> all;
+  for (const auto& [part, moments] : flown) {
+    std::vector<Share> shares;
+    for (const auto& [moment_s, share] : moments) shares.push_back(share);
+    const std::vector<double> fitted = monotone_fit(shares);
+    auto fit = fitted.begin();
+    for (const auto& [moment_s, share] : moments) all.push_back({part, moment_s, share, *fit++});
+  }
+  return all;
+}
+
+/// The control's flight with the same noise.
+const Redraw* control_of(const Explanation& result, const Redraw& redraw) {
+  const auto flight = std::ranges::find_if(result.flights, [&](const Redraw& one) {
+    return one.parts.empty() && one.before_end_s == redraw.before_end_s && one.seed == redraw.seed;
+  });
+  return flight == result.flights.end() ? nullptr : &*flight;
+}
+
+/// Over the same noise, at the decisive moments.
+PairedOutcomes pairs_of(const Explanation& result, const std::vector<std::string>& parts) {
+  PairedOutcomes pairs;
+  for (const Redraw& one : result.flights) {
+    if (one.parts != parts ||
+        std::ranges::find(result.decisive_s, one.before_end_s) == result.decisive_s.end())
+      continue;
+    if (const Redraw* control = control_of(result, one)) pairs.count(control->survived, one.survived);
+  }
+  return pairs;
+}
+
+std::vector<Effect> effects_of(const Explanation& result) {
+  std::vector<Effect> all;
+  for (const std::string& part : all_parts()) all.push_back({part, pairs_of(result, {part})});
+  all.push_back({std::string(all_ideal), pairs_of(result, all_parts())});
+  std::ranges::stable_sort(all, std::ranges::greater{}, &Effect::difference);
+  return all;
+}
+
 /// One explanation while it is made.
 class Inquiry {
  public:
@@ -68,28 +110,7 @@ class Inquiry {
     if (!asked_.empty()) fly_(asked_);
     result_.flights.insert(result_.flights.end(), asked_.begin(), asked_.end());
     asked_.clear();
-    result_.chances = chances();
-    result_.effects = effects();
-    const auto is_hopeful = [](const Chance& chance) {
-      return chance.part == the_control && chance.fitted >= small_chance;
-    };
-    const auto latest = std::ranges::find_if(result_.chances, is_hopeful);
-    result_.no_return_s =
-        latest == result_.chances.end() ? std::nullopt : std::optional(latest->before_end_s);
-  }
-
-  std::vector<Chance> chances() const {
-    std::map<std::string, std::map<double, Share>> flown;
-    for (const Redraw& one : result_.flights) flown[name_of(one.parts)][one.before_end_s].count(one.survived);
-    std::vector<Chance> all;
-    for (const auto& [part, moments] : flown) {
-      std::vector<Share> shares;
-      for (const auto& [moment_s, share] : moments) shares.push_back(share);
-      const std::vector<double> fitted = monotone_fit(shares);
-      auto fit = fitted.begin();
-      for (const auto& [moment_s, share] : moments) all.push_back({part, moment_s, share, *fit++});
-    }
-    return all;
+    summarise(result_);
   }
 
   /// The last moment from which the control seldom survives, and the one before it.
@@ -102,37 +123,6 @@ class Inquiry {
     if (!hopeful.empty()) result_.decisive_s.push_back(hopeful.front());
     if (hopeful.empty() && hopeless.size() > 1)  // it had no chance all along: with some time left
       result_.decisive_s.insert(result_.decisive_s.begin(), hopeless[hopeless.size() - 2]);
-  }
-
-  bool survived(const std::vector<std::string>& parts, double moment_s, std::uint64_t seed,
-                bool& known) const {
-    const auto flight = std::ranges::find_if(result_.flights, [&](const Redraw& one) {
-      return one.parts == parts && one.before_end_s == moment_s && one.seed == seed;
-    });
-    known = known && flight != result_.flights.end();
-    return flight != result_.flights.end() && flight->survived;
-  }
-
-  /// Over the same noise, at the decisive moments.
-  PairedOutcomes pairs_of(const std::vector<std::string>& parts) const {
-    PairedOutcomes pairs;
-    for (const Redraw& one : result_.flights) {
-      if (one.parts != parts ||
-          std::ranges::find(result_.decisive_s, one.before_end_s) == result_.decisive_s.end())
-        continue;
-      bool known = true;
-      const bool by_control = survived({}, one.before_end_s, one.seed, known);
-      if (known) pairs.count(by_control, one.survived);
-    }
-    return pairs;
-  }
-
-  std::vector<Effect> effects() const {
-    std::vector<Effect> all;
-    for (const std::string& part : all_parts()) all.push_back({part, pairs_of({part})});
-    all.push_back({std::string(all_ideal), pairs_of(all_parts())});
-    std::ranges::stable_sort(all, std::ranges::greater{}, &Effect::difference);
-    return all;
   }
 
   const Effect& effect_of(std::string_view part) const {
@@ -211,6 +201,17 @@ class Inquiry {
 };
 
 }  // namespace
+
+void summarise(Explanation& explanation) {
+  explanation.chances = chances_of(explanation.flights);
+  explanation.effects = effects_of(explanation);
+  const auto is_hopeful = [](const Chance& chance) {
+    return chance.part == the_control && chance.fitted >= small_chance;
+  };
+  const auto latest = std::ranges::find_if(explanation.chances, is_hopeful);
+  explanation.no_return_s =
+      latest == explanation.chances.end() ? std::nullopt : std::optional(latest->before_end_s);
+}
 
 std::vector<double> moments_of(double flown_s) {
   std::vector<double> moments;

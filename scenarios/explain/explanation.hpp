@@ -61,6 +61,9 @@ struct Explanation {
   std::vector<std::string> parts;  ///< of a joint cause: those that act together
 };
 
+/// Chances, the point of no return and effects, from the flights and the decisive moments.
+void summarise(Explanation& explanation);
+
 struct ExplanationOptions {
   std::vector<double> moments_s;  ///< before the end, increasing
   int flights = 200;              ///< at most so many

@@ -172,6 +172,7 @@ std::string flight_page(const FlightLog& log, const FlightPageExtras& extras) {
     }
   }
   add_flight(log, story, PageDetail::everything, page.arrays, facts);
+  facts["sections"] = facts_of(extras.chapter, page);
   page.facts = json_text(facts);
   return page_html(extras.data_root, page);
 }

@@ -6,16 +6,18 @@
 #include <vector>
 
 #include "scenarios/flight/flight_log.hpp"
+#include "scenarios/report/sheet_page.hpp"
 
 namespace understory {
 
 /// What a page adds to a flight that has ended.
 struct FlightPageExtras {
-  std::filesystem::path data_root;       ///< holds models/ and scenarios/
-  std::string warning = {};              ///< shown above everything else; empty: no warning
-  std::filesystem::path film = {};       ///< flight.mp4; empty: none
-  std::vector<float> film_times_s = {};  ///< of its pictures
-  cv::Mat last_picture = {};             ///< of the film
+  std::filesystem::path data_root;         ///< holds models/ and scenarios/
+  std::string warning = {};                ///< shown above everything else; empty: no warning
+  std::filesystem::path film = {};         ///< flight.mp4; empty: none
+  std::vector<float> film_times_s = {};    ///< of its pictures
+  cv::Mat last_picture = {};               ///< of the film
+  std::vector<SheetSection> chapter = {};  ///< behind the charts: why the flight was lost
 };
 
 /// The page of a flight: one HTML file that needs nothing else. Long flights are decimated, so that it has at

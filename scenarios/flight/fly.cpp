@@ -40,6 +40,7 @@ class ProgressTeller : public FlightObserver {
 void write_report(const FlightLog& log, const FlyOptions& options, const FlightFilm* film) {
   FlightPageExtras extras{options.models_folder.parent_path()};
   extras.warning = warning_of_digest(log.result, options.expected_digest);
+  extras.chapter = options.chapter;
   if (film != nullptr) {
     extras.film = options.output_folder / "flight.mp4";
     extras.film_times_s = film->times_s();

@@ -7,6 +7,7 @@
 
 #include "scenarios/flight/flight_result.hpp"
 #include "scenarios/output/errors.hpp"
+#include "scenarios/report/sheet_page.hpp"
 #include "scenarios/scenario/scenario.hpp"
 #include "sim/render/renderer_kind.hpp"
 
@@ -31,6 +32,7 @@ struct FlyOptions {
   bool video = false;                            ///< also flight.mp4 and still.png
   bool report = false;                           ///< also report.html, with the film where there is one
   std::filesystem::path track;                   ///< compact_flight() of a lost flight; empty: none
+  std::vector<SheetSection> chapter;             ///< of report.html, behind its charts
   std::string expected_digest;                   ///< another one is a warning in the report; empty: any
   RendererKind renderer = RendererKind::osmesa;  ///< the machine's: not part of the scenario
   FlightLogger* logger = nullptr;                ///< keeps the log for other observers; null: not needed

@@ -21,7 +21,7 @@ const ResultKind flight_results{
     .patterns = {"result.json", "scenario.yaml", "flight.log", "trajectory.csv", "map.ply", "obstacles.csv",
                  "truth.tum", "estimate.tum", "flight.mp4", "still.png", "mav0/*/*.csv", "mav0/*/sensor.yaml",
                  "mav0/*/data/*.png"},
-    .added = {"report.html", "flight.mcap"}};
+    .added = {"report.html", "flight.mcap", "explain.json"}};
 
 const ResultKind campaign_results{
     .name = "campaign",

@@ -49,6 +49,32 @@ Json json_of(const Table& table) {
 
 }  // namespace
 
+Json facts_of(const std::vector<SheetSection>& sections, PageContent& page) {
+  Json facts = Json::array();
+  int arrays = 0;
+  // A section of the page has one plot: further ones follow in sections without a title.
+  const auto add_section = [&](const std::string& name, const std::string& text) -> Json& {
+    facts.push_back({{"title", name},
+                     {"text", text},
+                     {"plot", nullptr},
+                     {"table", nullptr},
+                     {"pictures", Json::array()}});
+    return facts.back();
+  };
+  for (const SheetSection& section : sections) {
+    Json& first = add_section(section.title, section.text);
+    if (section.table) first["table"] = json_of(*section.table);
+    for (const SheetPicture& picture : section.pictures) {
+      const std::string name = fmt::format("picture-{}", page.parts.size());
+      page.parts.emplace_back(name, picture.jpeg);
+      first["pictures"].push_back({{"caption", picture.caption}, {"block", name}, {"type", "image/jpeg"}});
+    }
+    for (const LinePlot& plot : section.plots)
+      add_section(plot.title, "")["plot"] = json_of(plot, page.arrays, arrays);
+  }
+  return facts;
+}
+
 std::string sheet_page(const std::filesystem::path& data_root, const std::string& title,
                        const std::string& sentence, const std::vector<SheetSection>& sections) {
   PageContent page;
@@ -57,26 +83,8 @@ std::string sheet_page(const std::filesystem::path& data_root, const std::string
              {"title", title},
              {"program", fmt::format("understory {} ({})", understory_version, understory_commit)},
              {"sentence", sentence},
-             {"warning", ""},
-             {"sections", Json::array()}};
-  int arrays = 0;
-  // A section of the page has one plot: further ones follow in sections without a title.
-  const auto add_section = [&](const std::string& name) -> Json& {
-    facts["sections"].push_back(
-        {{"title", name}, {"text", ""}, {"plot", nullptr}, {"table", nullptr}, {"pictures", Json::array()}});
-    return facts["sections"].back();
-  };
-  for (const SheetSection& section : sections) {
-    Json& first = add_section(section.title);
-    if (section.table) first["table"] = json_of(*section.table);
-    for (const SheetPicture& picture : section.pictures) {
-      const std::string name = fmt::format("picture-{}", page.parts.size());
-      page.parts.emplace_back(name, picture.jpeg);
-      first["pictures"].push_back({{"caption", picture.caption}, {"block", name}, {"type", "image/jpeg"}});
-    }
-    for (const LinePlot& plot : section.plots)
-      add_section(plot.title)["plot"] = json_of(plot, page.arrays, arrays);
-  }
+             {"warning", ""}};
+  facts["sections"] = facts_of(sections, page);
   page.facts = json_text(facts);
   return page_html(data_root, page);
 }

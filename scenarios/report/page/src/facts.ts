@@ -72,6 +72,7 @@ export interface FlightFacts {
   events?: EventFact[];
   decimation?: string[];
   film?: { times: string } | null;
+  sections?: SectionFact[];
   arrays?: ArrayFact[];
 }
 
@@ -130,18 +131,20 @@ export interface Reference {
 
 export type Mark = "line" | "points" | "steps";
 
+export interface SectionFact {
+  title: string;
+  text?: string;
+  plot?: PlotFact | null;
+  table?: { columns: { label: string; unit?: string }[]; rows: (string | number | null)[][] } | null;
+  pictures?: { caption: string; block: string; type: string }[];
+}
+
 export interface SheetFacts {
   kind: "sheet";
   title: string;
   program?: string;
   warning?: string;
   sentence?: string;
-  sections?: {
-    title: string;
-    text?: string;
-    plot?: PlotFact | null;
-    table?: { columns: { label: string; unit?: string }[]; rows: (string | number | null)[][] } | null;
-    pictures?: { caption: string; block: string; type: string }[];
-  }[];
+  sections?: SectionFact[];
   arrays?: ArrayFact[];
 }

@@ -8,6 +8,7 @@ import type { EventFact, FlightFacts } from "./facts";
 import { find, hide_section, lay_out, make, show_rows, show_text } from "./elements";
 import { add_film } from "./film";
 import { Replay } from "./scene";
+import { add_sections } from "./sheet_page";
 
 const lost_start_s = 1; // before the end: there a lost flight is interesting
 
@@ -153,6 +154,7 @@ export function show_flight(root: HTMLElement, facts: FlightFacts, arrays: Array
   show_words(root, facts);
   show_events(root, events, clock);
   show_transport(root, clock);
+  add_sections(find(root, ".chapter"), find(root, ".tip"), facts.sections ?? [], arrays);
   const draw = () => {
     replay?.draw(clock.time_s);
     place_label();

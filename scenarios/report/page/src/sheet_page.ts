@@ -2,7 +2,7 @@
 
 import { floats_of, take_bytes, type Arrays } from "./data";
 import { find, lay_out, make, show_heading } from "./elements";
-import type { PlotFact, SheetFacts } from "./facts";
+import type { PlotFact, SectionFact, SheetFacts } from "./facts";
 import { add_plot, type Series } from "./plot";
 import { add_table, type Cell, type Column } from "./table";
 
@@ -29,17 +29,21 @@ function add_picture(place: HTMLElement, caption: string, block: string, type: s
   figure.append(make("figcaption", bytes ? caption : `${caption} (the picture is missing)`));
 }
 
-export function show_sheet(root: HTMLElement, facts: SheetFacts, arrays: Arrays): void {
-  lay_out(root, "sheet");
-  show_heading(root, facts);
-  for (const { title, text, plot, table, pictures } of facts.sections ?? []) {
-    const section = find(root, "main").appendChild(make("section", ""));
+export function add_sections(place: HTMLElement, tip: HTMLElement, sections: SectionFact[], arrays: Arrays): void {
+  for (const { title, text, plot, table, pictures } of sections) {
+    const section = place.appendChild(make("section", ""));
     section.ariaLabel = title;
     section.append(make("h2", title));
     if (text) section.append(make("p", text, "text"));
-    if (plot) add_plot(section, find(root, ".tip"), { ...plot, title }, read_series(plot, arrays));
+    if (plot) add_plot(section, tip, { ...plot, title }, read_series(plot, arrays));
     if (table) add_rows(section, title, table.columns, table.rows);
     for (const { caption, block, type } of pictures ?? []) add_picture(section, caption, block, type);
   }
+}
+
+export function show_sheet(root: HTMLElement, facts: SheetFacts, arrays: Arrays): void {
+  lay_out(root, "sheet");
+  show_heading(root, facts);
+  add_sections(find(root, "main"), find(root, ".tip"), facts.sections ?? [], arrays);
   Object.assign(window, { understory: { ready: true } });
 }
