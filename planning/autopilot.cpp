@@ -22,7 +22,7 @@ Autopilot::Autopilot(const AutopilotConfig& config, const Airframe& airframe, co
       resightings_(config.resightings) {}
 
 void Autopilot::change(const AutopilotConfig& config, ObstacleDetector& detector, StateSource& state_source,
-                       const std::function<Eigen::Vector3d(const ObstaclePoint&)>& place) {
+                       const LocalMap::Place& place) {
   config_ = config;
   detector_ = &detector;
   state_source_ = &state_source;

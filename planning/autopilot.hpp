@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "estimation/samples.hpp"
@@ -28,9 +27,9 @@ class Autopilot {
   void hand_over(Pilot& pilot) { pilot_ = &pilot; }
 
   /// From now on these settings of map and latency, and these parts, which must outlive this; map, plan and
-  /// launch stay. `place` moves the map's points into the frame of the new state source; null: they stay.
+  /// launch stay. `place` moves the map's points, or forgets them; null: they stay.
   void change(const AutopilotConfig& config, ObstacleDetector& detector, StateSource& state_source,
-              const std::function<Eigen::Vector3d(const ObstaclePoint&)>& place);
+              const LocalMap::Place& place);
 
   void on(const Sample& sample);
   void on(const StereoFrame& frame);

@@ -100,8 +100,12 @@ void LocalMap::change(const LocalMapConfig& config) {
   config_.voxel_m = voxel_m;
 }
 
-void LocalMap::move(const std::function<Eigen::Vector3d(const ObstaclePoint&)>& place) {
-  for (ObstaclePoint& point : points_) point.position_world = place(point);
+void LocalMap::move(const Place& place) {
+  std::erase_if(points_, [&](ObstaclePoint& point) {
+    const std::optional<Eigen::Vector3d> now = place(point);
+    if (now) point.position_world = *now;
+    return !now;
+  });
   rebuild_voxels();
 }
 

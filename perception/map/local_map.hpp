@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "perception/obstacle_point.hpp"
@@ -85,8 +86,9 @@ class LocalMap {
 
   /// From now on these settings; voxel_m stays.
   void change(const LocalMapConfig& config);
-  /// Moves each remembered point to where `place` says that it is.
-  void move(const std::function<Eigen::Vector3d(const ObstaclePoint&)>& place);
+  /// Where a remembered point is now; nothing: it is forgotten.
+  using Place = std::function<std::optional<Eigen::Vector3d>(const ObstaclePoint&)>;
+  void move(const Place& place);
 
   /// Every remembered point, in order of first sighting.
   const std::vector<ObstaclePoint>& points() const { return points_; }

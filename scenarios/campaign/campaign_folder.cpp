@@ -241,10 +241,24 @@ void write_flight(const CampaignFolder& folder, const Campaign& campaign, const 
   write_whole_file(folder.flight_file(task), to_json(file));  // as the flight itself
 }
 
+namespace {
+
+/// The columns cause and part, empty where the flight is not explained.
+void add_cause(const CampaignFolder& folder, FlightRow& row) {
+  const auto text = text_if_there(folder.path / "explained" / (row.id + ".json"));
+  const auto json = text ? parse_json(*text) : nlohmann::ordered_json();
+  for (const char* key : {"cause", "part"})
+    row.more.emplace_back(key, json.is_object() ? json.value(key, "") : "");
+}
+
+}  // namespace
+
 Collected gather(const CampaignFolder& folder, const Campaign& campaign) {
   Collected collected;
   ProgressLine line;
   const std::vector<CampaignTask> tasks = tasks_of(campaign);
+  std::error_code ignored;
+  const bool is_explained = fs::exists(folder.path / "explained", ignored);
   for (const CampaignTask& task : tasks) {
     const std::size_t done = collected.rows.size() + collected.missing;
     line.show(fmt::format("{} of {} flights gathered", done, tasks.size()), done, tasks.size() - done);
@@ -254,7 +268,8 @@ Collected gather(const CampaignFolder& folder, const Campaign& campaign) {
       continue;
     }
     collected.rows.push_back(file->row);
-    collected.rows.back().grid = campaign.conditions[task.condition].grid;
+    collected.rows.back().more = campaign.conditions[task.condition].grid;
+    if (is_explained) add_cause(folder, collected.rows.back());
     collected.costs.push_back(file->cost);
   }
   return collected;

@@ -150,7 +150,7 @@ void add_rows(const CampaignFolder& folder, const Campaign& campaign, const std:
     texts["ids"].push_back(row.id);
     texts["seeds"].push_back(fmt::format("{}", row.seed));
     texts["reasons"].push_back(row.reason);
-    texts["touched"].push_back("");
+    texts["touched"].push_back(row.touched);
     texts["commands"].push_back(command(conditions[condition], row.seed));
     const fs::path track = folder.track_file(row.id);
     std::error_code ignored;
@@ -165,7 +165,6 @@ void add_rows(const CampaignFolder& folder, const Campaign& campaign, const std:
     if (!told.is_object())
       throw ScenarioError(fmt::format("{}: not a whole track of a flight", track.string()));
     texts["reasons"].back() = told.value("sentence", "");
-    texts["touched"].back() = told.value("touched_name", "");
     facts["tracks"][fmt::format("{}", i)] = name;
   }
   page.arrays.add("row_condition", 1, condition_of_row);
@@ -220,7 +219,8 @@ std::function<std::string(const FlightRow& row)> commands_of(const CampaignFolde
 }
 
 std::string campaign_page(const CampaignFolder& folder, const Campaign& campaign, const Collected& collected,
-                          const fs::path& data_root, const std::optional<GatedCampaign>& gated) {
+                          const fs::path& data_root, const std::optional<GatedCampaign>& gated,
+                          const std::vector<SheetSection>& chapter) {
   const std::vector<FlightRow>& rows = collected.rows;
   const std::vector<ConditionSummary> summaries = summarise(rows);
   std::vector<ShownCondition> conditions;
@@ -246,6 +246,7 @@ std::string campaign_page(const CampaignFolder& folder, const Campaign& campaign
   facts["survival"] = survival_of(campaign, summaries, page.arrays);
   add_rows(folder, campaign, rows, conditions, page, facts);
   facts["gate"] = gated ? gate_of(*gated) : Json();
+  facts["sections"] = facts_of(chapter, page);
   page.facts = json_text(facts);
   return page_html(data_root, page);
 }

@@ -6,6 +6,7 @@
 
 #include "scenarios/campaign/campaign_folder.hpp"
 #include "scenarios/campaign/gate.hpp"
+#include "scenarios/report/sheet_page.hpp"
 
 namespace understory {
 
@@ -23,9 +24,11 @@ std::function<std::string(const FlightRow& row)> commands_of(const CampaignFolde
                                                              const std::filesystem::path& data_root);
 
 /// The page of a campaign: one HTML file that needs nothing else, with a replay of each lost flight that left
-/// a track, of the first 500. Throws MachineError where the page's program cannot be read.
+/// a track, of the first 500. `chapter`: before the flights. Throws MachineError where the page's program
+/// cannot be read.
 std::string campaign_page(const CampaignFolder& folder, const Campaign& campaign, const Collected& collected,
                           const std::filesystem::path& data_root,
-                          const std::optional<GatedCampaign>& gated = std::nullopt);
+                          const std::optional<GatedCampaign>& gated = std::nullopt,
+                          const std::vector<SheetSection>& chapter = {});
 
 }  // namespace understory

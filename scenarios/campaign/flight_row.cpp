@@ -71,7 +71,7 @@ void put_columns(const FlightRow& row, Put&& put) {
 Json json_of(const FlightRow& row) {
   Json json;
   put_columns(row, [&](std::string_view name, const auto& value) { json[std::string(name)] = value; });
-  for (const auto& [key, value] : row.grid) json[key] = value;
+  for (const auto& [key, value] : row.more) json[key] = value;
   return json;
 }
 
@@ -191,7 +191,7 @@ std::string to_csv(const std::vector<FlightRow>& rows) {
   for (const FlightRow& row : rows) {
     std::vector<std::string>& cells = table.rows.emplace_back();
     put_columns(row, [&](std::string_view, const auto& value) { cells.push_back(cell_of(value)); });
-    for (const auto& [key, value] : row.grid) {
+    for (const auto& [key, value] : row.more) {
       if (table.rows.size() == 1) table.head.push_back(key);
       cells.push_back(value);
     }

@@ -38,8 +38,9 @@ struct FlightRow : FlightMeasures {
   double cruise_speed_mps = 0;
   double square_metres_per_tree = 0;
   double goal_m = 0;
-  /// Keys of the campaign's grid and their values: the last columns, which are not read back.
-  std::vector<std::pair<std::string, std::string>> grid = {};
+  /// The last columns, which are not read back: keys of the campaign's grid, and the cause where flights are
+  /// explained.
+  std::vector<std::pair<std::string, std::string>> more = {};
   bool flown() const { return status == RunStatus::flown; }
   bool reached_goal() const { return flown() && outcome == "goal"; }
 };

@@ -10,6 +10,7 @@
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/explain/explain_run.hpp"
 #include "scenarios/flight/flight_identity.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/folder_mark.hpp"
@@ -40,6 +41,7 @@ struct CampaignArguments {
   bool resume = false;
   bool print_tasks = false;
   bool keeps_runs = false;
+  bool explains = false;
 };
 
 /// Of every condition, before anything is flown: a rig that is not there would fail every flight.
@@ -112,6 +114,7 @@ void require_engine(const CampaignArguments& arguments) {
   refuse(!on_slurm && arguments.slurm.shards != SlurmConfig().shards, "--shards", "slurm");
   refuse(on_slurm && arguments.jobs != 0, "--jobs", "local");
   refuse(on_slurm && arguments.keeps_runs, "--keep-runs", "local");
+  refuse(on_slurm && arguments.explains, "--explain", "local");
 }
 
 /// Of a campaign file, or of the folder of a campaign that is to go on.
@@ -167,7 +170,13 @@ int run_campaign(const CampaignArguments& arguments) {
   const Finish finish =
       on_slurm ? fly_on_slurm(folder, campaign, arguments) : fly_here(folder, campaign, arguments);
   const Collected collected = collect(folder, campaign);
-  if (finish == Finish::all_over) return report(folder, campaign, collected, arguments.junit);
+  if (finish == Finish::all_over) {
+    const int status = report(folder, campaign, collected, arguments.junit);
+    if (arguments.explains)
+      explain_campaign(folder.path, arguments.renderer, jobs_or_cores(arguments.jobs),
+                       ExplainOptions().flights);
+    return status;
+  }
   if (on_slurm) {
     const std::string what =
         fmt::format("the job goes on; understory collect {} gathers what it leaves", folder.path.string());
@@ -249,6 +258,8 @@ void add_campaign_command(CommandLine& line) {
       "--print-tasks", arguments->print_tasks,
       "print one command per flight instead of flying; after running them, gather the results with collect");
   command.text("--junit", "FILE", arguments->junit, "write each flight as a JUnit test case (XML)");
+  command.flag("--explain", arguments->explains,
+               "then find out why flights were lost, as explain does (docs/explain.md)");
   command.flag("--keep-runs", arguments->keeps_runs, "keep the run folder of each flight in FOLDER/runs");
   command.runs([arguments] { return run_campaign(*arguments); });
 }

@@ -5,6 +5,7 @@
 
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
+#include "scenarios/explain/explain_campaign.hpp"
 #include "scenarios/explain/explain_report.hpp"
 #include "scenarios/flight/flight_page.hpp"
 #include "scenarios/output/file_output.hpp"
@@ -47,43 +48,95 @@ void write_page(const ExplainedFlight& explained, const std::string& json, const
   fmt::print("page: {}\n", (run / "report.html").string());
 }
 
-int run_explain(const ExplainArguments& arguments) {
+ExplainOptions options_of(const fs::path& work, RendererKind renderer, int jobs, int flights) {
+  ExplainOptions options;
+  options.models_folder = data_root() / "models";
+  options.work_folder = work;
+  options.renderer = renderer;
+  options.jobs = jobs;
+  options.flights = flights;
+  return options;
+}
+
+/// What is found of one flight, as explain.json.
+struct Explained {
+  ExplainedFlight flight;
+  Conclusion conclusion;
+  std::string json;
+};
+
+Explained explained_flight(const Scenario& scenario, ExplainOptions options, const std::string& title) {
+  ProgressLine line;
+  options.on_progress = [&](std::size_t flown, std::size_t asked) {
+    line.show(fmt::format("{}{} of {} flights", title, flown, asked), flown, asked - flown);
+  };
+  Explained explained{explain_flight(scenario, options), {}, ""};
+  const std::vector<Evidence> evidence = evidence_in(explained.flight.log);
+  explained.conclusion = conclusion_of(explained.flight.explanation, evidence);
+  explained.json = to_json(explained.flight, evidence, explained.conclusion);
+  return explained;
+}
+
+int explain_run(const ExplainArguments& arguments) {
   const fs::path run = arguments.folder;
   const Scenario scenario = scenario_of_run(run);
   FolderMark mark(run, flight_results, run);
   mark.require_own("explain.json");
   const Unfinished work(run / ".explain");
-  ExplainOptions options;
-  options.models_folder = data_root() / "models";
-  options.work_folder = work.path();
-  options.renderer = arguments.renderer;
-  options.jobs = jobs_or_cores(arguments.jobs);
-  options.flights = arguments.flights;
-  ProgressLine line;
-  options.on_progress = [&](std::size_t flown, std::size_t asked) {
-    line.show(fmt::format("{} of {} flights", flown, asked), flown, asked - flown);
-  };
-  const ExplainedFlight explained = explain_flight(scenario, options);
-  line.clear();
-  const std::vector<Evidence> evidence = evidence_in(explained.log);
-  const Conclusion conclusion = conclusion_of(explained.explanation, evidence);
-  const std::string json = to_json(explained, evidence, conclusion);
-  write_whole_file(run / "explain.json", json, &mark);
-  fmt::print("{}\n{}\n{}\n{}", conclusion.sentence, to_text(effects_table(explained.explanation)),
-             to_text(chances_table(explained.explanation)),
-             conclusion.disagreement.empty() ? "" : conclusion.disagreement + "\n");
-  write_page(explained, json, run, mark);
+  const Explained explained = explained_flight(
+      scenario, options_of(work.path(), arguments.renderer, jobs_or_cores(arguments.jobs), arguments.flights),
+      "");
+  write_whole_file(run / "explain.json", explained.json, &mark);
+  const Explanation& why = explained.flight.explanation;
+  fmt::print("{}\n{}\n{}\n{}", explained.conclusion.sentence, to_text(effects_table(why)),
+             to_text(chances_table(why)),
+             explained.conclusion.disagreement.empty() ? "" : explained.conclusion.disagreement + "\n");
+  write_page(explained.flight, explained.json, run, mark);
+  return exit_goal;
+}
+
+int run_explain(const ExplainArguments& arguments) {
+  if (!holds_campaign(arguments.folder)) return explain_run(arguments);
+  explain_campaign(arguments.folder, arguments.renderer, jobs_or_cores(arguments.jobs), arguments.flights);
   return exit_goal;
 }
 
 }  // namespace
+
+void explain_campaign(const fs::path& path, RendererKind renderer, int jobs, int flights) {
+  const CampaignFolder folder{path};
+  const Campaign campaign = read_campaign(folder);
+  std::vector<FlightRow> lost = gather(folder, campaign).rows;
+  std::erase_if(lost, [](const FlightRow& row) { return !row.flown() || row.reached_goal(); });
+  prepare_output_folder(folder.path / "explained");
+  for (std::size_t i = 0; i < lost.size(); ++i) {
+    const FlightRow& row = lost[i];
+    std::error_code ignored;
+    if (fs::exists(explanation_file(folder, row.id), ignored)) continue;
+    const auto condition = std::ranges::find(campaign.conditions, row.condition, &Condition::name);
+    const Scenario scenario =
+        scenario_from_text(condition->scenario_text, condition->name, {fmt::format("seed={}", row.seed)});
+    const Unfinished work(folder.path / ".explain");
+    const Explained explained = explained_flight(scenario, options_of(work.path(), renderer, jobs, flights),
+                                                 fmt::format("{} of {} lost flights: ", i + 1, lost.size()));
+    write_whole_file(explanation_file(folder, row.id), explained.json);
+    fmt::print("{}: {}\n", row.id, explained.conclusion.sentence);
+    std::fflush(stdout);
+  }
+  const Collected collected = collect(folder, campaign);
+  const std::vector<ExplainedRow> rows = explained_rows(folder, collected.rows);
+  fmt::print("{}\n{}\n", to_text(causes_table(rows)), to_text(savings_table(rows)));
+}
 
 void add_explain_command(CommandLine& line) {
   const auto arguments = std::make_shared<ExplainArguments>();
   Command& command =
       line.add({"explain", "find out why a flight was lost: which part of the stack, made ideal, saves it",
                 "understory explain runs/paper-1008"});
-  command.text("folder", "FOLDER", arguments->folder, "folder of a run whose flight was lost").required();
+  command
+      .text("folder", "FOLDER", arguments->folder,
+            "folder of a run whose flight was lost, or of a campaign: its lost flights")
+      .required();
   command.whole("--flights", arguments->flights, 20, 10'000, "fly at most so many flights");
   add_jobs_option(command, arguments->jobs, "flights");
   add_renderer_option(command, arguments->renderer);

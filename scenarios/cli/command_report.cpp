@@ -11,6 +11,7 @@
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
 #include "scenarios/config/config_tree.hpp"
+#include "scenarios/explain/explain_campaign.hpp"
 #include "scenarios/explain/explain_report.hpp"
 #include "scenarios/flight/flight_logger.hpp"
 #include "scenarios/flight/flight_page.hpp"
@@ -201,7 +202,9 @@ int report_campaign(const ReportArguments& arguments) {
     gated->sentence = sentence_of(gated->comparison, gated->verdict, rule);
   }
   require_writable(output.file);
-  write_whole_file(output.file, campaign_page(folder, campaign, collected, data_root(), gated),
+  write_whole_file(output.file,
+                   campaign_page(folder, campaign, collected, data_root(), gated,
+                                 causes_chapter(explained_rows(folder, collected.rows))),
                    output.listed_in());
   if (!arguments.quiet) fmt::print("{}\n", output.file.string());
   return gated ? status_of(gated->verdict) : exit_goal;

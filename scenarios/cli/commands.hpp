@@ -4,6 +4,7 @@
 #include <string>
 
 #include "scenarios/cli/command_line.hpp"
+#include "sim/render/renderer_kind.hpp"
 
 namespace understory {
 
@@ -36,6 +37,10 @@ void add_plugin_command(CommandLine& line);
 /// `junit` is given. Returns the exit status: 0 if every flight was flown, with any outcome; else 1.
 int report(const CampaignFolder& folder, const Campaign& campaign, const Collected& collected,
            const std::filesystem::path& junit = {});
+
+/// Explains the lost flights of a campaign that are not explained yet, and writes what came of it into its
+/// tables. A signal leaves what is explained until then.
+void explain_campaign(const std::filesystem::path& folder, RendererKind renderer, int jobs, int flights);
 
 /// The exit status that a gate's verdict has.
 int status_of(const GateVerdict& verdict);

@@ -7,6 +7,7 @@
 
 #include "planning/path_follower.hpp"
 #include "scenarios/config/named_seed.hpp"
+#include "scenarios/flight/clearance.hpp"
 #include "scenarios/flight/ideal_parts.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
@@ -83,22 +84,31 @@ void Flight::begin_ideal() {
     else
       parts_.detector = std::move(ideal);
   }
-  std::function<Eigen::Vector3d(const ObstaclePoint&)> place;
   if (is_ideal(scenario_, "state")) {
-    const double distance_m = state().distance_flown_m;
-    auto source = std::make_unique<TrueState>(history_, distance_m);
+    auto source = std::make_unique<TrueState>(history_, state().distance_flown_m);
     if (const auto& imu = newest<ImuSample>()) source->on(*imu);
     parts_.state_source = std::move(source);
-    place = [this](const ObstaclePoint& point) -> Eigen::Vector3d {
-      const auto frame = T_true_estimated_.find(point.t_ns);
-      return frame == T_true_estimated_.end() ? point.position_world : frame->second * point.position_world;
-    };
   }
   if (is_ideal(scenario_, "latency")) {
     computer_.hurry(clock_.t_ns());
     last_arrival_ns_ = clock_.t_ns();
   }
+  LocalMap::Place place;
+  if (is_ideal(scenario_, "state") || is_ideal(scenario_, "detection") || is_ideal(scenario_, "sight"))
+    place = [this](const ObstaclePoint& point) { return place_of(point); };
   autopilot_.change(config, *parts_.detector, *parts_.state_source, place);
+}
+
+/// An ideal state moves remembered points to their true places; ideal detection and sight forget those on no
+/// obstacle.
+std::optional<Eigen::Vector3d> Flight::place_of(const ObstaclePoint& point) const {
+  const auto frame = T_true_estimated_.find(point.t_ns);
+  if (frame == T_true_estimated_.end()) return point.position_world;
+  const Eigen::Vector3d true_place = frame->second * point.position_world;
+  const auto is_on = [&](const Obstacle& obstacle) { return belongs_to(true_place, obstacle); };
+  const bool knows = is_ideal(scenario_, "detection") || is_ideal(scenario_, "sight");
+  if (knows && std::ranges::none_of(world_.obstacles, is_on)) return std::nullopt;
+  return is_ideal(scenario_, "state") ? true_place : point.position_world;
 }
 
 bool Flight::is_ideal_now(std::string_view part) const { return ideal_ && is_ideal(scenario_, part); }
@@ -178,7 +188,7 @@ bool Flight::is_looked_at() const {
 
 void Flight::process(StereoFrame frame) {
   frame_ = std::move(frame);
-  if (!ideal_ && is_ideal(scenario_, "state"))
+  if (!ideal_ && scenario_.ideal.acts())
     T_true_estimated_[frame_.t_ns] =
         truth_at(frame_.t_ns).T_world_body * state_at(frame_.t_ns).T_world_body.inverse();
   {

@@ -125,6 +125,7 @@ class Flight {
   bool is_ideal_now(std::string_view part) const;
   AutopilotConfig autopilot_config() const;  ///< now
   void follow_map_fault();
+  std::optional<Eigen::Vector3d> place_of(const ObstaclePoint& point) const;
   const Faults& faults() const { return sensors_.faults(); }
   /// Of a frame whose exposure ends at t_ns, until the computer has it.
   std::int64_t latency_ns(std::int64_t t_ns) const;

@@ -30,7 +30,7 @@ const ResultKind campaign_results{
     .last = "summary.md",
     .grows = true,
     .patterns = {"campaign.json", "flights.csv", "flights.jsonl", "costs.csv", "summary.md", "campaign.svg",
-                 "slurm.sh", "conditions/*.yaml", "flights/*", "tracks/*", "logs/*", "runs/*"},
+                 "slurm.sh", "conditions/*.yaml", "flights/*", "tracks/*", "logs/*", "runs/*", "explained/*"},
     .added = {"report.html"}};
 
 const ResultKind tuning_results{

@@ -63,6 +63,8 @@ Json facts_of(const std::vector<SheetSection>& sections, PageContent& page) {
   };
   for (const SheetSection& section : sections) {
     Json& first = add_section(section.title, section.text);
+    for (const SheetBar& bar : section.bars)
+      first["bars"].push_back({{"name", bar.name}, {"parts", bar.parts}});
     if (section.table) first["table"] = json_of(*section.table);
     for (const SheetPicture& picture : section.pictures) {
       const std::string name = fmt::format("picture-{}", page.parts.size());

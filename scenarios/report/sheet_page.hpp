@@ -17,10 +17,17 @@ struct SheetPicture {
   std::string jpeg;  ///< its bytes
 };
 
+/// A bar of parts side by side, whose widths are their shares of the sum.
+struct SheetBar {
+  std::string name;
+  std::vector<std::pair<std::string, double>> parts;
+};
+
 /// A part of a page of plots and tables.
 struct SheetSection {
   std::string title;
   std::string text = {};  ///< below the title
+  std::vector<SheetBar> bars = {};
   std::vector<LinePlot> plots = {};
   std::optional<Table> table = {};
   std::vector<SheetPicture> pictures = {};

@@ -76,7 +76,7 @@ TEST_P(IdealPart, ChangesNothingBeforeItsMoment) {
   const Flown flown = ideal(std::string(GetParam()), 1);
   const std::size_t equal = equal_steps(flown, plain());
   EXPECT_GE(equal, switch_step);
-  EXPECT_LT(equal, switch_step + physics_rate_hz / 4) << "and something after it";
+  EXPECT_LT(equal, switch_step + physics_rate_hz / 4) << "and changes something after it";
 }
 
 INSTANTIATE_TEST_SUITE_P(All, IdealPart, testing::ValuesIn(ideal_part_names));

@@ -6,6 +6,7 @@ import { copy_text, find, hide_section, lay_out, make, make_button, show_heading
 import type { CampaignFacts, GateFact } from "./facts";
 import { outcomes, show_flight } from "./flight_page";
 import { add_plot, type Series } from "./plot";
+import { add_sections } from "./sheet_page";
 import { add_table, type Column } from "./table";
 
 function make_outcome(outcome: string): HTMLElement {
@@ -153,6 +154,7 @@ export function show_campaign(root: HTMLElement, facts: CampaignFacts, arrays: A
   const choose_condition = show_flights(root, facts, arrays);
   add_shares(find(root, ".shares"), find(root, ".tip"), facts.conditions, choose_condition);
   show_survival(root, facts, arrays);
+  add_sections(find(root, ".chapter"), find(root, ".tip"), facts.sections ?? [], arrays);
   add_map(find(root, ".map"), facts.conditions, facts.grid_keys ?? []);
   offer_handles();
   const linked = facts.rows.ids.indexOf(decodeURIComponent(location.hash.slice(1))); // a comment's link: page.html#forest-7

@@ -111,6 +111,7 @@ export interface CampaignFacts {
   rows: { ids: string[]; seeds: string[]; reasons: string[]; touched: string[]; commands: string[] };
   tracks?: Record<string, string>;
   gate?: GateFact | null;
+  sections?: SectionFact[];
   arrays?: ArrayFact[];
 }
 
@@ -134,6 +135,7 @@ export type Mark = "line" | "points" | "steps";
 export interface SectionFact {
   title: string;
   text?: string;
+  bars?: { name: string; parts: [string, number][] }[];
   plot?: PlotFact | null;
   table?: { columns: { label: string; unit?: string }[]; rows: (string | number | null)[][] } | null;
   pictures?: { caption: string; block: string; type: string }[];

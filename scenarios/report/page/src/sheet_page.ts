@@ -29,12 +29,28 @@ function add_picture(place: HTMLElement, caption: string, block: string, type: s
   figure.append(make("figcaption", bytes ? caption : `${caption} (the picture is missing)`));
 }
 
+/// Parts side by side, as wide as their shares; each says its name and number.
+function add_bars(place: HTMLElement, bars: { name: string; parts: [string, number][] }[]): void {
+  for (const { name, parts } of bars) {
+    place.append(make("p", name, "quiet"));
+    const bar = place.appendChild(make("div", "", "stack"));
+    const sum = parts.reduce((total, [, value]) => total + value, 0);
+    parts.forEach(([part, value], i) => {
+      if (value === 0) return;
+      const piece = bar.appendChild(make("span", `${part} ${value}`, `s${i % 8}`));
+      piece.style.flexGrow = String(value / sum);
+      piece.title = `${part}: ${value} of ${sum}`;
+    });
+  }
+}
+
 export function add_sections(place: HTMLElement, tip: HTMLElement, sections: SectionFact[], arrays: Arrays): void {
-  for (const { title, text, plot, table, pictures } of sections) {
+  for (const { title, text, bars, plot, table, pictures } of sections) {
     const section = place.appendChild(make("section", ""));
     section.ariaLabel = title;
     section.append(make("h2", title));
     if (text) section.append(make("p", text, "text"));
+    if (bars) add_bars(section, bars);
     if (plot) add_plot(section, tip, { ...plot, title }, read_series(plot, arrays));
     if (table) add_rows(section, title, table.columns, table.rows);
     for (const { caption, block, type } of pictures ?? []) add_picture(section, caption, block, type);
