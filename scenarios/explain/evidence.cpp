@@ -12,7 +12,7 @@ namespace understory {
 namespace {
 
 constexpr std::int64_t lately_ns = 1'500'000'000;  ///< before the end: what can have mattered
-constexpr double wrong_m = 0.3, wrong_bank_rad = 0.35, late_s = 0.03;
+constexpr double short_s = 1, wrong_m = 0.3, wrong_bank_rad = 0.35, late_s = 0.03;
 constexpr std::size_t many_false = 10;
 
 std::int64_t end_ns(const FlightLog& log) { return log.moments.back().t_ns; }
@@ -51,14 +51,15 @@ std::vector<Evidence> of_obstacle(const ObstacleStory& touched, const FlightLog&
   const bool was_in_view = touched.in_view_s.has_value(), was_detected = touched.detected_s.has_value();
   const double end_s = seconds(end_ns(log));
   std::vector<Evidence> all;
-  const bool never_at_depth = !was_in_view || touched.in_view_at_depth == false;
-  all.push_back(
-      {"never in view", "sight", never_at_depth || (was_detected && end_s - *touched.detected_s < 0.6),
-       !was_in_view     ? fmt::format("{} was never in view.", name)
-       : never_at_depth ? fmt::format("{} was never in view at a depth that the detector looks at.", name)
-       : was_detected   ? fmt::format("{} was first detected {:.2f} s before the end, {:.1f} m away.", name,
-                                      end_s - *touched.detected_s, touched.detected_m)
-                        : fmt::format("{} was in view at a depth that the detector looks at.", name)});
+  const bool was_at_depth = was_in_view && touched.in_view_at_depth != false;
+  all.push_back({"never in view", "sight", !was_at_depth,
+                 fmt::format("{} was {}in view at a depth that the detector looks at.", name,
+                             was_at_depth ? "" : "never ")});
+  const double ahead_s = was_detected ? end_s - *touched.detected_s : 0;
+  all.push_back({"seen too late", "sight", was_detected && ahead_s < short_s,
+                 was_detected ? fmt::format("{} was first detected {:.2f} s before the end, {:.1f} m away.",
+                                            name, ahead_s, touched.detected_m)
+                              : fmt::format("{} was never detected.", name)});
   all.push_back({"not detected", "detection", was_in_view && touched.frames_with_hits < 3,
                  fmt::format("{} was detected in {} frames, with {} hits.", name, touched.frames_with_hits,
                              touched.hits)});
@@ -114,6 +115,24 @@ Evidence of_tracking(const FlightLog& log) {
           fmt::format("Its bank was {:.0f} degrees (root mean square) from the plan's.", 57.29578 * rms_rad)};
 }
 
+/// A cause as the beginning of a sentence.
+std::string_view lead(std::string_view cause) {
+  constexpr std::pair<std::string_view, std::string_view> leads[] = {
+      {"never in view", "What it hit was never in view where the detector looks"},
+      {"seen too late", "It saw what it hit too late"},
+      {"not detected", "What it hit was in view and not detected"},
+      {"false obstacle", "It took things for obstacles that are not there"},
+      {"forgotten", "It forgot what it had seen"},
+      {"sensor's fault", "A sensor failed, and the estimate went wrong with it"},
+      {"wrong place", "It believed itself or its obstacles elsewhere than they were"},
+      {"too late", "What it saw reached the autopilot too late"},
+      {"not found", "There was a way, and the planner did not find it"},
+      {"not flown", "There was a plan, and the aircraft did not fly it"}};
+  for (const auto& [known, words] : leads)
+    if (known == cause) return words;
+  return cause;
+}
+
 }  // namespace
 
 std::vector<Evidence> evidence_in(const FlightLog& log) {
@@ -154,9 +173,10 @@ Conclusion conclusion_of(const Explanation& explanation, const std::vector<Evide
   const bool is_shown = shown != evidence.end();
   if (!is_shown) shown = std::ranges::find_if(evidence, of_part);
   conclusion.cause = shown != evidence.end() ? shown->cause : explanation.cause;
-  conclusion.sentence = fmt::format("{}: with an ideal {} {:.0f} % more of its redraws survived. {}",
-                                    conclusion.cause, explanation.cause, 100 * effect.difference(),
-                                    shown != evidence.end() ? shown->sentence : "");
+  conclusion.sentence = fmt::format(
+      "{}: of 100 flights that go on from {} s before its end, {:.0f} more survive with an ideal {}. {}",
+      lead(conclusion.cause), fmt::join(explanation.decisive_s, " or "), 100 * effect.difference(),
+      explanation.cause, shown != evidence.end() ? shown->sentence : "");
   if (!is_shown)
     conclusion.disagreement = fmt::format(
         "The log itself does not show it: what it shows of {} is within bounds.", explanation.cause);
