@@ -8,6 +8,7 @@
 #include "scenarios/explain/explain_campaign.hpp"
 #include "scenarios/explain/explain_report.hpp"
 #include "scenarios/flight/flight_page.hpp"
+#include "scenarios/flight/fly.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/folder_mark.hpp"
 #include "scenarios/output/progress_line.hpp"
@@ -35,7 +36,7 @@ Scenario scenario_of_run(const fs::path& run) {
 
 /// The page without a film; one with a film stays, and `report` makes it anew.
 void write_page(const ExplainedFlight& explained, const std::string& json, const fs::path& run,
-                FolderMark& mark) {
+                const std::string& warning, FolderMark& mark) {
   std::error_code ignored;
   if (fs::exists(run / "flight.mp4", ignored) && fs::exists(run / "report.html", ignored)) {
     fmt::print("understory report {} puts this on the page, beside the film\n", run.string());
@@ -43,6 +44,7 @@ void write_page(const ExplainedFlight& explained, const std::string& json, const
   }
   mark.require_own("report.html");
   FlightPageExtras extras{data_root()};
+  extras.warning = warning;
   extras.chapter = explanation_chapter(explanation_from_json(json, "explain.json"));
   write_whole_file(run / "report.html", flight_page(explained.log, extras), &mark);
   fmt::print("page: {}\n", (run / "report.html").string());
@@ -91,7 +93,12 @@ int explain_run(const ExplainArguments& arguments) {
   fmt::print("{}\n{}\n{}\n{}", explained.conclusion.sentence, to_text(effects_table(why)),
              to_text(chances_table(why)),
              explained.conclusion.disagreement.empty() ? "" : explained.conclusion.disagreement + "\n");
-  write_page(explained.flight, explained.json, run, mark);
+  const std::string digest =
+      result_from_json(read_file(run / "result.json", maximum_json_bytes), (run / "result.json").string())
+          .digest;
+  const std::string warning = warning_of_digest(explained.flight.log.result, digest);
+  if (!warning.empty()) fmt::print("{}\n", warning);
+  write_page(explained.flight, explained.json, run, warning, mark);
   return exit_goal;
 }
 

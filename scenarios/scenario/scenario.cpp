@@ -125,7 +125,8 @@ void visit_fields(FieldVisitor& visit, AutopilotSection& section) {
 void visit_fields(FieldVisitor& visit, IdealConfig& ideal) {
   visit(
       "parts", ideal.parts,
-      "Parts of the stack that are replaced by ideal ones from from_s on: detection finds every obstacle at "
+      "one or more parts of the stack, which are replaced by ideal ones from from_s on: detection finds "
+      "every obstacle at "
       "the depths in use and nothing else; sight finds all that stands within 40 m; map forgets and filters "
       "nothing away; state is the truth; latency is none; search is 20 times as long; tracking flies the "
       "plan "
