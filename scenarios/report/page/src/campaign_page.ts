@@ -41,12 +41,15 @@ function show_gate(root: HTMLElement, gate: GateFact | null | undefined): void {
   choose(false);
 }
 
+const most_bands = 4;
+
 function show_survival(root: HTMLElement, facts: CampaignFacts, arrays: Arrays): void {
   const place = find(root, ".survival");
   const series = (facts.survival ?? []).map(({ condition, array }): Series => {
     const steps = floats_of(arrays, array);
     const column = (k: number) => steps.filter((_, i) => i % 4 === k);
-    return { name: facts.conditions[condition].label, x: column(0), y: column(1), lower: column(2), upper: column(3), mark: "steps" };
+    const bands = (facts.survival ?? []).length <= most_bands ? { lower: column(2), upper: column(3) } : {}; // more of them hide each other
+    return { name: facts.conditions[condition].label, x: column(0), y: column(1), ...bands, mark: "steps" };
   });
   if (series.length === 0) hide_section(place);
   else add_plot(place, find(root, ".tip"), { title: "Survival", x_label: "distance, m", y_label: "share still flying" }, series);
