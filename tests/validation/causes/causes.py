@@ -20,7 +20,7 @@ FAULTS = {
     "never_in_view": (["never in view", "seen too late"], {"faults": f"[{{sensor: camera, kind: cover, at_s: {AT_S}, value: 0.5}}]"}),
     "false_obstacle": (["false obstacle"], {"perception.detector": "imagining", "perception.imagining.at_s": AT_S}),
     "forgotten": (["forgotten"], {"faults": f"[{{sensor: map, kind: dropout, at_s: {AT_S}}}]"}),
-    "wrong_place": (["wrong place"], {"estimation.source": "turned", "estimation.turned.at_s": AT_S}),
+    "wrong_place": (["wrong place"], {"estimation.source": "turned", "estimation.turned.at_s": AT_S, "estimation.turned.yaw_rad": 0.4}),
     "too_late": (["too late"], {"faults": f"[{{sensor: camera, kind: delay, at_s: {AT_S}, value: 0.08}}]"}),
     "not_found": (["not found"], {"autopilot.method": "cut_short", "autopilot.cut_short.at_s": AT_S}),
     "not_flown": (["not flown"], {"faults": f"[{{sensor: elevons, kind: weaken, at_s: {AT_S}, value: 0.5}}]"}),
