@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 struct ExplainArguments {
   std::string folder;
   RendererKind renderer = RendererKind::osmesa;
-  int jobs = 0, flights = 200;
+  int jobs = 0, flights = 200, first_seed = 1;
 };
 
 Scenario scenario_of_run(const fs::path& run) {
@@ -145,6 +145,9 @@ void add_explain_command(CommandLine& line) {
             "folder of a run whose flight was lost, or of a campaign: its lost flights")
       .required();
   command.whole("--flights", arguments->flights, 20, 10'000, "fly at most so many flights");
+  command.whole(
+      "--first-seed", arguments->first_seed, 1, 1'000'000,
+      "for one run: first seed of the noise that is drawn anew; another one gives a second opinion");
   add_jobs_option(command, arguments->jobs, "flights");
   add_renderer_option(command, arguments->renderer);
   command.runs([arguments] { return run_explain(*arguments); });

@@ -92,7 +92,8 @@ ExplainedFlight explain_flight(const Scenario& scenario, const ExplainOptions& o
     flown += asked.size();
   };
   const double launch_s = logger.log().launch_ns ? seconds(*logger.log().launch_ns) : 0;
-  ExplanationOptions inquiry{moments_of(end_s - launch_s), options.flights};
+  const ExplanationOptions inquiry{moments_of(end_s - launch_s), options.flights,
+                                   static_cast<std::uint64_t>(options.first_seed)};
   return {logger.log(), explain(inquiry, fly_redraws)};
 }
 

@@ -95,7 +95,7 @@ class Inquiry {
   /// `kept`: so many flights are left for later questions.
   void ask(const std::vector<std::string>& parts, double before_end_s, int count, int kept = 0) {
     for (int seed = 1; seed <= count; ++seed) {
-      Redraw redraw{parts, before_end_s, static_cast<std::uint64_t>(seed), false};
+      Redraw redraw{parts, before_end_s, options_.first_seed + static_cast<std::uint64_t>(seed - 1), false};
       const auto is_it = [&](const Redraw& one) {
         return one.parts == redraw.parts && one.before_end_s == before_end_s && one.seed == redraw.seed;
       };

@@ -67,6 +67,7 @@ void summarise(Explanation& explanation);
 struct ExplanationOptions {
   std::vector<double> moments_s;  ///< before the end, increasing
   int flights = 200;              ///< at most so many
+  std::uint64_t first_seed = 1;   ///< of the redraws: others give an independent second opinion
 };
 
 /// Moments to try for a flight that was in the air for `flown_s`.
