@@ -92,6 +92,14 @@ void require_same(const CampaignFolder& folder, const Campaign& campaign, bool m
   if (held.conditions.size() != campaign.conditions.size()) refuse("a condition is gone");
 }
 
+/// The columns cause and part, empty where the flight is not explained.
+void add_cause(const CampaignFolder& folder, FlightRow& row) {
+  const auto text = text_if_there(folder.explanation_file(row.id));
+  const auto json = text ? parse_json(*text) : Json();
+  for (const char* key : {"cause", "part"})
+    row.more.emplace_back(key, json.is_object() ? json.value(key, "") : "");
+}
+
 }  // namespace
 
 std::string plain_name(std::string text) {
@@ -241,24 +249,12 @@ void write_flight(const CampaignFolder& folder, const Campaign& campaign, const 
   write_whole_file(folder.flight_file(task), to_json(file));  // as the flight itself
 }
 
-namespace {
-
-/// The columns cause and part, empty where the flight is not explained.
-void add_cause(const CampaignFolder& folder, FlightRow& row) {
-  const auto text = text_if_there(folder.path / "explained" / (row.id + ".json"));
-  const auto json = text ? parse_json(*text) : nlohmann::ordered_json();
-  for (const char* key : {"cause", "part"})
-    row.more.emplace_back(key, json.is_object() ? json.value(key, "") : "");
-}
-
-}  // namespace
-
 Collected gather(const CampaignFolder& folder, const Campaign& campaign) {
   Collected collected;
   ProgressLine line;
   const std::vector<CampaignTask> tasks = tasks_of(campaign);
   std::error_code ignored;
-  const bool is_explained = fs::exists(folder.path / "explained", ignored);
+  const bool is_explained = fs::exists(folder.explanation_file("").parent_path(), ignored);
   for (const CampaignTask& task : tasks) {
     const std::size_t done = collected.rows.size() + collected.missing;
     line.show(fmt::format("{} of {} flights gathered", done, tasks.size()), done, tasks.size() - done);

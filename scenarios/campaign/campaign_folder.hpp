@@ -64,6 +64,7 @@ std::vector<CampaignTask> in_flying_order(const Campaign& campaign);
 ///     conditions/NAME.yaml   each condition's effective scenario
 ///     flights/ID.json        a flight's file, there once it is over; written whole or not at all
 ///     tracks/ID.track        a lost flight for the page: compact_flight() of flight_page.hpp
+///     explained/ID.json      why a lost flight was lost, where explain has found it out
 ///     logs/ID.txt standard error of a flight that failed to run
 ///     flights.csv .jsonl     every row, in the campaign's order
 ///     costs.csv              wall time and memory
@@ -79,6 +80,9 @@ struct CampaignFolder {
     return path / "flights" / (task.id + ".json");
   }
   std::filesystem::path track_file(const std::string& id) const { return path / "tracks" / (id + ".track"); }
+  std::filesystem::path explanation_file(const std::string& id) const {
+    return path / "explained" / (id + ".json");
+  }
   std::filesystem::path log_file(const CampaignTask& task) const {
     return path / "logs" / (task.id + ".txt");
   }

@@ -48,8 +48,7 @@ std::vector<ComparedDetector> detectors_of(const EvaluateArguments& arguments, c
       throw ScenarioError(fmt::format("--detector {}: there is no such detector{}{}", name,
                                       did_you_mean(name, parts().detectors.names()),
                                       given_plugins().empty() ? "; --plugin loads others" : ""));
-    const bool is_plain = !name.empty() && name.front() != '.' && name.find('/') == std::string::npos;
-    if (!is_plain || !part->needs_images || (part->plugin.empty() && at == std::string::npos))
+    if (!names_a_folder(name) || !part->needs_images || (part->plugin.empty() && at == std::string::npos))
       throw ScenarioError(fmt::format(
           "--detector {}: expected a plug-in's detector, or NAME=FILE with a file of keys whose "
           "perception.detector uses images and a NAME without '/' and without '.' first; Understory's own "
@@ -61,14 +60,15 @@ std::vector<ComparedDetector> detectors_of(const EvaluateArguments& arguments, c
 }
 
 /// "perception.edges.uniqueness=1.1,1.5,2"
-CurveSettings curve_of(const std::string& given, const EvaluateArguments& arguments, const std::string& rig) {
+CurveSettings curve_of(const std::string& given, const std::vector<ComparedDetector>& detectors,
+                       const VisionConfigSources& vision, const std::string& rig) {
   const std::size_t at = given.find('='), dot = given.rfind('.', at);
   const std::string expected = "expected perception.DETECTOR.KEY=VALUE,VALUE,... from lax to strict";
   if (at == std::string::npos || dot == std::string::npos || !given.starts_with("perception.") || dot < 11)
     throw ScenarioError(fmt::format("--curve {}: {}", given, expected));
   CurveSettings curve{given.substr(11, dot - 11), given.substr(dot + 1, at - dot - 1), {}};
   std::vector<std::string> names{"pushbroom", "stereo_bm", "stereo_sgbm"};
-  for (const ComparedDetector& one : detectors_of(arguments, rig)) names.push_back(one.part);
+  for (const ComparedDetector& one : detectors) names.push_back(one.part);
   if (std::ranges::find(names, curve.detector) == names.end())
     throw ScenarioError(fmt::format("--curve {}: no detector {} is compared here{}; --detector adds others",
                                     given, curve.detector, did_you_mean(curve.detector, names)));
@@ -76,7 +76,7 @@ CurveSettings curve_of(const std::string& given, const EvaluateArguments& argume
   for (std::string value; std::getline(values, value, ',');) {
     const auto number = number_in(value);
     if (!number) throw ScenarioError(fmt::format("--curve {}: {}", given, expected));
-    VisionConfigSources sources = arguments.vision;
+    VisionConfigSources sources = vision;
     sources.settings.push_back(given.substr(0, at + 1) + value);
     curve.points.emplace_back(*number, read_vision_config(sources, rig));
   }
@@ -119,7 +119,8 @@ int run_evaluate(EvaluateArguments arguments) {
     throw ScenarioError(
         "perception.detector: must be pushbroom here; --detector NAME=FILE adds another, got " + detector);
   options.settings.more_detectors = detectors_of(arguments, "");
-  for (const std::string& given : arguments.curves) curve_of(given, arguments, "");
+  for (const std::string& given : arguments.curves)
+    curve_of(given, options.settings.more_detectors, arguments.vision, "");
   for (const std::string& given : arguments.disparities)
     options.settings.disparities.push_back(disparity_folder_of(given));
   EvaluationSum().make_room(options.settings);
@@ -151,7 +152,8 @@ int run_evaluate(EvaluateArguments arguments) {
   options.settings.more_detectors = detectors_of(arguments, rig);
   options.settings.every = arguments.every;
   for (const std::string& given : arguments.curves)
-    options.settings.curves.push_back(curve_of(given, arguments, rig));
+    options.settings.curves.push_back(
+        curve_of(given, options.settings.more_detectors, arguments.vision, rig));
   ProgressLine line;
   options.on_progress = [&](std::int64_t frames, std::int64_t expected) {
     line.show(fmt::format("{} of {} frames", frames, expected), static_cast<std::size_t>(frames),

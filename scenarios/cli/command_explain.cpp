@@ -82,6 +82,7 @@ Explained explained_flight(const Scenario& scenario, ExplainOptions options, con
 int explain_run(const ExplainArguments& arguments) {
   const fs::path run = arguments.folder;
   const Scenario scenario = scenario_of_run(run);
+  const std::string digest = digest_of_run(run);
   FolderMark mark(run, flight_results, run);
   mark.require_own("explain.json");
   const Unfinished work(run / ".explain");
@@ -93,9 +94,6 @@ int explain_run(const ExplainArguments& arguments) {
   fmt::print("{}\n{}\n{}\n{}", explained.conclusion.sentence, to_text(effects_table(why)),
              to_text(chances_table(why)),
              explained.conclusion.disagreement.empty() ? "" : explained.conclusion.disagreement + "\n");
-  const std::string digest =
-      result_from_json(read_file(run / "result.json", maximum_json_bytes), (run / "result.json").string())
-          .digest;
   const std::string warning = warning_of_digest(explained.flight.log.result, digest);
   if (!warning.empty()) fmt::print("{}\n", warning);
   write_page(explained.flight, explained.json, run, warning, mark);
@@ -119,14 +117,14 @@ void explain_campaign(const fs::path& path, RendererKind renderer, int jobs, int
   for (std::size_t i = 0; i < lost.size(); ++i) {
     const FlightRow& row = lost[i];
     std::error_code ignored;
-    if (fs::exists(explanation_file(folder, row.id), ignored)) continue;
+    if (fs::exists(folder.explanation_file(row.id), ignored)) continue;
     const auto condition = std::ranges::find(campaign.conditions, row.condition, &Condition::name);
     const Scenario scenario =
         scenario_from_text(condition->scenario_text, condition->name, {fmt::format("seed={}", row.seed)});
     const Unfinished work(folder.path / ".explain");
     const Explained explained = explained_flight(scenario, options_of(work.path(), renderer, jobs, flights),
                                                  fmt::format("{} of {} lost flights: ", i + 1, lost.size()));
-    write_whole_file(explanation_file(folder, row.id), explained.json);
+    write_whole_file(folder.explanation_file(row.id), explained.json);
     fmt::print("{}: {}\n", row.id, explained.conclusion.sentence);
     std::fflush(stdout);
   }

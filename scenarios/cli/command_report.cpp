@@ -50,17 +50,6 @@ struct McapArguments : AgainArguments {
   bool no_images = false;
 };
 
-/// What the run's result.json says; empty where the run never came to its end.
-std::string digest_of(const fs::path& run) {
-  const fs::path file = run / "result.json";
-  std::error_code ignored;
-  if (!fs::exists(file, ignored)) return "";
-  const auto json = parse_json(read_file(file, maximum_json_bytes));
-  if (!json.is_object() || !json.contains("digest") || !json["digest"].is_string())
-    throw ScenarioError(fmt::format("{}: not a flight's result with a digest", file.string()));
-  return json["digest"];
-}
-
 Scenario scenario_of_run(const fs::path& run) {
   std::error_code ignored;
   if (!fs::exists(run / "scenario.yaml", ignored))
@@ -91,7 +80,7 @@ std::vector<SheetSection> chapter_of(const fs::path& run) {
 
 /// The run's result must be the log's: somebody may have put files of two runs together.
 std::string warning_of_log(const FlightLog& log, const fs::path& run) {
-  return warning_of_digest(log.result, digest_of(run));
+  return warning_of_digest(log.result, digest_of_run(run));
 }
 
 int told(const fs::path& file, const std::string& warning, bool quiet) {
@@ -165,7 +154,7 @@ int run_report(const ReportArguments& arguments) {
   const fs::path run = arguments.folder;
   const Scenario scenario = scenario_of_run(run);
   FlyOptions options;
-  options.expected_digest = digest_of(run);
+  options.expected_digest = digest_of_run(run);
   options.report = true;
   options.video = true;
   options.chapter = chapter_of(run);
@@ -228,7 +217,7 @@ int run_mcap(const McapArguments& arguments) {
     return told(output.file, warning_of_log(log, run), arguments.quiet);
   }
   FlyOptions options;
-  options.expected_digest = digest_of(run);
+  options.expected_digest = digest_of_run(run);
   AgainOutput output(arguments, flight_results, "flight.mcap");
   require_writable(output.file);
   FlightLogger logger;
@@ -246,6 +235,16 @@ void add_again_options(Command& command, AgainArguments& arguments, const char* 
 }
 
 }  // namespace
+
+std::string digest_of_run(const fs::path& run) {
+  const fs::path file = run / "result.json";
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return "";
+  const auto json = parse_json(read_file(file, maximum_json_bytes));
+  if (!json.is_object() || !json.contains("digest") || !json["digest"].is_string())
+    throw ScenarioError(fmt::format("{}: not a flight's result with a digest", file.string()));
+  return json["digest"];
+}
 
 void add_report_command(CommandLine& line) {
   const auto arguments = std::make_shared<ReportArguments>();

@@ -38,6 +38,10 @@ void add_plugin_command(CommandLine& line);
 int report(const CampaignFolder& folder, const Campaign& campaign, const Collected& collected,
            const std::filesystem::path& junit = {});
 
+/// The digest in a run's result.json; empty where the run never came to its end. Throws ScenarioError where
+/// the file is none.
+std::string digest_of_run(const std::filesystem::path& run);
+
 /// Explains the lost flights of a campaign that are not explained yet, and writes what came of it into its
 /// tables. A signal leaves what is explained until then.
 void explain_campaign(const std::filesystem::path& folder, RendererKind renderer, int jobs, int flights);

@@ -28,12 +28,16 @@ float swapped(float value) {
 
 }  // namespace
 
+bool names_a_folder(const std::string& name) {
+  return !name.empty() && name.front() != '.' && name.find('/') == std::string::npos;
+}
+
 DisparityFolder disparity_folder_of(const std::string& argument) {
   const std::size_t equals = argument.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == argument.size())
     throw ScenarioError(fmt::format("--disparities {}: must be NAME=FOLDER", argument));
   DisparityFolder given{argument.substr(0, equals), argument.substr(equals + 1)};
-  if (given.name.find('/') != std::string::npos || given.name.starts_with('.'))
+  if (!names_a_folder(given.name))
     throw ScenarioError(
         fmt::format("--disparities {}: the name becomes a folder's: no '/', no '.' first", argument));
   std::error_code ignored;

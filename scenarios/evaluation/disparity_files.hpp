@@ -17,6 +17,9 @@ struct DisparityFolder {
   std::filesystem::path folder;
 };
 
+/// Whether an algorithm may have this name, which becomes a folder's: without '/', no '.' first.
+bool names_a_folder(const std::string& name);
+
 /// Reads "NAME=FOLDER". Throws ScenarioError if it is not that.
 DisparityFolder disparity_folder_of(const std::string& argument);
 

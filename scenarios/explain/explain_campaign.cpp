@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
-#include "perception/io/text_file.hpp"
-#include "scenarios/config/config_tree.hpp"
+#include "scenarios/explain/explain_report.hpp"
 #include "scenarios/scenario/scenario.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
@@ -14,7 +12,6 @@ namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 /// In the order of first appearance.
 std::vector<std::string> distinct(const std::vector<ExplainedRow>& rows, std::string ExplainedRow::*field) {
@@ -33,25 +30,22 @@ std::vector<ExplainedRow> of_condition(const std::vector<ExplainedRow>& rows, co
 
 }  // namespace
 
-fs::path explanation_file(const CampaignFolder& folder, const std::string& id) {
-  return folder.path / "explained" / (id + ".json");
-}
-
 std::vector<ExplainedRow> explained_rows(const CampaignFolder& folder, const std::vector<FlightRow>& rows) {
   std::vector<ExplainedRow> explained;
   for (const FlightRow& row : rows) {
-    const fs::path file = explanation_file(folder, row.id);
-    std::error_code ignored;
-    if (!fs::exists(file, ignored)) continue;
-    try {
-      const Json json = parse_json(read_file(file, maximum_json_bytes));
-      ExplainedRow& one = explained.emplace_back(ExplainedRow{
-          row.id, row.condition, row.seed, json.at("cause"), json.at("part"), json.at("sentence"), {}, {}});
-      if (!json.at("no_return_s").is_null()) one.no_return_s = json.at("no_return_s").get<double>();
-      for (const Json& effect : json.at("effects")) one.effects[effect.at("part")] = effect.at("difference");
-    } catch (const Json::exception&) {
-      throw ScenarioError(fmt::format("{}: not an explanation of this version", file.string()));
-    }
+    const fs::path file = folder.explanation_file(row.id);
+    const auto text = text_if_there(file);
+    if (!text) continue;
+    const auto [why, conclusion] = explanation_from_json(*text, file.string());
+    ExplainedRow& one = explained.emplace_back(ExplainedRow{row.id,
+                                                            row.condition,
+                                                            row.seed,
+                                                            conclusion.cause,
+                                                            why.cause,
+                                                            conclusion.sentence,
+                                                            why.no_return_s,
+                                                            {}});
+    for (const Effect& effect : why.effects) one.effects[effect.part] = effect.difference();
   }
   return explained;
 }

@@ -19,9 +19,6 @@ struct ExplainedRow {
   std::map<std::string, double> effects;  ///< by part: more of its redraws survive with it ideal, -1 .. 1
 };
 
-/// The file of a flight's explanation in a campaign's folder.
-std::filesystem::path explanation_file(const CampaignFolder& folder, const std::string& id);
-
 /// Of the rows that are explained, in their order. Throws ScenarioError where a file is none of explain's.
 std::vector<ExplainedRow> explained_rows(const CampaignFolder& folder, const std::vector<FlightRow>& rows);
 

@@ -19,6 +19,12 @@ constexpr double enough_of_sight = 0.5;
 
 std::vector<std::string> all_parts() { return {ideal_part_names.begin(), ideal_part_names.end()}; }
 
+std::vector<std::string> all_but(const std::string& part) {
+  std::vector<std::string> others = all_parts();
+  std::erase(others, part);
+  return others;
+}
+
 std::string name_of(const std::vector<std::string>& parts) {
   if (parts.empty()) return std::string(the_control);
   if (parts.size() == 1) return parts.front();
@@ -164,33 +170,28 @@ class Inquiry {
     }
     ask(all_parts(), options_.moments_s.back(), parts_look);
     answer();
-    Share saved;
+    const bool is_possible = survived(all_parts(), options_.moments_s.back()).value() >= 0.5;
+    result_.cause = is_possible ? "chance" : "infeasible";
+  }
+
+  /// How many of the flights with these parts at this moment survived.
+  Share survived(const std::vector<std::string>& parts, double before_end_s) const {
+    Share share;
     for (const Redraw& one : result_.flights)
-      if (one.parts == all_parts() && one.before_end_s == options_.moments_s.back())
-        saved.count(one.survived);
-    result_.cause = saved.value() < 0.5 ? "infeasible" : "chance";
+      if (one.parts == parts && one.before_end_s == before_end_s) share.count(one.survived);
+    return share;
   }
 
   /// The parts without which everything else does not save it.
   void find_joint_parts() {
     result_.cause = "joint";
     const double moment_s = result_.decisive_s.front();
-    for (const std::string& part : all_parts()) {
-      std::vector<std::string> others = all_parts();
-      std::erase(others, part);
-      ask(others, moment_s, parts_look);
-    }
+    for (const std::string& part : all_parts()) ask(all_but(part), moment_s, parts_look);
     answer();
-    Share whole;
-    for (const Redraw& one : result_.flights)
-      if (one.parts == all_parts() && one.before_end_s == moment_s) whole.count(one.survived);
+    const double whole = survived(all_parts(), moment_s).value();
     for (const std::string& part : all_parts()) {
-      std::vector<std::string> others = all_parts();
-      std::erase(others, part);
-      Share without;
-      for (const Redraw& one : result_.flights)
-        if (one.parts == others && one.before_end_s == moment_s) without.count(one.survived);
-      if (without.of > 0 && without.value() < 0.5 * whole.value()) result_.parts.push_back(part);
+      const Share without = survived(all_but(part), moment_s);
+      if (without.of > 0 && without.value() < 0.5 * whole) result_.parts.push_back(part);
     }
   }
 

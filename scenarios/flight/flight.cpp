@@ -40,6 +40,7 @@ Flight::Flight(const Scenario& scenario, const FlightMachine& machine, std::vect
       sensors_(scenario),
       drops_(scenario.cameras.drop_probability, seed_for(scenario.sensor_seed(), "camera_drops")),
       computer_(nanoseconds(scenario.perception.cost_s())),
+      plans_model_(scenario.airframe, scenario.autopilot.flight_model),
       parts_(with_rest(std::move(parts))),
       autopilot_(autopilot_config_of(scenario, rig_.rig), scenario.airframe, rig_.rig, *parts_.detector,
                  *parts_.state_source, *parts_.planner),
@@ -218,14 +219,13 @@ void Flight::tell(void (FlightObserver::*event)(const Flight&)) {
 
 /// As the planner's own model says.
 void Flight::follow_plan() {
-  const FlightModel model(scenario_.airframe, scenario_.autopilot.flight_model);
   const Truth& now = truth();
   const Eigen::Matrix3d R_body_world = now.T_world_body.linear().transpose();
   if (!carried_)
     carried_ = flight_state(now.T_world_body, R_body_world * now.velocity_world_mps,
                             now.angular_rate_body_radps, now.wind_world_mps.head<2>());
   carried_->wind_world_mps = now.wind_world_mps.head<2>();
-  carried_ = model.advance(*carried_, command_at(plan(), clock_.t_ns()), 1.0 / physics_rate_hz);
+  carried_ = plans_model_.advance(*carried_, command_at(plan(), clock_.t_ns()), 1.0 / physics_rate_hz);
   const Eigen::Isometry3d pose = pose_of(*carried_);
   const Eigen::AngleAxisd turned(R_body_world * pose.linear());
   Eigen::Vector3d velocity_world_mps = carried_->speed_mps * flight_direction_world(*carried_);

@@ -155,7 +155,8 @@ class Flight {
   bool ideal_ = false;    ///< the scenario's ideal parts are in place
   bool forgets_ = false;  ///< the map, by a fault
   std::int64_t last_arrival_ns_ = 0;
-  std::optional<FlightState> carried_;  ///< of the planner's model, where tracking is ideal
+  FlightModel plans_model_;             ///< as the planner believes
+  std::optional<FlightState> carried_;  ///< of that model, where tracking is ideal
   /// From where the estimate places a frame's points to their true places, by the frame's moment.
   std::map<std::int64_t, Eigen::Isometry3d> T_true_estimated_;
   FlightParts parts_;

@@ -197,8 +197,7 @@ Table trials_table(const TuneFile& file, const std::vector<Item>& items,
 std::string search_in_words(const TuneFile& file, const Tuned& tuned) {
   return fmt::format(
       "{} parameters of {}, tuned for {} over {}: {} trials, {}, seed {}. Training chose trial {}; the "
-      "figures "
-      "that count are those of validation.",
+      "figures that count are those of validation.",
       file.space.parameters.size(), file.scenario_file.stem().string(), objective_in_words(file),
       data_in_words(file), tuned.trials.size() - 1, method_name(file), file.search.seed,
       tuned.best.training.number);
@@ -251,8 +250,7 @@ std::string tune_summary(const TuneFile& file, const Tuned& tuned) {
     text += fmt::format("\n## In flight\n{}\n\n{}", about_flown, to_markdown(flown_table(tuned)));
   text +=
       "\n## Pareto front\nOf the training figures: no other trial of the search is better in one without "
-      "being worse "
-      "in another. `front/trial-N.yaml` flies each.\n\n" +
+      "being worse in another. `front/trial-N.yaml` flies each.\n\n" +
       to_markdown(front_table(file, tuned));
   text += "\n## Sensitivity\nEach parameter alone varied from the tuned ones, on training data.\n\n" +
           to_markdown(sensitivity_table(file, tuned));
