@@ -50,13 +50,15 @@ void write_page(const ExplainedFlight& explained, const std::string& json, const
   fmt::print("page: {}\n", (run / "report.html").string());
 }
 
-ExplainOptions options_of(const fs::path& work, RendererKind renderer, int jobs, int flights) {
+ExplainOptions options_of(const fs::path& work, RendererKind renderer, int jobs, int flights,
+                          int first_seed = 1) {
   ExplainOptions options;
   options.models_folder = data_root() / "models";
   options.work_folder = work;
   options.renderer = renderer;
   options.jobs = jobs;
   options.flights = flights;
+  options.first_seed = first_seed;
   return options;
 }
 
@@ -86,9 +88,11 @@ int explain_run(const ExplainArguments& arguments) {
   FolderMark mark(run, flight_results, run);
   mark.require_own("explain.json");
   const Unfinished work(run / ".explain");
-  const Explained explained = explained_flight(
-      scenario, options_of(work.path(), arguments.renderer, jobs_or_cores(arguments.jobs), arguments.flights),
-      "");
+  const Explained explained =
+      explained_flight(scenario,
+                       options_of(work.path(), arguments.renderer, jobs_or_cores(arguments.jobs),
+                                  arguments.flights, arguments.first_seed),
+                       "");
   write_whole_file(run / "explain.json", explained.json, &mark);
   const Explanation& why = explained.flight.explanation;
   fmt::print("{}\n{}\n{}\n{}", explained.conclusion.sentence, to_text(effects_table(why)),
@@ -142,7 +146,7 @@ void add_explain_command(CommandLine& line) {
       .text("folder", "FOLDER", arguments->folder,
             "folder of a run whose flight was lost, or of a campaign: its lost flights")
       .required();
-  command.whole("--flights", arguments->flights, 20, 10'000, "fly at most so many flights");
+  command.whole("--flights", arguments->flights, 60, 10'000, "fly at most so many flights");
   command.whole(
       "--first-seed", arguments->first_seed, 1, 1'000'000,
       "for one run: first seed of the noise that is drawn anew; another one gives a second opinion");

@@ -85,11 +85,13 @@ class Inquiry {
     for (const double moment_s : options_.moments_s) ask({}, moment_s, first_look);
     answer();
     find_decisive_moments();
-    for (const double moment_s : result_.decisive_s) {
-      ask({}, moment_s, parts_look);
-      for (const std::string& part : all_parts()) ask({part}, moment_s, parts_look);
-      ask(all_parts(), moment_s, parts_look);
-    }
+    // By turns, so that a small budget leaves no part out.
+    for (int count = 1; count <= parts_look; ++count)
+      for (const double moment_s : result_.decisive_s) {
+        ask({}, moment_s, count, parts_look);
+        for (const std::string& part : all_parts()) ask({part}, moment_s, count, parts_look);
+        ask(all_parts(), moment_s, count, parts_look);
+      }
     answer();
     look_closely();
     decide();

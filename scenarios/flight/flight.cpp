@@ -117,7 +117,7 @@ bool Flight::is_ideal_now(std::string_view part) const { return ideal_ && is_ide
 std::int64_t Flight::latency_ns(std::int64_t t_ns) const {
   if (is_ideal_now("latency")) return 0;
   const auto delay_s = faults().value(FaultySensor::camera, FaultKind::delay, t_ns);
-  return nanoseconds(scenario_.cameras.latency_s + std::clamp(delay_s.value_or(0), 0.0, 0.3));
+  return nanoseconds(scenario_.cameras.latency_s + delay_s.value_or(0));
 }
 
 AutopilotConfig Flight::autopilot_config() const {

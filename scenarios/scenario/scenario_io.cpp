@@ -95,9 +95,11 @@ void check_detectors(const Scenario& scenario, Expect&& expect) {
 
 template <typename Expect>
 void check_ideal(const IdealConfig& ideal, Expect&& expect) {
-  for (const std::string& part : ideal.parts)
+  for (const std::string& part : ideal.parts) {
     expect(std::ranges::find(ideal_part_names, part) != ideal_part_names.end(),
            fmt::format("ideal.parts: expected some of {}, got {}", fmt::join(ideal_part_names, ", "), part));
+    expect(std::ranges::count(ideal.parts, part) == 1, fmt::format("ideal.parts: {} is named twice", part));
+  }
   expect(ideal.hits.empty() || ideal.redraw != 0, "ideal.hits: requires ideal.redraw to be at least 1");
 }
 
@@ -149,6 +151,13 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
     const FaultConfig& fault = scenario.faults[i];
     expect(can_have(fault.sensor, fault.kind),
            fmt::format("faults[{}].kind: must be, for this sensor, {}", i, fault_kinds_of(fault.sensor)));
+    const auto must_be = [&](FaultKind kind, double minimum, double maximum) {
+      expect(fault.kind != kind || (fault.value >= minimum && fault.value <= maximum),
+             fmt::format("faults[{}].value: must be, for this kind, from {} to {}", i, minimum, maximum));
+    };
+    must_be(FaultKind::cover, -1, 1);
+    must_be(FaultKind::delay, 0, 0.3);
+    must_be(FaultKind::weaken, 0, 1);
   }
 }
 

@@ -33,7 +33,7 @@ std::optional<double> Faults::value(FaultySensor sensor, FaultKind kind, std::in
 }
 
 std::pair<int, int> free_columns(double cover, int width_px) {
-  const auto covered = static_cast<int>(std::lround(std::min(std::abs(cover), 1.0) * width_px));
+  const auto covered = static_cast<int>(std::lround(std::abs(cover) * width_px));
   return cover > 0 ? std::pair(0, width_px - covered) : std::pair(covered, width_px);
 }
 

@@ -15,7 +15,7 @@ using namespace understory;
 struct PlantedConfig {
   double at_s = 1000;
   double yaw_rad = 0.15;
-  double iterations_share = 0.05;
+  double iterations_share = 1.0 / 120;
 };
 
 template <typename Visitor>
@@ -164,7 +164,10 @@ class CutShort : public Planner {
     config_ = config;
     seed_ = seed;
     PlannerConfig cut = config;
-    if (acts_) cut.search.iterations = std::max(1, static_cast<int>(share_ * cut.search.iterations));
+    if (acts_) {
+      for (int* iterations : {&cut.search.iterations, &cut.improvement.iterations})
+        *iterations = static_cast<int>(std::ceil(share_ * *iterations));
+    }
     ours_->change(cut, seed);
   }
 
