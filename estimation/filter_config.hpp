@@ -18,8 +18,6 @@ struct AirspeedConfig {
   double sigma_mps = 0.12;
 };
 
-void visit_fields(FieldVisitor& visit, AirspeedConfig& config);
-
 enum class SideslipModel {
   lateral_force,  ///< from the winglets' side force
   zero,           ///< v_y = 0, the original's: false by up to 2.6 m/s in dodges (docs/sources.md [15])
@@ -41,8 +39,6 @@ struct SideslipConfig {
   double zero_sigma_mps = 2.236;
 };
 
-void visit_fields(FieldVisitor& visit, SideslipConfig& config);
-
 /// Angle of attack from normal specific force. The wing is a flat plate of area S. Its force is normal to it:
 /// rho/2 V^2 S 2 sin(alpha), with V and sin(alpha) = -w/V of the air in the body's x-z plane. So the wing's
 /// a_z = -rho S V w / m. The wing has no moment about the centre of mass. In steady flight the elevons' force
@@ -59,8 +55,6 @@ struct AngleOfAttackConfig {
   double model_error = 0.15;
 };
 
-void visit_fields(FieldVisitor& visit, AngleOfAttackConfig& config);
-
 /// The barometer measures world z plus an offset. The offset is a state; it is observed on the catapult,
 /// where the altitude is known. The propeller's suction lowers the static pressure in proportion to the
 /// thrust, so that the barometer reads too high by metres per newton: another state, if wash_sigma_m_per_n is
@@ -74,8 +68,6 @@ struct AltitudeConfig {
   double drift_walk_m_rts = 0.1;
 };
 
-void visit_fields(FieldVisitor& visit, AltitudeConfig& config);
-
 /// The magnetometer's field, rotated into the world by the estimated attitude (which compensates the tilt),
 /// points to magnetic north, world y. Only its horizontal direction is used, not its strength or inclination.
 struct HeadingConfig {
@@ -84,16 +76,12 @@ struct HeadingConfig {
   double minimum_horizontal_ut = 5.0;
 };
 
-void visit_fields(FieldVisitor& visit, HeadingConfig& config);
-
 /// Velocity over ground from GPS, measured at an earlier moment. The inertial sensors alone say how the
 /// velocity has changed since, so that corrections made meanwhile are not applied twice.
 struct GroundVelocityConfig {
   bool enabled = true;
   double sigma_mps = 0.2;
 };
-
-void visit_fields(FieldVisitor& visit, GroundVelocityConfig& config);
 
 /// On the catapult the aircraft stands still at a known place: velocity and rate are zero, the specific force
 /// is gravity.
@@ -110,8 +98,6 @@ struct RestConfig {
   double launch_threshold_mps2 = 30.0;
   double launch_speed_sigma_mps = 0.1;
 };
-
-void visit_fields(FieldVisitor& visit, RestConfig& config);
 
 /// Where the flight begins, and how well that is known. Standard deviations are one sigma.
 struct StartConfig {
@@ -196,12 +182,6 @@ FilterConfig original_filter();
 /// For moving air: with wind and gust as states. Its numbers come from flights with 3 m/s of wind and Dryden
 /// turbulence (docs/estimator.md); in calm air it drifts about twice as much as the default.
 FilterConfig windy_filter();
-
-void visit_fields(FieldVisitor& visit, StartConfig& config);
-
-void visit_fields(FieldVisitor& visit, ExtraStatesConfig& config);
-
-void visit_fields(FieldVisitor& visit, DistrustConfig& config);
 
 void visit_fields(FieldVisitor& visit, FilterConfig& config);
 

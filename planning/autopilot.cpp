@@ -48,7 +48,6 @@ bool Autopilot::in_flight(std::int64_t t_ns) const {
 void Autopilot::on(const StereoFrame& frame) {
   const State seen = state_source_->state_at(frame.t_ns);  // the image's moment, not now
   hits_ = detector_->detect(frame);
-  detections_ += static_cast<std::int64_t>(hits_.size());
   resightings_.insert(hits_, seen.T_world_body * rig_.T_body_camera, frame.t_ns);
   for (const Resighting& again : resightings_.completed())
     state_source_->on(

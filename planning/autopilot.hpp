@@ -42,7 +42,6 @@ class Autopilot {
   bool in_flight(std::int64_t t_ns) const;
   const State& state() const { return state_source_->state(); }
   const std::vector<StereoHit>& hits() const { return hits_; }  ///< of the newest frame
-  std::int64_t detections() const { return detections_; }       ///< hits of all frames so far
   const LocalMap& map() const { return map_; }
   const Plan& plan() const { return plan_; }
   const PlannerCounts& counts() const { return planner_.counts(); }
@@ -60,7 +59,6 @@ class Autopilot {
   LocalMap map_;
   Resightings resightings_;
   std::vector<StereoHit> hits_;
-  std::int64_t detections_ = 0;
   Plan plan_;       ///< in force
   Plan next_plan_;  ///< computed, takes effect at next_plan_due_ns_
   std::int64_t next_plan_due_ns_ = -1;

@@ -22,8 +22,6 @@ struct FlightModelConfig {
   double speed_gain_n_per_mps = 2.0;
 };
 
-void visit_fields(FieldVisitor& visit, FlightModelConfig& config);
-
 /// Time constants of the inner loops. The outer laws (bank to roll rate, climb to angle of attack, speed to
 /// thrust) are those of the flight model, so that the aircraft answers as planned.
 struct PathFollowerConfig {
@@ -31,8 +29,6 @@ struct PathFollowerConfig {
   double angle_of_attack_time_s = 0.09;
   double roll_time_s = 0.05;
 };
-
-void visit_fields(FieldVisitor& visit, PathFollowerConfig& config);
 
 /// How the planner turns remembered points into upright columns with a size.
 struct ObstacleFieldConfig {
@@ -46,8 +42,6 @@ struct ObstacleFieldConfig {
   double half_span_m = 0.4318;
   double wing_radius_m = 0.09;
 };
-
-void visit_fields(FieldVisitor& visit, ObstacleFieldConfig& config);
 
 /// The cost of a trajectory and its limits. Costs are dimensionless, per second of flight.
 struct TrajectoryConfig {
@@ -70,8 +64,6 @@ struct TrajectoryConfig {
   double maximum_climb_mps = 2.0;
 };
 
-void visit_fields(FieldVisitor& visit, TrajectoryConfig& config);
-
 /// The tree of manoeuvres that OMPL grows with SST, RRT or EST in the space of bank and climb commands over
 /// time.
 struct ManoeuvreSearchConfig {
@@ -88,8 +80,6 @@ struct ManoeuvreSearchConfig {
   double pruning_radius = 0.15;
 };
 
-void visit_fields(FieldVisitor& visit, ManoeuvreSearchConfig& config);
-
 /// Random changes to a manoeuvre that are kept where they lower its cost. A tree of random commands finds a
 /// way, but seldom the best version of it.
 struct ManoeuvreImprovementConfig {
@@ -99,8 +89,6 @@ struct ManoeuvreImprovementConfig {
   double duration_sigma_s = 0.08;
   double maximum_bank_rad = 1.57;
 };
-
-void visit_fields(FieldVisitor& visit, ManoeuvreImprovementConfig& config);
 
 struct PlannerConfig {
   double kept_cost_ratio = 1.3;
@@ -112,8 +100,6 @@ struct PlannerConfig {
   ManoeuvreSearchConfig search;
   ManoeuvreImprovementConfig improvement;
 };
-
-void visit_fields(FieldVisitor& visit, PlannerConfig& config);
 
 /// The planner `library` (Barry, Florence & Tedrake 2018 flew one): manoeuvres made before the flight.
 struct ManoeuvreLibraryConfig {

@@ -38,6 +38,10 @@ bool is_nearer(const Ranked& one, const Ranked& other) {
   return one.first < other.first;
 }
 
+constexpr double minimum_part_s = 0.04;
+constexpr double maximum_part_s = 1.0;
+constexpr double climb_limit_mps = 3.0;
+
 }  // namespace
 
 double progress_m(const FlightTask& task, const Eigen::Vector3d& position_world) {
@@ -127,13 +131,6 @@ Rollout fly_out(const FlightTask& task, const FlightState& start, const Manoeuvr
                                         task.config.step_s * static_cast<double>(rollout.points.size())));
   return rollout;
 }
-namespace {
-
-constexpr double minimum_part_s = 0.04;
-constexpr double maximum_part_s = 1.0;
-constexpr double climb_limit_mps = 3.0;
-
-}  // namespace
 
 ImprovedManoeuvre improve_manoeuvre(const FlightTask& task, const FlightState& start,
                                     const Manoeuvre& manoeuvre, double minimum_clearance_m,

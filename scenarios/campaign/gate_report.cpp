@@ -158,8 +158,7 @@ std::string sentence_of(const Comparison& comparison, const GateVerdict& verdict
     case Verdict::unchanged:
       return fmt::format(
           "unchanged on these flights: all {} pairs are equal to the bit. With {:.0f} % confidence under {} "
-          "% "
-          "of other seeds would differ. {}.",
+          "% of other seeds would differ. {}.",
           pairs, 100 - 100 * rule.alpha, percent(verdict.changed_at_most), shown);
     case Verdict::worse:
       return fmt::format("worse: {}. {}.", fmt::join(verdict.reasons, "; "),

@@ -52,14 +52,12 @@ void write_page(const ExplainedFlight& explained, const std::string& json, const
 
 ExplainOptions options_of(const fs::path& work, RendererKind renderer, int jobs, int flights,
                           int first_seed = 1) {
-  ExplainOptions options;
-  options.models_folder = data_root() / "models";
-  options.work_folder = work;
-  options.renderer = renderer;
-  options.jobs = jobs;
-  options.flights = flights;
-  options.first_seed = first_seed;
-  return options;
+  return {.models_folder = data_root() / "models",
+          .work_folder = work,
+          .renderer = renderer,
+          .jobs = jobs,
+          .first_seed = first_seed,
+          .flights = flights};
 }
 
 /// What is found of one flight, as explain.json.

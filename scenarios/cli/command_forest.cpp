@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <memory>
 
@@ -66,25 +67,20 @@ Table table_of(const std::string& name, const StandFigures& own, const StandFigu
   Table table{{"", name}};
   if (measured != nullptr) table.head.emplace_back("measured forest");
   const auto add = [&](const std::string& what, const auto& value, int decimals) {
-    table.rows.push_back({what, number_text(value(own), decimals)});
-    if (measured != nullptr) table.rows.back().push_back(number_text(value(*measured), decimals));
+    const auto text = [&](const StandFigures& of) {
+      return number_text(static_cast<double>(std::invoke(value, of)), decimals);
+    };
+    table.rows.push_back({what, text(own)});
+    if (measured != nullptr) table.rows.back().push_back(text(*measured));
   };
-  add(
-      "stands", [](const StandFigures& of) { return of.stands; }, 0);
-  add(
-      "stems", [](const StandFigures& of) { return static_cast<double>(of.stems); }, 0);
-  add(
-      "stems per hectare", [](const StandFigures& of) { return of.stems_per_ha; }, 0);
-  add(
-      "basal area, m^2 per hectare", [](const StandFigures& of) { return of.basal_area_m2_per_ha; }, 1);
-  add(
-      "diameter, median, m", [](const StandFigures& of) { return of.median_m; }, 3);
-  add(
-      "diameter, nine tenths below, m", [](const StandFigures& of) { return of.upper_tenth_m; }, 3);
-  add(
-      "diameter, largest, m", [](const StandFigures& of) { return of.largest_m; }, 3);
-  add(
-      "Clark-Evans index", [](const StandFigures& of) { return of.clark_evans; }, 3);
+  add("stands", &StandFigures::stands, 0);
+  add("stems", &StandFigures::stems, 0);
+  add("stems per hectare", &StandFigures::stems_per_ha, 0);
+  add("basal area, m^2 per hectare", &StandFigures::basal_area_m2_per_ha, 1);
+  add("diameter, median, m", &StandFigures::median_m, 3);
+  add("diameter, nine tenths below, m", &StandFigures::upper_tenth_m, 3);
+  add("diameter, largest, m", &StandFigures::largest_m, 3);
+  add("Clark-Evans index", &StandFigures::clark_evans, 3);
   for (std::size_t i = 0; i < std::size(ripley_radii_m); ++i)
     add(
         fmt::format("Ripley's L(r) - r at {} m", ripley_radii_m[i]),

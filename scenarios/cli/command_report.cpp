@@ -78,11 +78,6 @@ std::vector<SheetSection> chapter_of(const fs::path& run) {
   return explanation_chapter(explanation_from_json(read_file(file, maximum_json_bytes), file.string()));
 }
 
-/// The run's result must be the log's: somebody may have put files of two runs together.
-std::string warning_of_log(const FlightLog& log, const fs::path& run) {
-  return warning_of_digest(log.result, digest_of_run(run));
-}
-
 int told(const fs::path& file, const std::string& warning, bool quiet) {
   if (!quiet)
     fmt::print("{}: {}\n", file.string(),
@@ -102,12 +97,14 @@ struct AgainOutput {
     file = arguments.out.empty() ? folder / name : fs::path(arguments.out);
     require_outside(file, folder, name);
     if (!baseline.empty()) require_outside(file, baseline, name);
-    if (path_within(file, folder) != name) return;
-    // A run must not be replaced while it is flown again: the result would pass for the new one's. A campaign
-    // goes on.
-    mark.emplace(folder, kind, folder,
-                 kind.grows ? FolderMark::Manner::beside_others : FolderMark::Manner::alone);
-    mark->require_own(name);
+    if (path_within(file, folder) == name) {
+      // A run must not be replaced while it is flown again: the result would pass for the new one's. A
+      // campaign goes on.
+      mark.emplace(folder, kind, folder,
+                   kind.grows ? FolderMark::Manner::beside_others : FolderMark::Manner::alone);
+      mark->require_own(name);
+    }
+    require_writable(file);
   }
   FolderMark* listed_in() { return mark ? &*mark : nullptr; }
 };
@@ -140,10 +137,9 @@ int report_from_log(const ReportArguments& arguments) {
   const fs::path run = arguments.folder;
   scenario_of_run(run);  // or this is no run
   AgainOutput output(arguments, flight_results, "report.html");
-  require_writable(output.file);
   const FlightLog log = log_of_run(run);
   FlightPageExtras extras{data_root()};
-  extras.warning = warning_of_log(log, run);
+  extras.warning = warning_of_digest(log.result, digest_of_run(run));
   extras.chapter = chapter_of(run);
   write_whole_file(output.file, flight_page(log, extras), output.listed_in());
   return told(output.file, extras.warning, arguments.quiet);
@@ -159,7 +155,6 @@ int run_report(const ReportArguments& arguments) {
   options.video = true;
   options.chapter = chapter_of(run);
   AgainOutput output(arguments, flight_results, "report.html");
-  require_writable(output.file);
   // The film, too, is made as a file first: beside the page, or where that is a device.
   const fs::path beside = is_stream(output.file)
                               ? fs::temp_directory_path() / fmt::format("report-{}", getpid())
@@ -190,7 +185,6 @@ int report_campaign(const ReportArguments& arguments) {
     gated->verdict = verdict_on(gated->comparison, rule);
     gated->sentence = sentence_of(gated->comparison, gated->verdict, rule);
   }
-  require_writable(output.file);
   write_whole_file(output.file,
                    campaign_page(folder, campaign, collected, data_root(), gated,
                                  causes_chapter(explained_rows(folder, collected.rows))),
@@ -211,15 +205,13 @@ int run_mcap(const McapArguments& arguments) {
   const Scenario scenario = scenario_of_run(run);
   if (arguments.no_images) {
     AgainOutput output(arguments, flight_results, "flight.mcap");
-    require_writable(output.file);
     const FlightLog log = log_of_run(run);
     FlightMcap(log, output.file, arguments.compress, output.listed_in()).write_whole_log();
-    return told(output.file, warning_of_log(log, run), arguments.quiet);
+    return told(output.file, warning_of_digest(log.result, digest_of_run(run)), arguments.quiet);
   }
   FlyOptions options;
   options.expected_digest = digest_of_run(run);
   AgainOutput output(arguments, flight_results, "flight.mcap");
-  require_writable(output.file);
   FlightLogger logger;
   FlightMcap mcap(logger.log(), output.file, arguments.compress, output.listed_in());
   options.logger = &logger;

@@ -55,8 +55,6 @@ std::array<Vector2d, 4> corners_of(const ForestConfig& config) {
           Vector2d(config.clear_m, half_m)};
 }
 
-Eigen::Rotation2Dd turned(double heading_rad) { return Eigen::Rotation2Dd(heading_rad); }
-
 }  // namespace
 
 std::vector<Stem> stems_in_text(std::string_view text, const std::string& name) {
@@ -111,7 +109,7 @@ PlacedStems place_stems(const std::vector<Stem>& stems, const ForestConfig& conf
   PlacedStems placed;
   const auto fits = [&] {
     return std::ranges::all_of(corners_of(config), [&](const Vector2d& corner) {
-      return plot.contains(placed.launch_m + turned(placed.heading_rad) * corner);
+      return plot.contains(placed.launch_m + Eigen::Rotation2Dd(placed.heading_rad) * corner);
     });
   };
   bool found = false;
@@ -121,7 +119,7 @@ PlacedStems place_stems(const std::vector<Stem>& stems, const ForestConfig& conf
     placed.heading_rad = config.file_heading_rad.value_or(2 * std::numbers::pi * turn);
     const Vector2d middle = plot.min() + plot.sizes().cwiseProduct(Vector2d(x, y));
     const Vector2d launch =
-        middle - turned(placed.heading_rad) * Vector2d(config.clear_m + 0.5 * config.length_m, 0);
+        middle - Eigen::Rotation2Dd(placed.heading_rad) * Vector2d(config.clear_m + 0.5 * config.length_m, 0);
     placed.launch_m = {config.file_x_m.value_or(launch.x()), config.file_y_m.value_or(launch.y())};
     found = fits();
   }
@@ -133,7 +131,7 @@ PlacedStems place_stems(const std::vector<Stem>& stems, const ForestConfig& conf
         config.file_x_m || config.file_y_m || config.file_heading_rad
             ? ", from where forest.file_x_m, file_y_m and file_heading_rad put it"
             : ""));
-  const auto back = turned(-placed.heading_rad);
+  const auto back = Eigen::Rotation2Dd(-placed.heading_rad);
   std::vector<std::pair<Vector2d, const Stem*>> standing;
   for (const Stem& stem : stems) {
     const Vector2d place = back * (stem.place_m - placed.launch_m);

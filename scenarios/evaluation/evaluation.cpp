@@ -103,16 +103,6 @@ std::vector<std::size_t> followed(const EvaluationSum& sum) {
   return places;
 }
 
-bool Evaluation::has_depth() const {
-  return std::ranges::any_of(recordings, &RecordingEvaluation::has_depth);
-}
-bool Evaluation::has_objects() const {
-  return std::ranges::any_of(recordings, &RecordingEvaluation::has_objects);
-}
-bool Evaluation::has_poses() const {
-  return std::ranges::any_of(recordings, &RecordingEvaluation::has_poses);
-}
-
 void in_parallel(std::size_t count, int threads, const std::function<void(std::size_t)>& work) {
   std::atomic<std::size_t> next = 0;
   std::exception_ptr failure;
@@ -155,6 +145,9 @@ Evaluation evaluate(const EvaluationOptions& options) {
   evaluation.all.make_room(options.settings);
   for (const RecordingEvaluation& recording : evaluation.recordings) {
     evaluation.all.add(recording.sum);
+    evaluation.has_depth |= recording.has_depth;
+    evaluation.has_objects |= recording.has_objects;
+    evaluation.has_poses |= recording.has_poses;
     const auto scene = std::ranges::find(evaluation.scenes, recording.sum.name, &EvaluationSum::name);
     if (scene == evaluation.scenes.end())
       evaluation.scenes.push_back(recording.sum);

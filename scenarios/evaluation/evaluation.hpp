@@ -147,10 +147,8 @@ struct Evaluation {
   EvaluationSettings settings;
   std::vector<RecordingEvaluation> recordings;  ///< in the folders' order
   EvaluationSum all;
-  std::vector<EvaluationSum> scenes;  ///< in order of first appearance
-  bool has_depth() const;             ///< any of them
-  bool has_objects() const;
-  bool has_poses() const;
+  std::vector<EvaluationSum> scenes;                               ///< in order of first appearance
+  bool has_depth = false, has_objects = false, has_poses = false;  ///< any of the recordings
 };
 
 /// Calls work(0) .. work(count - 1), up to `threads` (>= 1) at once. Throws what the first failure threw;

@@ -32,7 +32,7 @@ std::string heading(const Evaluation& evaluation) {
 
 /// What the figures say, before anything else.
 std::string sentence_of(const Evaluation& evaluation) {
-  if (!evaluation.has_depth())
+  if (!evaluation.has_depth)
     return "These recordings have no true depth: StereoBM stands in for it, as in the paper. ";
   const EvaluationSum& all = evaluation.all;
   std::vector<std::size_t> places = followed(all);
@@ -178,13 +178,13 @@ void write_evaluation(const Evaluation& evaluation, const fs::path& folder, cons
     summary += "\n## " + table.title + "\n\n" + to_markdown(table.table);
     write_whole_file(folder / "tables" / (table.file + ".csv"), to_csv(table.table));
     SheetSection section{.title = table.title, .table = table.table};
-    if (table.file == (evaluation.has_depth() ? "algorithms" : "paper"))
+    if (table.file == (evaluation.has_depth ? "algorithms" : "paper"))
       main_table = std::move(section);
     else
       page.push_back(std::move(section));
   }
   write_whole_file(folder / "evaluation.json", evaluation_json(evaluation));
-  if (evaluation.has_depth()) {
+  if (evaluation.has_depth) {
     write_plots("precision_recall.svg", {precision_recall_plot(evaluation)});
     write_plots("response.svg", {response_plot(evaluation)});
     write_picture(folder / "heat_map.png",
@@ -193,7 +193,7 @@ void write_evaluation(const Evaluation& evaluation, const fs::path& folder, cons
                   heat_maps(evaluation.all.tallies[algorithm::the_papers_rule], "pushbroom, original"));
     page.insert(page.begin() + 1, write_worst_frames(evaluation, folder / "worst"));
   }
-  if (evaluation.has_objects()) {
+  if (evaluation.has_objects) {
     write_plots("first_hits.svg", {first_hits_plot(evaluation)});
     write_whole_file(folder / "obstacles.csv", to_csv(obstacles_table(evaluation)));
   }

@@ -163,7 +163,7 @@ LinePlot precision_recall_plot(const Evaluation& evaluation) {
 std::vector<LinePlot> distances_plots(const Evaluation& evaluation) {
   std::vector<LinePlot> panels{histogram_panel("1: single frames, to StereoBM near the depth", evaluation,
                                                &PublishedScores::single_frame)};
-  if (evaluation.has_poses()) {
+  if (evaluation.has_poses) {
     panels.push_back(histogram_panel("2: from remembered points to StereoBM", evaluation,
                                      &PublishedScores::false_positives));
     panels.push_back(histogram_panel("3: from StereoBM to remembered points", evaluation,

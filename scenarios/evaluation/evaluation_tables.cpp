@@ -91,7 +91,7 @@ EvaluationTable published_table(const Evaluation& evaluation) {
                "random, the paper"}};
   const auto add = [&](const EvaluationSum& sum) {
     for (const PublishedRow& row : published_rows) {
-      if (row.needs_poses() && !evaluation.has_poses()) continue;
+      if (row.needs_poses() && !evaluation.has_poses) continue;
       std::vector<std::string> cells{sum.name, row.what, percent(row.paper)};
       for (const PublishedScores& scores : sum.published)
         cells.push_back(percent(row.figure(scores.*row.histogram)));
@@ -267,11 +267,11 @@ EvaluationTable invariance_table(const Evaluation& evaluation) {
 
 std::vector<EvaluationTable> evaluation_tables(const Evaluation& evaluation) {
   std::vector<EvaluationTable> tables{published_table(evaluation)};
-  if (evaluation.has_depth()) {
+  if (evaluation.has_depth) {
     tables.push_back(algorithms_table(evaluation));
     tables.push_back(intervals_table(evaluation));
     tables.push_back(scenes_table(evaluation));
-    if (evaluation.has_objects()) {
+    if (evaluation.has_objects) {
       tables.push_back(computer_table(evaluation));
       tables.push_back(on_the_path_table(evaluation));
     }

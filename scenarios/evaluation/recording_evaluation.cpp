@@ -36,34 +36,6 @@ PushbroomConfig papers_rule_beside(const PushbroomConfig& rule) {
   return paper;
 }
 
-}  // namespace
-
-FullStereoCrop crop_beside(const PerceptionSection& perception, const StereoRig& rig) {
-  FullStereoCrop crop = one_pixel_crop(rig);
-  crop.last_row_px = perception.pushbroom().last_row_px;
-  crop.cell_px = perception.full_stereo.cell_px;
-  crop.minimum_pixels_per_cell = perception.full_stereo.minimum_pixels_per_cell;
-  return crop;
-}
-
-std::vector<ComparedDetector> compared_detectors(const EvaluationSettings& settings, const StereoRig& rig) {
-  VisionConfig ours = settings;
-  ours.full_stereo = crop_beside(settings, rig);
-  VisionConfig paper = ours;
-  paper.pushbroom() = papers_rule_beside(settings.pushbroom());
-  std::vector<ComparedDetector> detectors{{algorithm_names[algorithm::our_rule], "pushbroom", ours},
-                                          {algorithm_names[algorithm::the_papers_rule], "pushbroom", paper},
-                                          {algorithm_names[algorithm::stereo_bm], "stereo_bm", ours},
-                                          {algorithm_names[algorithm::stereo_sgbm], "stereo_sgbm", ours}};
-  for (ComparedDetector one : settings.more_detectors) {
-    one.config.full_stereo = crop_beside(one.config, rig);
-    detectors.push_back(std::move(one));
-  }
-  return detectors;
-}
-
-namespace {
-
 /// A detector that matches every pixel, and which of these become detections.
 struct DenseDetector {
   std::size_t place;  ///< among the algorithms
@@ -348,6 +320,30 @@ class Evaluator {
 };
 
 }  // namespace
+
+FullStereoCrop crop_beside(const PerceptionSection& perception, const StereoRig& rig) {
+  FullStereoCrop crop = one_pixel_crop(rig);
+  crop.last_row_px = perception.pushbroom().last_row_px;
+  crop.cell_px = perception.full_stereo.cell_px;
+  crop.minimum_pixels_per_cell = perception.full_stereo.minimum_pixels_per_cell;
+  return crop;
+}
+
+std::vector<ComparedDetector> compared_detectors(const EvaluationSettings& settings, const StereoRig& rig) {
+  VisionConfig ours = settings;
+  ours.full_stereo = crop_beside(settings, rig);
+  VisionConfig paper = ours;
+  paper.pushbroom() = papers_rule_beside(settings.pushbroom());
+  std::vector<ComparedDetector> detectors{{algorithm_names[algorithm::our_rule], "pushbroom", ours},
+                                          {algorithm_names[algorithm::the_papers_rule], "pushbroom", paper},
+                                          {algorithm_names[algorithm::stereo_bm], "stereo_bm", ours},
+                                          {algorithm_names[algorithm::stereo_sgbm], "stereo_sgbm", ours}};
+  for (ComparedDetector one : settings.more_detectors) {
+    one.config.full_stereo = crop_beside(one.config, rig);
+    detectors.push_back(std::move(one));
+  }
+  return detectors;
+}
 
 std::string recording_name(const fs::path& folder) {
   return folder.has_filename() ? folder.filename().string() : folder.parent_path().filename().string();

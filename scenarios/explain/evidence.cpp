@@ -156,15 +156,12 @@ Conclusion conclusion_of(const Explanation& explanation, const std::vector<Evide
           ? fmt::format("{:.2f} s before its end the flight was past return", *explanation.no_return_s)
           : "At no moment that was tried had the flight a chance of one in five";
   if (explanation.cause == "infeasible")
-    return {"infeasible", "Not even an aircraft that knows everything got through.", ""};
+    return {"infeasible", "Not even an aircraft that knows everything got through."};
   if (explanation.cause == "chance")
-    return {"chance", no_return + ", and no part would have helped: with other noise it might have arrived.",
-            ""};
+    return {"chance", no_return + ", and no part would have helped: with other noise it might have arrived."};
   if (explanation.cause == "joint")
-    return {"joint",
-            fmt::format("{}; no single part would have helped, but {} together.", no_return,
-                        fmt::join(explanation.parts, ", ")),
-            ""};
+    return {"joint", fmt::format("{}; no single part would have helped, but {} together.", no_return,
+                                 fmt::join(explanation.parts, ", "))};
   const Effect& effect = *std::ranges::find(explanation.effects, explanation.cause, &Effect::part);
   Conclusion conclusion;
   const auto of_part = [&](const Evidence& one) { return one.part == explanation.cause; };

@@ -25,7 +25,7 @@ struct Conclusion {
   std::string cause;     ///< "not detected"; for joint, infeasible and chance that word
   std::string sentence;  ///< one, for people who read no further
   /// Where the log does not show what the effect says, or shows something else: a sentence; else empty.
-  std::string disagreement;
+  std::string disagreement = {};
 };
 Conclusion conclusion_of(const Explanation& explanation, const std::vector<Evidence>& evidence);
 

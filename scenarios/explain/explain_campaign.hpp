@@ -16,7 +16,8 @@ struct ExplainedRow {
   std::uint64_t seed = 0;
   std::string cause, part, sentence;
   std::optional<double> no_return_s;
-  std::map<std::string, double> effects;  ///< by part: more of its redraws survive with it ideal, -1 .. 1
+  std::map<std::string, double> effects =
+      {};  ///< by part: more of its redraws survive with it ideal, -1 .. 1
 };
 
 /// Of the rows that are explained, in their order. Throws ScenarioError where a file is none of explain's.

@@ -39,7 +39,7 @@ std::string digest_of_models(const fs::path& folder) {
 
 OpenedRenderer opened_renderer(RendererKind asked) {
   try {
-    OffscreenContext context({asked});
+    OffscreenContext context(asked);
     context.make_current(16, 16);  // now everything that draws is mapped
     return {context.kind(), context.renderer()};
   } catch (const std::runtime_error& error) {

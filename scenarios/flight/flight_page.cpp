@@ -88,37 +88,6 @@ Json changed_keys(const Scenario& scenario) {
   return rows;
 }
 
-}  // namespace
-
-std::string arguments_that_fly(const Scenario& scenario, const fs::path& data_root) {
-  constexpr std::size_t maximum_settings = 12;  // more than a person would paste
-  const fs::path library = data_root / "scenarios" / "library" / (scenario.name + ".yaml");
-  std::error_code ignored;
-  if (!fs::exists(library, ignored)) return "scenario.yaml";
-  const FlatKeys wanted = keys_in(scenario);
-  std::vector<std::string> settings{fmt::format("seed={}", scenario.seed)};
-  for (const bool presets : {true, false}) {
-    const FlatKeys now = keys_in(load_scenario(library, settings));
-    for (const auto& [key, value] : wanted)
-      if (is_preset(key) == presets && value_in(now, key) != value) settings.push_back(key + "=" + value);
-    if (settings.size() > maximum_settings) return "scenario.yaml";
-  }
-  try {
-    if (scenario_to_text(load_scenario(library, settings)) != scenario_to_text(scenario))
-      return "scenario.yaml";
-  } catch (const ScenarioError&) {  // a list's entry cannot be set by itself
-    return "scenario.yaml";
-  }
-  std::string arguments = fmt::format("{} --seed {}", scenario.name, scenario.seed);
-  for (std::size_t i = 1; i < settings.size(); ++i)
-    arguments += settings[i].find_first_of(" [\"") == std::string::npos
-                     ? fmt::format(" --set {}", settings[i])
-                     : fmt::format(" --set '{}'", settings[i]);
-  return arguments;
-}
-
-namespace {
-
 /// What page and track share.
 Json facts_of(const FlightLog& log, const FlightStory& story) {
   const Scenario& scenario = log.scenario;
@@ -151,6 +120,33 @@ Json facts_of(const FlightLog& log, const FlightStory& story) {
 
 }  // namespace
 
+std::string arguments_that_fly(const Scenario& scenario, const fs::path& data_root) {
+  constexpr std::size_t maximum_settings = 12;  // more than a person would paste
+  const fs::path library = data_root / "scenarios" / "library" / (scenario.name + ".yaml");
+  std::error_code ignored;
+  if (!fs::exists(library, ignored)) return "scenario.yaml";
+  const FlatKeys wanted = keys_in(scenario);
+  std::vector<std::string> settings{fmt::format("seed={}", scenario.seed)};
+  for (const bool presets : {true, false}) {
+    const FlatKeys now = keys_in(load_scenario(library, settings));
+    for (const auto& [key, value] : wanted)
+      if (is_preset(key) == presets && value_in(now, key) != value) settings.push_back(key + "=" + value);
+    if (settings.size() > maximum_settings) return "scenario.yaml";
+  }
+  try {
+    if (scenario_to_text(load_scenario(library, settings)) != scenario_to_text(scenario))
+      return "scenario.yaml";
+  } catch (const ScenarioError&) {  // a list's entry cannot be set by itself
+    return "scenario.yaml";
+  }
+  std::string arguments = fmt::format("{} --seed {}", scenario.name, scenario.seed);
+  for (std::size_t i = 1; i < settings.size(); ++i)
+    arguments += settings[i].find_first_of(" [\"") == std::string::npos
+                     ? fmt::format(" --set {}", settings[i])
+                     : fmt::format(" --set '{}'", settings[i]);
+  return arguments;
+}
+
 std::string flight_page(const FlightLog& log, const FlightPageExtras& extras) {
   const Scenario& scenario = log.scenario;
   const FlightStory story = story_of(log);
@@ -173,6 +169,7 @@ std::string flight_page(const FlightLog& log, const FlightPageExtras& extras) {
   }
   add_flight(log, story, PageDetail::everything, page.arrays, facts);
   facts["sections"] = facts_of(extras.chapter, page);
+  if (!extras.chapter.empty()) facts["story"].insert(facts["story"].begin(), extras.chapter.front().text);
   page.facts = json_text(facts);
   return page_html(extras.data_root, page);
 }

@@ -26,20 +26,6 @@
 
 namespace understory {
 
-namespace {
-
-/// Makes the calling process, fresh from fork(), that program; 127 where that fails.
-[[noreturn]] void become_program(const std::filesystem::path& program,
-                                 const std::vector<std::string>& arguments) {
-  std::vector<char*> argv{const_cast<char*>("understory")};
-  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
-  execv(program.c_str(), argv.data());
-  _exit(127);
-}
-
-}  // namespace
-
 const char* const understory_version = UNDERSTORY_VERSION;
 const char* understory_commit = "unknown";
 
@@ -130,7 +116,11 @@ pid_t start_this_program(const std::vector<std::string>& arguments, int at_our_e
     dup2(nothing, STDOUT_FILENO);
     dup2(log_file, STDERR_FILENO);
   }
-  become_program(program.empty() ? "/proc/self/exe" : program, arguments);
+  std::vector<char*> argv{const_cast<char*>("understory")};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  execv(program.empty() ? "/proc/self/exe" : program.c_str(), argv.data());
+  _exit(127);
 }
 
 EndedProcess wait_for_process(pid_t pid, int options) {

@@ -213,13 +213,8 @@ const std::vector<StereoHit>& TrueDepth::detect(const StereoFrame& frame) {
         return depth_m >= interval.near_m && depth_m <= interval.far_m;
       };
       if (depth_m == infinity || std::ranges::none_of(intervals_, holds)) continue;
-      hits_.push_back({depth_m * ray_of(row, column),
-                       column * block_px,
-                       row * block_px,
-                       rig_.disparity_px(depth_m),
-                       0.0,
-                       0.0,
-                       {}});
+      hits_.push_back(
+          {depth_m * ray_of(row, column), column * block_px, row * block_px, rig_.disparity_px(depth_m)});
     }
   return hits_;
 }

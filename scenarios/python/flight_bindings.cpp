@@ -300,25 +300,19 @@ class HeldFlight {
 };
 
 /// Fields of a result as Python's values.
-struct DictVisitor {
-  py::dict values;
-  void operator()(const char* name, const Outcome& value, const char*) {
-    values[name] = std::string(word_for(value));
-  }
-  void operator()(const char* name, const std::string& value, const char*) { values[name] = value; }
-  void operator()(const char* name, double value, const char*) { values[name] = value; }
-  void operator()(const char* name, std::int64_t value, const char*) { values[name] = value; }
-  void operator()(const char* name, std::uint64_t value, const char*) { values[name] = value; }
-};
-
 py::dict result_of(const HeldFlight& held) {
-  DictVisitor visit;
+  py::dict values, own;
   const FlightResult& result = held.finished_log().result;
+  const auto visit = [&]<typename Value>(const char* name, const Value& value, const char*) {
+    if constexpr (std::is_same_v<Value, Outcome>)
+      values[name] = std::string(word_for(value));
+    else
+      values[name] = value;
+  };
   visit_fields(visit, result);
-  py::dict own;
   for (const auto& [name, number] : result.planner.own) own[py::str(name)] = number;
-  visit.values["planner_counts"] = own;
-  return visit.values;
+  values["planner_counts"] = own;
+  return values;
 }
 
 /// One row for every 5 ms: time, true position, true quaternion (w, x, y, z), true velocity, clearance.

@@ -63,11 +63,6 @@ std::vector<StereoHit> hits_of(const py::object& given) {
   return hits;
 }
 
-void require_method(const py::object& object, const char* kind, const char* method) {
-  if (!py::hasattr(object, method))
-    throw std::runtime_error(fmt::format("a {} must have a method {}()", kind, method));
-}
-
 class PythonDetector : public ObstacleDetector {
  public:
   PythonDetector(py::object object, Life life) : object_(std::move(object), std::move(life)) {}
@@ -144,7 +139,8 @@ class PythonPlanner : public Planner {
 
 template <typename Made, typename Adapter>
 std::unique_ptr<Made> adapted(const py::object& object, Life life, const char* kind, const char* method) {
-  require_method(object, kind, method);
+  if (!py::hasattr(object, method))
+    throw std::runtime_error(fmt::format("a {} must have a method {}()", kind, method));
   return std::make_unique<Adapter>(object, std::move(life));
 }
 

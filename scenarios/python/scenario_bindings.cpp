@@ -70,8 +70,6 @@ void bind_scenario(py::module_& module) {
       },
       py::arg("name"), py::arg("settings") = std::vector<std::string>(),
       py::arg("with_files") = std::vector<std::string>());
-  module.def("scenario_names", scenario_names);
-  module.def("data_root", [] { return data_root().string(); });
   module.def("keys", [] {
     py::list all;
     for (const Key& key : keys_of(Scenario())) {

@@ -25,52 +25,6 @@ void set_turn(foxglove::Quaternion* to, const Eigen::Isometry3d& from) {
   to->set_w(turn.w());
 }
 
-}  // namespace
-
-void set_time(google::protobuf::Timestamp* timestamp, std::int64_t t_ns) {
-  timestamp->set_seconds(t_ns / 1'000'000'000);
-  timestamp->set_nanos(static_cast<std::int32_t>(t_ns % 1'000'000'000));
-}
-
-void set_pose(foxglove::Pose* to, const Eigen::Isometry3d& from) {
-  set_vector(to->mutable_position(), from.translation());
-  set_turn(to->mutable_orientation(), from);
-}
-
-foxglove::FrameTransform transform(const char* parent, const char* child, const Eigen::Isometry3d& pose,
-                                   std::int64_t t_ns) {
-  foxglove::FrameTransform message;
-  set_time(message.mutable_timestamp(), t_ns);
-  message.set_parent_frame_id(parent);
-  message.set_child_frame_id(child);
-  set_vector(message.mutable_translation(), pose.translation());
-  set_turn(message.mutable_rotation(), pose);
-  return message;
-}
-
-foxglove::PointCloud cloud(const char* frame, const std::vector<Eigen::Vector3d>& points, std::int64_t t_ns) {
-  foxglove::PointCloud message;
-  set_time(message.mutable_timestamp(), t_ns);
-  message.set_frame_id(frame);
-  set_pose(message.mutable_pose(), Eigen::Isometry3d::Identity());
-  message.set_point_stride(3 * sizeof(double));
-  std::uint32_t offset = 0;
-  for (const char* const name : {"x", "y", "z"}) {
-    foxglove::PackedElementField* field = message.add_fields();
-    field->set_name(name);
-    field->set_offset(offset);
-    field->set_type(foxglove::PackedElementField::FLOAT64);
-    offset += sizeof(double);
-  }
-  std::string& data = *message.mutable_data();
-  for (const Eigen::Vector3d& point : points)
-    for (const double coordinate : point)
-      data.append(reinterpret_cast<const char*>(&coordinate), sizeof coordinate);
-  return message;
-}
-
-namespace {
-
 /// A wall's two faces.
 void add_wall_points(const Obstacle& wall, double step_m, std::vector<Eigen::Vector3d>& points) {
   const Eigen::Vector3d extent = wall.to_world - wall.from_world;
@@ -124,6 +78,48 @@ void add_ball_points(const Obstacle& ball, double step_m, std::vector<Eigen::Vec
 }
 
 }  // namespace
+
+void set_time(google::protobuf::Timestamp* timestamp, std::int64_t t_ns) {
+  timestamp->set_seconds(t_ns / 1'000'000'000);
+  timestamp->set_nanos(static_cast<std::int32_t>(t_ns % 1'000'000'000));
+}
+
+void set_pose(foxglove::Pose* to, const Eigen::Isometry3d& from) {
+  set_vector(to->mutable_position(), from.translation());
+  set_turn(to->mutable_orientation(), from);
+}
+
+foxglove::FrameTransform transform(const char* parent, const char* child, const Eigen::Isometry3d& pose,
+                                   std::int64_t t_ns) {
+  foxglove::FrameTransform message;
+  set_time(message.mutable_timestamp(), t_ns);
+  message.set_parent_frame_id(parent);
+  message.set_child_frame_id(child);
+  set_vector(message.mutable_translation(), pose.translation());
+  set_turn(message.mutable_rotation(), pose);
+  return message;
+}
+
+foxglove::PointCloud cloud(const char* frame, const std::vector<Eigen::Vector3d>& points, std::int64_t t_ns) {
+  foxglove::PointCloud message;
+  set_time(message.mutable_timestamp(), t_ns);
+  message.set_frame_id(frame);
+  set_pose(message.mutable_pose(), Eigen::Isometry3d::Identity());
+  message.set_point_stride(3 * sizeof(double));
+  std::uint32_t offset = 0;
+  for (const char* const name : {"x", "y", "z"}) {
+    foxglove::PackedElementField* field = message.add_fields();
+    field->set_name(name);
+    field->set_offset(offset);
+    field->set_type(foxglove::PackedElementField::FLOAT64);
+    offset += sizeof(double);
+  }
+  std::string& data = *message.mutable_data();
+  for (const Eigen::Vector3d& point : points)
+    for (const double coordinate : point)
+      data.append(reinterpret_cast<const char*>(&coordinate), sizeof coordinate);
+  return message;
+}
 
 std::vector<Eigen::Vector3d> surface_points(const std::vector<Obstacle>& obstacles, double step_m) {
   std::vector<Eigen::Vector3d> points;

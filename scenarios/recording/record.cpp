@@ -22,25 +22,19 @@ double longest_flight_s(const Scenario& scenario) {
   return std::min(scenario.time_limit_s, scenario.launch.rest_s + 1 + scenario.goal_x_m() / slow_mps);
 }
 
-/// How a scenario's cameras and IMU are carried.
-struct Carriage {
-  CalibratedRig rig;  ///< rig_of's
-  std::vector<Obstacle> obstacles;
-  std::function<Truth(std::int64_t t_ns)> truth_at;  ///< called step by step from 0
-  std::int64_t end_ns = 0;                           ///< end of the recording
-};
-
-Carried carry_recorded(const Scenario& scenario, const Carriage& carriage, const FlyOptions& options) {
+/// Carries a scenario's cameras and IMU. `truth_at` is called step by step from 0.
+Carried carry_recorded(const Scenario& scenario, const CalibratedRig& rig,
+                       const std::function<Truth(std::int64_t t_ns)>& truth_at, std::int64_t end_ns,
+                       const FlyOptions& options) {
   const Stopwatch stopwatch;
-  EurocRecording recording(options.output_folder, scenario, carriage.rig,
-                           static_cast<double>(carriage.end_ns) * 1e-9);
+  EurocRecording recording(options.output_folder, scenario, rig, static_cast<double>(end_ns) * 1e-9);
   const World world = world_of(scenario, options.models_folder);
-  const auto cameras = cameras_of(scenario, world, carriage.rig, options.renderer);
+  const auto cameras = cameras_of(scenario, world, rig, options.renderer);
   Imu imu(scenario.sensors.imu, seed_for(scenario.sensor_seed(), "imu"));
   Carried carried;
-  Eigen::Vector3d before_world = carriage.truth_at(0).T_world_body.translation();
-  for (FlightClock clock(scenario); clock.t_ns() < carriage.end_ns; clock.advance()) {
-    const Truth truth = carriage.truth_at(clock.t_ns());
+  Eigen::Vector3d before_world = truth_at(0).T_world_body.translation();
+  for (FlightClock clock(scenario); clock.t_ns() < end_ns; clock.advance()) {
+    const Truth truth = truth_at(clock.t_ns());
     carried.carried_s = clock.t_s();
     carried.carried_m += (truth.T_world_body.translation() - before_world).norm();
     before_world = truth.T_world_body.translation();
@@ -69,27 +63,22 @@ FlownRecording fly_recorded(const Scenario& scenario, FlyOptions options) {
 }
 
 RecordedWalk walk_recorded(const Scenario& scenario, const WalkConfig& config, const FlyOptions& options) {
-  Carriage carriage;
-  carriage.rig = rig_of(scenario, options.models_folder);
-  carriage.obstacles = course_obstacles(scenario);
-  const WalkPath path = walk_path(config, scenario, carriage.rig.rig, carriage.obstacles);
-  carriage.truth_at = [&](std::int64_t t_ns) { return walk_truth(path, t_ns); };
+  const CalibratedRig rig = rig_of(scenario, options.models_folder);
+  const WalkPath path = walk_path(config, scenario, rig.rig, course_obstacles(scenario));
+  const auto truth_at = [&](std::int64_t t_ns) { return walk_truth(path, t_ns); };
   const double way_s = (scenario.goal_x_m() - path.from_x_m) / config.speed_mps;
-  carriage.end_ns = std::llround(std::min(way_s, scenario.time_limit_s) * 1e9);
-  return {path, carry_recorded(scenario, carriage, options)};
+  const std::int64_t end_ns = std::llround(std::min(way_s, scenario.time_limit_s) * 1e9);
+  return {path, carry_recorded(scenario, rig, truth_at, end_ns, options)};
 }
 
 Carried follow_recorded(const Scenario& scenario, const std::vector<TimedPose>& poses,
                         const FlyOptions& options) {
   const SmoothPath path(thinned(poses));
-  Carriage carriage;
-  carriage.rig = rig_of(scenario, options.models_folder);
-  carriage.obstacles = course_obstacles(scenario);
-  carriage.truth_at = [&](std::int64_t t_ns) {
+  const auto truth_at = [&](std::int64_t t_ns) {
     return carried_truth([&](double t_s) { return path.at(t_s); }, t_ns, scenario.airframe.gravity_mps2);
   };
-  carriage.end_ns = std::llround(path.length_s() * 1e9) + 1;  // the last pose, too
-  return carry_recorded(scenario, carriage, options);
+  const std::int64_t end_ns = std::llround(path.length_s() * 1e9) + 1;  // the last pose, too
+  return carry_recorded(scenario, rig_of(scenario, options.models_folder), truth_at, end_ns, options);
 }
 
 }  // namespace understory

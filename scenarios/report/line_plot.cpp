@@ -23,16 +23,11 @@ constexpr double character_width = 6.3;  // of the 11 px sans-serif face, on the
 
 std::string escaped(const std::string& text) {
   std::string safe;
-  for (const char letter : text) {
-    if (letter == '&')
-      safe += "&amp;";
-    else if (letter == '<')
-      safe += "&lt;";
-    else if (letter == '>')
-      safe += "&gt;";
-    else
-      safe += letter;
-  }
+  for (const char letter : text)
+    safe += letter == '&'   ? "&amp;"
+            : letter == '<' ? "&lt;"
+            : letter == '>' ? "&gt;"
+                            : std::string(1, letter);
   return safe;
 }
 

@@ -82,16 +82,6 @@ void PageArrays::add(std::string_view name, int components, const std::vector<fl
   add(name, "i16", components, values.size(), std::as_bytes(std::span(rounded)), scale);
 }
 
-void PageArrays::add(std::string_view name, int components, const std::vector<std::uint32_t>& values) {
-  add(name, "u32", components, values.size(), std::as_bytes(std::span(values)));
-}
-void PageArrays::add(std::string_view name, int components, const std::vector<std::uint16_t>& values) {
-  add(name, "u16", components, values.size(), std::as_bytes(std::span(values)));
-}
-void PageArrays::add(std::string_view name, int components, const std::vector<std::uint8_t>& values) {
-  add(name, "u8", components, values.size(), std::as_bytes(std::span(values)));
-}
-
 std::string packed_part(const std::string& facts, const PageArrays& arrays) {
   const std::string json = with_arrays(facts, arrays);
   const auto length = static_cast<std::uint32_t>(json.size());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -19,9 +20,14 @@ class PageArrays {
 
   /// `components` values belong together: 3 for a place.
   void add(std::string_view name, int components, const std::vector<float>& values);
-  void add(std::string_view name, int components, const std::vector<std::uint32_t>& values);
-  void add(std::string_view name, int components, const std::vector<std::uint16_t>& values);
-  void add(std::string_view name, int components, const std::vector<std::uint8_t>& values);
+  template <std::unsigned_integral Value>
+  void add(std::string_view name, int components, const std::vector<Value>& values) {
+    add(name,
+        sizeof(Value) == 1   ? "u8"
+        : sizeof(Value) == 2 ? "u16"
+                             : "u32",
+        components, values.size(), std::as_bytes(std::span(values)));
+  }
 
   /// A JSON list: name, type, components, count, offset of each, and what rounded values are to be multiplied
   /// by.

@@ -123,14 +123,11 @@ void visit_fields(FieldVisitor& visit, AutopilotSection& section) {
 }
 
 void visit_fields(FieldVisitor& visit, IdealConfig& ideal) {
-  visit(
-      "parts", ideal.parts,
-      "one or more parts of the stack, which are replaced by ideal ones from from_s on: detection finds "
-      "every obstacle at "
-      "the depths in use and nothing else; sight finds all that stands within 40 m; map forgets and filters "
-      "nothing away; state is the truth; latency is none; search is 20 times as long; tracking flies the "
-      "plan "
-      "as the planner predicts it. Understory explain uses it. | docs/explain.md");
+  visit("parts", ideal.parts,
+        "one or more parts of the stack, which are replaced by ideal ones from from_s on: detection finds "
+        "every obstacle at the depths in use and nothing else; sight finds all that stands within 40 m; map "
+        "forgets and filters nothing away; state is the truth; latency is none; search is 20 times as long; "
+        "tracking flies the plan as the planner predicts it. Understory explain uses it. | docs/explain.md");
   visit("from_s", ideal.from_s, 0.0, 600.0,
         "simulated time from which the parts are ideal and noise is redrawn");
   visit("redraw", ideal.redraw, std::uint64_t{0}, maximum_seed,
@@ -138,8 +135,7 @@ void visit_fields(FieldVisitor& visit, IdealConfig& ideal) {
         "from_s; 0: they go on as they were");
   visit("hits", ideal.hits,
         "File with the hits of an earlier flight until from_s, as explain writes it: images of that time are "
-        "not "
-        "drawn. It requires redraw.");
+        "not drawn. It requires redraw.");
 }
 
 void visit_fields(FieldVisitor& visit, Scenario& scenario) {

@@ -73,8 +73,6 @@ struct ComputeConfig {
   double stereo_sgbm_s = 0.0127;
 };
 
-void visit_fields(FieldVisitor& visit, ComputeConfig& config);
-
 struct PerceptionSection {
   std::string detector = "pushbroom";
   PushbroomPreset preset = PushbroomPreset::tuned;
@@ -135,8 +133,6 @@ struct FileConfig {
   std::string file;
   std::string hash;
 };
-
-void visit_fields(FieldVisitor& visit, FileConfig& read);
 
 struct Scenario {
   std::string name = "unnamed";
@@ -206,13 +202,10 @@ struct Scenario {
   std::uint64_t planner_seed() const { return autopilot.seed == 0 ? seed : autopilot.seed; }
 };
 
-void visit_fields(FieldVisitor& visit, BandConfig& band);
 void visit_fields(FieldVisitor& visit, CameraSection& section);
 void visit_fields(FieldVisitor& visit, SensorSection& section);
 void visit_fields(FieldVisitor& visit, PerceptionSection& section);
-void visit_fields(FieldVisitor& visit, EstimationSection& section);
 void visit_fields(FieldVisitor& visit, AutopilotSection& section);
-void visit_fields(FieldVisitor& visit, IdealConfig& ideal);
 void visit_fields(FieldVisitor& visit, Scenario& scenario);
 
 }  // namespace understory

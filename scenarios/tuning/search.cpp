@@ -113,13 +113,6 @@ std::string to_yaml(const Space& space, const Point& point) {
   return yaml;
 }
 
-std::string in_words(const Space& space, const Point& point) {
-  std::vector<std::string> words;
-  for (std::size_t i = 0; i < point.size(); ++i)
-    words.push_back(fmt::format("{} {:g}", short_key(space.parameters[i].key), point[i]));
-  return fmt::format("{}", fmt::join(words, ", "));
-}
-
 std::size_t grid_size(const Space& space) {
   std::size_t size = 1;
   for (const std::vector<double>& axis : grid_axes(space)) size *= axis.size();

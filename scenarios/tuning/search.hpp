@@ -13,8 +13,6 @@
 
 namespace understory {
 
-class FieldVisitor;
-
 /// A value for each parameter, in their order.
 using Point = std::vector<double>;
 
@@ -45,8 +43,6 @@ struct Space {
 std::vector<std::string> keys_of(const Space& space);
 /// The keys of a point as YAML in groups, for load_scenario's `with`.
 std::string to_yaml(const Space& space, const Point& point);
-/// As people read it: "minimum_edge_sum 215, score_limit 0.25".
-std::string in_words(const Space& space, const Point& point);
 
 enum class SearchMethod {
   random,  ///< every parameter drawn evenly over its range, on its scale
@@ -67,8 +63,6 @@ struct SearchConfig {
   std::uint64_t seed = 1;
   int sensitivity_points = 9;  ///< afterwards, of each parameter alone over its range; 2 .. 1000
 };
-
-void visit_fields(FieldVisitor& visit, SearchConfig& search);
 
 /// Measures one point. An exception from it ends the search and is passed on.
 using Evaluate = std::function<Figures(const Point&)>;

@@ -59,6 +59,23 @@ void add_winglet(Wrench& sum, const Airframe& airframe, const RecordsFlow& flow,
   add(sum, position, {plate.along, plate.across, 0});
 }
 
+/// Unknowns: angle of attack (rad), elevon (rad), thrust (N). Residual: forces along body x and z in shares
+/// of the weight, pitching moment in shares of weight times chord.
+Eigen::Vector3d residual(const Airframe& airframe, double airspeed_mps, double climb_angle_rad,
+                         const Eigen::Vector3d& unknowns) {
+  const double attack = unknowns.x();
+  AirState air;
+  air.air_velocity_body_mps = airspeed_mps * Eigen::Vector3d(std::cos(attack), 0, -std::sin(attack));
+  air.left_elevon_rad = air.right_elevon_rad = unknowns.y();
+  air.thrust_n = unknowns.z();
+  const Wrench wrench = aerodynamic_wrench(airframe, air);
+  const double weight_n = airframe.mass_kg * airframe.gravity_mps2;
+  const double pitch = climb_angle_rad + attack;
+  return {(wrench.force_body_n.x() - weight_n * std::sin(pitch)) / weight_n,
+          (wrench.force_body_n.z() - weight_n * std::cos(pitch)) / weight_n,
+          wrench.moment_body_nm.y() / (weight_n * airframe.chord_m)};
+}
+
 }  // namespace
 
 Wrench aerodynamic_wrench(const Airframe& airframe, const AirState& air) {
@@ -91,26 +108,6 @@ double angle_of_attack_rad(const Eigen::Vector3d& air_velocity_body_mps) {
 double sideslip_rad(const Eigen::Vector3d& air_velocity_body_mps) {
   return std::atan2(air_velocity_body_mps.y(), air_velocity_body_mps.x());
 }
-namespace {
-
-/// Unknowns: angle of attack (rad), elevon (rad), thrust (N). Residual: forces along body x and z in shares
-/// of the weight, pitching moment in shares of weight times chord.
-Eigen::Vector3d residual(const Airframe& airframe, double airspeed_mps, double climb_angle_rad,
-                         const Eigen::Vector3d& unknowns) {
-  const double attack = unknowns.x();
-  AirState air;
-  air.air_velocity_body_mps = airspeed_mps * Eigen::Vector3d(std::cos(attack), 0, -std::sin(attack));
-  air.left_elevon_rad = air.right_elevon_rad = unknowns.y();
-  air.thrust_n = unknowns.z();
-  const Wrench wrench = aerodynamic_wrench(airframe, air);
-  const double weight_n = airframe.mass_kg * airframe.gravity_mps2;
-  const double pitch = climb_angle_rad + attack;
-  return {(wrench.force_body_n.x() - weight_n * std::sin(pitch)) / weight_n,
-          (wrench.force_body_n.z() - weight_n * std::cos(pitch)) / weight_n,
-          wrench.moment_body_nm.y() / (weight_n * airframe.chord_m)};
-}
-
-}  // namespace
 
 std::optional<Trim> straight_trim(const Airframe& airframe, double airspeed_mps, double climb_angle_rad,
                                   double max_angle_of_attack_rad) {

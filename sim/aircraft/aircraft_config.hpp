@@ -59,8 +59,6 @@ struct GustConfig {
   Eigen::Vector3d amplitude_world_mps = Eigen::Vector3d::Zero();
 };
 
-void visit_fields(FieldVisitor& visit, GustConfig& config);
-
 /// Wind in addition to the mean. Everything is off by default.
 struct WindConfig {
   double reference_height_m = 6.096;

@@ -9,6 +9,34 @@ namespace {
 
 constexpr std::size_t table_size = std::size_t{1} << 19;
 
+/// std::generate_canonical<double, 53> to the bit: the compiler's conversion of 64 bits without sign branches
+/// on the highest, which is a coin.
+double drawn(std::mt19937_64& generator) {
+  const std::uint64_t bits = generator();
+  const auto high = static_cast<double>(static_cast<std::int64_t>(bits >> 32));
+  const auto low = static_cast<double>(static_cast<std::int64_t>(bits & 0xffffffffu));
+  const double value = (high * 0x1p32 + low) * 0x1p-64;
+  return value < 1.0 ? value : std::nextafter(1.0, 0.0);
+}
+
+/// The factor of Marsaglia's polar method for a point of the unit disc, from its squared distance.
+double stretch(double square) { return std::sqrt(-2 * std::log(square) / square); }
+
+/// Bounds of stretch() between two steps of the squared distance, a little wide for its rounding.
+struct StretchBounds {
+  double minimum, maximum;
+};
+constexpr int bound_count = 1024;
+
+std::array<StretchBounds, bound_count> stretch_bounds() {
+  std::array<StretchBounds, bound_count> bounds;
+  const auto at = [](int step) { return stretch(static_cast<double>(step) / bound_count); };  // it falls
+  for (int i = 0; i < bound_count; ++i)
+    bounds[static_cast<std::size_t>(i)] = {at(i + 1) * (1 - 1e-12), at(std::max(i, 1)) * (1 + 1e-12)};
+  bounds[0].maximum = 1e100;  // without bound, but times zero still zero
+  return bounds;
+}
+
 }  // namespace
 
 ImageNoise::ImageNoise(double deviation_gray, std::uint64_t seed)
@@ -69,37 +97,6 @@ void PixelResponse::apply(int eye, cv::Mat& gray) {
     }
   }
 }
-namespace {
-
-/// std::generate_canonical<double, 53> to the bit: the compiler's conversion of 64 bits without sign branches
-/// on the highest, which is a coin.
-double drawn(std::mt19937_64& generator) {
-  const std::uint64_t bits = generator();
-  const auto high = static_cast<double>(static_cast<std::int64_t>(bits >> 32));
-  const auto low = static_cast<double>(static_cast<std::int64_t>(bits & 0xffffffffu));
-  const double value = (high * 0x1p32 + low) * 0x1p-64;
-  return value < 1.0 ? value : std::nextafter(1.0, 0.0);
-}
-
-/// The factor of Marsaglia's polar method for a point of the unit disc, from its squared distance.
-double stretch(double square) { return std::sqrt(-2 * std::log(square) / square); }
-
-/// Bounds of stretch() between two steps of the squared distance, a little wide for its rounding.
-struct StretchBounds {
-  double minimum, maximum;
-};
-constexpr int bound_count = 1024;
-
-std::array<StretchBounds, bound_count> stretch_bounds() {
-  std::array<StretchBounds, bound_count> bounds;
-  const auto at = [](int step) { return stretch(static_cast<double>(step) / bound_count); };  // it falls
-  for (int i = 0; i < bound_count; ++i)
-    bounds[static_cast<std::size_t>(i)] = {at(i + 1) * (1 - 1e-12), at(std::max(i, 1)) * (1 + 1e-12)};
-  bounds[0].maximum = 1e100;  // without bound, but times zero still zero
-  return bounds;
-}
-
-}  // namespace
 
 std::vector<std::int8_t> rounded_gaussians(std::size_t count, double deviation, std::mt19937_64& generator) {
   const auto bounds = stretch_bounds();

@@ -72,11 +72,7 @@ StereoOptics::StereoOptics(const StereoRig& rig, const CameraConfig& config,
   right.camera_matrix(1, 2) += vertical_misalignment_px_;  // the sensor sits higher, the picture lower
   const auto camera = [&](const CameraCalibration& calibration) {
     return RawCamera{matrix_of(calibration.rectification),
-                     rays_of(calibration, {raw->width_px, raw->height_px}),
-                     0,
-                     0,
-                     {},
-                     {}};
+                     rays_of(calibration, {raw->width_px, raw->height_px})};
   };
   raw_.emplace(std::array<RawCamera, 2>{camera(raw->left), camera(right)});
   view_focal_px_ = oversampling * std::max(raw->left.camera_matrix(0, 0), raw->right.camera_matrix(0, 0));

@@ -33,9 +33,9 @@ class StereoOptics {
   /// A raw camera's pixels as rays, and the pinhole view along its axis that contains them.
   struct RawCamera {
     Eigen::Matrix3d R_rectified_raw;
-    cv::Mat rays;                     ///< CV_64FC2: x/z, y/z of each raw pixel; NaN where there is none
-    double center_x_px, center_y_px;  ///< of the view
-    cv::Mat places, fractions;        ///< of the view for each raw pixel: cv::convertMaps' form
+    cv::Mat rays;  ///< CV_64FC2: x/z, y/z of each raw pixel; NaN where there is none
+    double center_x_px = 0, center_y_px = 0;  ///< of the view
+    cv::Mat places = {}, fractions = {};      ///< of the view for each raw pixel: cv::convertMaps' form
   };
   void make_views();
 

@@ -83,12 +83,13 @@ std::set<std::string> variables_that_change_bits() {
   return set;
 }
 
-OffscreenContext::OffscreenContext(const OffscreenOptions& options) {
-  setenv("LP_NUM_THREADS", std::to_string(options.raster_threads).c_str(), 0);
+OffscreenContext::OffscreenContext(RendererKind renderer) {
+  // A campaign runs one process a core, so more threads would only compete. Images do not depend on them.
+  setenv("LP_NUM_THREADS", "0", 0);
   // These two end the process or slow it.
   for (const char* wrapper : {"GALLIUM_DDEBUG", "GALLIUM_TRACE"}) unsetenv(wrapper);
   setenv("GALLIUM_DRIVER", "llvmpipe", 1);  // Mesa's others crash without their device, or draw other bits
-  backend_ = backend_of(options.renderer);
+  backend_ = backend_of(renderer);
 }
 
 void OffscreenContext::upload_level(unsigned texture, int level, int width_px, int height_px,

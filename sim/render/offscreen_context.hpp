@@ -10,15 +10,6 @@
 
 namespace understory {
 
-/// How the GL library works on this machine.
-struct OffscreenOptions {
-  RendererKind renderer = RendererKind::osmesa;
-  /// Threads llvmpipe rasterises with beside the caller's; 0: none. A campaign runs one process a core, so
-  /// more threads would only compete. LP_NUM_THREADS in the environment has priority. The images do not
-  /// depend on it.
-  int raster_threads = 0;
-};
-
 /// "NAME=VALUE" of the variables of the environment that are set and change what is drawn or computed.
 std::set<std::string> variables_that_change_bits();
 
@@ -29,7 +20,7 @@ class OffscreenContext {
  public:
   /// Throws std::runtime_error in one line, naming the Debian package, where the library or a context cannot
   /// be had, or where this process already draws through the other library.
-  explicit OffscreenContext(const OffscreenOptions& options = {});
+  explicit OffscreenContext(RendererKind renderer = RendererKind::osmesa);
 
   /// Makes the context current on this thread unless it is already, drawing into a picture of this size.
   void make_current(int width_px, int height_px) { backend_->make_current(width_px, height_px); }

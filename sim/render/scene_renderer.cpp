@@ -116,7 +116,7 @@ struct SceneRenderer::Scene {
   std::string stale_errors;
   std::thread::id thread = std::this_thread::get_id();
 
-  explicit Scene(RendererKind renderer) : gl({.renderer = renderer}) {
+  explicit Scene(RendererKind renderer) : gl(renderer) {
     mjr_defaultContext(&context);
     mjv_defaultScene(&shown);
   }

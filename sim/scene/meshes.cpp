@@ -33,38 +33,6 @@ void add_cap(TrunkMesh& mesh, int sides, double radius, double z, double side) {
     mesh.faces.emplace_back(first, first + (side > 0 ? i : i + 1), first + (side > 0 ? i + 1 : i));
 }
 
-}  // namespace
-
-TrunkMesh trunk_mesh(const Obstacle& obstacle, double tile_width_m, double tile_height_m) {
-  TrunkMesh mesh;
-  const double length = (obstacle.to_world - obstacle.from_world).norm();
-  const int sides = sides_of(obstacle.radius_m);
-  const double radius = corner_radius_m(obstacle.radius_m, sides);
-  const double girth_m = 2 * std::numbers::pi * obstacle.radius_m;
-  const double turns = std::max(1.0, std::round(girth_m / tile_width_m));
-  const double tiles_per_m = turns / girth_m * tile_width_m / tile_height_m;  // keeps the bark's proportions
-
-  for (int i = 0; i <= sides; ++i) {
-    const double share = static_cast<double>(i) / sides, angle = 2 * std::numbers::pi * share;
-    for (const double z : {0.0, length}) {
-      mesh.vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
-      mesh.normals.emplace_back(std::cos(angle), std::sin(angle), 0);
-      mesh.texture.emplace_back(turns * share, z * tiles_per_m + obstacle.texture_shift);
-    }
-  }
-  for (int i = 0; i < sides; ++i) {
-    const int low = 2 * i, next = low + 2;
-    mesh.faces.emplace_back(low, next, next + 1);
-    mesh.faces.emplace_back(low, next + 1, low + 1);
-  }
-  // A foot in the ground is never seen from below; vertices cost time in every picture.
-  if (obstacle.from_world.z() > 0.01) add_cap(mesh, sides, radius, 0, -1);
-  add_cap(mesh, sides, radius, length, 1);
-  return mesh;
-}
-
-namespace {
-
 /// Six faces; every face's picture stands upright where the face does.
 TrunkMesh box_mesh(const Eigen::Vector3d& half_m, double tile_width_m, double tile_height_m) {
   TrunkMesh mesh;
@@ -121,20 +89,6 @@ TrunkMesh capsule_mesh(double radius_m, double half_axis_m, double tile_width_m,
   return mesh;
 }
 
-}  // namespace
-
-TrunkMesh listed_mesh(const Obstacle& obstacle) {
-  const bool windowed = obstacle.texture == ObstacleTexture::windows,
-             barked = obstacle.texture == ObstacleTexture::bark;
-  const double width_m = windowed ? window_period_m : barked ? bark_width_m : ground_tile_m;
-  const double height_m = windowed ? storey_m : barked ? bark_height_m : ground_tile_m;
-  if (obstacle.kind == ObstacleKind::box) return box_mesh(obstacle.half_size_m, width_m, height_m);
-  const double half_axis_m = 0.5 * (obstacle.to_world - obstacle.from_world).norm();
-  return capsule_mesh(obstacle.radius_m, half_axis_m, width_m, height_m);
-}
-
-namespace {
-
 /// A filled rectangle of the tile, in metres from its middle and from its foot.
 struct Patch {
   double left_m, right_m, low_m, high_m;
@@ -169,6 +123,44 @@ void add_face(TrunkMesh& mesh, const std::array<Eigen::Vector3d, 4>& corners,
 }
 
 }  // namespace
+
+TrunkMesh trunk_mesh(const Obstacle& obstacle, double tile_width_m, double tile_height_m) {
+  TrunkMesh mesh;
+  const double length = (obstacle.to_world - obstacle.from_world).norm();
+  const int sides = sides_of(obstacle.radius_m);
+  const double radius = corner_radius_m(obstacle.radius_m, sides);
+  const double girth_m = 2 * std::numbers::pi * obstacle.radius_m;
+  const double turns = std::max(1.0, std::round(girth_m / tile_width_m));
+  const double tiles_per_m = turns / girth_m * tile_width_m / tile_height_m;  // keeps the bark's proportions
+
+  for (int i = 0; i <= sides; ++i) {
+    const double share = static_cast<double>(i) / sides, angle = 2 * std::numbers::pi * share;
+    for (const double z : {0.0, length}) {
+      mesh.vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+      mesh.normals.emplace_back(std::cos(angle), std::sin(angle), 0);
+      mesh.texture.emplace_back(turns * share, z * tiles_per_m + obstacle.texture_shift);
+    }
+  }
+  for (int i = 0; i < sides; ++i) {
+    const int low = 2 * i, next = low + 2;
+    mesh.faces.emplace_back(low, next, next + 1);
+    mesh.faces.emplace_back(low, next + 1, low + 1);
+  }
+  // A foot in the ground is never seen from below; vertices cost time in every picture.
+  if (obstacle.from_world.z() > 0.01) add_cap(mesh, sides, radius, 0, -1);
+  add_cap(mesh, sides, radius, length, 1);
+  return mesh;
+}
+
+TrunkMesh listed_mesh(const Obstacle& obstacle) {
+  const bool windowed = obstacle.texture == ObstacleTexture::windows,
+             barked = obstacle.texture == ObstacleTexture::bark;
+  const double width_m = windowed ? window_period_m : barked ? bark_width_m : ground_tile_m;
+  const double height_m = windowed ? storey_m : barked ? bark_height_m : ground_tile_m;
+  if (obstacle.kind == ObstacleKind::box) return box_mesh(obstacle.half_size_m, width_m, height_m);
+  const double half_axis_m = 0.5 * (obstacle.to_world - obstacle.from_world).norm();
+  return capsule_mesh(obstacle.radius_m, half_axis_m, width_m, height_m);
+}
 
 GrayTexture facade_texture(std::uint64_t seed) {
   TextureRequest plaster{

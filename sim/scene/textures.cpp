@@ -180,28 +180,6 @@ Moments moments(const std::vector<std::uint8_t>& gray) {
   return {mean, std::sqrt(square_sum / count)};
 }
 
-}  // namespace
-
-GrayTexture make_texture(const TextureRequest& request) {
-  GrayTexture texture{request.width_px, request.height_px, {}};
-  const std::vector<double> noise = noise_of(request);
-
-  // Clipping at black and white reduces the contrast. Increase it until the clipped result has the requested
-  // contrast.
-  const Moments raw = moments(noise);
-  double gain = request.contrast * request.mean_gray / raw.deviation, offset = request.mean_gray;
-  texture.gray.resize(noise.size());
-  shade(noise.data(), noise.size(), raw.mean, gain, offset, texture.gray.data());
-  for (int pass = 0; pass < 3; ++pass) {
-    const Moments got = moments(texture.gray);
-    if (got.deviation > 0) gain *= request.contrast * request.mean_gray / got.deviation;
-    offset += request.mean_gray - got.mean;
-    shade(noise.data(), noise.size(), raw.mean, gain, offset, texture.gray.data());
-  }
-  return texture;
-}
-namespace {
-
 constexpr int channels = 3;
 
 std::uint8_t average(int a, int b) { return static_cast<std::uint8_t>((a + b + 1) / 2); }
@@ -224,6 +202,25 @@ TextureLevel half_of(int width_px, int height_px, const std::uint8_t* rgb) {
 }
 
 }  // namespace
+
+GrayTexture make_texture(const TextureRequest& request) {
+  GrayTexture texture{request.width_px, request.height_px, {}};
+  const std::vector<double> noise = noise_of(request);
+
+  // Clipping at black and white reduces the contrast. Increase it until the clipped result has the requested
+  // contrast.
+  const Moments raw = moments(noise);
+  double gain = request.contrast * request.mean_gray / raw.deviation, offset = request.mean_gray;
+  texture.gray.resize(noise.size());
+  shade(noise.data(), noise.size(), raw.mean, gain, offset, texture.gray.data());
+  for (int pass = 0; pass < 3; ++pass) {
+    const Moments got = moments(texture.gray);
+    if (got.deviation > 0) gain *= request.contrast * request.mean_gray / got.deviation;
+    offset += request.mean_gray - got.mean;
+    shade(noise.data(), noise.size(), raw.mean, gain, offset, texture.gray.data());
+  }
+  return texture;
+}
 
 std::vector<TextureLevel> smaller_copies(int width_px, int height_px, const std::uint8_t* rgb) {
   std::vector<TextureLevel> copies;

@@ -47,8 +47,6 @@ struct WoodsConfig {
   bool leaves_end_flight = false;
 };
 
-void visit_fields(FieldVisitor& visit, WoodsConfig& config);
-
 /// Contents and appearance of a scene.
 struct WorldConfig {
   bool obstacles_visible = true;

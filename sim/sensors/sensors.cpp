@@ -19,6 +19,25 @@ Eigen::Matrix3d gain(double scale, double misalignment, std::uint64_t seed) {
   return Eigen::Matrix3d::Identity() + drawn;
 }
 
+/// The share of the dynamic pressure that reaches a tube at an angle to the air.
+double recovered(const Eigen::Vector3d& air_velocity_body, const PitotConfig& config) {
+  if (config.recovery_loss <= 0) return 1;
+  const double angle_rad = std::atan2(air_velocity_body.tail<2>().norm(), air_velocity_body.x());
+  const double beyond_rad = std::max(0.0, angle_rad - config.recovery_angle_rad);
+  return std::max(0.0, 1 - config.recovery_loss * beyond_rad * beyond_rad);
+}
+
+Eigen::Matrix3d bending(double sigma, std::uint64_t seed) {
+  NoiseSource noise(seed);
+  Eigen::Matrix3d drawn;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = row; column < 3; ++column) {
+      drawn(row, column) = drawn(column, row) = noise.gaussian(sigma);
+    }
+  }
+  return Eigen::Matrix3d::Identity() + drawn;
+}
+
 }  // namespace
 
 Imu::Imu(const ImuConfig& config, std::uint64_t seed)
@@ -62,17 +81,6 @@ ImuSample Imu::measure(const Truth& truth) {
       converted(force, config_.accelerometer_range_mps2, config_.accelerometer_step_mps2);
   return sample;
 }
-namespace {
-
-/// The share of the dynamic pressure that reaches a tube at an angle to the air.
-double recovered(const Eigen::Vector3d& air_velocity_body, const PitotConfig& config) {
-  if (config.recovery_loss <= 0) return 1;
-  const double angle_rad = std::atan2(air_velocity_body.tail<2>().norm(), air_velocity_body.x());
-  const double beyond_rad = std::max(0.0, angle_rad - config.recovery_angle_rad);
-  return std::max(0.0, 1 - config.recovery_loss * beyond_rad * beyond_rad);
-}
-
-}  // namespace
 
 Pitot::Pitot(const PitotConfig& config, double air_density_kgpm3, std::uint64_t seed)
     : config_(config),
@@ -112,20 +120,6 @@ BarometerSample Barometer::measure(const Truth& truth) {
                                 highest_m, config_.step_m);
   return sample;
 }
-namespace {
-
-Eigen::Matrix3d bending(double sigma, std::uint64_t seed) {
-  NoiseSource noise(seed);
-  Eigen::Matrix3d drawn;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = row; column < 3; ++column) {
-      drawn(row, column) = drawn(column, row) = noise.gaussian(sigma);
-    }
-  }
-  return Eigen::Matrix3d::Identity() + drawn;
-}
-
-}  // namespace
 
 Magnetometer::Magnetometer(const MagnetometerConfig& config, std::uint64_t seed)
     : config_(config),

@@ -246,10 +246,8 @@ void visit_fields(FieldVisitor& visit, FaultConfig& fault) {
         "time for which the sensor fails; the default is longer than any flight");
   visit("value", fault.value, -10000.0, 10000.0,
         "bias: what is added to the reading; saturate: its limit; block: the reading; in the sensor's unit. "
-        "cover: "
-        "the share of the images that is black, on the right, below 0 on the left; delay: how much later "
-        "frames "
-        "arrive, s, at most 0.3; weaken: the share of a command that the elevons follow.");
+        "cover: the share of the images that is black, on the right, below 0 on the left; delay: how much "
+        "later frames arrive, s, at most 0.3; weaken: the share of a command that the elevons follow.");
 }
 
 }  // namespace understory

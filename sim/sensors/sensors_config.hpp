@@ -35,8 +35,6 @@ struct ImuConfig {
   double propeller_hz_at_1n = 70;
 };
 
-void visit_fields(FieldVisitor& visit, ImuConfig& config);
-
 /// Pitot tube on a differential pressure sensor of 1 psi (TE/MEAS MS4525DO, total error band 1 % of span
 /// before zeroing; 14 bits over +-1 psi). The tube points along body x and measures the dynamic pressure of
 /// the air's speed along it. Airspeed is the root of the pressure, so below about 4 to 5 m/s (10 to 15 Pa)
@@ -52,8 +50,6 @@ struct PitotConfig {
   double recovery_loss = 0;
 };
 
-void visit_fields(FieldVisitor& visit, PitotConfig& config);
-
 /// Barometer (MEAS MS5611-01BA03: 0.012 to 0.065 mbar rms, a count is about 10 cm) read in the slipstream:
 /// 0.3 m of noise, and an offset that wanders as a first-order Gauss-Markov process, zero at the first
 /// sample.
@@ -64,8 +60,6 @@ struct BarometerConfig {
   double drift_time_s = 60.0;
   double wash_m_per_n = 0;
 };
-
-void visit_fields(FieldVisitor& visit, BarometerConfig& config);
 
 /// Magnetometer (Honeywell HMC5883L: 0.2 uT rms at best, 0.073 uT a count at its standard gain, +-130 uT)
 /// near a motor: 0.5 uT of noise and of hard iron left after calibration. The field is that of northern
@@ -80,8 +74,6 @@ struct MagnetometerConfig {
   double step_ut = 0.073;
 };
 
-void visit_fields(FieldVisitor& visit, MagnetometerConfig& config);
-
 /// Satellite receiver of the consumer class (u-blox M8: 2.5 m circular error of position, 0.05 m/s of
 /// velocity at best; 5 Hz, 0.2 s late and 0.2 m/s among trees on an aircraft that turns). Most of the
 /// position's error wanders with satellites and reflections: a first-order Gauss-Markov process that starts
@@ -95,8 +87,6 @@ struct GpsConfig {
   double position_drift_time_s = 60;
   double vertical_factor = 1.5;
 };
-
-void visit_fields(FieldVisitor& visit, GpsConfig& config);
 
 /// Rates must divide 1200 Hz (checked when a scenario is loaded).
 struct SensorsConfig {

@@ -1,4 +1,4 @@
-#include "sim/aircraft/ellipsoid_fluid.hpp"
+#include "tests/support/ellipsoid_fluid.hpp"
 
 #include <gtest/gtest.h>
 
