@@ -1,10 +1,12 @@
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
+#include "perception/io/text_table.hpp"
 #include "scenarios/campaign/campaign_summary.hpp"
+#include "scenarios/config/config_tree.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
 namespace understory {
@@ -21,19 +23,22 @@ struct CountedSeries {
   std::map<double, Count> at;
 };
 
-/// What conditions may differ in: the field of a row, and the key of a campaign's grid.
-struct PlotAxis {
-  double (*value)(const FlightRow&);
-  const char *key, *name, *label;
-};
-
-double speed_of(const FlightRow& row) { return row.cruise_speed_mps; }
-double density_of(const FlightRow& row) {
-  return row.square_metres_per_tree > 0 ? 10'000 / row.square_metres_per_tree : 0;
+/// Of a key of the grid whose values are all numbers; nothing where one is none.
+std::optional<PlotAxis> axis_of(const std::string& key, const std::vector<Condition>& conditions) {
+  std::map<std::string, double> values;
+  for (const Condition& condition : conditions)
+    for (const auto& [own, value] : condition.grid) {
+      if (own != key) continue;
+      const auto number = number_in<double>(value);
+      if (!number) return std::nullopt;
+      values[condition.name] = *number;
+    }
+  const auto value_of = [values](const FlightRow& row) {
+    const auto found = values.find(row.condition);
+    return found == values.end() ? 0 : found->second;
+  };
+  return PlotAxis{value_of, key, short_key(key), key};
 }
-constexpr PlotAxis speed_axis{speed_of, "autopilot.flight_model.cruise_speed_mps", "speed",
-                              "cruise speed asked (m/s)"};
-constexpr PlotAxis density_axis{density_of, "forest.square_metres_per_tree", "density", "trees per hectare"};
 
 constexpr AxisRange percent_range{-2, 102};  // dots at 0 and at 100 are whole
 
@@ -103,25 +108,6 @@ bool is_scanned(const std::vector<FlightRow>& rows, const Conditions& conditions
                              [](const CountedSeries& one) { return one.at.size() > 1; });
 }
 
-LinePlot success_over(const std::vector<FlightRow>& all_rows, const Conditions& conditions,
-                      const PlotAxis& axis) {
-  const std::vector<FlightRow> rows = flown_ones(all_rows);
-  const std::string scenario = scenario_of_rows(rows, conditions);
-  LinePlot plot = success_plot(titled(scenario, fmt::format("success over {}", axis.name)), axis.label);
-  const std::vector<CountedSeries> all = counted(rows, conditions, axis, scenario);
-  const double apart = 0.008 * span_of(rows, axis);
-  double aside = -0.5 * apart * (static_cast<double>(all.size()) - 1);
-  for (const CountedSeries& one : all) {
-    Series series;
-    series.name = one.name;
-    series.mark = one.at.size() > 1 ? Mark::line_and_dots : Mark::dots;
-    for (const auto& [x, count] : one.at) add_point(series, x + aside, count);
-    plot.series.push_back(std::move(series));
-    aside += apart;
-  }
-  return plot;
-}
-
 /// A curve's corners: along each step, then down to the next.
 Series steps_of(const ConditionSummary& summary) {
   Series series;
@@ -142,12 +128,38 @@ Series steps_of(const ConditionSummary& summary) {
 
 }  // namespace
 
-LinePlot success_over_speed(const std::vector<FlightRow>& rows, const Conditions& conditions) {
-  return success_over(rows, conditions, speed_axis);
+std::vector<PlotAxis> axes_of(const Conditions& conditions) {
+  std::vector<PlotAxis> axes{{[](const FlightRow& row) { return row.cruise_speed_mps; },
+                              "autopilot.flight_model.cruise_speed_mps", "speed", "cruise speed asked (m/s)"},
+                             {[](const FlightRow& row) {
+                                return row.square_metres_per_tree > 0 ? 10'000 / row.square_metres_per_tree
+                                                                      : 0;
+                              },
+                              "forest.square_metres_per_tree", "density", "trees per hectare"}};
+  for (const Condition& condition : conditions)
+    for (const auto& [key, value] : condition.grid)
+      if (std::ranges::find(axes, key, &PlotAxis::key) == axes.end())
+        if (auto axis = axis_of(key, conditions)) axes.push_back(std::move(*axis));
+  return axes;
 }
 
-LinePlot success_over_density(const std::vector<FlightRow>& rows, const Conditions& conditions) {
-  return success_over(rows, conditions, density_axis);
+LinePlot success_over(const std::vector<FlightRow>& all_rows, const Conditions& conditions,
+                      const PlotAxis& axis) {
+  const std::vector<FlightRow> rows = flown_ones(all_rows);
+  const std::string scenario = scenario_of_rows(rows, conditions);
+  LinePlot plot = success_plot(titled(scenario, fmt::format("success over {}", axis.name)), axis.label);
+  const std::vector<CountedSeries> all = counted(rows, conditions, axis, scenario);
+  const double apart = 0.008 * span_of(rows, axis);
+  double aside = -0.5 * apart * (static_cast<double>(all.size()) - 1);
+  for (const CountedSeries& one : all) {
+    Series series;
+    series.name = one.name;
+    series.mark = one.at.size() > 1 ? Mark::line_and_dots : Mark::dots;
+    for (const auto& [x, count] : one.at) add_point(series, x + aside, count);
+    plot.series.push_back(std::move(series));
+    aside += apart;
+  }
+  return plot;
 }
 
 LinePlot success_by_condition(const std::vector<FlightRow>& all_rows, const Conditions& conditions) {
@@ -196,8 +208,8 @@ std::string campaign_svg(const std::vector<FlightRow>& all_rows, const Condition
   const std::vector<FlightRow> rows = flown_ones(all_rows);
   if (rows.empty()) return "";
   std::vector<LinePlot> panels;
-  if (is_scanned(rows, conditions, speed_axis)) panels.push_back(success_over_speed(rows, conditions));
-  if (is_scanned(rows, conditions, density_axis)) panels.push_back(success_over_density(rows, conditions));
+  for (const PlotAxis& axis : axes_of(conditions))
+    if (is_scanned(rows, conditions, axis)) panels.push_back(success_over(rows, conditions, axis));
   if (panels.empty()) panels.push_back(success_by_condition(rows, conditions));
   for (LinePlot& panel : survival_curves(rows, conditions)) panels.push_back(std::move(panel));
   return to_svg(panels, 2);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -35,13 +36,20 @@ Table summary_table(const std::vector<ConditionSummary>& summaries);
 
 // Plots take a row's scenario, overrides and grid from its condition, or the condition's name alone.
 
-/// Share of flights that reached the goal, with 95 % Wilson bars, over the speed asked (m/s). Conditions that
-/// differ in nothing but the speed form a series, joined by a line. Points are set a little apart sideways
-/// where series share a speed.
-LinePlot success_over_speed(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions);
+/// What conditions may differ in: a column of a row, or a numeric key of a campaign's grid.
+struct PlotAxis {
+  std::function<double(const FlightRow&)> value;
+  std::string key, name, label;
+};
 
-/// The same over trees per hectare.
-LinePlot success_over_density(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions);
+/// Cruise speed (m/s), trees per hectare, and every other key of the grid whose values are numbers.
+std::vector<PlotAxis> axes_of(const std::vector<Condition>& conditions);
+
+/// Share of flights that reached the goal, with 95 % Wilson bars, over the axis. Conditions that differ in
+/// nothing else form a series, joined by a line. Points are set a little apart sideways where series share a
+/// value.
+LinePlot success_over(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions,
+                      const PlotAxis& axis);
 
 /// The same side by side: a place per condition, with its name.
 LinePlot success_by_condition(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/config/config_tree.hpp"
@@ -89,6 +90,14 @@ void visit_numbers(Visitor& visit, LogFrame& frame) {
   visit(frame.hits, whole);
 }
 
+/// A whole number or an enumerator, which a damaged file may have anywhere.
+template <typename Visitor, typename Whole>
+void visit_whole(Visitor& visit, Whole& field, std::int64_t least, std::int64_t most) {
+  auto number = static_cast<std::int64_t>(field);
+  visit(number, whole);
+  if constexpr (Visitor::reads) field = static_cast<Whole>(std::clamp(number, least, most));
+}
+
 template <typename Visitor>
 void visit_numbers(Visitor& visit, Eigen::Vector3d& place) {
   visit_vector(visit, place, metre);
@@ -100,9 +109,7 @@ void visit_numbers(Visitor& visit, LogPoint& one) {
   visit(one.point.t_ns, whole);
   visit(one.point.score, share);
   visit(one.point.distance_flown_m, metre);
-  std::int64_t sightings = one.point.sightings;
-  visit(sightings, whole);
-  one.point.sightings = static_cast<int>(sightings);
+  visit_whole(visit, one.point.sightings, 0, std::numeric_limits<int>::max());
   // The true place hangs together with the other by the frame's drift, which changes slowly.
   Eigen::Vector3d drift = one.true_position_world - one.point.position_world;
   visit_vector(visit, drift, metre);
@@ -114,9 +121,7 @@ void visit_numbers(Visitor& visit, LogPoint& one) {
 template <typename Visitor>
 void visit_numbers(Visitor& visit, LogPlan& plan) {
   visit(plan.t_ns, whole);
-  auto origin = static_cast<std::int64_t>(plan.origin);
-  visit(origin, whole);
-  if constexpr (Visitor::reads) plan.origin = static_cast<PlanOrigin>(std::clamp<std::int64_t>(origin, 0, 3));
+  visit_whole(visit, plan.origin, 0, 3);
   visit(plan.clearance_m, metre);
   auto points = static_cast<std::int64_t>(plan.way_odometry.size());
   visit(points, whole);
@@ -130,24 +135,14 @@ void visit_numbers(Visitor& visit, Obstacle& obstacle) {
   visit(obstacle.radius_m, metre);
   for (double& part : obstacle.turn_world.coeffs()) visit(part, turn);
   visit_vector(visit, obstacle.half_size_m, metre);
-  std::int64_t tree = obstacle.tree;
-  visit(tree, whole);
-  if constexpr (Visitor::reads)
-    obstacle.tree = static_cast<int>(std::clamp<std::int64_t>(tree, -1, 1'000'000));
-  auto kind = static_cast<std::int64_t>(obstacle.kind);
-  visit(kind, whole);
-  if constexpr (Visitor::reads)
-    obstacle.kind = static_cast<ObstacleKind>(
-        std::clamp<std::int64_t>(kind, 0, static_cast<std::int64_t>(obstacle_kind_names.size()) - 1));
+  visit_whole(visit, obstacle.tree, -1, 1'000'000);
+  visit_whole(visit, obstacle.kind, 0, static_cast<std::int64_t>(obstacle_kind_names.size()) - 1);
 }
 
 template <typename Visitor>
 void visit_numbers(Visitor& visit, Eigen::Vector3i& face) {
-  for (int& corner : face) {
-    std::int64_t number = corner;
-    visit(number, whole);
-    corner = static_cast<int>(number);
-  }
+  for (int& corner : face)
+    visit_whole(visit, corner, std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
 }
 
 template <typename Visitor>

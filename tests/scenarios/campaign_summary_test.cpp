@@ -86,7 +86,7 @@ TEST(CampaignPlots, JoinsConditionsThatDifferInSpeedOnly) {
   add_ten(rows, "d", 12, 25, 1);
   add_ten(rows, "e", 10, 25, 5);
   rows.push_back(failed_row("b", 99, "hung"));
-  const LinePlot plot = success_over_speed(rows, conditions);
+  const LinePlot plot = success_over(rows, conditions, axes_of(conditions)[0]);
   ASSERT_EQ(plot.series.size(), 3u);
   EXPECT_EQ(plot.series[0].name, "my-forest, ours=new");
   EXPECT_EQ(plot.series[0].y, (std::vector<double>{100, 80}));
@@ -105,12 +105,28 @@ TEST(CampaignPlots, DensityIsTreesPerHectare) {
                                           {"b", "", "forest", "late", {{density_key, "50"}}}};
   add_ten(rows, "a", 10, 25, 5);
   add_ten(rows, "b", 10, 50, 5);
-  const LinePlot plot = success_over_density(rows, conditions);
+  const LinePlot plot = success_over(rows, conditions, axes_of(conditions)[1]);
   ASSERT_EQ(plot.series.size(), 2u);
   EXPECT_EQ(plot.series[0].name, "forest");
   EXPECT_NEAR(plot.series[0].x[0], 400, 5);
   EXPECT_EQ(plot.series[1].name, "late");
   EXPECT_NEAR(plot.series[1].x[0], 200, 5);
+}
+
+TEST(CampaignPlots, AnyNumericKeyOfTheGridIsAnAxis) {
+  const std::string key = "perception.pushbroom.score_limit", word = "perception.preset";
+  std::vector<FlightRow> rows;
+  const std::vector<Condition> conditions{{"a", "", "forest", "", {{key, "0.3"}, {word, "tuned"}}},
+                                          {"b", "", "forest", "", {{key, "0.1"}, {word, "tuned"}}}};
+  add_ten(rows, "a", 10, 25, 5);
+  add_ten(rows, "b", 10, 25, 9);
+  ASSERT_EQ(axes_of(conditions).size(), 3u);
+  const LinePlot plot = success_over(rows, conditions, axes_of(conditions)[2]);
+  EXPECT_EQ(plot.x_label, key);
+  ASSERT_EQ(plot.series.size(), 1u);
+  EXPECT_EQ(plot.series[0].x, (std::vector<double>{0.1, 0.3}));
+  EXPECT_EQ(plot.series[0].y, (std::vector<double>{90, 50}));
+  expect_part(campaign_svg(rows, conditions), "success over score_limit");
 }
 
 TEST(CampaignPlots, WithoutAnAxisConditionsStandSideBySide) {

@@ -47,13 +47,20 @@ export interface CourseFact {
   minimum_altitude_m: number; maximum_altitude_m: number; cruise_altitude_m: number;
 }
 
-export interface FlightFacts {
-  kind: "flight";
+interface PageFacts {
   title: string;
+  program?: string;
+  warning?: string;
+  sentence?: string;
+  sections?: SectionFact[];
+  arrays?: ArrayFact[];
+}
+
+export interface FlightFacts extends PageFacts {
+  kind: "flight";
   program: string;
   outcome: "goal" | "collision" | "ground" | "out_of_bounds" | "time" | "aborted";
   sentence: string;
-  warning?: string;
   story?: string[];
   command?: string;
   scenario?: string;
@@ -72,8 +79,6 @@ export interface FlightFacts {
   events?: EventFact[];
   decimation?: string[];
   film?: { times: string } | null;
-  sections?: SectionFact[];
-  arrays?: ArrayFact[];
 }
 
 export interface Condition {
@@ -97,12 +102,8 @@ export interface GateFact {
   pairs?: [string, string | number, string, string][]; // condition, seed, outcome of the baseline, of the candidate
 }
 
-export interface CampaignFacts {
+export interface CampaignFacts extends PageFacts {
   kind: "campaign";
-  title: string;
-  program?: string;
-  warning?: string;
-  sentence?: string;
   conditions: Condition[];
   grid_keys?: string[];
   outcomes: string[];
@@ -111,8 +112,6 @@ export interface CampaignFacts {
   rows: { ids: string[]; seeds: string[]; reasons: string[]; touched: string[]; commands: string[] };
   tracks?: Record<string, string>;
   gate?: GateFact | null;
-  sections?: SectionFact[];
-  arrays?: ArrayFact[];
 }
 
 export interface PlotFact {
@@ -120,7 +119,7 @@ export interface PlotFact {
   y_label: string;
   series: { name: string; x: string; y: string; lower?: string; upper?: string; mark: Mark; labels?: string[] }[];
   references?: Reference[];
-  x_names?: [number, string][];
+  x_names?: [number, string][]; // of places along x, in the place of numbers
 }
 
 /// A line across the plot at one value.
@@ -141,12 +140,6 @@ export interface SectionFact {
   pictures?: { caption: string; block: string; type: string }[];
 }
 
-export interface SheetFacts {
+export interface SheetFacts extends PageFacts {
   kind: "sheet";
-  title: string;
-  program?: string;
-  warning?: string;
-  sentence?: string;
-  sections?: SectionFact[];
-  arrays?: ArrayFact[];
 }

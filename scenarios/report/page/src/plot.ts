@@ -1,7 +1,7 @@
 // Curves, steps and points with their intervals over one axis, as SVG: the page's style colours it.
 
 import { make, make_button, say_number, show_tip } from "./elements";
-import type { Mark, Reference } from "./facts";
+import type { Mark, PlotFact } from "./facts";
 
 export interface Series {
   name: string;
@@ -13,13 +13,7 @@ export interface Series {
   labels?: string[];
 }
 
-interface PlotWords {
-  title: string;
-  x_label: string;
-  y_label: string;
-  references?: Reference[];
-  x_names?: [number, string][]; // of places along x, in the place of numbers
-}
+type PlotWords = Omit<PlotFact, "series"> & { title: string };
 
 const height_px = 300;
 const margin_px = { left: 52, right: 12, top: 10, bottom: 40 };
