@@ -17,15 +17,16 @@ Autopilot::Autopilot(const AutopilotConfig& config, const Airframe& airframe, co
       detector_(&detector),
       state_source_(&state_source),
       model_(airframe, config.flight_model),
-      planner_(planner),
+      planner_(&planner),
       map_(config.map),
       resightings_(config.resightings) {}
 
 void Autopilot::change(const AutopilotConfig& config, ObstacleDetector& detector, StateSource& state_source,
-                       const LocalMap::Place& place) {
+                       Planner& planner, const LocalMap::Place& place) {
   config_ = config;
   detector_ = &detector;
   state_source_ = &state_source;
+  planner_ = &planner;
   map_.change(config.map);
   if (!place) return;
   map_.move(place);
@@ -63,7 +64,7 @@ bool Autopilot::concerns_the_plan(std::int64_t t_ns) const {
   const std::vector<ObstaclePoint>& points = map_.points();  // new ones come last
   for (auto point = points.rbegin(); point != points.rend(); ++point) {
     if (point->t_ns != t_ns || point->sightings != 1) break;
-    if (planner_.concerns(*point, plan)) return true;
+    if (planner_->concerns(*point, plan)) return true;
   }
   return false;
 }
@@ -90,7 +91,7 @@ void Autopilot::replan(std::int64_t t_ns) {
   start.position_world.z() -= ground_m;
   std::vector<ObstaclePoint> points = map_.trusted_points();
   for (ObstaclePoint& point : points) point.position_world.z() -= ground_m;
-  next_plan_ = planner_.plan({start, effective_ns, std::move(points), state.distance_flown_m, outdated});
+  next_plan_ = planner_->plan({start, effective_ns, std::move(points), state.distance_flown_m, outdated});
   next_plan_due_ns_ = t_ns + nanoseconds(config_.plan_latency_s);
 }
 

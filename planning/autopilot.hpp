@@ -29,7 +29,7 @@ class Autopilot {
   /// From now on these settings of map and latency, and these parts, which must outlive this; map, plan and
   /// launch stay. `place` moves the map's points, or forgets them; null: they stay.
   void change(const AutopilotConfig& config, ObstacleDetector& detector, StateSource& state_source,
-              const LocalMap::Place& place);
+              Planner& planner, const LocalMap::Place& place);
 
   void on(const Sample& sample);
   void on(const StereoFrame& frame);
@@ -44,7 +44,7 @@ class Autopilot {
   const std::vector<StereoHit>& hits() const { return hits_; }  ///< of the newest frame
   const LocalMap& map() const { return map_; }
   const Plan& plan() const { return plan_; }
-  const PlannerCounts& counts() const { return planner_.counts(); }
+  const PlannerCounts& counts() const { return planner_->counts(); }
 
  private:
   bool concerns_the_plan(std::int64_t t_ns) const;
@@ -54,7 +54,7 @@ class Autopilot {
   ObstacleDetector* detector_;
   StateSource* state_source_;
   FlightModel model_;
-  Planner& planner_;
+  Planner* planner_;
   Pilot* pilot_ = nullptr;  ///< null: planner and path follower fly
   LocalMap map_;
   Resightings resightings_;

@@ -76,6 +76,10 @@ void Flight::begin_ideal() {
   }
   if (is_ideal(scenario_, "map")) forgets_ = false;
   const AutopilotConfig config = autopilot_config();
+  if (Scenario ours = scenario_; is_ideal(ours, "search") && ours.autopilot.method != "sst") {
+    ours.autopilot.method = "sst";  // another planner may not search at all, or in its own way
+    parts_.planner = planner_of(ours);
+  }
   if (redraw != 0 || is_ideal(scenario_, "search"))
     parts_.planner->change(config.planner,
                            seed_for(redraw != 0 ? redraw : scenario_.planner_seed(), "planner"));
@@ -97,7 +101,7 @@ void Flight::begin_ideal() {
   LocalMap::Place place;
   if (is_ideal(scenario_, "state") || is_ideal(scenario_, "detection") || is_ideal(scenario_, "sight"))
     place = [this](const ObstaclePoint& point) { return place_of(point); };
-  autopilot_.change(config, *parts_.detector, *parts_.state_source, place);
+  autopilot_.change(config, *parts_.detector, *parts_.state_source, *parts_.planner, place);
 }
 
 /// An ideal state moves remembered points to their true places; ideal detection and sight forget those on no
@@ -132,7 +136,7 @@ void Flight::follow_map_fault() {
       faults().has(FaultySensor::map, FaultKind::dropout, clock_.t_ns()) && !is_ideal_now("map");
   if (forgets == forgets_) return;
   forgets_ = forgets;
-  autopilot_.change(autopilot_config(), *parts_.detector, *parts_.state_source, nullptr);
+  autopilot_.change(autopilot_config(), *parts_.detector, *parts_.state_source, *parts_.planner, nullptr);
 }
 
 void Flight::step() {

@@ -27,6 +27,7 @@ struct Flown : FlightObserver {
   std::vector<State> states;
   KnownHits hits;
   std::vector<std::int64_t> latencies_ns;
+  PlannerCounts counts;
 
   explicit Flown(const std::vector<std::string>& more) {
     std::vector<std::string> settings = dense_start;
@@ -37,6 +38,7 @@ struct Flown : FlightObserver {
       states.push_back(flight.state());
       flight.step();
     }
+    counts = flight.planner_counts();
   }
   void on_frame(const Flight& flight) override {
     hits[flight.frame().t_ns] = flight.hits();
@@ -145,6 +147,14 @@ TEST(IdealParts, WithoutLatencyAFrameIsThereAtOnceAndThoseUnderWayAreNotLost) {
   EXPECT_EQ(flown.latencies_ns.back(), 0);
   for (const auto& [t_ns, hits] : late.hits) EXPECT_TRUE(flown.hits.contains(t_ns)) << t_ns;
   EXPECT_NEAR(static_cast<double>(flown.hits.size()), static_cast<double>(late.hits.size()) + 7, 2);
+}
+
+TEST(IdealParts, IdealSearchSearchesInPlaceOfAPlannerThatDoesNot) {
+  const Flown straight({"autopilot.method=straight"});
+  const Flown searching({"autopilot.method=straight", "ideal.parts=[search]", "ideal.from_s=1.2"});
+  EXPECT_EQ(straight.counts.searches, 0);
+  EXPECT_GT(searching.counts.searches, 0);
+  EXPECT_GE(straight.truths[equal_steps(straight, searching)].t_ns, 1'200'000'000);
 }
 
 TEST(IdealParts, TheModelsStateAndItsPoseAreInverse) {
