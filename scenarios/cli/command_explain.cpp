@@ -67,7 +67,7 @@ struct Explained {
   std::string json;
 };
 
-Explained explained_flight(const Scenario& scenario, ExplainOptions options, const std::string& title) {
+Explained explained_flight(const Scenario& scenario, ExplainOptions options, const std::string& title = "") {
   ProgressLine line;
   options.on_progress = [&](std::size_t flown, std::size_t asked) {
     line.show(fmt::format("{}{} of {} flights", title, flown, asked), flown, asked - flown);
@@ -87,10 +87,8 @@ int explain_run(const ExplainArguments& arguments) {
   mark.require_own("explain.json");
   const Unfinished work(run / ".explain");
   const Explained explained =
-      explained_flight(scenario,
-                       options_of(work.path(), arguments.renderer, jobs_or_cores(arguments.jobs),
-                                  arguments.flights, arguments.first_seed),
-                       "");
+      explained_flight(scenario, options_of(work.path(), arguments.renderer, jobs_or_cores(arguments.jobs),
+                                            arguments.flights, arguments.first_seed));
   write_whole_file(run / "explain.json", explained.json, &mark);
   const Explanation& why = explained.flight.explanation;
   fmt::print("{}\n{}\n{}\n{}", explained.conclusion.sentence, to_text(effects_table(why)),

@@ -76,7 +76,8 @@ void Flight::begin_ideal() {
   }
   if (is_ideal(scenario_, "map")) forgets_ = false;
   const AutopilotConfig config = autopilot_config();
-  if (Scenario ours = scenario_; is_ideal(ours, "search") && ours.autopilot.method != "sst") {
+  if (is_ideal(scenario_, "search") && scenario_.autopilot.method != "sst") {
+    Scenario ours = scenario_;
     ours.autopilot.method = "sst";  // another planner may not search at all, or in its own way
     parts_.planner = planner_of(ours);
   }

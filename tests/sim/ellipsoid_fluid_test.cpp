@@ -1,4 +1,4 @@
-#include "tests/support/ellipsoid_fluid.hpp"
+#include "tests/sim/ellipsoid_fluid.hpp"
 
 #include <gtest/gtest.h>
 

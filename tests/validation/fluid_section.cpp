@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/support/ellipsoid_fluid.hpp"
+#include "tests/sim/ellipsoid_fluid.hpp"
 #include "tests/validation/sections.hpp"
 
 namespace understory {

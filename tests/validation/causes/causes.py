@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """Asks understory explain for the causes of lost flights, planted and not (docs/causes.md).
 
-causes.py planted --seeds 2000..3999 --out FOLDER [--only forgotten,sensor]
+causes.py planted --seeds 2000..3999 --out FOLDER [--only "forgetting at once;a pitot step"]
     plants each fault into flights. Of its lost flights, the first ten are explained that the fault decides: without it
     the flight arrives at least nine times of ten, whatever the noise from the fault's moment on, and with it at most
     five times. (Of a fault with which more than half of all flights are lost, the second is not flown.)
     Writes confusion.md.
-causes.py lost --seeds 4001..4999 --out FOLDER [--only paper,dense] [--again paper,dense]
+causes.py lost --seeds 4001..4999 --out FOLDER [--only "paper;dense"] [--again "paper;dense"]
     flies each scenario until ten flights are lost and explains them; those of --again twice, with other noise.
     Writes causes.md and causes.svg.
 """
@@ -27,7 +27,7 @@ FORGET = f"{{sensor: map, kind: dropout, at_s: {AT_S}}}"
 TURNED = {"estimation.source": "turned", "estimation.turned.at_s": AT_S, "estimation.turned.yaw_rad": 0.4}
 WALL = ", ".join(f"{{name: wall{i}, shape: capsule, position_m: [55, {-24.5 + 0.7 * i}, 5], size_m: [0.4, 0.4, 10]}}"
                  for i in range(71))
-# Few flights of dense are lost with these two faults, and most of those by chance: a wood with half as much room is used.
+# Few flights of dense (25 m^2 per tree) are lost with these two faults, and most of them by chance.
 DENSER = {"forest.square_metres_per_tree": 16}
 # fault: the words that explain must say (of two faults, any of these), the keys that plant it
 FAULTS = {
@@ -171,7 +171,7 @@ def bars(counts):
     shown = [cause for cause in CAUSES if any(one[cause] for one in counts.values())]
     rows, text = [], 'font-family="sans-serif" font-size="13"'
     for i, (scenario, some) in enumerate(counts.items()):
-        x, y, scale = 130, 10 + 30 * i, 460 / sum(some.values())
+        x, y, scale = 130, 10 + 30 * i, 460 / max(1, sum(some.values()))
         rows.append(f'<text x="120" y="{y + 15}" text-anchor="end" {text}>{scenario}</text>')
         for cause in shown:
             if some[cause]:
@@ -224,7 +224,7 @@ def main():
     parser.add_argument("--wanted", type=int, default=10)
     parser.add_argument("--block", type=int, default=40, help="fly so many seeds before lost flights are counted")
     parser.add_argument("--only", type=lambda text: text.split(";"), help="faults or scenarios, with ; between them")
-    parser.add_argument("--again", type=lambda text: text.split(","), default=[])
+    parser.add_argument("--again", type=lambda text: text.split(";"), default=[], help="scenarios, likewise")
     parser.add_argument("--renderer", default="osmesa")
     parser.add_argument("--at-once", type=int, default=1, help="explain so many flights at once")
     arguments = parser.parse_args()

@@ -1,4 +1,4 @@
-#include "tests/support/ellipsoid_fluid.hpp"
+#include "tests/sim/ellipsoid_fluid.hpp"
 
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
