@@ -9,6 +9,9 @@ causes.py planted --seeds 2000..3999 --out FOLDER [--only "forgetting at once;a 
 causes.py lost --seeds 4001..4999 --out FOLDER [--only "paper;dense"] [--again "paper;dense"]
     flies each scenario until ten flights are lost and explains them; those of --again twice, with other noise.
     Writes causes.md and causes.svg.
+
+FOLDER/planted and FOLDER/lost keep flown.csv (a row for each fault or scenario that is done, which is not flown
+again) and explained.csv (a row for each explained flight).
 """
 
 import argparse
@@ -70,15 +73,34 @@ def is_lost(row, after_s=0.0):
 class Flights:
     def __init__(self, arguments):
         self.arguments = arguments
-        self.out = Path(arguments.out)
+        self.out = Path(arguments.out) / arguments.what
         self.known = {}
         self.out.mkdir(parents=True, exist_ok=True)
+
+    def kept(self, table):
+        file = self.out / f"{table}.csv"
+        if not file.exists():
+            return []
+        with open(file, newline="") as text:
+            return list(csv.DictReader(text))
+
+    def keep(self, table, *rows):
+        """Adds these rows, which are dictionaries, to that table."""
+        rows = [*self.kept(table), *rows]
+        with open(self.out / f"{table}.csv", "w", newline="") as text:
+            writer = csv.DictWriter(text, rows[0].keys(), lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows)
 
     def run(self, *words):
         command = [self.arguments.program, *map(str, words), "--renderer", self.arguments.renderer]
         done = subprocess.run(command, capture_output=True, text=True)
         if done.returncode not in (0, 1):
             raise SystemExit(f"{' '.join(command)}\n{done.stderr}")
+
+    def to_do(self, names):
+        done = {row["of"] for row in self.kept("flown")}
+        return [name for name in self.arguments.only or names if name not in done]
 
     def campaign(self, name, scenario, seeds, overrides):
         """The rows of these flights."""
@@ -100,7 +122,7 @@ class Flights:
             self.run("explain", run, *options)
         return json.loads((run / "explain.json").read_text())
 
-    def explain_all(self, name, seeds, *options, folder="runs"):
+    def explain_all(self, of, name, seeds, *options, folder="runs"):
         condition = next((self.out / name / "conditions").glob("*.yaml"))
         with ThreadPoolExecutor(self.arguments.at_once) as pool:
             found = list(pool.map(lambda seed: self.explain(self.out / folder / f"{name}-{seed}", condition, seed, *options),
@@ -108,7 +130,8 @@ class Flights:
         for seed, one in zip(seeds, found):
             best = ", ".join(f"{e['part']} {e['difference']:+.2f}" for e in one["effects"][:4])
             print(f"  {name} {seed}: {one['cause']} ({one['part']}): {best}", flush=True)
-        return found
+        return [{"of": of, "seed": seed, "folder": folder, "cause": one["cause"], "part": one["part"]}
+                for seed, one in zip(seeds, found)]
 
     def arrivals(self, name, seeds, keys):
         """How often of ten each seed's flight arrives with other noise from the fault's moment on."""
@@ -123,13 +146,12 @@ class Flights:
 
 
 def planted(flights):
-    said = {}
     plugin = {"plugins": f"[{{file: {Path(flights.arguments.plugin).resolve()}}}]"}
-    for fault in flights.arguments.only or FAULTS:
+    for fault in flights.to_do(FAULTS):
         name = slug(fault)
         forest = {key: value for key, value in FAULTS[fault][1].items() if key in DENSER}
         keys = {**plugin, **FAULTS[fault][1]}
-        used, flown, lost, undecided = [], 0, 0, 0
+        explained, flown, lost, undecided = [], 0, 0, 0
         for block in blocks(seeds_in(flights.arguments.seeds), flights.arguments.block):
             rows = flights.campaign(f"{name}-{block[0]}", "dense", block, {name: keys})
             # A flight that ends 0.3 s after the fault was lost before it.
@@ -137,7 +159,7 @@ def planted(flights):
             flown, lost = flown + len(rows), lost + len(its)
             new = []
             for some in blocks(its, 12):
-                if len(used) + len(new) >= flights.arguments.wanted:
+                if len(explained) + len(new) >= flights.arguments.wanted:
                     break
                 arrive = flights.arrivals(f"without-{name}", some, forest)
                 sound = [seed for seed in some if arrive[seed] >= 9]
@@ -146,14 +168,18 @@ def planted(flights):
                     undecided += sum(arrive[seed] > 5 for seed in sound)
                     sound = [seed for seed in sound if arrive[seed] <= 5]
                 new += sound
-            new = new[: flights.arguments.wanted - len(used)]
-            said.setdefault(fault, []).extend(
-                one["cause"] for one in flights.explain_all(f"{name}-{block[0]}", new))
-            used += new
-            if len(used) == flights.arguments.wanted:
+            new = new[: flights.arguments.wanted - len(explained)]
+            explained += flights.explain_all(fault, f"{name}-{block[0]}", new)
+            if len(explained) == flights.arguments.wanted:
                 break
-        right = sum(cause in FAULTS[fault][0] for cause in said[fault])
-        print(f"{fault}: {lost} of {flown} lost, {undecided} by chance, {right} of {len(said[fault])} right", flush=True)
+        right = sum(one["cause"] in FAULTS[fault][0] for one in explained)
+        print(f"{fault}: {lost} of {flown} lost, {undecided} by chance, {right} of {len(explained)} right", flush=True)
+        flights.keep("explained", *explained)
+        flights.keep("flown", {"of": fault, "flown": flown, "lost": lost, "by_chance": undecided})
+    said = {fault: [] for fault in FAULTS}
+    for one in flights.kept("explained"):
+        said[one["of"]].append(one["cause"])
+    said = {fault: some for fault, some in said.items() if some}
     causes = [cause for cause in CAUSES if any(cause in some for some in said.values())]
     lines = ["| planted | right | " + " | ".join(causes) + " |", "|---|---:|" + "---:|" * len(causes)]
     for fault, some in said.items():
@@ -188,9 +214,7 @@ def bars(counts):
 
 
 def lost(flights):
-    counts, lines = {}, ["| scenario | flown, lost | causes of those explained |", "|---|---:|---|"]
-    agreed = []
-    for scenario in flights.arguments.only or SCENARIOS:
+    for scenario in flights.to_do(SCENARIOS):
         found, again, flown, all_lost = [], [], 0, 0
         for block in blocks(seeds_in(flights.arguments.seeds), flights.arguments.block):
             name = f"{scenario}-{block[0]}"
@@ -198,18 +222,24 @@ def lost(flights):
             its = [int(row["seed"]) for row in rows if is_lost(row)]
             flown, all_lost = flown + len(rows), all_lost + len(its)
             its = its[: flights.arguments.wanted - len(found)]
-            found += flights.explain_all(name, its)
+            found += flights.explain_all(scenario, name, its)
             if scenario in flights.arguments.again:
-                again += flights.explain_all(name, its, "--first-seed", 1001, folder="again")
+                again += flights.explain_all(scenario, name, its, "--first-seed", 1001, folder="again")
             if len(found) == flights.arguments.wanted:
                 break
-        agreed += [one["cause"] == other["cause"] for one, other in zip(found, again)]
-        counts[scenario] = Counter(one["cause"] for one in found)
-        words = ", ".join(f"{count} {cause}" for cause, count in counts[scenario].most_common())
-        lines.append(f"| {scenario} | {flown}, {all_lost} | {words} |")
-        print(lines[-1], flush=True)
-    if agreed:
-        lines.append(f"\nExplained twice, with other noise: {sum(agreed)} of {len(agreed)} flights had the same cause.")
+        flights.keep("explained", *found, *again)
+        flights.keep("flown", {"of": scenario, "flown": flown, "lost": all_lost})
+    counts, lines = {}, ["| scenario | flown, lost | causes of those explained |", "|---|---:|---|"]
+    explained = flights.kept("explained")
+    for row in flights.kept("flown"):
+        counts[row["of"]] = Counter(one["cause"] for one in explained if (one["of"], one["folder"]) == (row["of"], "runs"))
+        words = ", ".join(f"{count} {cause}" for cause, count in counts[row["of"]].most_common())
+        lines.append(f"| {row['of']} | {row['flown']}, {row['lost']} | {words} |")
+    causes = {(one["of"], one["seed"], one["folder"]): one["cause"] for one in explained}
+    again = [(causes[of, seed, "runs"], cause) for (of, seed, folder), cause in causes.items() if folder == "again"]
+    if again:
+        same = sum(first == second for first, second in again)
+        lines.append(f"\nExplained twice, with other noise: {same} of {len(again)} flights had the same cause.")
     (flights.out / "causes.md").write_text("\n".join(lines) + "\n")
     (flights.out / "causes.svg").write_text(bars(counts))
 
