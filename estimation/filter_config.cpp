@@ -123,7 +123,9 @@ void visit_fields(FieldVisitor& visit, HeadingConfig& config) {
 }
 
 void visit_fields(FieldVisitor& visit, GroundVelocityConfig& config) {
-  visit("enabled", config.enabled, "corrects the velocity with GPS, where the aircraft has a receiver");
+  visit("enabled", config.enabled,
+        "Corrects the velocity with GPS, where the aircraft has a receiver. Default on a course of over 100 "
+        "m: false.");
   visit("sigma_mps", config.sigma_mps, 0.01, 10.0,
         "standard deviation of a GPS velocity, per axis | docs/sources.md [15]");
 }

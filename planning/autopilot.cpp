@@ -35,6 +35,10 @@ void Autopilot::change(const AutopilotConfig& config, ObstacleDetector& detector
 
 void Autopilot::on(const Sample& sample) {
   state_source_->on(sample);
+  const auto* fix = std::get_if<GpsSample>(&sample);
+  if (fix != nullptr && fix->position_world_m.allFinite())
+    drift_world_m_ =
+        (fix->position_world_m - state_source_->state_at(fix->t_ns).T_world_body.translation()).head<2>();
   const auto* imu = std::get_if<ImuSample>(&sample);
   if (imu == nullptr) return;
   const bool strong = imu->specific_force_body_mps2.x() > config_.launch_acceleration_mps2;
@@ -85,13 +89,15 @@ void Autopilot::replan(std::int64_t t_ns) {
   FlightState start = flight_state(state);
   for (std::int64_t at_ns = state.t_ns; at_ns < effective_ns; at_ns += nanoseconds(predict_step_s))
     start = model_.advance(start, command_at(plan_, at_ns), predict_step_s);
-  // The planner uses heights above the ground, the map uses those of the odometry frame. The two drift apart
-  // slowly.
+  // The planner uses heights above the ground and, with GPS, places beside the course's own line; the map
+  // uses those of the odometry frame. The two drift apart slowly.
   const double ground_m = state.T_world_body.translation().z() - state.altitude_m;
-  start.position_world.z() -= ground_m;
+  const Eigen::Vector3d shift_world(drift_world_m_.x(), drift_world_m_.y(), -ground_m);
+  start.position_world += shift_world;
   std::vector<ObstaclePoint> points = map_.trusted_points();
-  for (ObstaclePoint& point : points) point.position_world.z() -= ground_m;
+  for (ObstaclePoint& point : points) point.position_world += shift_world;
   next_plan_ = planner_->plan({start, effective_ns, std::move(points), state.distance_flown_m, outdated});
+  for (PlanPoint& point : next_plan_.points) point.position_world.head<2>() -= drift_world_m_;
   next_plan_due_ns_ = t_ns + nanoseconds(config_.plan_latency_s);
 }
 

@@ -62,9 +62,10 @@ class Autopilot {
   Plan plan_;       ///< in force
   Plan next_plan_;  ///< computed, takes effect at next_plan_due_ns_
   std::int64_t next_plan_due_ns_ = -1;
-  std::int64_t planned_ns_ = 0;  ///< when the newest plan was requested
-  bool plan_outdated_ = true;    ///< something new lies near it
-  std::int64_t launch_ns_ = -1;  ///< when the launch was detected; -1 before
+  std::int64_t planned_ns_ = 0;                              ///< when the newest plan was requested
+  bool plan_outdated_ = true;                                ///< something new lies near it
+  Eigen::Vector2d drift_world_m_ = Eigen::Vector2d::Zero();  ///< newest GPS position less the odometry's
+  std::int64_t launch_ns_ = -1;                              ///< when the launch was detected; -1 before
   int strong_samples_ = 0;
 };
 

@@ -11,7 +11,8 @@
 
 namespace understory {
 
-/// One request for a plan. World frame of the estimator; heights are above the ground.
+/// One request for a plan. World frame of the estimator; heights are above the ground. With GPS, horizontal
+/// places are those of the world, as the newest fix has them.
 struct PlanRequest {
   FlightState start;                       ///< where the aircraft will be at t_ns
   std::int64_t t_ns = 0;                   ///< when the plan takes effect

@@ -78,6 +78,7 @@ Json conditions_of(const Campaign& campaign, const std::vector<ShownCondition>& 
     condition["share"] = of.flown > 0 ? Json(static_cast<double>(of.goals) / of.flown) : Json();
     condition["lower"] = of.success.minimum;
     condition["upper"] = of.success.maximum;
+    condition["between_crashes_km"] = of.flown > 0 ? crash_distance_text(of) : "";
     list.push_back(std::move(condition));
   }
   return list;

@@ -12,15 +12,10 @@
 namespace understory {
 namespace {
 
-struct Count {
-  int flights = 0;
-  int goals = 0;
-};
-
-/// A series before it is drawn: flights and goals over x.
-struct CountedSeries {
+/// Rows before they are drawn: those of each x.
+struct RowSeries {
   std::string name;
-  std::map<double, Count> at;
+  std::map<double, std::vector<FlightRow>> at;
 };
 
 /// Of a key of the grid whose values are all numbers; nothing where one is none.
@@ -56,26 +51,33 @@ Condition condition_of(const std::string& name, const Conditions& conditions) {
   return found == conditions.end() ? Condition{name, "", name, "", {}} : *found;
 }
 
-std::vector<CountedSeries> counted(const std::vector<FlightRow>& rows, const Conditions& conditions,
-                                   const PlotAxis& axis, const std::string& titled_scenario) {
-  std::vector<CountedSeries> all;
+std::vector<RowSeries> series_of(const std::vector<FlightRow>& rows, const Conditions& conditions,
+                                 const PlotAxis& axis, const std::string& titled_scenario) {
+  std::vector<RowSeries> all;
   for (const FlightRow& row : rows) {
     const std::string name = words_of(condition_of(row.condition, conditions), titled_scenario, axis.key);
-    auto series = std::ranges::find(all, name, &CountedSeries::name);
+    auto series = std::ranges::find(all, name, &RowSeries::name);
     if (series == all.end()) series = all.insert(all.end(), {name, {}});
-    Count& count = series->at[axis.value(row)];
-    count.flights += 1;
-    count.goals += row.reached_goal() ? 1 : 0;
+    series->at[axis.value(row)].push_back(row);
   }
   return all;
 }
 
-void add_point(Series& series, double x, const Count& count) {
-  const Interval interval = wilson_interval(count.goals, count.flights);
+void add_point(Series& series, double x, double y, const Interval& interval) {
   series.x.push_back(x);
-  series.y.push_back(100.0 * count.goals / count.flights);
-  series.low.push_back(100 * interval.minimum);
-  series.high.push_back(100 * interval.maximum);
+  series.y.push_back(y);
+  series.low.push_back(interval.minimum);
+  series.high.push_back(interval.maximum);
+}
+
+void add_success(Series& series, double x, const ConditionSummary& summary) {
+  add_point(series, x, 100.0 * summary.goals / summary.flown,
+            {100 * summary.success.minimum, 100 * summary.success.maximum});
+}
+
+void add_crash_distance(Series& series, double x, const ConditionSummary& summary) {
+  const CrashDistance distance = crash_distance(summary);
+  add_point(series, x, distance.value_km, distance.interval);
 }
 
 std::string scenario_of_rows(const std::vector<FlightRow>& rows, const Conditions& conditions) {
@@ -104,8 +106,28 @@ double span_of(const std::vector<FlightRow>& rows, const PlotAxis& axis) {
 
 /// Whether any conditions differ in nothing else: scenarios that differ in much besides are no scan.
 bool is_scanned(const std::vector<FlightRow>& rows, const Conditions& conditions, const PlotAxis& axis) {
-  return std::ranges::any_of(counted(rows, conditions, axis, ""),
-                             [](const CountedSeries& one) { return one.at.size() > 1; });
+  return std::ranges::any_of(series_of(rows, conditions, axis, ""),
+                             [](const RowSeries& one) { return one.at.size() > 1; });
+}
+
+/// The plot with a series for the conditions that differ in nothing but the axis.
+LinePlot over(const PlotAxis& axis, const std::vector<FlightRow>& all_rows, const Conditions& conditions,
+              LinePlot plot, void (*add)(Series&, double, const ConditionSummary&)) {
+  const std::vector<FlightRow> rows = flown_ones(all_rows);
+  const std::string scenario = scenario_of_rows(rows, conditions);
+  plot.title = titled(scenario, plot.title);
+  const std::vector<RowSeries> all = series_of(rows, conditions, axis, scenario);
+  const double apart = 0.008 * span_of(rows, axis);
+  double aside = -0.5 * apart * (static_cast<double>(all.size()) - 1);
+  for (const RowSeries& one : all) {
+    Series series;
+    series.name = one.name;
+    series.mark = one.at.size() > 1 ? Mark::line_and_dots : Mark::dots;
+    for (const auto& [x, its] : one.at) add(series, x + aside, summary_of(its));
+    plot.series.push_back(std::move(series));
+    aside += apart;
+  }
+  return plot;
 }
 
 /// A curve's corners: along each step, then down to the next.
@@ -143,23 +165,19 @@ std::vector<PlotAxis> axes_of(const Conditions& conditions) {
   return axes;
 }
 
-LinePlot success_over(const std::vector<FlightRow>& all_rows, const Conditions& conditions,
+LinePlot success_over(const std::vector<FlightRow>& rows, const Conditions& conditions,
                       const PlotAxis& axis) {
-  const std::vector<FlightRow> rows = flown_ones(all_rows);
-  const std::string scenario = scenario_of_rows(rows, conditions);
-  LinePlot plot = success_plot(titled(scenario, fmt::format("success over {}", axis.name)), axis.label);
-  const std::vector<CountedSeries> all = counted(rows, conditions, axis, scenario);
-  const double apart = 0.008 * span_of(rows, axis);
-  double aside = -0.5 * apart * (static_cast<double>(all.size()) - 1);
-  for (const CountedSeries& one : all) {
-    Series series;
-    series.name = one.name;
-    series.mark = one.at.size() > 1 ? Mark::line_and_dots : Mark::dots;
-    for (const auto& [x, count] : one.at) add_point(series, x + aside, count);
-    plot.series.push_back(std::move(series));
-    aside += apart;
-  }
-  return plot;
+  const LinePlot plot = success_plot(fmt::format("success over {}", axis.name), axis.label);
+  return over(axis, rows, conditions, plot, add_success);
+}
+
+LinePlot crash_distance_over(const std::vector<FlightRow>& rows, const Conditions& conditions,
+                             const PlotAxis& axis) {
+  const LinePlot plot{.title = fmt::format("distance between crashes over {}", axis.name),
+                      .x_label = axis.label,
+                      .y_label = "km between crashes, 95 % Garwood",
+                      .y_log = true};
+  return over(axis, rows, conditions, plot, add_crash_distance);
 }
 
 LinePlot success_by_condition(const std::vector<FlightRow>& all_rows, const Conditions& conditions) {
@@ -171,7 +189,7 @@ LinePlot success_by_condition(const std::vector<FlightRow>& all_rows, const Cond
     plot.x_names.emplace_back(place, words_of(condition_of(summary.condition, conditions), scenario));
     Series series;
     series.mark = Mark::dots;
-    add_point(series, place, {summary.flown, summary.goals});
+    add_success(series, place, summary);
     plot.series.push_back(std::move(series));
   }
   plot.x_range = AxisRange{0.3, static_cast<double>(plot.series.size()) + 0.5};
@@ -207,9 +225,13 @@ std::vector<LinePlot> survival_curves(const std::vector<FlightRow>& all_rows, co
 std::string campaign_svg(const std::vector<FlightRow>& all_rows, const Conditions& conditions) {
   const std::vector<FlightRow> rows = flown_ones(all_rows);
   if (rows.empty()) return "";
+  const bool is_long = std::ranges::any_of(rows, [](const FlightRow& row) { return row.goal_m > 100; });
   std::vector<LinePlot> panels;
   for (const PlotAxis& axis : axes_of(conditions))
-    if (is_scanned(rows, conditions, axis)) panels.push_back(success_over(rows, conditions, axis));
+    if (is_scanned(rows, conditions, axis)) {
+      panels.push_back(success_over(rows, conditions, axis));
+      if (is_long) panels.push_back(crash_distance_over(rows, conditions, axis));
+    }
   if (panels.empty()) panels.push_back(success_by_condition(rows, conditions));
   for (LinePlot& panel : survival_curves(rows, conditions)) panels.push_back(std::move(panel));
   return to_svg(panels, 2);

@@ -18,20 +18,34 @@ struct ConditionSummary {
   int goals = 0;
   int collision = 0, ground = 0, out_of_bounds = 0, time = 0;  ///< the other outcomes
   int failed_to_run = 0;
-  Interval success;           ///< 95 %, Wilson's
-  double mean_speed_mps = 0;  ///< mean over flights; NaN without any, as the next
+  double among_obstacles_km = 0;  ///< of all flown
+  Interval success;               ///< 95 %, Wilson's
+  double mean_speed_mps = 0;      ///< mean over flights; NaN without any, as the next
   double position_error_mean_m = 0;
   std::int64_t obstacle_ahead = 0;  ///< replans
   std::int64_t obstacle_ahead_ompl = 0;
   SurvivalCurve survival;  ///< over true progress, m
 };
 
+/// Of rows of one condition or of several.
+ConditionSummary summary_of(const std::vector<FlightRow>& rows);
+
+/// Kilometres flown among obstacles between crashes, with their exact 95 % interval. Every end but goal and
+/// time is a crash. Without a crash the value is the interval's lower end, and its upper end infinite.
+struct CrashDistance {
+  double value_km = 0;
+  Interval interval;
+};
+CrashDistance crash_distance(const ConditionSummary& summary);
+/// "1.2 (0.6 to 2.8)"; "> 4.0" without a crash.
+std::string crash_distance_text(const ConditionSummary& summary);
+
 /// A summary per condition, in order of appearance.
 std::vector<ConditionSummary> summarise(const std::vector<FlightRow>& rows);
 
 /// A row per condition; to_text or to_markdown prints it. `median m`: the distance by which half the flights
-/// have ended, "> 75" where more than half got that far; `OMPL %`: share of the replans with an obstacle
-/// ahead that use a manoeuvre that OMPL found.
+/// have ended, "> 75" where more than half got that far; `km/crash`: crash_distance_text(); `OMPL %`: share
+/// of the replans with an obstacle ahead that use a manoeuvre that OMPL found.
 Table summary_table(const std::vector<ConditionSummary>& summaries);
 
 // Plots take a row's scenario, overrides and grid from its condition, or the condition's name alone.
@@ -50,6 +64,9 @@ std::vector<PlotAxis> axes_of(const std::vector<Condition>& conditions);
 /// value.
 LinePlot success_over(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions,
                       const PlotAxis& axis);
+/// The same of the kilometres between crashes; a dot at the foot of a bar that has no upper end is a bound.
+LinePlot crash_distance_over(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions,
+                             const PlotAxis& axis);
 
 /// The same side by side: a place per condition, with its name.
 LinePlot success_by_condition(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions);
@@ -59,8 +76,9 @@ LinePlot success_by_condition(const std::vector<FlightRow>& rows, const std::vec
 std::vector<LinePlot> survival_curves(const std::vector<FlightRow>& rows,
                                       const std::vector<Condition>& conditions);
 
-/// One SVG: success over speed and over density, each if conditions differ in nothing else, or else by
-/// condition; then survival. Flights that failed to run are left out. Empty if none was flown.
+/// One SVG: success over each axis, and for courses of over 100 m the kilometres between crashes, each if
+/// conditions differ in nothing else, or else by condition; then survival. Flights that failed to run are
+/// left out. Empty if none was flown.
 std::string campaign_svg(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions);
 
 }  // namespace understory

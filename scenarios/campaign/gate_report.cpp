@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "scenarios/campaign/campaign_summary.hpp"
 #include "scenarios/campaign/gate.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/report/table.hpp"
@@ -20,6 +21,12 @@ std::string success_text(int goals, int flights) {
   return fmt::format("{} ({} to {})", goals, percent(interval.minimum), percent(interval.maximum));
 }
 
+std::string between_crashes(const ConditionComparison& condition, FlightRow FlightPair::*side) {
+  std::vector<FlightRow> rows;
+  for (const FlightPair& pair : condition.pairs) rows.push_back(pair.*side);
+  return rows.empty() ? "-" : crash_distance_text(summary_of(rows));
+}
+
 void add_success(const ConditionComparison& condition, Table& table) {
   const PairedOutcomes& goals = condition.goals;
   table.add(
@@ -27,12 +34,13 @@ void add_success(const ConditionComparison& condition, Table& table) {
       success_text(goals.second(), goals.pairs()),
       fmt::format("{} ({} to {})", signed_percent(goals.difference()),
                   signed_percent(condition.difference.minimum), signed_percent(condition.difference.maximum)),
-      goals.only_first, goals.only_second, fmt::format("{:.3g}", condition.p), condition.bit_for_bit);
+      goals.only_first, goals.only_second, fmt::format("{:.3g}", condition.p), condition.bit_for_bit,
+      between_crashes(condition, &FlightPair::baseline), between_crashes(condition, &FlightPair::candidate));
 }
 
 Table success_table(const Comparison& comparison) {
   Table table{{"success, %", "pairs", "baseline goals", "candidate goals", "difference", "worse", "better",
-               "p", "bit for bit"}};
+               "p", "bit for bit", "baseline km/crash", "candidate km/crash"}};
   for (const ConditionComparison& condition : comparison.conditions) add_success(condition, table);
   if (comparison.conditions.size() > 1) add_success(comparison.all, table);
   return table;

@@ -167,6 +167,10 @@ void FlightLogger::on_end(const Flight& flight) {
   result.detector = scenario.perception.detector;
   result.state_source = scenario.estimation.source;
   result.outcome = flight.outcome().value();
+  double first_x_m = INFINITY;
+  for (const Obstacle& obstacle : log_.obstacles)
+    first_x_m = std::min({first_x_m, obstacle.from_world.x(), obstacle.to_world.x()});
+  result.among_obstacles_m = std::max(0.0, result.progress_m - first_x_m);
   result.simulated_s = flight.clock().t_s();
   const double flown_s = log_.launch_ns ? result.simulated_s - seconds(*log_.launch_ns) : 0;
   if (flown_s > 0) result.mean_speed_mps = result.distance_m / flown_s;

@@ -52,7 +52,7 @@ Aircraft aircraft_of(const Scenario& scenario, const World& world) {
   try {
     const Wind wind(scenario.wind_world_mps, scenario.wind, scenario.stand(),
                     seed_for(scenario.seed, "wind"));
-    return Aircraft(*world.model, scenario.flown_airframe(), scenario.launch, wind, scenario.actuators,
+    return Aircraft(world.flown_model(), scenario.flown_airframe(), scenario.launch, wind, scenario.actuators,
                     scenario.forest.intangible ? std::vector<Obstacle>{} : world.obstacles);
   } catch (const std::runtime_error& error) {
     throw ScenarioError(error.what());

@@ -63,6 +63,7 @@ struct StageTiming {
 struct FlightMeasures {
   double distance_m = 0;
   double progress_m = 0;
+  double among_obstacles_m = 0;
   double mean_speed_mps = 0;
   double minimum_clearance_m = std::numeric_limits<double>::infinity();
   double leaves_s = 0;
@@ -89,6 +90,8 @@ requires std::same_as<std::remove_const_t<Measures>, FlightMeasures>
 void visit_fields(Visitor& visit, Measures& measures) {
   visit("distance_m", measures.distance_m, "true length of the flown path since release");
   visit("progress_m", measures.progress_m, "largest true x coordinate reached");
+  visit("among_obstacles_m", measures.among_obstacles_m,
+        "progress_m beyond the first obstacle: what counts as flown between crashes");
   visit("mean_speed_mps", measures.mean_speed_mps, "mean true speed over ground since release");
   visit("minimum_clearance_m", measures.minimum_clearance_m,
         "Smallest true distance between aircraft and obstacles. Without obstacles it is infinite: empty in "

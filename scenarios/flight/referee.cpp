@@ -12,7 +12,7 @@ std::optional<Outcome> Referee::outcome_at(const Truth& truth, Contact contact, 
   climbed_ = climbed_ || place.z() >= scenario_.band.minimum_altitude_m;
   const bool is_low = climbed_ && place.z() < scenario_.band.minimum_altitude_m;
   const bool is_high = place.z() > scenario_.band.maximum_altitude_m;
-  const bool is_outside = !scenario_.course_rectangle().contains(place.head<2>());
+  const bool is_outside = !scenario_.is_long() && !scenario_.course_rectangle().contains(place.head<2>());
   if (is_low || is_high || is_outside) return Outcome::out_of_bounds;
   return std::nullopt;
 }

@@ -178,10 +178,10 @@ const std::vector<StereoHit>& TrueDepth::detect(const StereoFrame& frame) {
   double far_m = 0;
   for (const DepthInterval& interval : intervals_) far_m = std::max(far_m, interval.far_m);
   const double reach_m = far_m * std::sqrt(1 + corner_x * corner_x + corner_y * corner_y);
-  const int last_row_px = std::min(rig_.scaled_row_px(last_row_of_240), rig_.height_px - block_px);
-  const int rows = last_row_px < 0 ? 0 : last_row_px / block_px + 1, columns = rig_.width_px / block_px;
-  depths_m_.assign(static_cast<std::size_t>(rows * columns), infinity);
-  for (const Obstacle& obstacle : obstacles_) {
+  const int rows = this->rows(), columns = this->columns();
+  nearest_.assign(static_cast<std::size_t>(rows * columns), {infinity, 0});
+  for (std::size_t number = 0; number < obstacles_.size(); ++number) {
+    const Obstacle& obstacle = obstacles_[number];
     Obstacle seen = obstacle;  // in the camera's frame
     seen.from_world = T_camera_world * obstacle.from_world;
     seen.to_world = T_camera_world * obstacle.to_world;
@@ -198,25 +198,38 @@ const std::vector<StereoHit>& TrueDepth::detect(const StereoFrame& frame) {
     for (int row = blocks.first_row; row < blocks.end_row; ++row)
       for (int column = blocks.first_column; column < blocks.end_column; ++column) {
         const Eigen::Vector3d ray = ray_of(row, column);
-        double& depth_m = depths_m_[static_cast<std::size_t>(row * columns + column)];
+        auto& nearest_so_far = nearest_[static_cast<std::size_t>(row * columns + column)];
         // The ray's z is 1, so multiples of it are depths.
-        depth_m = std::min(depth_m, flat ? ray_meets_wall(T_world_camera.translation(),
-                                                          T_world_camera.linear() * ray, obstacle)
-                                         : ray_meets(Eigen::Vector3d::Zero(), ray, seen));
+        const double depth_m =
+            flat ? ray_meets_wall(T_world_camera.translation(), T_world_camera.linear() * ray, obstacle)
+                 : ray_meets(Eigen::Vector3d::Zero(), ray, seen);
+        if (depth_m < nearest_so_far.first) nearest_so_far = {depth_m, number};
       }
   }
   hits_.clear();
+  obstacles_of_hits_.clear();
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
-      const double depth_m = depths_m_[static_cast<std::size_t>(row * columns + column)];
-      const auto holds = [depth_m](const DepthInterval& interval) {
+      const auto [depth_m, number] = nearest_[static_cast<std::size_t>(row * columns + column)];
+      const auto holds = [depth_m = depth_m](const DepthInterval& interval) {
         return depth_m >= interval.near_m && depth_m <= interval.far_m;
       };
       if (depth_m == infinity || std::ranges::none_of(intervals_, holds)) continue;
-      hits_.push_back(
-          {depth_m * ray_of(row, column), column * block_px, row * block_px, rig_.disparity_px(depth_m)});
+      hits_.push_back(hit_at(row, column, depth_m));
+      obstacles_of_hits_.push_back(number);
     }
   return hits_;
+}
+
+int TrueDepth::rows() const {
+  const int last_row_px = std::min(rig_.scaled_row_px(last_row_of_240), rig_.height_px - block_px);
+  return last_row_px < 0 ? 0 : last_row_px / block_px + 1;
+}
+
+int TrueDepth::columns() const { return rig_.width_px / block_px; }
+
+StereoHit TrueDepth::hit_at(int row, int column, double depth_m) const {
+  return {depth_m * ray_of(row, column), column * block_px, row * block_px, rig_.disparity_px(depth_m)};
 }
 
 /// Through the middle of a block, camera frame.

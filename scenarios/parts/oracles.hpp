@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <deque>
+#include <utility>
 #include <vector>
 
 #include "estimation/state_source.hpp"
@@ -65,8 +66,15 @@ class TrueDepth : public ObstacleDetector {
             std::vector<DepthInterval> intervals = {});
   const std::vector<StereoHit>& detect(const StereoFrame& frame) override;
 
+  /// Which obstacle each of the newest hits lies on.
+  const std::vector<std::size_t>& obstacles_of_hits() const { return obstacles_of_hits_; }
   /// The first depth interval of a hit, m.
   DepthInterval interval() const { return intervals_.front(); }
+  /// Of blocks.
+  int rows() const;
+  int columns() const;
+  /// A hit in the middle of that block.
+  StereoHit hit_at(int row, int column, double depth_m) const;
 
  private:
   Eigen::Vector3d ray_of(int row, int column) const;
@@ -75,8 +83,9 @@ class TrueDepth : public ObstacleDetector {
   std::vector<Obstacle> obstacles_;
   const TruthHistory& history_;
   std::vector<DepthInterval> intervals_;
-  std::vector<double> depths_m_;  ///< of the nearest obstacle, by block
+  std::vector<std::pair<double, std::size_t>> nearest_;  ///< by block: depth (m) and number of an obstacle
   std::vector<StereoHit> hits_;
+  std::vector<std::size_t> obstacles_of_hits_;
 };
 
 /// Where a ray first meets an obstacle of any shape, as for round obstacles below.

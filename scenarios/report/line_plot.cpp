@@ -63,16 +63,20 @@ double tick_step(AxisRange range, int wanted) {
 /// Digits behind the point that a tick's label needs.
 int decimals(double step) { return std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9))); }
 
+/// In the axis's own unit: decades where it is logarithmic.
+double scaled(double value, bool log) { return log ? std::log10(value) : value; }
+
 AxisRange covering(const LinePlot& plot, bool vertical_axis) {
   AxisRange range{HUGE_VAL, -HUGE_VAL};
+  const auto take = [&](double value) { include(range, scaled(value, vertical_axis && plot.y_log)); };
   for (const Series& series : plot.series) {
-    for (const double value : vertical_axis ? series.y : series.x) include(range, value);
+    for (const double value : vertical_axis ? series.y : series.x) take(value);
     if (!vertical_axis) continue;
-    for (const double value : series.low) include(range, value);
-    for (const double value : series.high) include(range, value);
+    for (const double value : series.low) take(value);
+    for (const double value : series.high) take(value);
   }
   for (const ReferenceLine& line : plot.references)
-    if (line.vertical != vertical_axis) include(range, line.at);
+    if (line.vertical != vertical_axis) take(line.at);
   return padded(range);
 }
 
@@ -104,7 +108,9 @@ class Panel {
  public:
   Panel(const LinePlot& plot, int number) : plot_(plot), number_(number) {
     x_ = plot.x_range.value_or(covering(plot, false));
-    y_ = plot.y_range.value_or(covering(plot, true));
+    y_ = plot.y_range
+             ? AxisRange{scaled(plot.y_range->minimum, plot.y_log), scaled(plot.y_range->maximum, plot.y_log)}
+             : covering(plot, true);
     if (plot.equal_scale) make_scales_equal();
   }
 
@@ -128,7 +134,28 @@ class Panel {
  private:
   static double width() { return panel_width - left - right; }
   double at_x(double x) const { return left + (x - x_.minimum) / (x_.maximum - x_.minimum) * width(); }
-  double at_y(double y) const { return bottom - (y - y_.minimum) / (y_.maximum - y_.minimum) * plot_height; }
+  double at_y(double y) const {
+    const double place = scaled(y, plot_.y_log);
+    return bottom - ((plot_.y_log ? std::clamp(place, y_.minimum, y_.maximum) : place) - y_.minimum) /
+                        (y_.maximum - y_.minimum) * plot_height;
+  }
+  /// Value and label. On a logarithmic axis 1, 2 and 5 times the powers of ten.
+  std::vector<std::pair<double, std::string>> y_ticks() const {
+    constexpr int wanted = 6;
+    std::vector<std::pair<double, std::string>> ticks;
+    if (!plot_.y_log) {
+      const int digits = decimals(tick_step(y_, wanted));
+      for (const double tick : tick_positions(y_, wanted))
+        ticks.emplace_back(tick, fmt::format("{:.{}f}", tick, digits));
+      return ticks;
+    }
+    for (double power = std::floor(y_.minimum); power <= y_.maximum; ++power)
+      for (const double times : {1, 2, 5}) {
+        const double tick = times * std::pow(10, power), place = std::log10(tick);
+        if (place >= y_.minimum && place <= y_.maximum) ticks.emplace_back(tick, fmt::format("{:g}", tick));
+      }
+    return ticks;
+  }
 
   void make_scales_equal() {
     const double per_px =
@@ -147,8 +174,8 @@ class Panel {
   }
 
   void draw_axes(std::string& text) const {
-    constexpr int wanted_x = 7, wanted_y = 6;
-    const int x_decimals = decimals(tick_step(x_, wanted_x)), y_decimals = decimals(tick_step(y_, wanted_y));
+    constexpr int wanted_x = 7;
+    const int x_decimals = decimals(tick_step(x_, wanted_x));
     constexpr const char *middle = "text-anchor=\"middle\"", *end = "text-anchor=\"end\"";
     text += label(left, 18, plot_.title, "class=\"title\"");
     for (const auto& [x, name] : plot_.x_names)
@@ -159,9 +186,9 @@ class Panel {
       text += straight(at_x(tick), top, "V", bottom, "grid");
       text += label(at_x(tick), bottom + 15, fmt::format("{:.{}f}", tick, x_decimals), middle);
     }
-    for (const double tick : tick_positions(y_, wanted_y)) {
+    for (const auto& [tick, words] : y_ticks()) {
       text += straight(left, at_y(tick), "H", left + width(), "grid");
-      text += label(left - 6, at_y(tick) + 4, fmt::format("{:.{}f}", tick, y_decimals), end);
+      text += label(left - 6, at_y(tick) + 4, words, end);
     }
     text += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" class=\"frame\"/>\n", left, top,
                         width(), plot_height);

@@ -48,6 +48,7 @@ struct LinePlot {
   std::vector<std::pair<double, std::string>> x_names = {};
   std::optional<AxisRange> x_range = {};
   std::optional<AxisRange> y_range = {};
+  bool y_log = false;  ///< the y axis is logarithmic; a bar that reaches 0 or infinity ends at the frame
   bool equal_scale = false;  ///< a metre is as long upwards as sideways: for paths
 };
 

@@ -15,6 +15,7 @@
 #include "scenarios/course/inventory.hpp"
 #include "scenarios/parts/checked_parts.hpp"
 #include "scenarios/parts/oracles.hpp"
+#include "scenarios/parts/synthetic_detector.hpp"
 #include "scenarios/scenario/scenario.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
 
@@ -26,6 +27,10 @@ std::vector<double> rig_depth_m(const Scenario&, const StereoRig& rig) { return 
 std::vector<double> pushbroom_depths_m(const Scenario& scenario, const StereoRig& rig) {
   const std::vector<double> depths_m = stated_depths_m(scenario.perception.pushbroom(), rig);
   return depths_m.empty() ? std::vector{rig.detection_depth_m} : depths_m;
+}
+
+std::vector<double> synthetic_depths_m(const Scenario& scenario, const StereoRig&) {
+  return scenario.perception.detectors.of<SyntheticConfig>("synthetic").depths_m;
 }
 
 double pushbroom_cost_s(const PerceptionSection& perception) {
@@ -49,6 +54,13 @@ std::unique_ptr<ObstacleDetector> full_stereo_of(const FlightContext& context) {
                                                        context.scenario.perception.full_stereo);
   if (!context.rig.calibration) return detector;
   return std::make_unique<RectifyingDetector>(*context.rig.calibration, std::move(detector));
+}
+
+std::unique_ptr<ObstacleDetector> synthetic_of(const FlightContext& context) {
+  const FullStereoCrop& crop = context.scenario.perception.full_stereo;
+  return std::make_unique<SyntheticDetector>(
+      context.rig.rig, context.obstacles, context.truth, own_config<SyntheticConfig>(context),
+      DepthInterval{crop.minimum_depth_m, crop.maximum_depth_m}, context.seed);
 }
 
 std::string stereo_bm_fault(const StereoBmConfig& config, const Scenario&) {
@@ -105,6 +117,12 @@ void add_detectors(PartList<DetectorPart>& detectors) {
                      },
                  .needs_images = false,
                  .depths_m = rig_depth_m});
+  detectors.add({.name = "synthetic",
+                 .meaning = "hits made from the truth, with the depths, misses and errors that its keys say",
+                 .make = synthetic_of,
+                 .needs_images = false,
+                 .depths_m = synthetic_depths_m},
+                SyntheticConfig());
   detectors.add({.name = "none",
                  .meaning = "detects nothing: the blind aircraft",
                  .make = [](const FlightContext&) { return std::make_unique<NoDetector>(); },

@@ -75,9 +75,10 @@ void visit_fields(FieldVisitor& visit, SensorSection& section) {
 }
 
 void visit_fields(FieldVisitor& visit, PerceptionSection& section) {
-  visit("detector", section.detector, parts().detectors.names(),
-        "Obstacle detector. true_depth gets exact depths from the simulator, none detects nothing; neither "
-        "looks at images.");
+  visit(
+      "detector", section.detector, parts().detectors.names(),
+      "Obstacle detector. true_depth gets exact depths from the simulator, synthetic gets them with faults, "
+      "none detects nothing; these look at no images.");
   visit("preset", section.preset, pushbroom_preset_names,
         "Parameter set for perception.pushbroom and perception.depths_m; keys given there win. tuned: "
         "numbers and depths tuned for the rig; woods: tuned in woods; robust: before tuning; original: the "
@@ -150,7 +151,9 @@ void visit_fields(FieldVisitor& visit, Scenario& scenario) {
         "kind of course; the keys that begin with the same word describe it");
   visit("plugins", scenario.plugins);
   visit("files", scenario.files);
-  visit("time_limit_s", scenario.time_limit_s, 0.1, 600.0, "simulated time after which a flight ends");
+  visit("time_limit_s", scenario.time_limit_s, 0.1, 600.0,
+        "Simulated time after which a flight ends. Default on a course of over 100 m: twice as long as the "
+        "way to the goal takes at the cruise speed.");
   visit("wind_world_mps", scenario.wind_world_mps, -20.0, 20.0,
         "velocity of the mean wind, in world axes, at wind.reference_height_m");
   visit("wind", scenario.wind);

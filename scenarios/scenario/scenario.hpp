@@ -161,11 +161,15 @@ struct Scenario {
   AutopilotSection autopilot = planning_of(PlanningPreset::economical);
   IdealConfig ideal;
 
-  /// The mission as the stack gets it.
+  /// A course of over 100 m asks how far the aircraft flies between crashes: only contact, the altitude band
+  /// and time end its flights, and GPS keeps them among the trees (docs/limits.md).
+  bool is_long() const { return goal_x_m() > 100; }
+  /// The mission as the stack gets it. On a long course trees stand on both sides of the way that it names,
+  /// so that no error of GPS leads out of the forest.
   Mission mission() const {
     return {0,
             goal_x_m(),
-            forest.half_width_m,
+            is_long() ? 0.7 * forest.half_width_m : forest.half_width_m,
             band.minimum_altitude_m,
             band.maximum_altitude_m,
             band.cruise_altitude_m};
@@ -185,7 +189,7 @@ struct Scenario {
     return config;
   }
   double goal_x_m() const { return forest.clear_m + forest.length_m; }
-  /// The course's ground. Beyond its sides and behind it a flight has left the course.
+  /// The course's ground. Beyond its sides and behind it a flight has left the course, unless it is long.
   Eigen::AlignedBox2d course_rectangle() const {
     return {Eigen::Vector2d(-forest.half_width_m, -forest.half_width_m),
             Eigen::Vector2d(goal_x_m(), forest.half_width_m)};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <utility>
@@ -288,6 +289,13 @@ Scenario compose(const Sources& sources, const std::string& name) {
   if (first.world.scenery == Scenery::woods) {
     scenario.cameras.psf_px = 0.6;
     scenario.cameras.vignetting_power = 4;
+  }
+  if (first.is_long()) {
+    scenario.time_limit_s =
+        std::min(600.0, std::ceil(2 * first.goal_x_m() / first.autopilot.flight_model.cruise_speed_mps));
+    scenario.forest.half_width_m = 36;
+    scenario.sensors.gps.enabled = true;
+    filter.gps.enabled = false;  // the estimate stays that of a short course: GPS only says where the way is
   }
   filter.distrust.imu_gap_s = 1.5 / first.sensors.imu_rate_hz;
   filter.start.position_world_m = rail_start_world(first.launch);

@@ -1,6 +1,7 @@
 #include "scenarios/statistics/statistics.hpp"
 
 #include <algorithm>
+#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -125,6 +126,12 @@ Interval log_log_interval(double share, double greenwood) {
 }
 
 }  // namespace
+
+Interval poisson_interval(int events) {
+  constexpr double tail = 0.025;
+  return {events > 0 ? boost::math::gamma_p_inv(events, tail) : 0,
+          boost::math::gamma_p_inv(events + 1, 1 - tail)};
+}
 
 Interval wilson_interval(int successes, int trials) {
   if (trials == 0) return {0, 1};

@@ -37,6 +37,10 @@ inline constexpr double z_95 = 1.959963984540054;
 /// correction. No trials: 0 .. 1.
 Interval wilson_interval(int successes, int trials);
 
+/// Garwood's exact 95 % interval for the mean of a Poisson count (Garwood 1936, Biometrika 28, 437), from
+/// quantiles of the gamma distribution. After no event it begins at 0.
+Interval poisson_interval(int events);
+
 /// The same trials made twice, each time good or bad: how often both were good, only one, none.
 struct PairedOutcomes {
   int both = 0;

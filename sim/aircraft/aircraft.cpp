@@ -101,6 +101,7 @@ void Aircraft::carry(const Eigen::Isometry3d& T_world_body, const Eigen::Vector3
 }
 
 void Aircraft::read_outline() {
+  std::vector<NearObstacle> obstacles;
   for (int geom = 0; geom < model_.ngeom; ++geom) {
     const Eigen::Map<const Eigen::Vector3d> centre(model_.geom_pos + 3 * geom);
     if (model_.geom_bodyid[geom] == body_ && model_.geom_contype[geom] != 0) {
@@ -111,13 +112,14 @@ void Aircraft::read_outline() {
       const Eigen::Vector3d axis =
           Eigen::Quaterniond(turn[0], turn[1], turn[2], turn[3]) * Eigen::Vector3d::UnitZ();
       const mjtNum* size = model_.geom_size + 3 * geom;  // radius, half length
-      obstacles_.push_back({centre, axis, size[1], size[0]});
+      obstacles.push_back({centre, axis, size[1], size[0]});
     } else if ((model_.geom_type[geom] == mjGEOM_BOX || model_.geom_type[geom] == mjGEOM_SPHERE) &&
                model_.geom_conaffinity[geom] != 0) {
-      obstacles_.push_back(
+      obstacles.push_back(
           {centre, Eigen::Vector3d::UnitZ(), 0, model_.geom_rbound[geom]});  // a wall: its sphere
     }
   }
+  obstacles_ = by_cells(obstacles);
 }
 
 AircraftShape Aircraft::shape() const {
@@ -149,26 +151,33 @@ bool Aircraft::NearObstacle::is_near(const Eigen::Vector3d& centre, double reach
   return (offset - along_m * axis_world).squaredNorm() < near_m * near_m;
 }
 
-/// Each obstacle into the cell of its centre.
+/// Each obstacle into the cell of its centre. The aircraft reaches none beyond the next cell.
+GroundCells<Aircraft::NearObstacle> Aircraft::by_cells(const std::vector<NearObstacle>& obstacles) const {
+  double cell_m = 1;
+  for (const NearObstacle& obstacle : obstacles)
+    cell_m = std::max(
+        cell_m, reach_m_ + obstacle.half_length_m * obstacle.axis_world.head<2>().norm() + obstacle.radius_m);
+  GroundCells<NearObstacle> cells(cell_m);
+  for (const NearObstacle& obstacle : obstacles) cells.add(obstacle.centre_world, obstacle);
+  return cells;
+}
+
 void Aircraft::read_pool(const std::vector<Obstacle>& pooled) {
   first_pooled_ = mj_name2id(&model_, mjOBJ_GEOM, "pool_0");
   if (first_pooled_ < 0) return;
   std::vector<NearObstacle> pieces;
-  double cell_m = 1;
   for (const Obstacle& obstacle : pooled) {
-    if (obstacle.tree < 0) continue;
+    if (!is_pooled(obstacle, pooled)) continue;
     const Eigen::Vector3d half = 0.5 * (obstacle.to_world - obstacle.from_world);
     pieces.push_back({obstacle.from_world + half, half.normalized(), half.norm(), obstacle.radius_m});
-    cell_m = std::max(cell_m, reach_m_ + half.norm() + obstacle.radius_m);
   }
-  pieces_ = GroundCells<NearObstacle>(cell_m);
-  for (const NearObstacle& piece : pieces) pieces_.add(piece.centre_world, piece);
+  pieces_ = by_cells(pieces);
 }
 
 bool Aircraft::anything_near() {
   const Eigen::Map<const Eigen::Vector3d> centre(data_->qpos);
   const auto is_near = [&](const NearObstacle& obstacle) { return obstacle.is_near(centre, reach_m_); };
-  const bool fixed_near = centre.z() < reach_m_ || std::any_of(obstacles_.begin(), obstacles_.end(), is_near);
+  const bool fixed_near = centre.z() < reach_m_ || obstacles_.any_around(centre, is_near);
   if (first_pooled_ < 0) return fixed_near;
   std::vector<const NearObstacle*> near;
   pieces_.any_around(centre, [&](const NearObstacle& piece) {

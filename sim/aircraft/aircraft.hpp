@@ -95,6 +95,7 @@ class Aircraft {
   std::int64_t t_ns() const { return step_ * 1'000'000'000 / rate_hz_; }
   void read_outline();
   void read_pool(const std::vector<Obstacle>& pooled);
+  GroundCells<NearObstacle> by_cells(const std::vector<NearObstacle>& obstacles) const;
   bool anything_near();
   void place_pool(const std::vector<const NearObstacle*>& near);
   void update_moment();
@@ -123,7 +124,7 @@ class Aircraft {
   int body_ = 0;
   int ground_geom_ = 0;
   double reach_m_ = 0;  ///< from the centre of mass to the farthest corner of the collision boxes
-  std::vector<NearObstacle> obstacles_;
+  GroundCells<NearObstacle> obstacles_;
   /// Of a model with pooled geoms: the pieces of its trees, and the pool's first geom.
   GroundCells<NearObstacle> pieces_;
   int pooled_ = 0;  ///< geoms of the pool that lie at an obstacle now

@@ -2,6 +2,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -90,15 +91,18 @@ void write_pool(std::ostream& xml) {
         << " size='.1 1' pos='0 0 -1000'/>\n";
 }
 
+/// Whether one model is both drawn and flown.
+enum class SceneUse { both, drawn, flown };
+
 /// The extent is fixed, because the near and far planes depend on it (0.1 m and 120 m) and one more tree
 /// would move them. No multisampling, because it ruins depth. Nothing is drawn into MuJoCo's own offscreen
 /// buffer, so one pixel is enough. A contact (condim 1) is one row of constraints, and there are no others.
 /// MuJoCo clears the memory for them in every mjData, four times a flight (53 MB each for a thousand), so it
 /// is kept small.
 std::string scene_xml(const Airframe& airframe, const std::vector<Obstacle>& obstacles,
-                      const WorldConfig& config) {
-  const bool woods = config.scenery == Scenery::woods;
-  const SceneryXml scenery = woods ? SceneryXml{} : scenery_xml(obstacles, config);
+                      const WorldConfig& config, SceneUse use) {
+  const bool drawn = use != SceneUse::flown && config.scenery == Scenery::plain;
+  const SceneryXml scenery = drawn ? scenery_xml(obstacles, config) : SceneryXml{};
   std::ostringstream xml;
   xml.imbue(std::locale::classic());
   xml.precision(17);
@@ -112,10 +116,12 @@ std::string scene_xml(const Airframe& airframe, const std::vector<Obstacle>& obs
       << "<global offwidth='1' offheight='1'/></visual>\n"
       << "<asset>" << scenery.assets << "</asset>\n<worldbody>\n"
       << "<geom name='ground' type='plane' size='0 0 1' group='3' contype='0' conaffinity='1' condim='1'/>\n";
-  if (woods) write_pool(xml);
-  if (config.obstacles_tangible) {
+  const bool has_pool = use == SceneUse::flown || config.scenery == Scenery::woods;
+  if (has_pool) write_pool(xml);
+  if (config.obstacles_tangible && use != SceneUse::drawn) {
     std::vector<Obstacle> fixed = obstacles;
-    if (woods) std::erase_if(fixed, [](const Obstacle& obstacle) { return obstacle.tree >= 0; });
+    if (has_pool)
+      std::erase_if(fixed, [&](const Obstacle& obstacle) { return is_pooled(obstacle, obstacles); });
     write_collisions(xml, fixed);
   }
   xml << scenery.bodies << "\n</worldbody>\n</mujoco>\n";
@@ -155,17 +161,12 @@ std::shared_ptr<WoodsMesh> mesh_of(const std::vector<Obstacle>& obstacles, const
 void DeleteModel::operator()(mjModel_* model) const { mj_deleteModel(model); }
 void DeleteData::operator()(mjData_* data) const { mj_deleteData(data); }
 
-World build_world(const fs::path& models_folder, const Airframe& airframe,
-                  const std::vector<Obstacle>& obstacles, const WorldConfig& config,
-                  const std::vector<Tree>& trees, const Eigen::AlignedBox2d& course) {
-  mju_user_error = raise_error;
-  mju_user_warning = raise_error;
+namespace {
 
-  const fs::path aircraft_file = models_folder / "airframe" / "delta_wing.xml";
+ModelPointer compiled(const std::string& scene, const fs::path& aircraft_file) {
   MemoryFiles files;
   files.add("delta_wing.xml", text_of(aircraft_file));
-  files.add("scene.xml", scene_xml(airframe, obstacles, config));
-
+  files.add("scene.xml", scene);
   char message[1000] = "";
   ModelPointer model(mj_loadXML("scene.xml", files.get(), message, sizeof message));
   if (!model) throw SimulationError(aircraft_file.string() + ": MuJoCo refuses the scene: " + message);
@@ -174,10 +175,37 @@ World build_world(const fs::path& models_folder, const Airframe& airframe,
       throw std::runtime_error(aircraft_file.string() + ": has no body named \"" + name + "\"");
     }
   }
-  set_inertia(*model, airframe);
-  model->vis.quality.shadowsize = 0;  // unused by the cameras, and expensive
-  model->vis.quality.offsamples = 0;
-  return {std::move(model), obstacles, config, mesh_of(obstacles, trees, config, course)};
+  return model;
+}
+
+constexpr std::size_t many_obstacles = 500;
+
+}  // namespace
+
+bool is_pooled(const Obstacle& obstacle, const std::vector<Obstacle>& all) {
+  const bool is_round = obstacle.kind != ObstacleKind::box && obstacle.kind != ObstacleKind::sphere &&
+                        obstacle.kind != ObstacleKind::wall;
+  return obstacle.tree >= 0 || (all.size() > many_obstacles && is_round);
+}
+
+World build_world(const fs::path& models_folder, const Airframe& airframe,
+                  const std::vector<Obstacle>& obstacles, const WorldConfig& config,
+                  const std::vector<Tree>& trees, const Eigen::AlignedBox2d& course) {
+  mju_user_error = raise_error;
+  mju_user_warning = raise_error;
+
+  const fs::path aircraft_file = models_folder / "airframe" / "delta_wing.xml";
+  const auto made = [&](SceneUse use) {
+    ModelPointer model = compiled(scene_xml(airframe, obstacles, config, use), aircraft_file);
+    set_inertia(*model, airframe);
+    return model;
+  };
+  const bool large = config.scenery == Scenery::plain && obstacles.size() > many_obstacles;
+  World world{made(large ? SceneUse::drawn : SceneUse::both), obstacles, config,
+              mesh_of(obstacles, trees, config, course), large ? made(SceneUse::flown) : nullptr};
+  world.model->vis.quality.shadowsize = 0;  // unused by the cameras, and expensive
+  world.model->vis.quality.offsamples = 0;
+  return world;
 }
 
 }  // namespace understory

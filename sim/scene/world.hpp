@@ -38,15 +38,25 @@ enum GeomGroup { group_scenery = 0, group_aircraft_skin = 1, group_collision = 3
 /// named "aircraft" (free joint "aircraft_free"), its hinges "left_elevon" and "right_elevon", the ground's
 /// geom "ground". The cameras paint the textures' pixels (sim/scene/scenery.hpp); physics does not need them.
 struct World {
-  ModelPointer model;
+  ModelPointer model;  ///< what is drawn; it flies, too, where there is no other
   std::vector<Obstacle> obstacles;
   WorldConfig config = {};
   std::shared_ptr<WoodsMesh> woods = nullptr;  ///< what is drawn of woods; the cameras paint its textures
+  /// Of a large course: what flies, without scenery and with pooled geoms. MuJoCo places every geom at every
+  /// step, and a kilometre of forest has thousands.
+  ModelPointer flown = {};
+
+  mjModel_& flown_model() const { return flown ? *flown : *model; }
 };
 
-/// Number of capsules that can collide at a time in a world of woods. The aircraft moves them to the pieces
-/// of trees nearest to it. A wood has thousands of pieces, and MuJoCo checks every pair of geoms.
+/// Number of capsules that can collide at a time in a world of woods or on a large course. The aircraft moves
+/// them to the pieces of trees nearest to it. A wood has thousands of pieces, and MuJoCo checks every pair of
+/// geoms.
 inline constexpr int pooled_geoms = 64;
+
+/// Whether it collides by the pool: trees of woods do, and everything round of a course of over 500
+/// obstacles.
+bool is_pooled(const Obstacle& obstacle, const std::vector<Obstacle>& all);
 
 /// Composes models/airframe/delta_wing.xml with the obstacles and compiles it. Throws std::runtime_error,
 /// naming the file, where MuJoCo refuses it. Mass and inertia come from `airframe`. With scenery `woods` the

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "scenarios/flight/flight_logger.hpp"
+#include "scenarios/flight/referee.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "sim/render/offscreen_backend.hpp"
 #include "tests/closed_loop/flown.hpp"
@@ -56,6 +57,20 @@ TEST(Flight, TwoOpenAtOnceAreAsAlone) {
   }
   EXPECT_EQ(one.flown().digest, flown("forest", 1000, short_forest).digest());
   EXPECT_EQ(other.flown().digest, flown("forest", 1001, short_forest).digest());
+}
+
+TEST(Referee, SidesEndNoFlightOnALongCourse) {
+  const auto judged = [](const char* length, const Eigen::Vector3d& place) {
+    Truth truth;
+    truth.T_world_body.translation() = place;
+    return Referee(forest(1, {length})).outcome_at(truth, Contact::none, true);
+  };
+  for (const Eigen::Vector3d& aside : {Eigen::Vector3d(30, 40, 4), {30, -40, 4}, {-40, 0, 4}}) {
+    EXPECT_EQ(judged("forest.length_m=60", aside), Outcome::out_of_bounds);
+    EXPECT_EQ(judged("forest.length_m=1000", aside), std::nullopt);
+  }
+  EXPECT_EQ(judged("forest.length_m=1000", {30, 0, 7}), Outcome::out_of_bounds);
+  EXPECT_EQ(judged("forest.length_m=1000", {1016, 0, 4}), Outcome::goal);
 }
 
 TEST(Flight, AnotherRendererBesideItIsRefusedInOneLine) {

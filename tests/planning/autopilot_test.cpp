@@ -159,6 +159,49 @@ Controls follow_command(const FlightCommand& command, const State& state) {
   return follow(FlightModel(Airframe{}, {.cruise_speed_mps = 12.27}), {}, command, state);
 }
 
+/// Plans straight on, and shows what it was asked.
+class Asked : public Planner {
+ public:
+  Plan plan(const PlanRequest& request) override {
+    last = request;
+    return {request.t_ns, PlanOrigin::straight, {{0, request.start.position_world}}, INFINITY};
+  }
+  PlanRequest last;
+};
+
+/// The fix says that the aircraft is 3 m left of where it thinks: the planner works there, the plan and the
+/// map stay where odometry has them.
+TEST(Autopilot, PlansBesideTheCoursesOwnLineWhereGpsSaysWhereItIs) {
+  const StereoRig rig = support::house_rig("long.yaml");
+  GivenHits detector;
+  LevelFlight source;
+  Asked planner;
+  Autopilot autopilot({}, Airframe{}, rig, detector, source, planner);
+  for (const std::int64_t sample_ns : {0, 1})
+    autopilot.on(ImuSample{sample_ns, Vector3d::Zero(), {100, 0, 0}});
+  std::int64_t t_ns = 1'000'000'000;
+  source.fly_to(t_ns);
+  const Eigen::Isometry3d T_world_camera = source.state().T_world_body * rig.T_body_camera;
+  for (const Vector3d& point : trunk_at(22, 1)) {
+    detector.hits.emplace_back();
+    detector.hits.back().position_camera = T_world_camera.inverse() * point;
+  }
+  for (int tick = 0; tick < 3; ++tick) autopilot.on(StereoFrame{t_ns + tick, {}, {}});
+  autopilot.on(GpsSample{t_ns - 200'000'000,
+                         source.state_at(t_ns - 200'000'000).T_world_body.translation() + Vector3d(0, 3, 9)});
+  autopilot.replan(t_ns);
+  autopilot.controls(t_ns += 10'000'000);
+  EXPECT_NEAR(planner.last.start.position_world.y(), 3, 1e-6);
+  ASSERT_FALSE(planner.last.points.empty());
+  for (const ObstaclePoint& point : planner.last.points) {
+    EXPECT_NEAR(point.position_world.y(), 4, 1e-6);
+    EXPECT_LT(point.position_world.z(), 5);  // heights are the barometer's business
+  }
+  ASSERT_FALSE(autopilot.plan().points.empty());
+  EXPECT_NEAR(autopilot.plan().points[0].position_world.y(), 0, 1e-6);
+  for (const ObstaclePoint& point : autopilot.map().points()) EXPECT_NEAR(point.position_world.y(), 1, 1e-6);
+}
+
 TEST(CommandAt, IsTheOneInForce) {
   const Plan plan = three_commands();
   EXPECT_EQ(command_at(plan, 0), (FlightCommand{0.1, 0}));  // before the start: the first

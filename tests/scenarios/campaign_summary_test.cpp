@@ -56,6 +56,28 @@ TEST(CampaignSummary, ShowsSharesWithTheirIntervals) {
   EXPECT_EQ(cell(2, "not flown"), "1");
 }
 
+/// 9.6 km with eight collisions: 9.6/8, 9.6/15.763 and 9.6/3.454; and a goal, and a flight out of time.
+TEST(CampaignSummary, KilometresBetweenCrashes) {
+  std::vector<FlightRow> rows;
+  for (int seed = 0; seed < 10; ++seed) {
+    rows.push_back(flown_row("long", static_cast<std::uint64_t>(seed),
+                             seed < 6    ? "collision"
+                             : seed == 6 ? "ground"
+                             : seed == 7 ? "out_of_bounds"
+                             : seed == 8 ? "time"
+                                         : "goal"));
+    rows.back().among_obstacles_m = 960;
+  }
+  const CrashDistance distance = crash_distance(summary_of(rows));
+  EXPECT_NEAR(distance.value_km, 1.2, 1e-12);
+  EXPECT_NEAR(distance.interval.minimum, 0.6090, 5e-5);
+  EXPECT_NEAR(distance.interval.maximum, 2.7795, 5e-4);
+  EXPECT_EQ(crash_distance_text(summary_of(rows)), "1.2 (0.61 to 2.8)");
+  rows.assign(1, flown_row("long", 1, "goal"));
+  rows[0].among_obstacles_m = 14800;
+  EXPECT_EQ(crash_distance_text(summary_of(rows)), "> 4.0");  // 14.8 / 3.689
+}
+
 const std::string speed_key = "autopilot.flight_model.cruise_speed_mps",
                   density_key = "forest.square_metres_per_tree";
 
@@ -127,6 +149,22 @@ TEST(CampaignPlots, AnyNumericKeyOfTheGridIsAnAxis) {
   EXPECT_EQ(plot.series[0].x, (std::vector<double>{0.1, 0.3}));
   EXPECT_EQ(plot.series[0].y, (std::vector<double>{90, 50}));
   expect_part(campaign_svg(rows, conditions), "success over score_limit");
+}
+
+TEST(CampaignPlots, LongCoursesShowKilometresBetweenCrashes) {
+  std::vector<FlightRow> rows;
+  const std::vector<Condition> conditions{{"a", "", "forest", "", {{speed_key, "9"}}},
+                                          {"b", "", "forest", "", {{speed_key, "12"}}}};
+  add_ten(rows, "a", 9, 25, 10);
+  add_ten(rows, "b", 12, 25, 5);
+  expect_no_part(campaign_svg(rows, conditions), "km between crashes");
+  for (FlightRow& row : rows) row.goal_m = 1015, row.among_obstacles_m = 1000;
+  const LinePlot plot = crash_distance_over(rows, conditions, axes_of(conditions)[0]);
+  ASSERT_EQ(plot.series.size(), 1u);
+  EXPECT_NEAR(plot.series[0].y.at(0), 10 / 3.6889, 1e-4);  // no crash: the bound
+  EXPECT_EQ(plot.series[0].high.at(0), HUGE_VAL);
+  EXPECT_NEAR(plot.series[0].y.at(1), 2, 1e-12);
+  expect_part(campaign_svg(rows, conditions), "km between crashes");
 }
 
 TEST(CampaignPlots, WithoutAnAxisConditionsStandSideBySide) {

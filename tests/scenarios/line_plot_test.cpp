@@ -72,6 +72,23 @@ TEST(LinePlot, ScalesAreLinear) {
   EXPECT_LT(number(4), number(2));
 }
 
+/// Equal ratios are equal distances; what has no logarithm lies on the frame.
+TEST(LinePlot, ALogarithmicAxisShowsRatios) {
+  LinePlot plot = small_plot();
+  plot.references.clear();
+  plot.series = {{"decades", {0, 1, 2}, {1, 10, 100}, Mark::line, -1, {0, 1, 50}, {2, 20, HUGE_VAL}}};
+  plot.y_log = true;
+  const std::string svg = to_svg({plot});
+  std::smatch match;
+  ASSERT_TRUE(std::regex_search(
+      svg, match, std::regex(R"re(M([0-9.]+) ([0-9.]+)L([0-9.]+) ([0-9.]+)L([0-9.]+) ([0-9.]+)" stroke)re")));
+  const auto number = [&](int i) { return std::stod(match[static_cast<std::size_t>(i)]); };
+  EXPECT_NEAR(number(2) - number(4), number(4) - number(6), 0.11);
+  EXPECT_GT(number(2) - number(4), 50);
+  for (const char* tick : {">1<", ">2<", ">50<", ">100<"}) expect_part(svg, tick);
+  for (const char* wrong : {"inf", "nan"}) expect_no_part(svg, wrong);
+}
+
 TEST(LinePlot, WhatIsNotANumberInterruptsTheLine) {
   LinePlot plot = small_plot();
   plot.series = {{"gap", {0, 1, 2, 3, 4}, {0, 1, std::numeric_limits<double>::quiet_NaN(), 3, 4}}};

@@ -63,6 +63,9 @@ struct Difference {
 TEST(Scenario, TwoOfTheLibraryDifferOnlyInWhatTheirCommentsSay) {
   const std::vector<Difference> differences{
       {"dense", "forest.square_metres_per_tree", "one tree per 25 m^2"},
+      {"agile", "forest.square_metres_per_tree", "one tree per 25 m^2"},
+      {"agile", "forest.radius_", "0.6 m thick"},
+      {"agile", "forest.length_m", "40 m"},
       {"paper", "rig", "with the rig of Barry & Tedrake"},
       {"paper", "perception.pushbroom.", "with the rig of Barry & Tedrake"},  // the numbers tuned for it
       {"paper", "band.cruise_altitude_m", "a hard dodge sinks 1.5 m"},
@@ -232,10 +235,10 @@ TEST(Scenario, FullStereosNumbersAreRefusedInOneLineWhereOpenCvWouldThrow) {
             "a.yaml:2: perception.stereo_sgbm.smoothness_1: must be less than smoothness_2");
   EXPECT_EQ(refusal("perception: {full_stereo: {minimum_depth_m: 20}}"),
             "a.yaml:1: perception.full_stereo.minimum_depth_m: must be less than maximum_depth_m");
-  EXPECT_EQ(
-      refusal("perception: {detector: stereo}"),
-      "a.yaml:1: perception.detector: expected pushbroom | stereo_bm | stereo_sgbm | true_depth | none, "
-      "got stereo (did you mean stereo_bm?)");
+  EXPECT_EQ(refusal("perception: {detector: stereo}"),
+            "a.yaml:1: perception.detector: expected pushbroom | stereo_bm | stereo_sgbm | true_depth | "
+            "synthetic | none, "
+            "got stereo (did you mean stereo_bm?)");
   EXPECT_EQ(refusal("perception: {compute: {factor: -1}}"),
             "a.yaml:1: perception.compute.factor: expected a number from 0.001 to 1000, got -1");
 }
@@ -283,6 +286,28 @@ TEST(Scenario, FaultsAreReadWrittenAndChecked) {
   };
   EXPECT_EQ(refusal_of<ScenarioError>(refused),
             "a.yaml:4: faults[0].kind: must be, for this sensor, freeze | dropout | bias | saturate");
+}
+
+TEST(Scenario, ALongCourseHasTimeRoomAndGps) {
+  const Scenario usual = scenario_from_text("forest: {length_m: 85}\n", "a.yaml"),
+                 longer = scenario_from_text("forest: {length_m: 985}\n", "a.yaml"),
+                 said = scenario_from_text(
+                     "time_limit_s: 7\nforest: {length_m: 985, half_width_m: 20}\nsensors: {gps: "
+                     "{enabled: false}}\n",
+                     "a.yaml");
+  EXPECT_FALSE(usual.is_long());
+  EXPECT_EQ(usual.time_limit_s, 30);
+  EXPECT_EQ(usual.mission().half_width_m, 25);
+  EXPECT_FALSE(usual.sensors.gps.enabled);
+  EXPECT_TRUE(longer.is_long());
+  EXPECT_EQ(longer.time_limit_s, 167);  // 2 * 1000 m at 12 m/s
+  EXPECT_EQ(longer.forest.half_width_m, 36);
+  EXPECT_NEAR(longer.mission().half_width_m, 25.2, 1e-9);
+  EXPECT_TRUE(longer.sensors.gps.enabled);
+  EXPECT_FALSE(longer.estimation.filter().gps.enabled);
+  EXPECT_EQ(said.time_limit_s, 7);
+  EXPECT_EQ(said.forest.half_width_m, 20);
+  EXPECT_FALSE(said.sensors.gps.enabled);
 }
 
 TEST(Scenario, TheAircraftThatFliesMayDifferFromTheStacks) {

@@ -29,6 +29,19 @@ TEST(Wilson, StaysWithinZeroAndOne) {
   EXPECT_EQ(wilson_interval(0, 0).maximum, 1);
 }
 
+// Garwood 1936, Biometrika 28, 437, as tabulated by Ulm 1990, American Journal of Epidemiology 131, 373.
+TEST(Poisson, PublishedIntervals) {
+  const struct {
+    int events;
+    double minimum, maximum;
+  } rows[] = {
+      {0, 0, 3.6889}, {1, 0.0253, 5.5716}, {5, 1.6235, 11.6683}, {8, 3.4538, 15.7632}, {10, 4.7954, 18.3904}};
+  for (const auto& row : rows) {
+    EXPECT_NEAR(poisson_interval(row.events).minimum, row.minimum, 5e-5);
+    EXPECT_NEAR(poisson_interval(row.events).maximum, row.maximum, 5e-5);
+  }
+}
+
 /// Armitage & Berry 1994, Statistical Methods in Medical Research, p. 127: growth on two media, 50 specimens.
 const PairedOutcomes cultures{20, 12, 2, 16};
 /// Bentur et al. 2009, as in Fagerland, Lydersen & Laake 2013, BMC Medical Research Methodology 13:91,

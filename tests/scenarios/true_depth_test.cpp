@@ -9,6 +9,7 @@
 
 #include "scenarios/course/courses.hpp"
 #include "scenarios/flight/clearance.hpp"
+#include "scenarios/parts/synthetic_detector.hpp"
 #include "tests/perception/rigs.hpp"
 
 namespace understory {
@@ -125,6 +126,126 @@ TEST(TrueDepth, NothingAtOtherDepths) {
                     .empty())
         << x;
   }
+}
+
+/// A wall across the view, all of it at one depth, 400 frames of the same moment. 75 columns and 42 rows of
+/// blocks see it.
+struct SyntheticWall {
+  Scene scene;
+  StereoRig rig = paper_rig();
+  std::vector<Obstacle> wall{{"wall", {5, -50, -50}, {5, 50, 50}, 0.2, 0, 0, ObstacleKind::wall}};
+  static constexpr int frames = 400;
+
+  std::vector<std::vector<StereoHit>> seen(const SyntheticConfig& config, DepthInterval reach = {1.5, 15}) {
+    SyntheticDetector detector(rig, wall, scene.history, config, reach, 3);
+    std::vector<std::vector<StereoHit>> all;
+    for (int i = 0; i < frames; ++i) all.push_back(detector.detect(scene.frame));
+    return all;
+  }
+};
+
+/// Mean and variance of a count.
+std::pair<double, double> moments_of(const std::vector<std::vector<StereoHit>>& frames) {
+  double sum = 0, squares = 0;
+  for (const auto& hits : frames) sum += hits.size(), squares += 1.0 * hits.size() * hits.size();
+  const double n = frames.size(), mean = sum / n;
+  return {mean, squares / n - mean * mean};
+}
+
+TEST(Synthetic, WithoutFaultsItSeesTheTruth) {
+  SyntheticWall scene;
+  const auto frames = scene.seen({});
+  EXPECT_EQ(frames[0].size(), 75u * 42u);
+  for (const StereoHit& hit : frames[0]) EXPECT_NEAR(hit.position_camera.z(), 4.8, 1e-9);
+  EXPECT_TRUE(scene.seen({}, {1.5, 4.7})[0].empty());  // beyond its reach
+  SyntheticConfig other;
+  other.depths_m = {9.6};
+  EXPECT_TRUE(scene.seen(other)[0].empty());
+  other.depths_m = {9.6, 4.8};
+  EXPECT_EQ(scene.seen(other)[0].size(), 75u * 42u);
+}
+
+/// Blocks are missed as coins fall: binomial. Frames are missed whole.
+TEST(Synthetic, MissesTheShareThatItsKeysSay) {
+  SyntheticWall scene;
+  const double blocks = 75 * 42;
+  SyntheticConfig config;
+  config.missed_blocks = 0.3;
+  const auto [mean, variance] = moments_of(scene.seen(config));
+  EXPECT_NEAR(mean, 0.7 * blocks, 4 * std::sqrt(0.21 * blocks / SyntheticWall::frames));
+  EXPECT_NEAR(variance, 0.21 * blocks, 4 * 0.21 * blocks * std::sqrt(2.0 / SyntheticWall::frames));
+  config = {};
+  config.missed_frames = 0.25;
+  int missed = 0;
+  for (const auto& hits : scene.seen(config)) {
+    EXPECT_TRUE(hits.empty() || hits.size() == blocks);
+    missed += hits.empty();
+  }
+  EXPECT_NEAR(missed, 100, 4 * std::sqrt(400 * 0.1875));
+}
+
+/// 300 trunks side by side; a tree of several pieces is one.
+TEST(Synthetic, MissesObstaclesForGood) {
+  Scene scene;
+  std::vector<Obstacle> trunks;
+  int never = 0;
+  SyntheticConfig config;
+  config.missed_obstacles = 0.4;
+  for (int seed = 0; seed < 300; ++seed) {
+    trunks.assign(2, {"tree", {4.8, 0, 0}, {4.8, 0, 3}, 0.2, 0, 0});
+    trunks[1].from_world.z() = 3, trunks[1].to_world.z() = 9;
+    for (Obstacle& piece : trunks) piece.tree = 7;
+    SyntheticDetector detector(paper_rig(), trunks, scene.history, config, {1.5, 15},
+                               static_cast<std::uint64_t>(seed));
+    const std::size_t first = detector.detect(scene.frame).size();
+    EXPECT_TRUE(first == 0 || first > 100) << first;  // both pieces or none
+    EXPECT_EQ(detector.detect(scene.frame).size(), first);
+    never += first == 0;
+  }
+  EXPECT_NEAR(never, 120, 4 * std::sqrt(300 * 0.24));
+}
+
+/// Poisson: mean and variance are equal; rows in order; depths within what is looked at.
+TEST(Synthetic, FalsePointsArePoisson) {
+  SyntheticWall scene;
+  scene.wall.clear();
+  SyntheticConfig config;
+  config.false_points = 12;
+  const auto frames = scene.seen(config, {3, 9});
+  const auto [mean, variance] = moments_of(frames);
+  EXPECT_NEAR(mean, 12, 4 * std::sqrt(12.0 / SyntheticWall::frames));
+  EXPECT_NEAR(variance, 12, 4 * 12 * std::sqrt(2.1 / SyntheticWall::frames));
+  double sum_m = 0;
+  int count = 0;
+  for (const auto& hits : frames)
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      EXPECT_GE(hits[i].position_camera.z(), 3);
+      EXPECT_LE(hits[i].position_camera.z(), 9);
+      if (i > 0) {
+        EXPECT_LE(hits[i - 1].row_px, hits[i].row_px);
+      }
+      sum_m += hits[i].position_camera.z(), ++count;
+    }
+  EXPECT_NEAR(sum_m / count, 6, 4 * 6 / std::sqrt(12.0) / std::sqrt(count));
+}
+
+/// Of disparity, so that depths spread by z^2 / (f b) of it.
+TEST(Synthetic, ErrorsAreOfDisparity) {
+  SyntheticWall scene;
+  SyntheticConfig config;
+  config.disparity_error_px = 0.5;
+  const auto frames = scene.seen(config);
+  double sum = 0, squares = 0, depths_m = 0, depth_squares = 0, n = 0;
+  const double exact_px = scene.rig.disparity_px(4.8);
+  for (const StereoHit& hit : frames[0]) {
+    const double error_px = hit.disparity_px - exact_px, z = hit.position_camera.z();
+    EXPECT_NEAR(scene.rig.disparity_px(z), hit.disparity_px, 1e-9);
+    sum += error_px, squares += error_px * error_px, depths_m += z, depth_squares += z * z, ++n;
+  }
+  EXPECT_NEAR(sum / n, 0, 4 * 0.5 / std::sqrt(n));
+  EXPECT_NEAR(std::sqrt(squares / n), 0.5, 4 * 0.5 / std::sqrt(2 * n));
+  const double spread_m = std::sqrt(depth_squares / n - depths_m * depths_m / n / n);
+  EXPECT_NEAR(spread_m, 0.5 * 4.8 * 4.8 / (scene.rig.focal_px * scene.rig.baseline_m), 0.05 * spread_m);
 }
 
 TEST(SegmentDistance, ClosedForms) {

@@ -6,7 +6,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <random>
 
 #include "sim/aircraft/aircraft.hpp"
 
@@ -127,6 +129,38 @@ TEST(World, NoContactIsMissedInFlight) {
   }
   EXPECT_GT(touching, 10);
   EXPECT_GT(near_miss, 10);
+}
+
+/// A large course against worlds of few obstacles, which hold a geom for each.
+TEST(World, PooledCapsulesOfALargeCourseCollideAsAllOfThemWould) {
+  std::vector<Obstacle> trunks;
+  std::mt19937_64 generator(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 800; ++i) trunks.push_back(trunk(100 * unit(generator), 10 * unit(generator)));
+  const Airframe airframe;
+  const World large = build_world(models, airframe, trunks, {});
+  ASSERT_NE(large.flown, nullptr);
+  EXPECT_GT(large.model->ngeom, 800);  // drawn
+  Aircraft pooled(large.flown_model(), airframe, LaunchConfig{}, Wind(Vector3d::Zero()), {}, trunks);
+  int touches = 0;
+  for (double x_m = 5; x_m < 100; x_m += 10) {
+    std::vector<Obstacle> near;
+    std::ranges::copy_if(trunks, std::back_inserter(near),
+                         [&](const Obstacle& one) { return std::abs(one.from_world.x() - x_m) < 8; });
+    const World small = build_world(models, airframe, near, {});
+    ASSERT_EQ(small.flown, nullptr);
+    Aircraft full(*small.model, airframe, LaunchConfig{}, Vector3d::Zero());
+    for (int i = 0; i < 200; ++i) {
+      Eigen::Isometry3d pose(Eigen::AngleAxisd(3 * unit(generator), Vector3d::UnitX()));
+      pose.translation() =
+          Vector3d(x_m - 5 + 10 * unit(generator), 10 * unit(generator), 1 + 8 * unit(generator));
+      for (Aircraft* aircraft : {&pooled, &full}) aircraft->place(pose, {12, 0, 0}, Vector3d::Zero(), {});
+      ASSERT_EQ(pooled.contact(), full.contact()) << pose.translation().transpose();
+      touches += full.contact() == Contact::obstacle;
+    }
+  }
+  EXPECT_GT(touches, 200);
+  EXPECT_LT(touches, 1800);
 }
 
 TEST(World, StepAndViewArePinned) {

@@ -7,9 +7,10 @@ function percent(share: number | null): string {
   return share === null ? "–" : `${(100 * share).toFixed(0)} %`;
 }
 
-function say_condition({ label, goals, flown, flights, share, lower, upper }: Condition): string {
+function say_condition({ label, goals, flown, flights, share, lower, upper, between_crashes_km }: Condition): string {
   const lines = [label, `${goals} of ${flown} reached the goal: ${percent(share)}`];
   if (share !== null) lines.push(`95 % interval: ${percent(lower)} to ${percent(upper)}`);
+  if (between_crashes_km !== "") lines.push(`${between_crashes_km} km between crashes`);
   if (flights > flown) lines.push(`${flights - flown} of ${flights} not flown`);
   return lines.join("\n");
 }
@@ -17,7 +18,7 @@ function say_condition({ label, goals, flown, flights, share, lower, upper }: Co
 /// One line a condition. `choose` is told the index of the one that was pressed.
 export function add_shares(place: HTMLElement, tip: HTMLElement, conditions: Condition[], choose: (index: number) => void): void {
   conditions.forEach((condition, index) => {
-    const { label, goals, flown, share, lower, upper } = condition;
+    const { label, goals, flown, share, lower, upper, between_crashes_km } = condition;
     const line = place.appendChild(make("button", "", "share"));
     const track = make("span", "", "track");
     if (share !== null) {
@@ -28,6 +29,7 @@ export function add_shares(place: HTMLElement, tip: HTMLElement, conditions: Con
     }
     const range = share === null ? "" : `${(100 * (lower ?? share)).toFixed(0)}–${(100 * (upper ?? share)).toFixed(0)}`;
     line.append(make("span", label), track, make("b", percent(share)), make("span", `${goals}/${flown}`), make("span", range, "quiet"));
+    if (between_crashes_km !== "") line.append(make("span", `${between_crashes_km} km between crashes`, "quiet between"));
     line.ariaLabel = `${say_condition(condition).replaceAll("\n", "; ")}. Shows its flights.`;
     const tell = (x_px: number, y_px: number) => show_tip(tip, say_condition(condition), x_px, y_px);
     line.addEventListener("pointermove", (event) => tell(event.clientX, event.clientY));

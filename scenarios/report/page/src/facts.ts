@@ -91,6 +91,7 @@ export interface Condition {
   share: number | null; // goals of the flown ones, and its 95 % interval; null where none was flown
   lower: number | null;
   upper: number | null;
+  between_crashes_km: string; // "1.2 (0.6 to 2.8)", "> 4.0" without a crash
 }
 
 export interface GateFact {
