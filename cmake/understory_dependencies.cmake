@@ -16,6 +16,8 @@ target_link_libraries(opencv_file_parts INTERFACE opencv_core_parts opencv_imgco
 
 find_package(PNG REQUIRED)  # the pictures of recordings, without all that comes with OpenCV's
 
+find_library(ZSTD_LIBRARY zstd REQUIRED)  # logs of flights, problems of planners
+
 find_package(TBB REQUIRED)
 find_package(hwy REQUIRED)
 
@@ -36,7 +38,6 @@ if(UNDERSTORY_SIM)
 
   # Logs for viewers (MCAP).
   find_package(Protobuf REQUIRED)
-  find_library(ZSTD_LIBRARY zstd REQUIRED)
 endif()
 # Debian's Python, whatever else stands in PATH: Debian's numpy belongs to it. Without it there is no Python module.
 set(understory_has_python OFF)

@@ -103,7 +103,8 @@ Plan AvoidancePlanner::fall_back(const FlightTask& task, const FlightState& star
   Manoeuvre widest;
   double maximum_m = -INFINITY, minimum_cost = INFINITY;
   for (const Manoeuvre& primitive : primitives_) {
-    const Rollout rollout = fly_out(task, start, primitive, limits.minimum_clearance_m, false, false);
+    // One that comes nearer than the widest so far is not flown to its end: it could not win.
+    const Rollout rollout = fly_out(task, start, primitive, maximum_m, false);
     // Clearance beyond the comfortable one does not count: the cheaper primitive wins.
     const double clearance_m = std::min(rollout.minimum_margin_m, limits.comfortable_clearance_m);
     if (clearance_m < maximum_m || (clearance_m == maximum_m && rollout.cost >= minimum_cost)) continue;

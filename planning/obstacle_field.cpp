@@ -8,7 +8,8 @@ namespace understory {
 namespace {
 
 constexpr double grid_cell_m = 1.0;
-constexpr double rounding_m = 1e-9;  // more than any rounding, less than anything that matters
+constexpr double rounding_m = 1e-9;         // more than any rounding, less than anything that matters
+constexpr float single_rounding_m = 1e-3f;  // the same in single precision, over a hundred metres
 
 // Minimum distance between the segments a0-a1 and b0-b1: Ericson 2005, Real-Time Collision Detection, section
 // 5.1.9.
@@ -25,19 +26,49 @@ double segment_distance_m(const Eigen::Vector3d& a0, const Eigen::Vector3d& a1, 
   return (between + s * along_a - t * along_b).norm();
 }
 
-/// A point and its horizontal cell. Small, because sorting moves it, and sorting is half of a field's cost.
+/// A point and its horizontal cell. Small, because sorting moves it.
 struct CellPoint {
-  std::uint64_t cell;  ///< in the order of the cells' columns, then rows
+  std::int32_t column, row;
   double z;
   std::size_t index;  ///< of the point
+
+  bool is_beside(const CellPoint& other) const { return column == other.column && row == other.row; }
 };
 
-std::uint64_t cell_number(double column, double row) {
-  const auto ordered = [](double whole) {
-    return static_cast<std::uint32_t>(static_cast<std::int32_t>(whole)) ^
-           0x80000000u;  // sorts negative numbers first
+std::int32_t cell_at(double place_m, double cell_m) {
+  return static_cast<std::int32_t>(std::floor(place_m / cell_m));
+}
+
+/// Cell by cell, columns before rows, and in a cell as `is_before` says. Cells are counted, which is faster
+/// than to compare them, unless they lie too far apart.
+template <typename IsBefore>
+void sort_by_cells(std::vector<CellPoint>& points, IsBefore&& is_before) {
+  if (points.empty()) return;
+  constexpr std::int64_t most_cells = 1 << 20;
+  const auto [left, right] = std::ranges::minmax(points, {}, &CellPoint::column);
+  const auto [low, high] = std::ranges::minmax(points, {}, &CellPoint::row);
+  const std::int64_t rows = std::int64_t{high.row} - low.row + 1;
+  if ((std::int64_t{right.column} - left.column + 1) * rows > most_cells) {
+    std::ranges::sort(points, [&](const CellPoint& a, const CellPoint& b) {
+      return a.is_beside(b) ? is_before(a, b) : std::tie(a.column, a.row) < std::tie(b.column, b.row);
+    });
+    return;
+  }
+  const auto cell = [&](const CellPoint& point) {
+    return static_cast<std::size_t>((point.column - left.column) * rows + point.row - low.row);
   };
-  return std::uint64_t{ordered(column)} << 32 | ordered(row);
+  std::vector<std::uint32_t> ends(static_cast<std::size_t>((right.column - left.column + 1) * rows));
+  for (const CellPoint& point : points) ++ends[cell(point)];
+  for (std::size_t i = 1; i < ends.size(); ++i) ends[i] += ends[i - 1];
+  std::vector<CellPoint> sorted(points.size());
+  for (const CellPoint& point : points) sorted[--ends[cell(point)]] = point;
+  points = std::move(sorted);
+  for (auto first = points.begin(); first != points.end();) {
+    const auto end =
+        std::find_if(first, points.end(), [&](const CellPoint& one) { return !one.is_beside(*first); });
+    std::sort(first, end, is_before);
+    first = end;
+  }
 }
 
 }  // namespace
@@ -53,12 +84,10 @@ ObstacleField::ObstacleField(const ObstacleFieldConfig& config, const std::vecto
     const double flown_m = std::max(0.0, distance_flown_m - point.distance_flown_m);
     radii_m.push_back(std::min(config.sigma_zero_m + config.sigma_per_m * flown_m, config.sigma_maximum_m));
     const Eigen::Vector3d& at = point.position_world;
-    cells.push_back({cell_number(std::floor(at.x() / config.cell_m), std::floor(at.y() / config.cell_m)),
-                     at.z(), cells.size()});
+    cells.push_back({cell_at(at.x(), config.cell_m), cell_at(at.y(), config.cell_m), at.z(), cells.size()});
   }
   // Sorted, because the order of points would change a sum of doubles, and the sum changes plans.
-  std::sort(cells.begin(), cells.end(), [&](const CellPoint& a, const CellPoint& b) {
-    if (a.cell != b.cell) return a.cell < b.cell;
+  sort_by_cells(cells, [&](const CellPoint& a, const CellPoint& b) {
     if (a.z != b.z) return a.z < b.z;
     const Eigen::Vector3d &at = points[a.index].position_world, &bt = points[b.index].position_world;
     return std::tie(radii_m[a.index], at.x(), at.y()) < std::tie(radii_m[b.index], bt.x(), bt.y());
@@ -67,7 +96,7 @@ ObstacleField::ObstacleField(const ObstacleFieldConfig& config, const std::vecto
     std::size_t end = first;
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     double radius_m = 0;
-    while (end < cells.size() && cells[end].cell == cells[first].cell &&
+    while (end < cells.size() && cells[end].is_beside(cells[first]) &&
            (end == first || cells[end].z - cells[end - 1].z <= config.column_gap_m)) {
       sum += points[cells[end].index].position_world.head<2>();
       radius_m = std::max(radius_m, radii_m[cells[end].index]);
@@ -109,19 +138,26 @@ void ObstacleField::build_grid(double reach_m) {
     for_each_cell_near(column, [&](int cell) { ++cell_start_[cell + 1]; });
   for (std::size_t cell = 1; cell < cell_start_.size(); ++cell) cell_start_[cell] += cell_start_[cell - 1];
   near_.resize(static_cast<std::size_t>(cell_start_.back()));
+  for (std::vector<float>* numbers : {&near_x_m_, &near_y_m_, &near_bottom_m_, &near_top_m_, &near_around_m_})
+    numbers->resize(near_.size());
   std::vector<std::int32_t> next(cell_start_.begin(), cell_start_.end() - 1);
   for (std::size_t index = 0; index < columns_.size(); ++index)
     for_each_cell_near(columns_[index], [&](int cell) {
-      near_[static_cast<std::size_t>(next[cell]++)] = {columns_[index].centre_world,
-                                                       columns_[index].radius_m + config_.wing_radius_m,
-                                                       static_cast<std::int32_t>(index)};
+      const auto at = static_cast<std::size_t>(next[cell]++);
+      const Eigen::Vector2d place = columns_[index].centre_world - grid_origin_;
+      near_[at] = static_cast<std::int32_t>(index);
+      near_x_m_[at] = static_cast<float>(place.x());
+      near_y_m_[at] = static_cast<float>(place.y());
+      near_bottom_m_[at] = static_cast<float>(columns_[index].bottom_m);
+      near_top_m_[at] = static_cast<float>(columns_[index].top_m);
+      near_around_m_[at] = static_cast<float>(columns_[index].radius_m + config_.wing_radius_m);
     });
 }
 
 double ObstacleField::clearance_m(const FlightState& state, double maximum_m) const {
   if (columns_.empty()) return maximum_m;
-  const Eigen::Vector2d at = (state.position_world.head<2>() - grid_origin_) / grid_cell_m;
-  const int x = static_cast<int>(std::floor(at.x())), y = static_cast<int>(std::floor(at.y()));
+  const Eigen::Vector2d place = (state.position_world.head<2>() - grid_origin_) / grid_cell_m;
+  const int x = static_cast<int>(std::floor(place.x())), y = static_cast<int>(std::floor(place.y()));
   if (x < 0 || y < 0 || x >= grid_width_ || y >= grid_height_) return maximum_m;
   const int cell = y * grid_width_ + x;
   if (cell_start_[cell] == cell_start_[cell + 1]) return maximum_m;
@@ -129,23 +165,53 @@ double ObstacleField::clearance_m(const FlightState& state, double maximum_m) co
   const Eigen::Vector3d half_wing = config_.half_span_m * left_wing_direction_world(state);
   const Eigen::Vector3d left_tip = state.position_world + half_wing,
                         right_tip = state.position_world - half_wing;
-  const Eigen::Vector2d across = half_wing.head<2>();
-  const double per_across_m2 = 1 / std::max(across.squaredNorm(), 1e-12);
-  double minimum = maximum_m;
-  for (int k = cell_start_[cell]; k < cell_start_[cell + 1]; ++k) {
-    const Near& near = near_[static_cast<std::size_t>(k)];
-    // Seen from above, a column is nowhere nearer than its axis: a point beside the wing's projection.
-    const double matters_m = minimum + near.around_m + rounding_m;
-    if (matters_m <= 0) continue;
-    const Eigen::Vector2d beside = near.centre_world - state.position_world.head<2>();
-    const double along = std::clamp(beside.dot(across) * per_across_m2, -1.0, 1.0);
-    if ((beside - along * across).squaredNorm() > matters_m * matters_m) continue;
-    const Column& column = columns_[static_cast<std::size_t>(near.column)];
+  // The column that may be nearest goes first: most of the others cannot be nearer.
+  const auto first = static_cast<std::size_t>(cell_start_[cell]),
+             end = static_cast<std::size_t>(cell_start_[cell + 1]);
+  bound_distances(state.position_world, half_wing, first, end);
+  const auto nearest = std::min_element(squared_m2_.begin(), squared_m2_.end());
+  const auto distance_to = [&](std::size_t at) {
+    const Column& column = columns_[static_cast<std::size_t>(near_[at])];
     const Eigen::Vector3d bottom(column.centre_world.x(), column.centre_world.y(), column.bottom_m);
     const Eigen::Vector3d top(column.centre_world.x(), column.centre_world.y(), column.top_m);
-    minimum = std::min(minimum, segment_distance_m(left_tip, right_tip, bottom, top) - near.around_m);
+    return segment_distance_m(left_tip, right_tip, bottom, top) - (column.radius_m + config_.wing_radius_m);
+  };
+  double minimum =
+      std::min(maximum_m, distance_to(first + static_cast<std::size_t>(nearest - squared_m2_.begin())));
+  for (std::size_t at = first; at < end; ++at) {
+    const float matters_m = static_cast<float>(minimum) + near_around_m_[at] + single_rounding_m;
+    if (matters_m > 0 && squared_m2_[at - first] < matters_m * matters_m)
+      minimum = std::min(minimum, distance_to(at));
   }
   return minimum;
+}
+
+/// Lower bounds of these columns' squared distances: no column is nearer than its axis to the wing's
+/// projection, seen from above, nor, seen from the side, than the gap between its heights and the wing's.
+void ObstacleField::bound_distances(const Eigen::Vector3d& middle, const Eigen::Vector3d& half_wing,
+                                    std::size_t first, std::size_t end) const {
+  squared_m2_.resize(end - first);
+  const auto x = static_cast<float>(middle.x() - grid_origin_.x()),
+             y = static_cast<float>(middle.y() - grid_origin_.y());
+  const auto across_x = static_cast<float>(half_wing.x()), across_y = static_cast<float>(half_wing.y());
+  const auto half_height = static_cast<float>(std::abs(half_wing.z()));
+  const float low = static_cast<float>(middle.z()) - half_height,
+              high = static_cast<float>(middle.z()) + half_height;
+  const float per_across_m2 = 1 / std::max(across_x * across_x + across_y * across_y, 1e-12f);
+  const float *const near_x = near_x_m_.data() + first, *const near_y = near_y_m_.data() + first,
+                     *const bottom = near_bottom_m_.data() + first, *const top = near_top_m_.data() + first;
+  float* const __restrict squared = squared_m2_.data();
+  const auto less = [](float a, float b) { return a < b ? a : b; };  // as processors have it, NaN and all
+  const auto more = [](float a, float b) { return a > b ? a : b; };
+  const std::size_t count = end - first;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float beside_x = near_x[i] - x, beside_y = near_y[i] - y;
+    const float share = (beside_x * across_x + beside_y * across_y) * per_across_m2;
+    const float along = less(more(share, -1.0f), 1.0f);
+    const float off_x = beside_x - along * across_x, off_y = beside_y - along * across_y;
+    const float gap = more(more(bottom[i] - high, low - top[i]), 0.0f);
+    squared[i] = off_x * off_x + off_y * off_y + gap * gap;
+  }
 }
 
 }  // namespace understory

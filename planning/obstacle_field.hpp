@@ -12,7 +12,7 @@ namespace understory {
 
 /// The remembered points for the planner: upright columns in a horizontal grid. They give the free distance
 /// to a wing in a given attitude. The field is rebuilt for each replan. A search needs about ten thousand
-/// distances.
+/// distances. Not thread safe, not even to read.
 class ObstacleField {
  public:
   struct Column {
@@ -35,19 +35,19 @@ class ObstacleField {
 
  private:
   void build_grid(double reach_m);
+  void bound_distances(const Eigen::Vector3d& middle, const Eigen::Vector3d& half_wing, std::size_t first,
+                       std::size_t end) const;
 
   ObstacleFieldConfig config_;
   std::vector<Column> columns_;
   Eigen::Vector2d grid_origin_ = Eigen::Vector2d::Zero();
   int grid_width_ = 0, grid_height_ = 0;
   std::vector<std::int32_t> cell_start_;  ///< per cell, into near_; one more than there are cells
-  /// Columns within reach of each cell, with the data that exclude most of them.
-  struct Near {
-    Eigen::Vector2d centre_world;
-    double around_m;  ///< the column's radius and the wing's
-    std::int32_t column;
-  };
-  std::vector<Near> near_;
+  /// Columns within reach of each cell, and, side by side for a compiler that vectorizes, where their axes
+  /// are (from the grid's origin) and how thick they and the wing are.
+  std::vector<std::int32_t> near_;
+  std::vector<float> near_x_m_, near_y_m_, near_bottom_m_, near_top_m_, near_around_m_;
+  mutable std::vector<float> squared_m2_;  ///< scratch memory of clearance_m()
 };
 
 }  // namespace understory

@@ -9,6 +9,7 @@
 
 #include "perception/io/calibration_file.hpp"
 #include "perception/stereo_frame.hpp"
+#include "scenarios/scenario/scenario.hpp"
 
 namespace understory {
 
@@ -21,6 +22,7 @@ struct BenchRow {
   double p99_ms = 0;
   std::string yardstick;  ///< name of the row it is measured against; empty for a yardstick itself
   double ratio = 0;       ///< median over the yardstick's; 0 for a yardstick
+  double p99_ratio = 0;   ///< of a planner: p99 over the yardstick's median
 };
 
 /// One flight of the program, from its process's start to its end.
@@ -70,6 +72,21 @@ std::string to_json(const std::vector<ClosedLoopRow>& rows);
 /// on one thread.
 std::vector<BenchRow> bench_detectors(const CalibratedRig& rig, const std::vector<StereoFrame>& frames,
                                       int rounds, const std::function<void(int round)>& on_round);
+
+/// What a scenario's planner was asked in real flights: the text of a file of scenarios/library/problems, as
+/// tests/bench/recorded_planner.cpp writes it.
+struct PlannerProblems {
+  Scenario scenario;
+  std::string name;  ///< of the file, for messages
+  std::string text;
+};
+
+/// Times replans, each problem's by its median over the rounds, so that p99 is that of problems and not of
+/// other load, and StereoBM on `rectified` in between. A flight's problems go to one planner in their order,
+/// since it keeps its plan. Throws ScenarioError "name:line: ..." where a text is none.
+std::vector<BenchRow> bench_planner(const std::vector<PlannerProblems>& all,
+                                    const std::vector<StereoFrame>& rectified, int rounds,
+                                    const std::function<void(int round)>& on_round);
 
 struct ClosedLoopBenchOptions {
   /// Each is flown alone, then two side by side; the first also with ten times the trees, spread wider.

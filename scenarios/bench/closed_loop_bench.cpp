@@ -126,9 +126,14 @@ TimedFlight timed_flight(const std::filesystem::path& result_file) {
 
 std::string to_table(const std::vector<BenchRow>& rows) {
   Table table{{"", "threads", "median ms", "p90", "p99", "against"}};
+  const bool of_planners = std::ranges::any_of(rows, [](const BenchRow& row) { return row.p99_ratio > 0; });
+  if (of_planners) table.head.emplace_back("p99");
   for (const BenchRow& row : rows)
     table.add(row.name, row.threads, number_text(row.median_ms, 4), number_text(row.p90_ms, 4),
               number_text(row.p99_ms, 4), ratio_text(row.ratio, row.yardstick));
+  if (of_planners)
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      table.rows[i].push_back(rows[i].p99_ratio > 0 ? number_text(rows[i].p99_ratio, 2) : "");
   return to_text(table);
 }
 
@@ -141,7 +146,8 @@ std::string to_json(const std::vector<BenchRow>& rows) {
                         {"p90_ms", row.p90_ms},
                         {"p99_ms", row.p99_ms},
                         {"yardstick", or_null(row.ratio > 0, row.yardstick)},
-                        {"ratio", or_null(row.ratio > 0, row.ratio)}});
+                        {"ratio", or_null(row.ratio > 0, row.ratio)},
+                        {"p99_ratio", or_null(row.p99_ratio > 0, row.p99_ratio)}});
   return json_text(list, 2) + "\n";
 }
 

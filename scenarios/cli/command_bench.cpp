@@ -10,6 +10,7 @@
 #include "scenarios/config/bad_input.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/output/progress_line.hpp"
+#include "scenarios/scenario/scenario_io.hpp"
 
 namespace understory {
 namespace {
@@ -20,6 +21,7 @@ struct BenchArguments : CalibrationArguments {
   std::string json;
   int pairs = 64;
   int rounds = 20;
+  bool planner = false;
   bool closed_loop = false;
   int flights = 4;                    // of each kind: seeds 1000 and on
   std::vector<std::string> settings;  // of every flight
@@ -49,6 +51,27 @@ int run_closed_loop_bench(const BenchArguments& arguments) {
   return exit_goal;
 }
 
+int run_planner_bench(const BenchArguments& arguments) {
+  std::vector<PlannerProblems> problems;
+  for (const char* name : {"dense", "woods_dense", "paper_depths"}) {
+    const std::filesystem::path file =
+        data_root() / fmt::format("scenarios/library/problems/{}.csv.zst", name);
+    const auto text = unpacked(read_file(file, maximum_table_bytes), maximum_table_bytes);
+    if (!text) throw ScenarioError(fmt::format("{}: is damaged", file.string()));
+    problems.push_back({load_scenario(scenario_file(name), arguments.settings), file.string(), *text});
+  }
+  const CalibratedRig rig = read_calibrated_rig(rig_path("long"), {});
+  const std::vector<StereoFrame> frames = stereo_scenes(rig, arguments.pairs, 1);
+  ProgressLine line;
+  const std::vector<BenchRow> rows = bench_planner(problems, frames, arguments.rounds, [&](int round) {
+    const auto done = static_cast<std::size_t>(round), all = static_cast<std::size_t>(arguments.rounds);
+    line.show(fmt::format("round {} of {}", round + 1, all), done, all - done);
+  });
+  line.clear();
+  report(rows, arguments.json);
+  return exit_goal;
+}
+
 std::vector<StereoFrame> recorded(const BenchArguments& arguments) {
   StereoRecording recording({arguments.inputs.begin(), arguments.inputs.end()});
   std::vector<StereoFrame> frames;
@@ -64,6 +87,7 @@ int run_bench(const BenchArguments& arguments) {
   require_separate({arguments.json}, read);
   require_writable(arguments.json);
   if (arguments.closed_loop) return run_closed_loop_bench(arguments);
+  if (arguments.planner) return run_planner_bench(arguments);
   if (arguments.rig.empty() && !arguments.inputs.empty() && !euroc_folder(arguments.inputs.front()))
     throw ScenarioError(fmt::format("{}: requires --rig: only EuRoC folders bring their calibration",
                                     arguments.inputs.front()));
@@ -110,15 +134,23 @@ void add_bench_command(CommandLine& line) {
                 "number of pairs to render, or largest number to read from INPUT");
   command.whole("--rounds", arguments->rounds, 1, 100000, "number of times that all pairs are timed");
   command.text("--json", "FILE", arguments->json, "also write the table as JSON");
+  const auto closed_loop =
+      command
+          .flag(
+              "--closed-loop", arguments->closed_loop,
+              "time whole flights in the library's forests, first one flight at a time, then two in parallel")
+          .excludes(inputs);
   command
-      .flag("--closed-loop", arguments->closed_loop,
-            "time whole flights in the library's forests, first one flight at a time, then two in parallel")
-      .excludes(inputs);
+      .flag("--planner", arguments->planner,
+            "time the planner on 504 recorded problems from flights, against StereoBM")
+      .excludes(inputs)
+      .excludes(closed_loop);
   command.whole("--flights", arguments->flights, 1, 1000,
                 "with --closed-loop: number of flights in each forest");
   command.texts(
       "--set", "KEY=VALUE", arguments->settings,
-      "with --closed-loop: override a key of the scenarios, for example forest.length_m=30; repeatable");
+      "with --closed-loop or --planner: override a key of the scenarios, for example forest.length_m=30 or "
+      "autopilot.method=est; repeatable");
   add_renderer_option(command, arguments->renderer);
   command.runs([arguments] { return run_bench(*arguments); });
 }

@@ -10,6 +10,7 @@
 
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/output/errors.hpp"
+#include "scenarios/output/file_output.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"
 
@@ -338,12 +339,9 @@ FlightLog flight_log_from_bytes(const std::string& bytes, const std::string& nam
   const auto refuse = [&](const char* what) { throw ScenarioError(fmt::format("{}: {}", name, what)); };
   if (!bytes.starts_with(magic)) refuse("not the log of a flight (flight.log)");
   const std::string_view packed = std::string_view(bytes).substr(magic.size());
-  const unsigned long long size = ZSTD_getFrameContentSize(packed.data(), packed.size());
-  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > maximum_bytes)
-    refuse("the log of the flight is damaged; fly it again");
-  std::string plain(size, '\0');
-  if (ZSTD_isError(ZSTD_decompress(plain.data(), plain.size(), packed.data(), packed.size())))
-    refuse("the log of the flight is damaged; fly it again");
+  const std::optional<std::string> unzipped = unpacked(packed, maximum_bytes);
+  if (!unzipped) refuse("the log of the flight is damaged; fly it again");
+  const std::string& plain = *unzipped;
   FlightLog log;
   try {
     const std::size_t line = plain.find('\n');

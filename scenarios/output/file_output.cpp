@@ -6,6 +6,7 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <zstd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -316,6 +317,16 @@ void require_separate(const std::vector<fs::path>& outputs, const std::vector<fs
 void require_not_within(const fs::path& folder, const std::vector<fs::path>& others) {
   for (const fs::path& other : others)
     if (!path_within(folder, other).empty()) refuse_other_use(folder, "this folder lies within what is read");
+}
+
+std::optional<std::string> unpacked(std::string_view packed, std::size_t maximum_bytes) {
+  const unsigned long long size = ZSTD_getFrameContentSize(packed.data(), packed.size());
+  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > maximum_bytes)
+    return std::nullopt;
+  std::string plain(size, '\0');
+  if (ZSTD_isError(ZSTD_decompress(plain.data(), plain.size(), packed.data(), packed.size())))
+    return std::nullopt;
+  return plain;
 }
 
 }  // namespace understory

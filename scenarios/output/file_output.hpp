@@ -90,4 +90,7 @@ void sync_folder(const std::filesystem::path& folder);
 /// Throws the error that `error`, an errno, means for an output.
 [[noreturn]] void refuse_output(const std::filesystem::path& file, int error);
 
+/// What zstd packed; nothing where it is damaged or would be larger.
+std::optional<std::string> unpacked(std::string_view packed, std::size_t maximum_bytes);
+
 }  // namespace understory

@@ -60,6 +60,42 @@ TEST(ObstacleField, ClearanceAgreesWithWalkingAlongTheWing) {
   EXPECT_GT(touching, 10);
 }
 
+/// To the bit: what is excluded by bounds in single precision decides nothing. Each point has a cell of its
+/// own; some lie so far away that cells are compared and not counted.
+TEST(ObstacleField, ClearanceOfManyColumnsIsTheLeastOfEachAlone) {
+  std::mt19937_64 generator(12);
+  const auto uniform = [&](double minimum, double maximum) {
+    return std::uniform_real_distribution<double>(minimum, maximum)(generator);
+  };
+  const ObstacleFieldConfig config;
+  int near = 0;
+  for (const double apart_m : {0.0, 3000.0}) {
+    std::vector<ObstaclePoint> points;
+    std::vector<ObstacleField> alone;
+    for (int i = 0; i < 1200; ++i) {
+      ObstaclePoint& point = points.emplace_back();
+      point.position_world = {100 + 0.3 * (i % 30) + uniform(0.01, 0.14),
+                              0.3 * (i / 30) + uniform(0.01, 0.14), uniform(1, 7)};
+      if (i % 2 == 0) point.position_world.x() += apart_m;
+      point.distance_flown_m = uniform(0, 50);
+    }
+    for (const ObstaclePoint& point : points) alone.emplace_back(config, std::vector{point}, 50);
+    const ObstacleField field(config, points, 50);
+    ASSERT_EQ(field.columns().size(), points.size());
+    for (int pose = 0; pose < 100; ++pose) {
+      FlightState state;
+      state.position_world = {100 + apart_m * (pose % 2) + uniform(-2, 11), uniform(-2, 14), uniform(0, 8)};
+      state.heading_rad = uniform(-3.1, 3.1);
+      state.bank_rad = uniform(-1.6, 1.6);
+      double least = 2;
+      for (const ObstacleField& one : alone) least = std::min(least, one.clearance_m(state, 2));
+      EXPECT_EQ(field.clearance_m(state, 2), least);
+      near += least < 0.5;
+    }
+  }
+  EXPECT_GT(near, 100);
+}
+
 TEST(ObstacleField, EveryPointStandsInAColumn) {
   std::mt19937_64 generator(2);
   std::uniform_real_distribution<double> place(-5, 5);

@@ -53,6 +53,33 @@ TEST(Bench, HasARowForEachClaimWithItsYardstick) {
   EXPECT_EQ(with_ratio, static_cast<int>(rows.size()) - 2);  // remap and StereoBM are the yardsticks
 }
 
+std::vector<BenchRow> planner_rows(const std::string& text) {
+  const std::vector<StereoFrame> frames = stereo_scenes(long_rig(), 1, 1);
+  return bench_planner({{Scenario(), "p.csv", text}}, frames, 2, [](int) {});
+}
+
+TEST(PlannerBench, CountsProblemsAndComparesTheirSlowest) {
+  const std::string points =
+                        "flight,7\npoint,8000,100,0,4000\npoint,8000,300,0,4500\npoint,9000,100,0,4200\n",
+                    start = ",4500,12,0,0,0,0,0.19,0,0,";
+  const std::vector<BenchRow> rows = planner_rows(points + "plan,1000000000,1,0,0,0,0" + start +
+                                                  "0-1 2\nplan,1100000000,0,1200,10,1200,0" + start + "\n");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[1].name, "2 replans in unnamed");
+  EXPECT_EQ(rows[1].yardstick, rows[0].name);
+  EXPECT_NEAR(rows[1].p99_ratio, rows[1].p99_ms / rows[0].median_ms, 1e-12);
+  EXPECT_GT(rows[1].p99_ms, rows[1].median_ms);  // of one with a trunk ahead and one without
+}
+
+TEST(PlannerBench, NamesTheLineThatIsNoProblem) {
+  for (const auto& [text, part] :
+       {std::pair("plan,1\n", "p.csv:1: expected flight, point or plan"),
+        {"flight,7\npoint,1,2\n", "p.csv:2: not a line of problems"},
+        {"flight,7\nplan,1,1,0,0,0,0,0,12,0,0,0,0,0.19,0,0,3\n", "p.csv:2: 3 are no points"},
+        {"flight,7\nplan,x\n", "p.csv:2: not a line of problems"}})
+    expect_part(support::refusal_of([&, text = text] { planner_rows(text); }), part);
+}
+
 TEST(ClosedLoopBench, ARowAddsUpItsFlights) {
   const std::vector<TimedFlight> alone{{6, 2, 720, {{"render", 1.0}, {"replan", 0.5}, {"film", 0.1}}, 200, 2},
                                        {4, 3, 480, {{"render", 2.0}, {"detect", 0.25}}, 210, 2.5}};

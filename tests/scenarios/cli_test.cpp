@@ -251,6 +251,17 @@ TEST_F(Cli, BenchTimesWholeFlights) {
   expect_part(refused.text, "a flight refused its input");
 }
 
+TEST_F(Cli, BenchTimesThePlanner) {
+  const std::string json = path("planner.json");
+  const Outcome bench = understory("bench --planner --pairs 2 --rounds 1 --json " + json);
+  EXPECT_EQ(bench.status, 0) << bench.text;
+  for (const char* part :
+       {"168 replans in dense", "168 replans in woods_dense", "168 replans in paper_depths"})
+    expect_part(bench.text, part);
+  expect_refusal("bench --planner --closed-loop", "--closed-loop");
+  expect_refusal("bench --planner --set autopilot.method=no", "autopilot.method");
+}
+
 TEST_F(Cli, AMissingLibraryOrModelIsTheMachines) {
   const std::string out = " --out " + path("run");
   expect_refusal("fly clear" + out, "libosmesa6", 3, "UNDERSTORY_OSMESA=/proc/nowhere");
