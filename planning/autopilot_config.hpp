@@ -108,6 +108,12 @@ struct ManoeuvreLibraryConfig {
 
 void visit_fields(FieldVisitor& visit, ManoeuvreLibraryConfig& config);
 
+/// What a plan costs the aircraft's computer, in simulated time: for each point of the map and for each step
+/// of the flight model. Zero: a plan is ready after plan_latency_s whatever it takes.
+struct PlanCost {
+  double point_s = 0, step_s = 0;
+};
+
 struct AutopilotConfig {
   double launch_acceleration_mps2 = 30;
   double throttle_delay_s = 0.28;
@@ -119,6 +125,7 @@ struct AutopilotConfig {
   FlightModelConfig flight_model;
   PlannerConfig planner;
   PathFollowerConfig follower;
+  PlanCost plan_cost;  ///< no key: from perception.compute
 };
 
 void visit_fields(FieldVisitor& visit, AutopilotConfig& config);

@@ -29,7 +29,8 @@ Plan AvoidancePlanner::plan(const PlanRequest& request) {
       config_.trajectory,
       std::max(config_.trajectory.minimum_clearance_m, config_.trajectory.minimum_kept_clearance_m));
   const ObstacleField field(config_.field, points, distance_flown_m, asked_m);
-  const FlightTask task{model_, config_.trajectory, mission_, field, start.position_world};
+  const FlightTask task{model_, config_.trajectory,   mission_,
+                        field,  start.position_world, &counts_.model_steps};
   const TrajectoryConfig& limits = config_.trajectory;
 
   Rollout straight = fly_out(task, start, {}, limits.minimum_clearance_m, true);

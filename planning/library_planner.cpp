@@ -39,7 +39,8 @@ class LibraryPlanner : public Planner {
     // Rollouts ask for clearances up to the comfortable one; the library compares larger ones.
     TrajectoryConfig limits = config_.trajectory;
     limits.comfortable_clearance_m = greatest_clearance_m;
-    const FlightTask task{model_, limits, mission_, field, request.start.position_world};
+    const FlightTask task{
+        model_, limits, mission_, field, request.start.position_world, &counts_.model_steps};
     const auto flown = [&](const Manoeuvre& manoeuvre, bool keep_points) {
       return fly_out(task, request.start, manoeuvre, limits.minimum_clearance_m, keep_points, false);
     };

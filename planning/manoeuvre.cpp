@@ -112,6 +112,7 @@ Rollout fly_out(const FlightTask& task, const FlightState& start, const Manoeuvr
     if (in_manoeuvre) part_left_s -= step_s;
     if (keep_points) rollout.points.push_back(plan_point(state, command, t_s));
     state = task.model.advance(state, command, step_s);
+    if (task.steps != nullptr) ++*task.steps;
     const double clearance = task.field.clearance_m(state, maximum_m);
     rollout.minimum_clearance_m = std::min(rollout.minimum_clearance_m, clearance);
     rollout.cost += step_s * cost_rate(task, state, clearance);

@@ -28,7 +28,8 @@ struct FlightTask {
   const TrajectoryConfig& config;
   const Mission& mission;
   const ObstacleField& field;
-  Eigen::Vector3d origin_world;  ///< where the plan starts: the horizon counts from here
+  Eigen::Vector3d origin_world;   ///< where the plan starts: the horizon counts from here
+  std::int64_t* steps = nullptr;  ///< counts the model's steps, where somebody wants to know
 };
 
 /// The command that brings the aircraft back on course from `state`.

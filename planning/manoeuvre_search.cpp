@@ -181,6 +181,7 @@ void propagate(const FlightTask& task, const ManoeuvreSearchConfig& config, cons
   if (!continues) to.parts[to.part_count++] = {command, 0};
   to.parts[to.part_count - 1].duration_s += step_s;
   to.flight = task.model.advance(from.flight, command, step_s);
+  if (task.steps != nullptr) ++*task.steps;
   const double clearance =
       task.field.clearance_m(to.flight, maximum_clearance_m(task.config, task.config.minimum_clearance_m));
   to.cost += step_s * cost_rate(task, to.flight, clearance);

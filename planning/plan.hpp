@@ -74,6 +74,7 @@ struct PlannerCounts {
   std::int64_t obstacle_ahead_ompl = 0;
   std::int64_t searches = 0;
   std::int64_t found = 0;
+  std::int64_t model_steps = 0;
 };
 
 /// Every count by name, for results, rows and sums: visit(name, count).
@@ -100,6 +101,8 @@ void visit_fields(Visitor& visit, Counts& counts) {
   visit("searches", counts.searches,
         "number of searches, including those that compare a kept plan with a new one");
   visit("found", counts.found, "number of searches that found a free manoeuvre");
+  visit("model_steps", counts.model_steps,
+        "number of steps of the flight model that all plans took: the planner's work");
 }
 
 }  // namespace understory

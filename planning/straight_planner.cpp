@@ -21,7 +21,8 @@ class StraightPlanner : public Planner {
     const TrajectoryConfig& limits = config_.trajectory;
     const ObstacleField field(config_.field, request.points, request.distance_flown_m,
                               limits.comfortable_clearance_m);
-    const FlightTask task{model_, limits, mission_, field, request.start.position_world};
+    const FlightTask task{
+        model_, limits, mission_, field, request.start.position_world, &counts_.model_steps};
     Rollout rollout = fly_out(task, request.start, {}, limits.minimum_clearance_m, true, false);
     if (!rollout.reached_horizon) ++counts_.obstacle_ahead;
     const bool is_free = rollout.minimum_clearance_m >= limits.comfortable_clearance_m;

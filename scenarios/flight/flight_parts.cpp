@@ -100,6 +100,7 @@ std::unique_ptr<Pilot> pilot_of(const Scenario& scenario) {
 AutopilotConfig autopilot_config_of(const Scenario& scenario, const StereoRig& rig) {
   AutopilotConfig config = scenario.autopilot;
   config.resightings.depths_m = stated_depths_m(scenario.perception.pushbroom(), rig);
+  config.plan_cost = scenario.perception.compute.plan_cost(scenario.sensors.imu_rate_hz);
   return config;
 }
 

@@ -135,7 +135,7 @@ AutopilotConfig with_ideal_parts(AutopilotConfig config, const Scenario& scenari
     config.map.min_neighbours = 0;
     config.map.seen_again = false;
   }
-  if (is_ideal(scenario, "latency")) config.plan_latency_s = 0;
+  if (is_ideal(scenario, "latency")) config.plan_latency_s = 0, config.plan_cost = {};
   if (is_ideal(scenario, "search")) {
     config.planner.search.iterations *= longer_search;
     config.planner.improvement.iterations *= longer_search;

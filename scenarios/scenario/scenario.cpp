@@ -7,10 +7,17 @@ namespace understory {
 FilterConfig& EstimationSection::filter() { return sources.of<FilterConfig>("filter"); }
 const FilterConfig& EstimationSection::filter() const { return sources.of<FilterConfig>("filter"); }
 
+PlanCost ComputeConfig::plan_cost(double imu_rate_hz) const {
+  if (!enabled) return {};
+  const double stretch = factor / (1 - std::min(0.9, factor * filter_s * imu_rate_hz));
+  return {stretch * plan_point_s, stretch * plan_step_s};
+}
+
 void visit_fields(FieldVisitor& visit, ComputeConfig& config) {
-  visit("enabled", config.enabled,
-        "simulates the time that the aircraft's computer needs for each stereo pair; false: detection takes "
-        "no time");
+  visit(
+      "enabled", config.enabled,
+      "simulates the time that the aircraft's computer needs for each stereo pair and for each plan; false: "
+      "detection takes no time, and a plan takes autopilot.plan_latency_s");
   visit("factor", config.factor, 0.001, 1000.0,
         "Ratio of the time on the aircraft's computer to the time on one thread of the machine that measured "
         "the other perception.compute keys. 8.3: the original detector takes 1.0 ms on that machine, and on "
@@ -30,6 +37,16 @@ void visit_fields(FieldVisitor& visit, ComputeConfig& config) {
   visit("stereo_sgbm_s", config.stereo_sgbm_s, 0.0, 1.0,
         "StereoSGBM's time per pair with 112 disparities and five paths, before compute.factor | "
         "docs/thesis.md");
+  visit("plan_point_s", config.plan_point_s, 0.0, 0.001,
+        "Time of a plan for each point in the map, before compute.factor. A plan is ready when the work that "
+        "it "
+        "counted is done, and not before autopilot.plan_latency_s. | docs/benchmarks.md");
+  visit("plan_step_s", config.plan_step_s, 0.0, 0.001,
+        "time of a plan for each step of the flight model, before compute.factor | docs/benchmarks.md");
+  visit(
+      "filter_s", config.filter_s, 0.0, 0.001,
+      "time of the filter for each IMU sample, before compute.factor; it delays plans, which share its core "
+      "| docs/benchmarks.md");
 }
 
 void visit_fields(FieldVisitor& visit, FileConfig& read) {

@@ -62,8 +62,9 @@ struct SensorSection : SensorsConfig {
   SensorGrade grade = SensorGrade::nominal;
 };
 
-/// What a pair costs the aircraft's computer, in simulated time, never measured during a flight. Off: every
-/// frame is looked at without delay. docs/thesis.md has the source of the numbers.
+/// What a pair, a plan and a sample cost the aircraft's computer, in simulated time, never measured during a
+/// flight. Off: every frame is looked at without delay. Vision has a core of its own, as on the original
+/// aircraft; planner and filter share another. docs/thesis.md has the source of the numbers.
 struct ComputeConfig {
   bool enabled = false;
   double factor = 8.3;
@@ -71,6 +72,12 @@ struct ComputeConfig {
   double more_depths = 0.4;
   double stereo_bm_s = 0.0090;
   double stereo_sgbm_s = 0.0127;
+  double plan_point_s = 6.5e-8;
+  double plan_step_s = 5e-7;
+  double filter_s = 2e-6;
+
+  /// Zero where it is not enabled.
+  PlanCost plan_cost(double imu_rate_hz) const;
 };
 
 struct PerceptionSection {

@@ -164,6 +164,8 @@ class Asked : public Planner {
  public:
   Plan plan(const PlanRequest& request) override {
     last = request;
+    ++counts_.replans;
+    counts_.model_steps += 1000;
     return {request.t_ns, PlanOrigin::straight, {{0, request.start.position_world}}, INFINITY};
   }
   PlanRequest last;
@@ -200,6 +202,35 @@ TEST(Autopilot, PlansBesideTheCoursesOwnLineWhereGpsSaysWhereItIs) {
   ASSERT_FALSE(autopilot.plan().points.empty());
   EXPECT_NEAR(autopilot.plan().points[0].position_world.y(), 0, 1e-6);
   for (const ObstaclePoint& point : autopilot.map().points()) EXPECT_NEAR(point.position_world.y(), 1, 1e-6);
+}
+
+/// A plan of 1000 steps is in force after them and not before; meanwhile no other is made.
+TEST(Autopilot, APlanIsReadyWhenItsWorkIsDone) {
+  const StereoRig rig = support::house_rig("long.yaml");
+  for (const auto& [step_s, ready_s] : {std::pair(0.0, 0.006), {5e-7, 0.006}, {5e-5, 0.05}}) {
+    GivenHits detector;
+    LevelFlight source;
+    Asked planner;
+    AutopilotConfig config;
+    config.plan_cost.step_s = step_s;
+    Autopilot autopilot(config, Airframe{}, rig, detector, source, planner);
+    for (const std::int64_t sample_ns : {0, 1})
+      autopilot.on(ImuSample{sample_ns, Vector3d::Zero(), {100, 0, 0}});
+    const std::int64_t asked_ns = 1'000'000'000, ready_ns = asked_ns + nanoseconds(ready_s);
+    source.fly_to(asked_ns);
+    autopilot.replan(asked_ns);
+    for (std::int64_t t_ns = asked_ns; t_ns < ready_ns; t_ns += 1'000'000) {
+      source.fly_to(t_ns);
+      autopilot.controls(t_ns);
+      autopilot.replan(t_ns);
+      EXPECT_TRUE(autopilot.plan().points.empty());
+      EXPECT_EQ(planner.counts().replans, 1);
+    }
+    source.fly_to(ready_ns);
+    autopilot.controls(ready_ns);
+    EXPECT_FALSE(autopilot.plan().points.empty());
+    EXPECT_LT(autopilot.plan().t_ns, asked_ns + 50'000'000);  // made for the latency that is expected
+  }
 }
 
 TEST(CommandAt, IsTheOneInForce) {

@@ -122,6 +122,19 @@ TEST(Compute, CostsAreTheDetectorsTimesTheFactor) {
   EXPECT_EQ(cost_s({on, "perception.detector=none"}), 0);
 }
 
+TEST(Compute, PlansShareACoreWithTheFilter) {
+  const auto cost = [](const std::vector<std::string>& settings) {
+    return scenario_from_text("{}", "here", settings).perception.compute.plan_cost(200);
+  };
+  EXPECT_EQ(cost({}).step_s, 0);
+  // The filter takes 10 * 0.1 ms of each 5 ms: a plan takes 1 / 0.8 as long as alone.
+  const PlanCost shared = cost({"perception.compute.enabled=true", "perception.compute.factor=10",
+                                "perception.compute.plan_step_s=1e-6", "perception.compute.plan_point_s=2e-7",
+                                "perception.compute.filter_s=1e-4"});
+  EXPECT_NEAR(shared.step_s, 1.25e-5, 1e-12);
+  EXPECT_NEAR(shared.point_s, 2.5e-6, 1e-12);
+}
+
 TEST(Compute, FramesThatWouldComeTooLateForTheEstimatorAreRefused) {
   const auto refused = [] {
     scenario_from_text("perception: {detector: stereo_sgbm, compute: {enabled: true, factor: 100}}", "here");
