@@ -1,0 +1,194 @@
+#include <fmt/format.h>
+
+#include <bitset>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <random>
+
+#include "planning/airframe.hpp"
+#include "planning/autopilot_config.hpp"
+#include "scenarios/campaign/campaign_summary.hpp"
+#include "scenarios/output/file_output.hpp"
+#include "tests/validation/sections.hpp"
+
+/// The map of the aircraft: kilometres between crashes over speed and density, beside what theory says.
+namespace understory {
+namespace {
+
+/// An override of scenarios/library/campaigns/limits.yaml.
+struct Eyes {
+  const char *name, *words;
+};
+constexpr std::array<Eyes, 6> all_eyes{{{"ours", "long rig, one depth of 10 m"},
+                                        {"true_depth_and_state", "the same with true depth and state"},
+                                        {"paper_two_depths", "the paper's rig, 9.1 and 4.8 m"},
+                                        {"paper_one_depth", "the paper's rig, 4.8 m"},
+                                        {"everything_known", "everything known"},
+                                        {"blind", "blind"}}};
+
+constexpr double gravity_mps2 = 9.81, bank_rad = std::numbers::pi / 3;
+const double turn_mps2 = gravity_mps2 * std::tan(bank_rad);
+const double roll_s = bank_rad / FlightModelConfig().maximum_roll_rate_radps;
+const double half_span_m = 0.5 * Airframe().span_m;
+constexpr double mean_radius_m = 0.175;  // of forest.yaml
+
+double turn_radius_m(double speed_mps) { return speed_mps * speed_mps / turn_mps2; }
+
+/// Straight through a Poisson forest: what is struck stands within a strip as wide as span and trunk.
+double blind_km(double per_tree_m2) { return 1e-3 * per_tree_m2 / (2 * (half_span_m + mean_radius_m)); }
+
+/// Falanga, Kim & Scaramuzza 2019: the fastest speed at which an obstacle `half_width_m` wide to each side,
+/// seen at `sight_m`, can still be avoided.
+double fastest_mps(double sight_m, double latency_s, double half_width_m) {
+  return sight_m / (latency_s + 2 * std::sqrt(half_width_m / turn_mps2));
+}
+
+/// How far anybody gets who knows every tree of a Poisson forest and turns in circles of `radius_m` at least,
+/// up to 60 degrees from the way: the set of places and headings that can be reached, step by step.
+double passable_m(double per_tree_m2, double radius_m, double length_m, std::uint64_t seed) {
+  constexpr std::size_t columns = 1024;
+  constexpr double column_m = 0.05, step_m = 0.25, width_m = columns * column_m, steepest_rad = bank_rad;
+  using Line = std::bitset<columns>;
+  const int steps = static_cast<int>(length_m / step_m);
+  const double reach_m = half_span_m + mean_radius_m;
+  std::mt19937_64 generator(seed);
+  std::vector<Line> free(static_cast<std::size_t>(steps), Line().set());
+  const int trees = std::poisson_distribution<int>(length_m * width_m / per_tree_m2)(generator);
+  for (int i = 0; i < trees; ++i) {
+    const double x_m = std::uniform_real_distribution<double>(0, length_m)(generator),
+                 y_m = std::uniform_real_distribution<double>(0, width_m)(generator);
+    for (int step = std::max(0, static_cast<int>((x_m - reach_m) / step_m));
+         step < std::min(steps, static_cast<int>((x_m + reach_m) / step_m) + 1); ++step) {
+      const double along_m = step * step_m - x_m;
+      if (std::abs(along_m) >= reach_m) continue;
+      const double aside_m = std::sqrt(reach_m * reach_m - along_m * along_m);
+      for (double y = y_m - aside_m; y < y_m + aside_m; y += column_m)
+        free[static_cast<std::size_t>(step)].reset(
+            static_cast<std::size_t>(std::floor((y + width_m) / column_m)) % columns);
+    }
+  }
+  const double turn_rad = step_m / radius_m;
+  const int most = static_cast<int>(steepest_rad / turn_rad);
+  std::vector<Line> reached(static_cast<std::size_t>(2 * most + 1)), next = reached;
+  reached[static_cast<std::size_t>(most)].set();
+  for (int step = 0; step < steps; ++step) {
+    bool any = false;
+    for (int heading = -most; heading <= most; ++heading) {
+      const auto at = static_cast<std::size_t>(heading + most);
+      Line from = reached[at];
+      if (heading > -most) from |= reached[at - 1];
+      if (heading < most) from |= reached[at + 1];
+      const double slope = step_m / column_m * std::tan(heading * turn_rad);
+      const auto moved = std::lround((step + 1) * slope) - std::lround(step * slope);
+      const auto by = static_cast<std::size_t>((moved % static_cast<long>(columns) + columns) % columns);
+      next[at] = ((from << by) | (from >> (columns - by))) & free[static_cast<std::size_t>(step)];
+      any = any || next[at].any();
+    }
+    if (!any) return step * step_m;
+    std::swap(reached, next);
+  }
+  return length_m;
+}
+
+/// Square metres per tree at which half of the forests let a kilometre through (Karaman & Frazzoli 2012 prove
+/// that there is such a change).
+double critical_m2(double speed_mps) {
+  constexpr int forests = 9;
+  double too_dense = 1, thin_enough = 100;
+  for (int i = 0; i < 10; ++i) {
+    const double middle = std::sqrt(too_dense * thin_enough);
+    int passed = 0;
+    for (std::uint64_t seed = 1; seed <= forests; ++seed)
+      passed += passable_m(middle, turn_radius_m(speed_mps), 1000, seed) >= 1000;
+    (2 * passed > forests ? thin_enough : too_dense) = middle;
+  }
+  return thin_enough;
+}
+
+struct Cell {
+  double per_tree_m2 = 0, cruise_mps = 0;
+  auto operator<=>(const Cell&) const = default;
+};
+using Cells = std::map<Cell, ConditionSummary>;
+
+std::map<std::string, Cells> flown_cells() {
+  const std::string file = UNDERSTORY_SOURCE_DIR "/docs/results/limits/flights.csv";
+  std::map<std::string, std::map<Cell, std::vector<FlightRow>>> rows;
+  for (const FlightRow& row : rows_from_csv(read_file(file, 1 << 24), file)) {
+    const std::size_t begin = row.condition.find('-') + 1, end = row.condition.find('-', begin);
+    rows[row.condition.substr(begin, end - begin)][{row.square_metres_per_tree, row.cruise_speed_mps}]
+        .push_back(row);
+  }
+  std::map<std::string, Cells> cells;
+  for (const auto& [eyes, of_cells] : rows)
+    for (const auto& [cell, its] : of_cells) cells[eyes][cell] = summary_of(its);
+  return cells;
+}
+
+void add_point(Series& series, double x, double y, const Interval& interval, double scale) {
+  series.x.push_back(x), series.y.push_back(scale * y);
+  series.low.push_back(scale * interval.minimum), series.high.push_back(scale * interval.maximum);
+}
+
+}  // namespace
+
+Section limits_section() {
+  Section section{"limits"};
+  const std::map<std::string, Cells> flown = flown_cells();
+  std::vector<LinePlot> panels;
+  LinePlot without_unit{.title = "Without dimension",
+                        .x_label = "trees in the square of the turning radius, R^2 / area per tree",
+                        .y_label = "trees in the way between crashes",
+                        .y_log = true};
+  for (const double per_tree_m2 : {49.0, 25.0, 16.0, 9.0}) {
+    LinePlot panel{.title = fmt::format("{:.0f} m between trees", std::sqrt(per_tree_m2)),
+                   .x_label = "speed flown (m/s)",
+                   .y_label = "km between crashes, 95 %",
+                   .references = {{blind_km(per_tree_m2), "straight through, by theory", false}},
+                   .x_range = AxisRange{8.5, 12.5},
+                   .y_range = AxisRange{0.005, 30},
+                   .y_log = true};
+    for (std::size_t i = 0; i < all_eyes.size(); ++i) {
+      Series series{.name = all_eyes[i].words, .mark = Mark::line_and_dots, .colour = static_cast<int>(i)};
+      for (const auto& [cell, summary] : flown.at(all_eyes[i].name)) {
+        if (cell.per_tree_m2 != per_tree_m2) continue;
+        const CrashDistance distance = crash_distance(summary);
+        add_point(series, summary.mean_speed_mps, distance.value_km, distance.interval, 1);
+        const double radius_m = turn_radius_m(summary.mean_speed_mps), trees = 1 / blind_km(per_tree_m2);
+        if (without_unit.series.size() < all_eyes.size())
+          for (const Eyes& eyes : all_eyes)
+            without_unit.series.push_back({.name = eyes.words, .mark = Mark::dots});
+        add_point(without_unit.series[i], radius_m * radius_m / per_tree_m2, distance.value_km,
+                  distance.interval, trees);
+      }
+      panel.series.push_back(series);
+    }
+    panels.push_back(panel);
+  }
+  for (const double speed_mps : {9.0, 10.0, 11.0, 12.0}) {
+    const double critical = critical_m2(speed_mps), radius_m = turn_radius_m(speed_mps);
+    section.row("phase", fmt::format("{:.0f} | {:.1f} | {:.1f} | {:.1f}", speed_mps, radius_m, critical,
+                                     radius_m * radius_m / critical));
+    if (speed_mps == 9 || speed_mps == 12)
+      without_unit.references.push_back(
+          {radius_m * radius_m / critical, fmt::format("no way through, {:.0f} m/s", speed_mps), true});
+    for (const double per_tree_m2 : {49.0, 25.0, 16.0, 9.0}) {
+      std::string cells = fmt::format("{:.0f} | {:.0f}", speed_mps, std::sqrt(per_tree_m2));
+      for (const Eyes& eyes : all_eyes)
+        cells += " | " + crash_distance_text(flown.at(eyes.name).at({per_tree_m2, speed_mps}));
+      section.row("map", cells);
+    }
+  }
+  panels.push_back(without_unit);
+  const double half_width_m = half_span_m + mean_radius_m, latency_s = 0.022;  // frame, plan and input
+  for (const auto& [rig, sight_m] :
+       {std::pair("the paper's, 4.8 m", 4.8), {"the paper's, 9.1 m", 9.1}, {"long, 10 m", 10.0}})
+    section.row("sight",
+                fmt::format("{} | {:.1f} | {:.1f}", rig, fastest_mps(sight_m, latency_s, half_width_m),
+                            fastest_mps(sight_m, latency_s + roll_s, half_width_m)));
+  section.pictures["map"] = to_svg(panels, 2);
+  return section;
+}
+
+}  // namespace understory
