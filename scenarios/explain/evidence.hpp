@@ -17,7 +17,7 @@ struct Evidence {
   std::string sentence;   ///< what the log shows of it, with its numbers
 };
 
-/// Of every cause that a part has, whether it is there or not.
+/// Of every cause that a part has, whether it is there or not; a fault of a sensor only where there is one.
 std::vector<Evidence> evidence_in(const FlightLog& log);
 
 /// The explanation in words.

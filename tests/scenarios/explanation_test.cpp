@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "scenarios/config/named_seed.hpp"
+#include "scenarios/explain/evidence.hpp"
 #include "scenarios/scenario/scenario.hpp"
 
 namespace understory {
@@ -99,6 +100,22 @@ TEST(Explanation, EqualAnswersGiveEqualQuestions) {
     return has(parts, "map") ? 0.7 : chaotic(before_end_s);
   };
   EXPECT_EQ(explained(law).flights, explained(law).flights);
+}
+
+/// A sensor's fault is a cause only where the schedule has one: else the words would say what did not happen.
+TEST(Evidence, OnlyAFaultOfASensorIsASensorsFault) {
+  FlightLog log;
+  log.moments.resize(2);
+  log.moments[1].t_ns = 5'000'000'000;
+  Explanation explanation;
+  explanation.cause = "state";
+  explanation.decisive_s = {1};
+  explanation.effects.emplace_back().part = "state";
+  EXPECT_EQ(conclusion_of(explanation, evidence_in(log)).cause, "wrong place");
+  log.scenario.faults = {{FaultySensor::pitot, FaultKind::bias, 3}};
+  EXPECT_EQ(conclusion_of(explanation, evidence_in(log)).cause, "sensor's fault");
+  log.scenario.faults = {{FaultySensor::camera, FaultKind::cover, 3}};
+  EXPECT_EQ(conclusion_of(explanation, evidence_in(log)).cause, "wrong place");
 }
 
 }  // namespace

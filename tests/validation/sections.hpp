@@ -37,8 +37,8 @@ Section drift_section(int flights);
 /// the one that the stack's model describes.
 std::vector<Section> mismatch_sections();
 
-/// docs/limits.md: kilometres between crashes over speed and density, beside what theory says. From the rows of
-/// `understory campaign limits` in docs/results/limits.
+/// docs/limits.md: kilometres between crashes over speed and density, beside what theory says. From the rows
+/// of `understory campaign limits` in docs/results/limits.
 Section limits_section();
 
 /// docs/ci.md: how often the gate errs, and after how many flights it knows. From outcomes of real flights.
