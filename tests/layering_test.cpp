@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
@@ -215,6 +216,29 @@ TEST(Layering, OutsideLibrariesStayWhereTheyBelong) {
     }
   }
   expect_only_known("library", found);
+}
+
+/// A build without the simulator defines the same commands, and only these: their files are those of the
+/// program's own list of sources, or they refuse in no_simulator.cpp.
+TEST(Layering, ABuildWithoutTheSimulatorHasEveryCommand) {
+  const auto text_of = [](const char* file) {
+    std::ifstream stream(root / file);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  const std::string lists = text_of("scenarios/CMakeLists.txt");
+  const std::size_t begin = lists.find("add_executable(understory "), end = lists.find(')', begin);
+  std::string there = text_of("scenarios/cli/no_simulator.cpp");
+  for (const SourceFile& file : product())
+    if (file.path.starts_with("scenarios/cli/") &&
+        lists.substr(begin, end - begin).find(file.path.substr(10)) != std::string::npos &&
+        file.path != "scenarios/cli/main.cpp")
+      there += text_of(file.path.c_str());
+  const std::string main = text_of("scenarios/cli/main.cpp");
+  const std::regex added(R"(\n  (add_[a-z]+_command)\(line\);)");
+  int commands = 0;
+  for (std::sregex_iterator one(main.begin(), main.end(), added), none; one != none; ++one, ++commands)
+    EXPECT_NE(there.find("void " + one->str(1) + "(CommandLine& line) {"), std::string::npos) << one->str(1);
+  EXPECT_GT(commands, 15);
 }
 
 TEST(Layering, WhatIsIncludedFromOutsideShowsNoSimulator) {

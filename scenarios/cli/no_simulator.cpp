@@ -29,6 +29,7 @@ void add_record_command(CommandLine& line) { add_refusal(line, "record"); }
 void add_report_command(CommandLine& line) { add_refusal(line, "report"); }
 void add_mcap_command(CommandLine& line) { add_refusal(line, "mcap"); }
 void add_campaign_command(CommandLine& line) { add_refusal(line, "campaign"); }
+void add_explain_command(CommandLine& line) { add_refusal(line, "explain"); }
 void add_tune_command(CommandLine& line) { add_refusal(line, "tune"); }
 void add_shard_command(CommandLine& line) { add_refusal(line, "shard"); }
 void add_gate_command(CommandLine& line) { add_refusal(line, "gate"); }
