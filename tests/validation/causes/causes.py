@@ -124,14 +124,19 @@ class Flights:
 
     def explain_all(self, of, name, seeds, *options, folder="runs"):
         condition = next((self.out / name / "conditions").glob("*.yaml"))
+        kept = {int(one["seed"]): one for one in self.kept("explained") if (one["of"], one["folder"]) == (of, folder)}
+        seeds_left = [seed for seed in seeds if seed not in kept]
         with ThreadPoolExecutor(self.arguments.at_once) as pool:
             found = list(pool.map(lambda seed: self.explain(self.out / folder / f"{name}-{seed}", condition, seed, *options),
-                                  seeds))
-        for seed, one in zip(seeds, found):
+                                  seeds_left))
+        for seed, one in zip(seeds_left, found):
             best = ", ".join(f"{e['part']} {e['difference']:+.2f}" for e in one["effects"][:4])
             print(f"  {name} {seed}: {one['cause']} ({one['part']}): {best}", flush=True)
-        return [{"of": of, "seed": seed, "folder": folder, "cause": one["cause"], "part": one["part"]}
-                for seed, one in zip(seeds, found)]
+        new = [{"of": of, "seed": seed, "folder": folder, "cause": one["cause"], "part": one["part"]}
+               for seed, one in zip(seeds_left, found)]
+        if new:
+            self.keep("explained", *new)
+        return [kept[seed] for seed in seeds if seed in kept] + new
 
     def arrivals(self, name, seeds, keys):
         """How often of ten each seed's flight arrives with other noise from the fault's moment on."""
@@ -174,7 +179,6 @@ def planted(flights):
                 break
         right = sum(one["cause"] in FAULTS[fault][0] for one in explained)
         print(f"{fault}: {lost} of {flown} lost, {undecided} by chance, {right} of {len(explained)} right", flush=True)
-        flights.keep("explained", *explained)
         flights.keep("flown", {"of": fault, "flown": flown, "lost": lost, "by_chance": undecided})
     said = {fault: [] for fault in FAULTS}
     for one in flights.kept("explained"):
@@ -227,7 +231,6 @@ def lost(flights):
                 again += flights.explain_all(scenario, name, its, "--first-seed", 1001, folder="again")
             if len(found) == flights.arguments.wanted:
                 break
-        flights.keep("explained", *found, *again)
         flights.keep("flown", {"of": scenario, "flown": flown, "lost": all_lost})
     counts, lines = {}, ["| scenario | flown, lost | causes of those explained |", "|---|---:|---|"]
     explained = flights.kept("explained")
