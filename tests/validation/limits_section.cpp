@@ -141,6 +141,7 @@ Section limits_section() {
                         .x_label = "trees in the square of the turning radius, R^2 / area per tree",
                         .y_label = "trees in the way between crashes",
                         .y_log = true};
+  for (const Eyes& eyes : all_eyes) without_unit.series.push_back({.name = eyes.words, .mark = Mark::dots});
   for (const double per_tree_m2 : {49.0, 25.0, 16.0, 9.0}) {
     LinePlot panel{.title = fmt::format("{:.0f} m between trees", std::sqrt(per_tree_m2)),
                    .x_label = "speed flown (m/s)",
@@ -157,9 +158,6 @@ Section limits_section() {
         const double aside_mps = 0.04 * (static_cast<double>(i) - 2.5);  // bars would hide each other
         add_point(series, summary.mean_speed_mps + aside_mps, distance.value_km, distance.interval, 1);
         const double radius_m = turn_radius_m(summary.mean_speed_mps), trees = 1 / blind_km(per_tree_m2);
-        if (without_unit.series.size() < all_eyes.size())
-          for (const Eyes& eyes : all_eyes)
-            without_unit.series.push_back({.name = eyes.words, .mark = Mark::dots});
         add_point(without_unit.series[i], radius_m * radius_m / per_tree_m2, distance.value_km,
                   distance.interval, trees);
       }
