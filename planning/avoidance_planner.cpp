@@ -73,29 +73,27 @@ Plan AvoidancePlanner::keep(std::int64_t t_ns, const Manoeuvre& manoeuvre, Rollo
 
 std::optional<Plan> AvoidancePlanner::search(const FlightTask& task, const FlightState& start,
                                              std::int64_t t_ns, const Manoeuvre& remaining, bool may_keep) {
-  const TrajectoryConfig& limits = config_.trajectory;
   const std::uint64_t search_seed = seed_ * 1'000'003 + static_cast<std::uint64_t>(counts_.replans);
-  const auto improved = [&](const Manoeuvre& manoeuvre, double minimum_clearance_m) {
-    return improve_manoeuvre(task, start, manoeuvre, minimum_clearance_m, config_.improvement, search_seed);
-  };
+  ImprovedManoeuvre kept{{}, INFINITY};
+  if (may_keep)
+    kept = improve_manoeuvre(task, start, remaining, config_.trajectory.minimum_kept_clearance_m,
+                             config_.improvement, search_seed);
   ++counts_.searches;
-  const std::optional<Manoeuvre> answer =
-      search_manoeuvre(task, start, remaining, config_.search, search_seed, tree_);
-  ImprovedManoeuvre found{{}, INFINITY}, kept{{}, INFINITY};
-  if (answer) {
+  const std::optional<Manoeuvre> better = search_manoeuvre(
+      task, start, remaining, config_.search, kept.cost / config_.change_cost_ratio, search_seed, tree_);
+  if (better) {
     ++counts_.found;
-    found = improved(*answer, limits.minimum_clearance_m);
+    ++counts_.solved;
+    Plan plan = adopt(t_ns, *better, PlanOrigin::solved, flown_through(task, start, *better));
+    replans_kept_ = config_.refresh_replans;  // the next replan improves it
+    return plan;
   }
-  if (may_keep) kept = improved(remaining, limits.minimum_kept_clearance_m);
-  if (may_keep && kept.cost <= config_.change_cost_ratio * found.cost) {
-    ++count("search_found_no_better");
-    replans_kept_ = 0;
-    searched_t_ns_ = t_ns;
-    return keep(t_ns, kept.manoeuvre, flown_through(task, start, kept.manoeuvre));
-  }
-  if (!answer) return std::nullopt;
-  ++counts_.solved;
-  return adopt(t_ns, found.manoeuvre, PlanOrigin::solved, flown_through(task, start, found.manoeuvre));
+  if (!may_keep) return std::nullopt;
+  ++count("search_found_no_better");
+  replans_kept_ = 0;
+  searched_t_ns_ = t_ns;
+  manoeuvre_cost_ = kept.cost;
+  return keep(t_ns, kept.manoeuvre, flown_through(task, start, kept.manoeuvre));
 }
 
 Plan AvoidancePlanner::fall_back(const FlightTask& task, const FlightState& start, std::int64_t t_ns) {

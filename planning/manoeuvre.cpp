@@ -95,6 +95,12 @@ double final_cost(const FlightTask& task, const FlightState& state) {
          task.config.bank_weight * square(state.bank_rad);
 }
 
+double least_cost_to_go(const FlightTask& task, const FlightState& state) {
+  const double airspeed_mps = std::max(state.speed_mps, task.model.config().cruise_speed_mps);
+  const double to_go_m = task.config.horizon_m - progress_m(task, state.position_world);
+  return std::max(0.0, to_go_m) / (1.5 * airspeed_mps + state.wind_world_mps.norm());
+}
+
 Rollout fly_out(const FlightTask& task, const FlightState& start, const Manoeuvre& manoeuvre,
                 double minimum_clearance_m, bool keep_points, bool stop_when_too_near, double maximum_cost) {
   Rollout rollout;
@@ -120,7 +126,8 @@ Rollout fly_out(const FlightTask& task, const FlightState& start, const Manoeuvr
     rollout.minimum_margin_m = std::min(rollout.minimum_margin_m, margin);
     too_near = too_near || margin < minimum_clearance_m;
     if (!too_near) rollout.free_until_s = t_s + step_s;
-    if ((too_near && stop_when_too_near) || rollout.cost > maximum_cost) break;
+    if (too_near && stop_when_too_near) break;
+    if (rollout.cost + least_cost_to_go(task, state) > maximum_cost) break;
     if (progress_m(task, state.position_world) >= task.config.horizon_m) {
       rollout.reached_horizon = !too_near;
       break;

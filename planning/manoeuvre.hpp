@@ -37,6 +37,9 @@ FlightCommand course_command(const FlightTask& task, const FlightState& state);
 /// Cost per second of being in `state`, `clearance_m` from the nearest obstacle.
 double cost_rate(const FlightTask& task, const FlightState& state, double clearance_m);
 double final_cost(const FlightTask& task, const FlightState& state);
+/// A bound: no way from `state` to the horizon costs less, because a second costs at least 1 and no dive
+/// makes the aircraft half as fast again.
+double least_cost_to_go(const FlightTask& task, const FlightState& state);
 /// Distance inside the altitude band, negative outside.
 double band_clearance_m(const FlightTask& task, const FlightState& state);
 /// Distance made good along the course since the plan's start.
@@ -58,8 +61,8 @@ struct Rollout {
 };
 
 /// Flies `manoeuvre` from `start` in the model. Stops where the clearance falls below `minimum_clearance_m`,
-/// unless `stop_when_too_near` is false. Stops also where the cost exceeds `maximum_cost`, since costs only
-/// grow. `keep_points` returns the trajectory, every step.
+/// unless `stop_when_too_near` is false. Stops also where the whole cost will exceed `maximum_cost`.
+/// `keep_points` returns the trajectory, every step.
 Rollout fly_out(const FlightTask& task, const FlightState& start, const Manoeuvre& manoeuvre,
                 double minimum_clearance_m, bool keep_points, bool stop_when_too_near = true,
                 double maximum_cost = std::numeric_limits<double>::infinity());

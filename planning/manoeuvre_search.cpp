@@ -144,13 +144,14 @@ class AccumulatedCost : public ob::OptimizationObjective {
 // OMPL's planners account only for the tree, and RRT and EST would end at their first answer.
 class FreeCourse : public ob::Goal {
  public:
-  FreeCourse(const ob::SpaceInformationPtr& space, const FlightTask& task) : Goal(space), task_(task) {}
+  FreeCourse(const ob::SpaceInformationPtr& space, const FlightTask& task, double maximum_cost)
+      : Goal(space), best_cost(maximum_cost), task_(task) {}
   bool isSatisfied(const ob::State* state) const override { return isSatisfied(state, nullptr); }
   bool isSatisfied(const ob::State* state, double* distance) const override {
     const Node& node = node_of(state);
     const double to_go_m = task_.config.horizon_m - progress_m(task_, node.flight.position_world);
     if (distance != nullptr) *distance = std::max(0.0, to_go_m);
-    if (node.cost >= best_cost) return false;
+    if (is_too_dear(node)) return false;
     // A flight that cannot become the cheapest is not flown to its end. The limit is
     // slightly larger than what remains, so that rounding decides nothing.
     const double to_spend = (best_cost - node.cost) * (1 + 1e-9) + 1e-9;
@@ -158,13 +159,18 @@ class FreeCourse : public ob::Goal {
         fly_out(task_, node.flight, {}, task_.config.minimum_clearance_m, false, true, to_spend);
     if (rest.reached_horizon && node.cost + rest.cost < best_cost) {
       best_cost = node.cost + rest.cost;
-      best.assign(node.parts.begin(), node.parts.begin() + node.part_count);
+      best.emplace(node.parts.begin(), node.parts.begin() + node.part_count);
     }
     return false;
   }
 
-  mutable double best_cost = std::numeric_limits<double>::infinity();
-  mutable Manoeuvre best;
+  /// Whether no flight through this node costs less than the best answer.
+  bool is_too_dear(const Node& node) const {
+    return node.cost + least_cost_to_go(task_, node.flight) >= best_cost;
+  }
+
+  mutable double best_cost;
+  mutable std::optional<Manoeuvre> best;
 
  private:
   const FlightTask& task_;
@@ -195,7 +201,7 @@ const FlightState& flight_of(const ob::State* state) { return node_of(state).fli
 
 std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightState& start,
                                           const Manoeuvre& hint, const ManoeuvreSearchConfig& config,
-                                          std::uint64_t seed, TreeMaker tree) {
+                                          double maximum_cost, std::uint64_t seed, TreeMaker tree) {
   ompl::msg::noOutputHandler();
   const auto seed_of = [seed](std::uint32_t part) {  // OMPL's seeds are 32 bits wide and not zero
     return static_cast<std::uint32_t>((seed ^ (seed >> 32)) * 4 + part) | 1u << 31;
@@ -211,7 +217,9 @@ std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightSt
   });
 
   const auto space = std::make_shared<oc::SpaceInformation>(states, controls);
-  space->setStateValidityChecker([](const ob::State* state) { return node_of(state).free; });
+  const auto goal = std::make_shared<FreeCourse>(space, task, maximum_cost);
+  space->setStateValidityChecker(
+      [&](const ob::State* state) { return node_of(state).free && !goal->is_too_dear(node_of(state)); });
   space->setStatePropagator(
       [&](const ob::State* from, const oc::Control* control, double step_s, ob::State* to) {
         const double* values = control->as<oc::RealVectorControlSpace::ControlType>()->values;
@@ -227,7 +235,6 @@ std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightSt
   ob::ScopedState<> start_state(states);
   node_of(start_state.get()).flight = start;
   problem->addStartState(start_state);
-  const auto goal = std::make_shared<FreeCourse>(space, task);
   problem->setGoal(goal);
   problem->setOptimizationObjective(std::make_shared<AccumulatedCost>(space));
 
@@ -235,7 +242,6 @@ std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightSt
   planner->setProblemDefinition(problem);
   int asked = 0;
   planner->solve(ob::PlannerTerminationCondition([&] { return ++asked > config.iterations; }));
-  if (std::isinf(goal->best_cost)) return std::nullopt;
   return goal->best;
 }
 

@@ -23,12 +23,13 @@ using TreeMaker =
     std::shared_ptr<ompl::base::Planner> (*)(const std::shared_ptr<ompl::control::SpaceInformation>& space,
                                              const ManoeuvreSearchConfig& config, std::uint32_t seed);
 
-/// The cheapest manoeuvre found whose rollout reaches the horizon without touching an obstacle, or nothing.
-/// Some commands are drawn near those of `hint`, the plan in force (may be empty). Repeats exactly for equal
-/// arguments, independent of earlier searches: `seed` seeds every generator of the search.
+/// The cheapest manoeuvre found whose rollout reaches the horizon without touching an obstacle and costs less
+/// than `maximum_cost`, or nothing. Some commands are drawn near those of `hint`, the plan in force (may be
+/// empty). Repeats exactly for equal arguments, independent of earlier searches: `seed` seeds every generator
+/// of the search.
 std::optional<Manoeuvre> search_manoeuvre(const FlightTask& task, const FlightState& start,
                                           const Manoeuvre& hint, const ManoeuvreSearchConfig& config,
-                                          std::uint64_t seed, TreeMaker tree);
+                                          double maximum_cost, std::uint64_t seed, TreeMaker tree);
 
 /// The predicted aircraft at a node of the tree.
 const FlightState& flight_of(const ompl::base::State* state);

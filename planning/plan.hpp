@@ -100,7 +100,7 @@ void visit_fields(Visitor& visit, Counts& counts) {
         "this replan or an earlier one");
   visit("searches", counts.searches,
         "number of searches, including those that compare a kept plan with a new one");
-  visit("found", counts.found, "number of searches that found a free manoeuvre");
+  visit("found", counts.found, "number of searches that found a free manoeuvre better than the one in force");
   visit("model_steps", counts.model_steps,
         "number of steps of the flight model that all plans took: the planner's work");
 }

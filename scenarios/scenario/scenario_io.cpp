@@ -329,8 +329,8 @@ AutopilotSection planning_of(PlanningPreset preset) {
   section.straight_period_s = 0.1;
   section.avoiding_period_s = 0.025;
   section.planner.refresh_s = 0.105;
-  section.planner.search.iterations = 100;
-  section.planner.improvement.iterations = 20;
+  section.planner.search.iterations = 80;
+  section.planner.improvement.iterations = 16;
   return section;
 }
 

@@ -92,15 +92,20 @@ TEST(AvoidancePlanner, KeepsItsPlanWhileThatIsGood) {
   const std::vector<ObstaclePoint> points = points_of({{{9, 0.1}}});
   const Plan first = planner.plan({level_start(), 0, points});
   ASSERT_EQ(first.origin, PlanOrigin::solved);
-  const FlightState state = follow_plan(level_start(), first, replan_ns);
+  FlightState state = follow_plan(level_start(), first, replan_ns);
   const Plan second = planner.plan({state, replan_ns, points});
   EXPECT_EQ(second.origin, PlanOrigin::kept);
-  EXPECT_EQ(planner.counts().kept, 1);
-  // Kept means the same path: its points are the first plan's, one replan later.
+  EXPECT_EQ(planner.counts().searches, 2);  // the second replan improves what the first one found
+  state = follow_plan(state, second, replan_ns);
+  const Plan third = planner.plan({state, 2 * replan_ns, points});
+  EXPECT_EQ(third.origin, PlanOrigin::kept);
+  EXPECT_EQ(planner.counts().kept, 2);
+  EXPECT_EQ(planner.counts().searches, 2);
+  // Kept means the same path: its points are the second plan's, one replan later.
   const std::size_t later = static_cast<std::size_t>(
       std::llround(1e-9 * static_cast<double>(replan_ns) / (first.points[1].t_s - first.points[0].t_s)));
-  for (std::size_t i = 0; i + later + 1 < first.points.size(); ++i)
-    EXPECT_LT((second.points[i].position_world - first.points[i + later].position_world).norm(), 0.05);
+  for (std::size_t i = 0; i + later + 1 < second.points.size(); ++i)
+    EXPECT_LT((third.points[i].position_world - second.points[i + later].position_world).norm(), 0.05);
 }
 
 TEST(AvoidancePlanner, GivesUpAPlanThatIsBlockedByWhatIsNewlySeen) {

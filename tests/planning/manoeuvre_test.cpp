@@ -19,8 +19,11 @@ struct Flight {
     start.position_world.z() = mission.cruise_altitude_m;
   }
   FlightTask task() const { return {model, config, mission, field, start.position_world}; }
-  std::optional<Manoeuvre> search(std::uint64_t seed) const {
-    return search_manoeuvre(task(), start, {}, ManoeuvreSearchConfig{}, seed, sst_tree);
+  std::optional<Manoeuvre> search(std::uint64_t seed, double maximum_cost = INFINITY) const {
+    return search_manoeuvre(task(), start, {}, ManoeuvreSearchConfig{}, maximum_cost, seed, sst_tree);
+  }
+  double cost_of(const Manoeuvre& manoeuvre) const {
+    return fly_out(task(), start, manoeuvre, config.minimum_clearance_m, false).cost;
   }
 
   FlightModel model{Airframe{}, FlightModelConfig{}};
@@ -131,6 +134,42 @@ bool same(const std::optional<Manoeuvre>& one, const std::optional<Manoeuvre>& o
                     [](const ManoeuvrePart& a, const ManoeuvrePart& b) {
                       return a.command == b.command && a.duration_s == b.duration_s;
                     });
+}
+
+TEST(ManoeuvreSearch, FindsOnlyWhatCostsLessThanTheMaximum) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Flight flight = random_flight(seed);
+    const std::optional<Manoeuvre> any = flight.search(seed);
+    ASSERT_TRUE(any.has_value());
+    const double cost = flight.cost_of(*any);
+    const std::optional<Manoeuvre> again = flight.search(seed, 1.01 * cost);
+    ASSERT_TRUE(again.has_value()) << "the same is there to be found";
+    EXPECT_LT(flight.cost_of(*again), 1.01 * cost);
+    const std::optional<Manoeuvre> cheaper = flight.search(seed, 0.9 * cost);
+    EXPECT_LT(cheaper ? flight.cost_of(*cheaper) : 0, 0.9 * cost);
+    EXPECT_FALSE(flight.search(seed, 0.5).has_value()) << "14 m take a second";
+  }
+}
+
+// The bound by which rollouts are cut short: flights that end because of it would have cost too much.
+TEST(FlyOut, CutShortByItsCostItWouldHaveCostMore) {
+  int flights = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Flight flight = random_flight(seed);
+    flight.start.wind_world_mps = {seed % 2 ? 3.0 : -3.0, 1};
+    flight.start.climb_angle_rad = seed % 3 ? 0 : -0.4;  // a dive
+    for (const Manoeuvre& manoeuvre : avoidance_primitives(1.5)) {
+      const Rollout whole = fly_out(flight.task(), flight.start, manoeuvre, -INFINITY, false, false);
+      if (!whole.reached_horizon) continue;
+      const auto flown = [&](double maximum_cost) {
+        return fly_out(flight.task(), flight.start, manoeuvre, -INFINITY, false, false, maximum_cost);
+      };
+      EXPECT_EQ(flown(1.001 * whole.cost).cost, whole.cost);
+      EXPECT_FALSE(flown(0.5 * whole.cost).reached_horizon);
+      ++flights;
+    }
+  }
+  EXPECT_GT(flights, 400);
 }
 
 TEST(ManoeuvreSearch, RepeatsExactlyWhateverWasSearchedBefore) {
