@@ -17,7 +17,7 @@ struct FlightModelConfig {
   double maximum_roll_rate_radps = 7.5;
   double maximum_differential_rad = 0.50;
   double roll_time_s = 0.06;
-  double angle_of_attack_time_s = 0.17;
+  double angle_of_attack_time_s = 0.22;
   double climb_angle_time_s = 0.45;
   double speed_gain_n_per_mps = 2.0;
 };

@@ -112,6 +112,27 @@ double FlightModel::reachable_roll_acceleration_radps2(const FlightState& state,
                     (maximum_nm - damped_nm) / airframe_.inertia_kgm2.x());
 }
 
+double FlightModel::body_pitch_rate_radps(const FlightState& state, double wanted_attack_rad,
+                                          double path_pitch_rate_radps, double roll_moment_nm,
+                                          double dt_s) const {
+  const double wanted_rad = wanted_attack_rad - state.angle_of_attack_rad;
+  const double wanted_radps =
+      path_pitch_rate_radps + wanted_rad * (1 - std::exp(-dt_s / config_.angle_of_attack_time_s)) / dt_s;
+  // The differential deflection that makes the roll moment, as the path follower has it.
+  const double speed = std::max(state.speed_mps, 4.0);
+  const double roll_slope_nm = elevon_roll_moment_nm_per_rad(speed);
+  const double damping_nms = airframe_.rate_damping_nmspr.x() + roll_slope_nm * airframe_.elevon_y_m / speed;
+  const double share = (roll_moment_nm + damping_nms * state.roll_rate_radps) / roll_slope_nm;
+  const double differential_rad =
+      std::min(config_.maximum_differential_rad, 0.5 * std::asin(std::min(1.0, 2 * std::abs(share))));
+  // What it leaves of their travel balances the pitch damping.
+  const double pitch_slope_nm = roll_slope_nm / airframe_.elevon_y_m * elevon_arm_m_;
+  const double collective_s = elevon_arm_m_ / speed + airframe_.rate_damping_nmspr.y() / pitch_slope_nm;
+  const double up_rad = airframe_.elevon_max_rad - differential_rad - state.angle_of_attack_rad;
+  const double down_rad = airframe_.elevon_min_rad + differential_rad - state.angle_of_attack_rad;
+  return std::clamp(wanted_radps, down_rad / collective_s, up_rad / collective_s);
+}
+
 double FlightModel::commanded_thrust_n(const FlightState& state) const {
   const double error_mps = config_.cruise_speed_mps - state.speed_mps;
   return std::clamp(level_thrust_n_ + config_.speed_gain_n_per_mps * error_mps, 0.0, airframe_.max_thrust_n);
@@ -121,26 +142,27 @@ FlightState FlightModel::advance(const FlightState& state, const FlightCommand& 
   const double mass = airframe_.mass_kg;
   const double speed = std::max(state.speed_mps, 4.0);
   const double q = dynamic_pressure_pa(airframe_, speed);
-  const double alpha = state.angle_of_attack_rad;
   const Attitude attitude(state);
   const auto [sin_alpha, cos_alpha, sin_bank, cos_bank, sin_climb, cos_climb] = attitude;
   const double gravity = airframe_.gravity_mps2;
+  const Eigen::Vector3d& inertia = airframe_.inertia_kgm2;
 
   // Inner loops of the path follower, as lags.
   const double wanted_velocity_roll = commanded_roll_rate_radps(state, command.bank_rad);
   const double wanted_roll = (wanted_velocity_roll + state.yaw_rate_radps * sin_alpha) / cos_alpha;
   const double roll_acceleration = reachable_roll_acceleration_radps2(
       state, (wanted_roll - state.roll_rate_radps) * (1 - std::exp(-dt_s / config_.roll_time_s)) / dt_s);
-  const double alpha_decay = 1 - std::exp(-dt_s / config_.angle_of_attack_time_s);
   const double wanted_alpha = commanded_angle_of_attack_rad(state, command.climb_mps, attitude);
+  const double side_n = side_force_n(state);
 
   // Forces along body z (wing, less the elevons' share that balances the pitch damping), body y (winglets),
   // thrust.
   const double pitch_rate = path_pitch_rate_radps(state, attitude);
-  const double body_pitch_rate = pitch_rate + (wanted_alpha - alpha) * alpha_decay / dt_s;
+  const double body_pitch_rate =
+      body_pitch_rate_radps(state, wanted_alpha, pitch_rate,
+                            inertia.x() * roll_acceleration + airframe_.winglet_z_m * side_n, dt_s);
   const double balance_n = airframe_.rate_damping_nmspr.y() * body_pitch_rate / elevon_arm_m_;
   const double normal_n = 2 * sin_alpha * q * lifting_area_m2_ - balance_n;
-  const double side_n = side_force_n(state);
   // Body drag was identified along body x, like the thrust. Both turn with the nose.
   const double forward_n =
       commanded_thrust_n(state) - q * airframe_.body_drag_area_m2 * cos_alpha * cos_alpha;
@@ -152,7 +174,6 @@ FlightState FlightModel::advance(const FlightState& state, const FlightCommand& 
 
   // Yaw: winglets turn the nose into the wind; the elevons' lift, perpendicular to the flow, leans forward by
   // the angle of attack and so yaws as it rolls; gyroscopic coupling of roll and pitch.
-  const Eigen::Vector3d& inertia = airframe_.inertia_kgm2;
   const double roll_moment = inertia.x() * roll_acceleration +
                              airframe_.rate_damping_nmspr.x() * state.roll_rate_radps +
                              airframe_.winglet_z_m * side_n;
@@ -161,7 +182,7 @@ FlightState FlightModel::advance(const FlightState& state, const FlightCommand& 
 
   FlightState next = state;
   next.roll_rate_radps += dt_s * roll_acceleration;
-  next.angle_of_attack_rad += alpha_decay * (wanted_alpha - alpha);
+  next.angle_of_attack_rad += dt_s * (body_pitch_rate - pitch_rate);
   next.yaw_rate_radps += dt_s * yaw_moment / inertia.z();
   const double roll_rate = 0.5 * (state.roll_rate_radps + next.roll_rate_radps);
   const double yaw_rate = 0.5 * (state.yaw_rate_radps + next.yaw_rate_radps);

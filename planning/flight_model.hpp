@@ -51,6 +51,10 @@ class FlightModel {
   /// Roll moment per radian of differential deflection (left down, right up) at this speed.
   double elevon_roll_moment_nm_per_rad(double speed_mps) const;
   double reachable_roll_acceleration_radps2(const FlightState& state, double wanted_radps2) const;
+  /// The body's pitch rate (nose up positive) that brings the angle of attack to what is wanted, as far as
+  /// the elevons can while they make this roll moment: a wing that rolls as fast as it can pulls little.
+  double body_pitch_rate_radps(const FlightState& state, double wanted_attack_rad,
+                               double path_pitch_rate_radps, double roll_moment_nm, double dt_s) const;
   /// Side force of the winglets along body y (to the left positive).
   double side_force_n(const FlightState& state) const;
   /// Distance of the elevons' mid-chord behind the centre of mass.

@@ -102,6 +102,7 @@ int explain_run(const ExplainArguments& arguments) {
 
 int run_explain(const ExplainArguments& arguments) {
   if (!holds_campaign(arguments.folder)) return explain_run(arguments);
+  if (arguments.first_seed != 1) throw ScenarioError("--first-seed: is for the folder of a run");
   explain_campaign(arguments.folder, arguments.renderer, jobs_or_cores(arguments.jobs), arguments.flights);
   return exit_goal;
 }

@@ -12,7 +12,8 @@ namespace understory {
 namespace {
 
 constexpr std::int64_t lately_ns = 1'500'000'000;  ///< before the end: what can have mattered
-constexpr double short_s = 1, wrong_m = 0.3, wrong_bank_rad = 0.35, late_s = 0.03;
+constexpr double short_s = 1, wrong_m = 0.3, late_s = 0.03;
+constexpr double planned_s = 0.3, unplanned_m = 0.1;
 constexpr std::size_t many_false = 10;
 
 std::int64_t end_ns(const FlightLog& log) { return log.moments.back().t_ns; }
@@ -101,18 +102,26 @@ Evidence of_search(const FlightLog& log) {
                       plans, fallbacks)};
 }
 
+/// How far the aircraft came to be from where its plans, a moment before, expected it.
 Evidence of_tracking(const FlightLog& log) {
+  const double step_s = log.scenario.autopilot.planner.trajectory.step_s;
+  const auto ahead = static_cast<std::size_t>(std::lround(planned_s / step_s));
   double square = 0;
   std::size_t count = 0;
-  for (const LogMoment& moment : log.moments) {
-    if (moment.t_ns < end_ns(log) - lately_ns) continue;
-    const double error_rad = bank_rad(moment.T_world_body) - moment.commanded_bank_rad;
-    square += error_rad * error_rad;
+  for (const LogPlan& plan : log.plans) {
+    // A plan starts where the aircraft will be when the elevons first move by it.
+    const std::int64_t then_ns = plan.t_ns + nanoseconds(log.scenario.airframe.input_delay_s + planned_s);
+    if (plan.t_ns < end_ns(log) - lately_ns || then_ns > end_ns(log) || plan.way_odometry.size() <= ahead)
+      continue;
+    square +=
+        (moment_at(log, then_ns).T_odometry_body.translation() - plan.way_odometry[ahead]).squaredNorm();
     ++count;
   }
-  const double rms_rad = count > 0 ? std::sqrt(square / static_cast<double>(count)) : 0;
-  return {"not flown", "tracking", rms_rad > wrong_bank_rad,
-          fmt::format("Its bank was {:.0f} degrees (root mean square) from the plan's.", 57.29578 * rms_rad)};
+  const double rms_m = count > 0 ? std::sqrt(square / static_cast<double>(count)) : 0;
+  return {
+      "not flown", "tracking", rms_m > unplanned_m,
+      fmt::format("It came to be {:.2f} m (root mean square) from where its plans expected it {} s before.",
+                  rms_m, planned_s)};
 }
 
 /// A cause as the beginning of a sentence.

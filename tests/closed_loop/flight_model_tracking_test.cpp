@@ -99,8 +99,8 @@ void expect_predicted(double cruise_speed_mps, const Eigen::Vector3d& wind_world
     half_second += tracking.squared_error_m2(generator, 0.5);
     second += tracking.squared_error_m2(generator, 1.0);
   }
-  EXPECT_LT(std::sqrt(half_second / trials), 0.15) << "at " << cruise_speed_mps << " m/s";
-  EXPECT_LT(std::sqrt(second / trials), 0.6) << "at " << cruise_speed_mps << " m/s";
+  EXPECT_LT(std::sqrt(half_second / trials), 0.07) << "at " << cruise_speed_mps << " m/s";
+  EXPECT_LT(std::sqrt(second / trials), 0.3) << "at " << cruise_speed_mps << " m/s";
 }
 
 TEST(FlightModelTracking, PredictsWhereTheSimulatorWillBe) {

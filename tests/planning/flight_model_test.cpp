@@ -104,7 +104,7 @@ TEST(FlightModel, HardTurnsCostSpeed) {
   const double gentle = fly_for(model, {}, {0.5, 0}, 1).speed_mps;
   const double hard = fly_for(model, {}, {1.3, 0}, 1).speed_mps;
   EXPECT_LT(gentle, level);
-  EXPECT_LT(hard, gentle - 0.5);
+  EXPECT_LT(hard, gentle - 0.3);
 }
 
 TEST(FlightModel, StaysInsideItsEnvelopeUnderAnyCommands) {

@@ -40,6 +40,8 @@ std::vector<Section> mismatch_sections();
 /// docs/limits.md: kilometres between crashes over speed and density, beside what theory says. From the rows
 /// of `understory campaign limits` in docs/results/limits.
 Section limits_section();
+/// docs/limits.md: what each property of a detector must be, from rows of requirements.py there.
+Section requirements_section();
 
 /// docs/ci.md: how often the gate errs, and after how many flights it knows. From outcomes of real flights.
 Section gate_section();

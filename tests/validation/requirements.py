@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""Flies what vision must be able to do (docs/limits.md): one property of the synthetic detector made worse at a time.
+
+requirements.py --seeds 5101..5400 --out FOLDER [--only "latency;depth"]
+    flies each value of each property at two speeds and two densities with the first 20 seeds, then gives the values
+    between which the success falls below 95 % the others, 20 at a time, until the interval of their success does not
+    contain 95 % or the seeds are used up. Writes requirements.csv: a row for each property, value, speed and density.
+"""
+
+import argparse
+import csv
+import subprocess
+from collections import defaultdict
+from math import sqrt
+from pathlib import Path
+
+SPEEDS_MPS, PER_TREE_M2 = [9, 12], [49, 16]
+ASKED = 0.95
+# property: the key, its values from good to bad
+PROPERTIES = {
+    "reach": ("perception.full_stereo.maximum_depth_m", [15, 12, 10, 8, 7, 6, 5, 4]),
+    "one depth": ("perception.synthetic.depths_m", [14, 12, 10, 8, 7, 6, 5, 4]),
+    "rate": ("cameras.rate_hz", [120, 40, 20, 10, 6, 4, 3, 2]),
+    "latency": ("cameras.latency_s", [0.008, 0.04, 0.08, 0.12, 0.16, 0.2, 0.25, 0.3]),
+    "missed for good": ("perception.synthetic.missed_obstacles", [0, 0.005, 0.01, 0.02, 0.04, 0.08, 0.16]),
+    "missed in a frame": ("perception.synthetic.missed_frames", [0, 0.5, 0.8, 0.9, 0.95, 0.98, 0.99]),
+    "blocks missed": ("perception.synthetic.missed_blocks", [0, 0.5, 0.8, 0.9, 0.95, 0.98, 0.99]),
+    "false points": ("perception.synthetic.false_points", [0, 0.1, 0.3, 1, 3, 10, 30]),
+    "disparity error": ("perception.synthetic.disparity_error_px", [0, 0.25, 0.5, 1, 1.5, 2, 3, 4]),
+}
+
+
+def interval(arrived, flown):
+    """Wilson's, 95 %."""
+    z, share = 1.96, arrived / flown
+    middle, wide = share + z * z / (2 * flown), z * sqrt(share * (1 - share) / flown + z * z / (4 * flown * flown))
+    return (middle - wide) / (1 + z * z / flown), (middle + wide) / (1 + z * z / flown)
+
+
+def falling(counts):
+    """The success at each value as a fall only: of (arrived, flown) that rise again, the mean (isotonic regression)."""
+    blocks = []
+    for arrived, flown in counts:
+        blocks.append([arrived, flown, 1])
+        while len(blocks) > 1 and blocks[-1][0] / blocks[-1][1] >= blocks[-2][0] / blocks[-2][1]:
+            last = blocks.pop()
+            blocks[-1] = [a + b for a, b in zip(blocks[-1], last)]
+    return [arrived / flown for arrived, flown, values in blocks for _ in range(values)]
+
+
+class Requirements:
+    def __init__(self, arguments):
+        self.arguments, self.out = arguments, Path(arguments.out)
+        self.out.mkdir(parents=True, exist_ok=True)
+        self.counts = defaultdict(lambda: [0, 0])  # arrived, flown by property, value, speed and density
+
+    def fly(self, name, seeds, cells):
+        """Flies these cells (property, value, speed, density) with these seeds."""
+        lines = ["scenario: forest", f"seeds: {seeds[0]}..{seeds[-1]}", "overrides:"]
+        for number, (of, value, speed_mps, per_tree_m2) in enumerate(cells):
+            value = f"[{value}]" if of == "one depth" else value
+            keys = {"perception.detector": "synthetic", "autopilot.flight_model.cruise_speed_mps": speed_mps,
+                    "forest.square_metres_per_tree": per_tree_m2, PROPERTIES[of][0]: value}
+            lines.append(f"  - {{name: c{number}, set: {{" + ", ".join(f"{k}: {v}" for k, v in keys.items()) + "}}")
+        file, folder = self.out / f"{name}.yaml", self.out / name
+        file.write_text("\n".join(lines) + "\n")
+        done = subprocess.run([self.arguments.program, "campaign", file, "--out", folder,
+                               *(["--resume"] if (folder / "campaign.json").exists() else [])])
+        if done.returncode not in (0, 1):
+            raise SystemExit(f"{file}: could not be flown")
+        with open(folder / "flights.csv", newline="") as table:
+            for row in csv.DictReader(table):
+                count = self.counts[cells[int(row["condition"].rsplit("-c", 1)[1])]]
+                count[0] += row["outcome"] == "goal"
+                count[1] += 1
+
+    def turning(self, of, speed_mps, per_tree_m2):
+        """The values on both sides of where the curve falls below what is asked, unless they are told from it."""
+        values = PROPERTIES[of][1]
+        counts = [self.counts[of, value, speed_mps, per_tree_m2] for value in values]
+        below = next((i for i, share in enumerate(falling(counts)) if share < ASKED), len(values))
+        for value, (arrived, flown) in list(zip(values, counts))[max(0, below - 1): below + 1]:
+            low, high = interval(arrived, flown)
+            if low < ASKED < high:
+                yield of, value, speed_mps, per_tree_m2
+
+    def write(self):
+        with open(self.out / "requirements.csv", "w", newline="") as text:
+            writer = csv.writer(text, lineterminator="\n")
+            writer.writerow(["property", "value", "speed_mps", "square_metres_per_tree", "arrived", "flown"])
+            writer.writerows([*cell, *count] for cell, count in self.counts.items())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", default="build/release/understory")
+    parser.add_argument("--seeds", required=True)
+    parser.add_argument("--out", required=True)
+    parser.add_argument("--only", type=lambda text: text.split(";"), help="properties, with ; between them")
+    arguments = parser.parse_args()
+    first, last = map(int, arguments.seeds.split(".."))
+    blocks = [range(seed, min(seed + 20, last + 1)) for seed in range(first, last + 1, 20)]
+    all_of = Requirements(arguments)
+    names = arguments.only or list(PROPERTIES)
+    curves = [(of, speed_mps, per_tree_m2) for of in names for speed_mps in SPEEDS_MPS for per_tree_m2 in PER_TREE_M2]
+    cells = [(of, value, speed_mps, per_tree_m2) for of, speed_mps, per_tree_m2 in curves for value in PROPERTIES[of][1]]
+    for seeds in blocks:
+        all_of.fly(f"seeds-{seeds[0]}", seeds, cells)
+        all_of.write()
+        cells = [cell for curve in curves for cell in all_of.turning(*curve)]
+        if not cells:
+            break
+
+
+if __name__ == "__main__":
+    main()
