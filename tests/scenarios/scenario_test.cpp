@@ -45,7 +45,7 @@ TEST(Scenario, TheLibraryIsWhatTheMissionSays) {
   EXPECT_EQ(Scenario().autopilot.replan_rate_hz, 600);
   EXPECT_EQ(load_scenario(library / "forest.yaml", {"autopilot.preset=thorough"}).autopilot.replan_rate_hz,
             120);
-  EXPECT_EQ(forest.autopilot.planner.search.iterations, 100);
+  EXPECT_EQ(forest.autopilot.planner.search.iterations, 80);
   EXPECT_EQ(load_scenario(library / "forest.yaml", {"autopilot.replan_rate_hz=120"}).autopilot.replan_rate_hz,
             120);
   EXPECT_EQ(load_scenario(library / "dense.yaml").forest.square_metres_per_tree, 25);

@@ -21,7 +21,7 @@ PROPERTIES = {
     "reach": ("perception.full_stereo.maximum_depth_m", [15, 12, 10, 8, 7, 6, 5, 4]),
     "one depth": ("perception.synthetic.depths_m", [14, 12, 10, 8, 7, 6, 5, 4]),
     "rate": ("cameras.rate_hz", [120, 40, 20, 10, 6, 4, 3, 2]),
-    "latency": ("cameras.latency_s", [0.008, 0.04, 0.08, 0.12, 0.16, 0.2, 0.25, 0.3]),
+    "latency": ("cameras.latency_s", [0.008, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4]),
     "missed for good": ("perception.synthetic.missed_obstacles", [0, 0.005, 0.01, 0.02, 0.04, 0.08, 0.16]),
     "missed in a frame": ("perception.synthetic.missed_frames", [0, 0.5, 0.8, 0.9, 0.95, 0.98, 0.99]),
     "blocks missed": ("perception.synthetic.missed_blocks", [0, 0.5, 0.8, 0.9, 0.95, 0.98, 0.99]),
