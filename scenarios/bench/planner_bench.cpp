@@ -8,10 +8,9 @@
 #include "perception/io/text_table.hpp"
 #include "scenarios/bench/bench.hpp"
 #include "scenarios/config/bad_input.hpp"
-#include "scenarios/config/named_seed.hpp"
+#include "scenarios/flight/flight.hpp"
 #include "scenarios/flight/stopwatch.hpp"
 #include "scenarios/output/errors.hpp"
-#include "scenarios/parts/checked_parts.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
 namespace understory {
@@ -88,13 +87,6 @@ std::vector<AskedInAFlight> problems_in(const std::string& text, const std::stri
   return flights;
 }
 
-std::unique_ptr<Planner> planner_of(const Scenario& scenario, const FlightModel& model) {
-  const PlannerPart& part = *parts().planners.find(scenario.autopilot.method);
-  const PlannerContext context{scenario.autopilot.planner, model, scenario.mission(),
-                               seed_for(scenario.planner_seed(), "planner")};
-  return checked(part, {context, scenario});
-}
-
 double timed_ms(const std::function<void()>& run) {
   const auto before = std::chrono::steady_clock::now();
   run();
@@ -126,10 +118,9 @@ std::vector<BenchRow> bench_planner(const std::vector<PlannerProblems>& all,
   for (int round = 0; round < rounds; ++round) {
     on_round(round);
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const FlightModel model(all[i].scenario.airframe, all[i].scenario.autopilot.flight_model);
       std::size_t number = 0;
       for (const AskedInAFlight& flight : asked[i]) {
-        const std::unique_ptr<Planner> planner = planner_of(all[i].scenario, model);
+        const std::unique_ptr<Planner> planner = planner_of(all[i].scenario);
         for (const PlanRequest& request : flight) {
           times_ms[i][number].push_back(timed_ms([&] { planner->plan(request); }));
           if (number++ % 8 != 0) continue;

@@ -63,21 +63,14 @@ std::vector<RowSeries> series_of(const std::vector<FlightRow>& rows, const Condi
   return all;
 }
 
-void add_point(Series& series, double x, double y, const Interval& interval) {
-  series.x.push_back(x);
-  series.y.push_back(y);
-  series.low.push_back(interval.minimum);
-  series.high.push_back(interval.maximum);
-}
-
 void add_success(Series& series, double x, const ConditionSummary& summary) {
-  add_point(series, x, 100.0 * summary.goals / summary.flown,
-            {100 * summary.success.minimum, 100 * summary.success.maximum});
+  series.add(x, 100.0 * summary.goals / summary.flown, 100 * summary.success.minimum,
+             100 * summary.success.maximum);
 }
 
 void add_crash_distance(Series& series, double x, const ConditionSummary& summary) {
   const CrashDistance distance = crash_distance(summary);
-  add_point(series, x, distance.value_km, distance.interval);
+  series.add(x, distance.value_km, distance.interval.minimum, distance.interval.maximum);
 }
 
 std::string scenario_of_rows(const std::vector<FlightRow>& rows, const Conditions& conditions) {

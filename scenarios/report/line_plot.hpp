@@ -27,6 +27,11 @@ struct Series {
   std::vector<double> low = {};   ///< empty, or the lower and upper ends of error bars
   std::vector<double> high = {};  ///< as `low`
   bool band = false;              ///< shade between low and high instead of drawing bars
+
+  void add(double at, double value, double lower, double upper) {
+    x.push_back(at), y.push_back(value);
+    low.push_back(lower), high.push_back(upper);
+  }
 };
 
 /// A straight line across the plot: a limit, a figure from elsewhere.

@@ -126,11 +126,6 @@ std::map<std::string, Cells> flown_cells() {
   return cells;
 }
 
-void add_point(Series& series, double x, double y, const Interval& interval, double scale) {
-  series.x.push_back(x), series.y.push_back(scale * y);
-  series.low.push_back(scale * interval.minimum), series.high.push_back(scale * interval.maximum);
-}
-
 }  // namespace
 
 Section limits_section() {
@@ -156,10 +151,13 @@ Section limits_section() {
         if (cell.per_tree_m2 != per_tree_m2) continue;
         const CrashDistance distance = crash_distance(summary);
         const double aside_mps = 0.04 * (static_cast<double>(i) - 2.5);  // bars would hide each other
-        add_point(series, summary.mean_speed_mps + aside_mps, distance.value_km, distance.interval, 1);
+        const auto add = [&](Series& to, double at, double scale) {
+          to.add(at, scale * distance.value_km, scale * distance.interval.minimum,
+                 scale * distance.interval.maximum);
+        };
+        add(series, summary.mean_speed_mps + aside_mps, 1);
         const double radius_m = turn_radius_m(summary.mean_speed_mps), trees = 1 / blind_km(per_tree_m2);
-        add_point(without_unit.series[i], radius_m * radius_m / per_tree_m2, distance.value_km,
-                  distance.interval, trees);
+        add(without_unit.series[i], radius_m * radius_m / per_tree_m2, trees);
       }
       panel.series.push_back(series);
     }

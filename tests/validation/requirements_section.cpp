@@ -129,10 +129,8 @@ LinePlot panel_of(const Property& property, const std::map<Cell, Curve>& curves)
     for (std::size_t k = 0; k < curve.values.size(); ++k) {
       const Share& share = curve.arrived[k];
       const Interval interval = wilson_interval(static_cast<int>(share.with), static_cast<int>(share.of));
-      series.x.push_back(static_cast<double>(k) + 0.06 * (static_cast<double>(i) - 1.5));
-      series.y.push_back(100 * share.value());
-      series.low.push_back(100 * interval.minimum);
-      series.high.push_back(100 * interval.maximum);
+      series.add(static_cast<double>(k) + 0.06 * (static_cast<double>(i) - 1.5), 100 * share.value(),
+                 100 * interval.minimum, 100 * interval.maximum);
     }
     panel.series.push_back(series);
   }
