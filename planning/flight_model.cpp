@@ -102,10 +102,15 @@ double FlightModel::elevon_roll_moment_nm_per_rad(double speed_mps) const {
          dynamic_pressure_pa(airframe_, speed_mps);
 }
 
+double FlightModel::differential_rad(double roll_moment_nm, double roll_slope_nm) const {
+  const double share = std::clamp(roll_moment_nm / roll_slope_nm, -0.5, 0.5);
+  return std::clamp(0.5 * std::asin(2 * share), -config_.maximum_differential_rad,
+                    config_.maximum_differential_rad);
+}
+
 double FlightModel::reachable_roll_acceleration_radps2(const FlightState& state, double wanted_radps2) const {
   const double slope_nm = elevon_roll_moment_nm_per_rad(state.speed_mps);
-  const double damping_nms =
-      airframe_.rate_damping_nmspr.x() + slope_nm * airframe_.elevon_y_m / std::max(state.speed_mps, 4.0);
+  const double damping_nms = roll_damping_nms(slope_nm, std::max(state.speed_mps, 4.0));
   const double maximum_nm = slope_nm * 0.5 * sin_twice_differential_;
   const double damped_nm = damping_nms * state.roll_rate_radps;
   return std::clamp(wanted_radps2, (-maximum_nm - damped_nm) / airframe_.inertia_kgm2.x(),
@@ -118,18 +123,14 @@ double FlightModel::body_pitch_rate_radps(const FlightState& state, double wante
   const double wanted_rad = wanted_attack_rad - state.angle_of_attack_rad;
   const double wanted_radps =
       path_pitch_rate_radps + wanted_rad * (1 - std::exp(-dt_s / config_.angle_of_attack_time_s)) / dt_s;
-  // The differential deflection that makes the roll moment, as the path follower has it.
-  const double speed = std::max(state.speed_mps, 4.0);
-  const double roll_slope_nm = elevon_roll_moment_nm_per_rad(speed);
-  const double damping_nms = airframe_.rate_damping_nmspr.x() + roll_slope_nm * airframe_.elevon_y_m / speed;
-  const double share = (roll_moment_nm + damping_nms * state.roll_rate_radps) / roll_slope_nm;
-  const double differential_rad =
-      std::min(config_.maximum_differential_rad, 0.5 * std::asin(std::min(1.0, 2 * std::abs(share))));
-  // What it leaves of their travel balances the pitch damping.
-  const double pitch_slope_nm = roll_slope_nm / airframe_.elevon_y_m * elevon_arm_m_;
-  const double collective_s = elevon_arm_m_ / speed + airframe_.rate_damping_nmspr.y() / pitch_slope_nm;
-  const double up_rad = airframe_.elevon_max_rad - differential_rad - state.angle_of_attack_rad;
-  const double down_rad = airframe_.elevon_min_rad + differential_rad - state.angle_of_attack_rad;
+  const double speed = std::max(state.speed_mps, 4.0), slope_nm = elevon_roll_moment_nm_per_rad(speed);
+  const double damped_nm = roll_damping_nms(slope_nm, speed) * state.roll_rate_radps;
+  const double rolling_rad = std::abs(differential_rad(roll_moment_nm + damped_nm, slope_nm));
+  // What rolling leaves of the elevons' travel balances the pitch damping.
+  const double collective_s =
+      elevon_arm_m_ / speed + airframe_.rate_damping_nmspr.y() / elevon_pitch_moment_nm_per_rad(slope_nm);
+  const double up_rad = airframe_.elevon_max_rad - rolling_rad - state.angle_of_attack_rad;
+  const double down_rad = airframe_.elevon_min_rad + rolling_rad - state.angle_of_attack_rad;
   return std::clamp(wanted_radps, down_rad / collective_s, up_rad / collective_s);
 }
 

@@ -50,6 +50,17 @@ class FlightModel {
   double commanded_thrust_n(const FlightState& state) const;
   /// Roll moment per radian of differential deflection (left down, right up) at this speed.
   double elevon_roll_moment_nm_per_rad(double speed_mps) const;
+  /// Pitch moment per radian of common deflection, where that is the roll moment per radian.
+  double elevon_pitch_moment_nm_per_rad(double roll_slope_nm) const {
+    return roll_slope_nm / airframe_.elevon_y_m * elevon_arm_m_;
+  }
+  /// Roll moment per roll rate that the body and the elevons' own motion through the air take.
+  double roll_damping_nms(double roll_slope_nm, double speed_mps) const {
+    return airframe_.rate_damping_nmspr.x() + roll_slope_nm * airframe_.elevon_y_m / speed_mps;
+  }
+  /// The differential deflection that makes this roll moment, within its limit. A flat plate's lift goes with
+  /// sin(2 a) / 2: this inverts it.
+  double differential_rad(double roll_moment_nm, double roll_slope_nm) const;
   double reachable_roll_acceleration_radps2(const FlightState& state, double wanted_radps2) const;
   /// The body's pitch rate (nose up positive) that brings the angle of attack to what is wanted, as far as
   /// the elevons can while they make this roll moment: a wing that rolls as fast as it can pulls little.

@@ -26,8 +26,7 @@ PlanPoint plan_point(const FlightState& state, const FlightCommand& command, dou
 }
 
 double cross_track_m(const FlightTask& task, const Eigen::Vector3d& position_world) {
-  const double heading = task.mission.heading_rad;
-  return -std::sin(heading) * position_world.x() + std::cos(heading) * position_world.y();
+  return -task.ahead.y() * position_world.x() + task.ahead.x() * position_world.y();
 }
 
 /// Beyond this factor a squared distance is larger even after rounding, so no root is needed.
@@ -45,9 +44,8 @@ constexpr double climb_limit_mps = 3.0;
 }  // namespace
 
 double progress_m(const FlightTask& task, const Eigen::Vector3d& position_world) {
-  const double heading = task.mission.heading_rad;
   const Eigen::Vector3d flown = position_world - task.origin_world;
-  return std::cos(heading) * flown.x() + std::sin(heading) * flown.y();
+  return task.ahead.x() * flown.x() + task.ahead.y() * flown.y();
 }
 
 double band_clearance_m(const FlightTask& task, const FlightState& state) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -30,6 +31,8 @@ struct FlightTask {
   const ObstacleField& field;
   Eigen::Vector3d origin_world;   ///< where the plan starts: the horizon counts from here
   std::int64_t* steps = nullptr;  ///< counts the model's steps, where somebody wants to know
+  /// Along the course, over ground. Every step of every rollout asks for it.
+  Eigen::Vector2d ahead{std::cos(mission.heading_rad), std::sin(mission.heading_rad)};
 };
 
 /// The command that brings the aircraft back on course from `state`.

@@ -32,7 +32,7 @@ Controls follow(const FlightModel& model, const PathFollowerConfig& config, cons
   const double pitch_acceleration = (wanted_pitch_rate - pitch_rate) / config.pitch_time_s;
   const double arm = model.elevon_arm_m();
   const double roll_slope = model.elevon_roll_moment_nm_per_rad(speed);
-  const double pitch_slope = roll_slope / airframe.elevon_y_m * arm;
+  const double pitch_slope = model.elevon_pitch_moment_nm_per_rad(roll_slope);
   const double coupling =
       (inertia.z() - inertia.x()) * now.roll_rate_radps * state.angular_rate_body_radps.z();
   const double pitch_moment =
@@ -45,14 +45,10 @@ Controls follow(const FlightModel& model, const PathFollowerConfig& config, cons
       (wanted_about_velocity + now.yaw_rate_radps * std::sin(now.angle_of_attack_rad)) /
       std::cos(now.angle_of_attack_rad);
   const double roll_acceleration = (wanted_roll - now.roll_rate_radps) / config.roll_time_s;
-  const double roll_damping = airframe.rate_damping_nmspr.x() + roll_slope * airframe.elevon_y_m / speed;
   const double roll_moment =
-      inertia.x() * roll_acceleration + roll_damping * now.roll_rate_radps +
+      inertia.x() * roll_acceleration + model.roll_damping_nms(roll_slope, speed) * now.roll_rate_radps +
       airframe.winglet_z_m * model.side_force_n(now);  // the winglets stand above the wing
-  const double limit = model.config().maximum_differential_rad;
-  // A flat plate's lift goes with sin(2 a) / 2: invert it.
-  const double share = std::clamp(roll_moment / roll_slope, -0.5, 0.5);
-  const double differential = std::clamp(0.5 * std::asin(2 * share), -limit, limit);
+  const double differential = model.differential_rad(roll_moment, roll_slope);
 
   // To roll right, the left elevon goes down (it loses less lift there) and the right one up. Where one
   // reaches its stop, both are shifted to keep their difference: a dodge fails by rolling late, not by

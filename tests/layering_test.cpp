@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "tests/support/source_code.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 /// Who may include whom, and how large anything may grow (docs/architecture.md). Read from the sources
 /// themselves, so that a breach fails here by name and not months later as a tangle.
@@ -221,19 +221,15 @@ TEST(Layering, OutsideLibrariesStayWhereTheyBelong) {
 /// A build without the simulator defines the same commands, and only these: their files are those of the
 /// program's own list of sources, or they refuse in no_simulator.cpp.
 TEST(Layering, ABuildWithoutTheSimulatorHasEveryCommand) {
-  const auto text_of = [](const char* file) {
-    std::ifstream stream(root / file);
-    return std::string(std::istreambuf_iterator<char>(stream), {});
-  };
-  const std::string lists = text_of("scenarios/CMakeLists.txt");
+  const std::string lists = support::content_of(root / "scenarios/CMakeLists.txt");
   const std::size_t begin = lists.find("add_executable(understory "), end = lists.find(')', begin);
-  std::string there = text_of("scenarios/cli/no_simulator.cpp");
+  std::string there = support::content_of(root / "scenarios/cli/no_simulator.cpp");
   for (const SourceFile& file : product())
     if (file.path.starts_with("scenarios/cli/") &&
         lists.substr(begin, end - begin).find(file.path.substr(10)) != std::string::npos &&
         file.path != "scenarios/cli/main.cpp")
-      there += text_of(file.path.c_str());
-  const std::string main = text_of("scenarios/cli/main.cpp");
+      there += support::content_of(root / file.path);
+  const std::string main = support::content_of(root / "scenarios/cli/main.cpp");
   const std::regex added(R"(\n  (add_[a-z]+_command)\(line\);)");
   int commands = 0;
   for (std::sregex_iterator one(main.begin(), main.end(), added), none; one != none; ++one, ++commands)
@@ -365,8 +361,7 @@ int python_lines() {
 int allowed_by(const std::string& page, const std::string& size) {
   for (const auto& entry : fs::directory_iterator(root / "docs/decisions")) {
     if (!entry.path().filename().string().starts_with(page + "-")) continue;
-    std::ifstream stream(entry.path());
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const std::string text = support::content_of(entry.path());
     const std::size_t found = text.find('`' + size + ' ');
     if (found != std::string::npos) return std::atoi(text.c_str() + found + size.size() + 2);
   }

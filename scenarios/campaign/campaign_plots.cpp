@@ -131,12 +131,8 @@ Series steps_of(const ConditionSummary& summary) {
   const std::vector<SurvivalStep>& steps = summary.survival.steps;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const double until = i + 1 < steps.size() ? steps[i + 1].at : summary.survival.last_at;
-    for (const double at : {steps[i].at, until}) {
-      series.x.push_back(at);
-      series.y.push_back(100 * steps[i].share);
-      series.low.push_back(100 * steps[i].interval.minimum);
-      series.high.push_back(100 * steps[i].interval.maximum);
-    }
+    for (const double at : {steps[i].at, until})
+      series.add(at, 100 * steps[i].share, 100 * steps[i].interval.minimum, 100 * steps[i].interval.maximum);
   }
   return series;
 }

@@ -82,8 +82,7 @@ LinePlot curve(const GateHistory& history, const char* label,
   for (std::size_t i = 0; i < history.campaigns.size(); ++i) {
     const BootstrapEstimate figure = figure_of(history.campaigns[i]);
     const auto place = static_cast<double>(i);
-    series.x.push_back(place), series.y.push_back(figure.value);
-    series.low.push_back(figure.interval.minimum), series.high.push_back(figure.interval.maximum);
+    series.add(place, figure.value, figure.interval.minimum, figure.interval.maximum);
     plot.x_names.emplace_back(place, name_of(history.campaigns[i]));
     if (i > 0 && !history.shown[i - 1].empty())
       plot.references.push_back({place, "success " + history.shown[i - 1], true});

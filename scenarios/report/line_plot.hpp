@@ -28,6 +28,7 @@ struct Series {
   std::vector<double> high = {};  ///< as `low`
   bool band = false;              ///< shade between low and high instead of drawing bars
 
+  /// One more number, and the ends of its bar.
   void add(double at, double value, double lower, double upper) {
     x.push_back(at), y.push_back(value);
     low.push_back(lower), high.push_back(upper);

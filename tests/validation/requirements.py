@@ -37,17 +37,6 @@ def interval(arrived, flown):
     return (middle - wide) / (1 + z * z / flown), (middle + wide) / (1 + z * z / flown)
 
 
-def falling(counts):
-    """The success at each value as a fall only: of (arrived, flown) that rise again, the mean (isotonic regression)."""
-    blocks = []
-    for arrived, flown in counts:
-        blocks.append([arrived, flown, 1])
-        while len(blocks) > 1 and blocks[-1][0] / blocks[-1][1] >= blocks[-2][0] / blocks[-2][1]:
-            last = blocks.pop()
-            blocks[-1] = [a + b for a, b in zip(blocks[-1], last)]
-    return [arrived / flown for arrived, flown, values in blocks for _ in range(values)]
-
-
 class Requirements:
     def __init__(self, arguments):
         self.arguments, self.out = arguments, Path(arguments.out)
@@ -75,10 +64,10 @@ class Requirements:
                 count[1] += 1
 
     def turning(self, of, speed_mps, per_tree_m2):
-        """The values on both sides of where the curve falls below what is asked, unless they are told from it."""
+        """The first value whose success is below what is asked and the one before it, unless they are told from it."""
         values = PROPERTIES[of][1]
         counts = [self.counts[of, value, speed_mps, per_tree_m2] for value in values]
-        below = next((i for i, share in enumerate(falling(counts)) if share < ASKED), len(values))
+        below = next((i for i, (arrived, flown) in enumerate(counts) if arrived < ASKED * flown), len(values))
         for value, (arrived, flown) in list(zip(values, counts))[max(0, below - 1): below + 1]:
             low, high = interval(arrived, flown)
             if low < ASKED < high:
