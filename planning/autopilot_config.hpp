@@ -49,10 +49,10 @@ struct TrajectoryConfig {
   double horizon_m = 14.0;
   double minimum_clearance_m = -0.05;
   double minimum_kept_clearance_m = -0.08;
-  double comfortable_clearance_m = 0.7;
+  double comfortable_clearance_m = 0.6;
   double clearance_weight = 15.0;
   double bank_weight = 1.0;
-  double heading_weight = 6.0;
+  double heading_weight = 9.0;
   double altitude_weight = 1.0;
   double band_weight = 40.0;
   double band_margin_m = 0.8;

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 struct ExplainArguments {
   std::string folder;
   RendererKind renderer = RendererKind::osmesa;
-  int jobs = 0, flights = 200, first_seed = 1;
+  int jobs = 0, flights = 170, first_seed = 1;
 };
 
 Scenario scenario_of_run(const fs::path& run) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "scenarios/campaign/engines.hpp"
+#include "scenarios/explain/evidence.hpp"
 #include "scenarios/flight/flight.hpp"
 #include "scenarios/flight/flight_logger.hpp"
 #include "scenarios/flight/fly.hpp"
@@ -92,8 +93,10 @@ ExplainedFlight explain_flight(const Scenario& scenario, const ExplainOptions& o
     flown += asked.size();
   };
   const double launch_s = logger.log().launch_ns ? seconds(*logger.log().launch_ns) : 0;
-  const ExplanationOptions inquiry{moments_of(end_s - launch_s), options.flights,
-                                   static_cast<std::uint64_t>(options.first_seed)};
+  ExplanationOptions inquiry{
+      moments_of(end_s - launch_s), options.flights, static_cast<std::uint64_t>(options.first_seed), {}};
+  for (const Evidence& one : evidence_in(logger.log()))
+    if (one.is_there) inquiry.shown.push_back(one.part);
   return {logger.log(), explain(inquiry, fly_redraws)};
 }
 

@@ -16,7 +16,7 @@ struct ExplainOptions {
   RendererKind renderer = RendererKind::osmesa;
   int jobs = 1;        ///< flights at a time
   int first_seed = 1;  ///< of the redraws
-  int flights = 200;   ///< at most so many beside the lost one
+  int flights = 170;   ///< at most so many beside the lost one
   std::function<void(std::size_t flown, std::size_t asked)> on_progress = {};  ///< may be empty
 };
 

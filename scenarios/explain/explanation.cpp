@@ -10,12 +10,14 @@ namespace understory {
 namespace {
 
 constexpr double small_chance = 0.2;  ///< below it there was no return
-constexpr int first_look = 4, parts_look = 6, close_look = 16;
+constexpr int first_look = 4, control_look = 10, parts_look = 5, close_look = 24, joint_look = 6;
 constexpr double promising = 0.15;  ///< an effect that deserves a close look
-constexpr int kept_back = 50;       ///< of the flights, for the question which parts act together
+constexpr int kept_back = 14;       ///< of the flights, for the question which parts act together
 /// A part that sees everything can make up for most faults of others: it is the cause only where no other
-/// part has this share of its effect. Detection at the depths in use comes before it, too.
-constexpr double enough_of_sight = 0.5;
+/// part has this share of its effect. Detection at the depths in use comes before it, too. Among the others a
+/// part that has this share of the greatest effect is the cause if the log shows its fault, and not that of
+/// the greater ones: chance decides between effects so close.
+constexpr double comparable = 0.5;
 
 std::vector<std::string> all_parts() { return {ideal_part_names.begin(), ideal_part_names.end()}; }
 
@@ -85,6 +87,7 @@ class Inquiry {
     for (const double moment_s : options_.moments_s) ask({}, moment_s, first_look);
     answer();
     find_decisive_moments();
+    while (look_at_decisive_moments()) find_decisive_moments();
     // By turns, so that a small budget leaves no part out.
     for (int count = 1; count <= parts_look; ++count)
       for (const double moment_s : result_.decisive_s) {
@@ -124,6 +127,7 @@ class Inquiry {
   /// The last moment from which the control seldom survives, and the one before it.
   void find_decisive_moments() {
     std::vector<double> hopeless, hopeful;
+    result_.decisive_s.clear();
     for (const Chance& chance : result_.chances)
       if (chance.part == the_control)
         (chance.fitted < small_chance ? hopeless : hopeful).push_back(chance.before_end_s);
@@ -133,34 +137,50 @@ class Inquiry {
       result_.decisive_s.insert(result_.decisive_s.begin(), hopeless[hopeless.size() - 2]);
   }
 
+  /// Whether the control had to be flown more often there: then the moments may be others.
+  bool look_at_decisive_moments() {
+    for (const double moment_s : result_.decisive_s) ask({}, moment_s, control_look, kept_back);
+    const bool is_new = !asked_.empty();
+    answer();
+    return is_new;
+  }
+
   const Effect& effect_of(std::string_view part) const {
     return *std::ranges::find(result_.effects, part, &Effect::part);
   }
 
-  /// The two parts that lead, sight apart, and sight, get more flights.
+  /// The two parts that lead, sight apart, and sight, get more flights, by turns.
   void look_closely() {
     std::vector<std::string> leading;
     for (const Effect& effect : result_.effects)
       if (effect.part != all_ideal && (effect.part == "sight" || leading.size() < 2) &&
           effect.difference() > promising)
         leading.push_back(effect.part);
-    for (const double moment_s : result_.decisive_s) {
-      if (!leading.empty()) ask({}, moment_s, close_look, kept_back);
-      for (const std::string& part : leading) ask({part}, moment_s, close_look, kept_back);
-    }
+    for (int count = parts_look + 1; !leading.empty() && count <= close_look; ++count)
+      for (const double moment_s : result_.decisive_s) {
+        ask({}, moment_s, count, kept_back);
+        for (const std::string& part : leading) ask({part}, moment_s, count, kept_back);
+      }
     answer();
   }
 
-  void decide() {
+  /// The part with the greatest effect that is told from zero, or a comparable one that the log shows.
+  const Effect* best_but_sight() const {
     const Effect* best = nullptr;
-    for (const Effect& effect : result_.effects)
-      if (effect.part != all_ideal && effect.part != "sight" && effect.is_told_from_zero()) {
-        best = &effect;
-        break;
-      }
+    for (const Effect& effect : result_.effects) {
+      if (effect.part == all_ideal || effect.part == "sight" || !effect.is_told_from_zero()) continue;
+      if (best == nullptr) best = &effect;
+      const bool is_shown = std::ranges::find(options_.shown, effect.part) != options_.shown.end();
+      if (is_shown && effect.difference() >= comparable * best->difference()) return &effect;
+    }
+    return best;
+  }
+
+  void decide() {
+    const Effect* best = best_but_sight();
     const Effect& sight = effect_of("sight");
     if (sight.is_told_from_zero() &&
-        (best == nullptr || best->difference() < enough_of_sight * sight.difference()))
+        (best == nullptr || best->difference() < comparable * sight.difference()))
       best = &sight;
     if (best != nullptr) {
       result_.cause = best->part;
@@ -170,7 +190,7 @@ class Inquiry {
       find_joint_parts();
       return;
     }
-    ask(all_parts(), options_.moments_s.back(), parts_look);
+    ask(all_parts(), options_.moments_s.back(), joint_look);
     answer();
     const bool is_possible = survived(all_parts(), options_.moments_s.back()).value() >= 0.5;
     result_.cause = is_possible ? "chance" : "infeasible";
@@ -188,7 +208,8 @@ class Inquiry {
   void find_joint_parts() {
     result_.cause = "joint";
     const double moment_s = result_.decisive_s.front();
-    for (const std::string& part : all_parts()) ask(all_but(part), moment_s, parts_look);
+    for (int count = 1; count <= joint_look; ++count)
+      for (const std::string& part : all_parts()) ask(all_but(part), moment_s, count);
     answer();
     const double whole = survived(all_parts(), moment_s).value();
     for (const std::string& part : all_parts()) {

@@ -65,9 +65,10 @@ struct Explanation {
 void summarise(Explanation& explanation);
 
 struct ExplanationOptions {
-  std::vector<double> moments_s;  ///< before the end, increasing
-  int flights = 200;              ///< at most so many
-  std::uint64_t first_seed = 1;   ///< of the redraws: others give an independent second opinion
+  std::vector<double> moments_s;   ///< before the end, increasing
+  int flights = 170;               ///< at most so many
+  std::uint64_t first_seed = 1;    ///< of the redraws: others give an independent second opinion
+  std::vector<std::string> shown;  ///< parts whose fault the flight's log shows
 };
 
 /// Moments to try for a flight that was in the air for `flown_s`.

@@ -127,7 +127,8 @@ struct StereoCameras::Implementation {
   PoseHistory poses;
 
   Implementation(const mjModel& model_, const StereoRig& rig_, const CameraConfig& config_, CameraSeeds seeds,
-                 const std::optional<StereoCalibration>& raw, RendererKind renderer, const WoodsMesh* woods)
+                 const std::optional<StereoCalibration>& raw, RendererKind renderer,
+                 const std::shared_ptr<const WoodsMesh>& woods)
       : model(model_),
         rig(rig_),
         config(config_),
@@ -184,7 +185,7 @@ StereoCameras::StereoCameras(const World& world, const StereoRig& rig, const Cam
   paint_textures(*world.model, world.config);
   if (world.woods) paint(*world.woods);
   implementation_ =
-      std::make_unique<Implementation>(*world.model, rig, config, seeds, raw, renderer, world.woods.get());
+      std::make_unique<Implementation>(*world.model, rig, config, seeds, raw, renderer, world.woods);
 }
 
 StereoCameras::~StereoCameras() = default;

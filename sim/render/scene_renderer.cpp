@@ -134,7 +134,7 @@ struct SceneRenderer::Scene {
 };
 
 SceneRenderer::SceneRenderer(const mjModel& model, double view_distance_m, int width_px, int height_px,
-                             RendererKind renderer, const WoodsMesh* woods)
+                             RendererKind renderer, std::shared_ptr<const WoodsMesh> woods)
     : model_(model), view_distance_m_(view_distance_m) {
   {
     const std::lock_guard lock(Scene::waiting_mutex);
@@ -148,7 +148,7 @@ SceneRenderer::SceneRenderer(const mjModel& model, double view_distance_m, int w
   mjv_makeScene(&model_, &scene_->shown, model_.ngeom + 100);
   plain_rendering(scene_->shown);
   gather_scenery();
-  if (woods != nullptr) scene_->woods = std::make_unique<WoodsPass>(*woods, scene_->gl);
+  if (woods != nullptr) scene_->woods = std::make_unique<WoodsPass>(std::move(woods), scene_->gl);
 }
 
 SceneRenderer::~SceneRenderer() {

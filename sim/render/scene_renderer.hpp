@@ -20,7 +20,7 @@ class SceneRenderer {
   /// std::runtime_error in one line where no GL library can be loaded. With `woods` the scenery is the woods,
   /// and only the aircraft is drawn from the model.
   SceneRenderer(const mjModel_& model, double view_distance_m, int width_px, int height_px,
-                RendererKind renderer, const WoodsMesh* woods = nullptr);
+                RendererKind renderer, std::shared_ptr<const WoodsMesh> woods = nullptr);
   ~SceneRenderer();
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;

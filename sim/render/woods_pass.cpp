@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -66,6 +68,7 @@ struct Gl {
     find(GetUniformLocation, "glGetUniformLocation"), find(UniformMatrix4fv, "glUniformMatrix4fv");
     find(Uniform3f, "glUniform3f"), find(Uniform1f, "glUniform1f"), find(Uniform1i, "glUniform1i");
     find(GenBuffers, "glGenBuffers"), find(BindBuffer, "glBindBuffer"), find(BufferData, "glBufferData");
+    find(BufferSubData, "glBufferSubData");
     find(DeleteBuffers, "glDeleteBuffers"), find(VertexAttribPointer, "glVertexAttribPointer");
     find(EnableVertexAttribArray, "glEnableVertexAttribArray"),
         find(DisableVertexAttribArray, "glDisableVertexAttribArray");
@@ -100,6 +103,7 @@ struct Gl {
   void (*GenBuffers)(int, unsigned*);
   void (*BindBuffer)(unsigned, unsigned);
   void (*BufferData)(unsigned, std::ptrdiff_t, const void*, unsigned);
+  void (*BufferSubData)(unsigned, std::ptrdiff_t, std::ptrdiff_t, const void*);
   void (*DeleteBuffers)(int, const unsigned*);
   void (*VertexAttribPointer)(unsigned, int, unsigned, unsigned char, int, const void*);
   void (*EnableVertexAttribArray)(unsigned);
@@ -146,6 +150,8 @@ Eigen::Matrix4f clip_from_world(const Eye& eye) {
   return (projection * flipped).cast<float>();
 }
 
+constexpr double further_m = 40;  ///< how much further than the view pieces are held
+
 /// Half as large: colour averaged with its alpha as weight, so that leaves keep theirs; alpha a little
 /// raised, so that leaves far away do not vanish.
 WoodsPicture half_of(const WoodsPicture& picture) {
@@ -175,30 +181,24 @@ WoodsPicture half_of(const WoodsPicture& picture) {
 
 struct WoodsPass::Implementation {
   Gl gl;
-  std::vector<WoodsPart> parts;
-  float haze_m;
+  std::shared_ptr<const WoodsMesh> mesh;
+  /// Of each piece, in the buffers: nothing where it is not held.
+  std::vector<std::optional<std::size_t>> first_index;
+  Eigen::Vector3d held_from_world = Eigen::Vector3d::Zero();
+  double held_m = 0;                   ///< all pieces this near to the place are held
   std::array<unsigned, 5> programs{};  ///< solid and leaves in gray, in colour; numbers
   std::array<unsigned, 2> buffers{};   ///< vertices, indices
   std::array<unsigned, woods_texture_count> textures{};
 
-  Implementation(const WoodsMesh& mesh, const OffscreenContext& context)
-      : gl(context), parts(mesh.parts), haze_m(static_cast<float>(mesh.haze_m)) {
+  Implementation(std::shared_ptr<const WoodsMesh> drawn, const OffscreenContext& context)
+      : gl(context), mesh(std::move(drawn)) {
     programs = {
         program_of(gray_vertex_source, gray_solid_source), program_of(gray_vertex_source, gray_leaves_source),
         program_of(colour_vertex_source, solid_source), program_of(colour_vertex_source, leaves_source),
         program_of(colour_vertex_source, numbers_source)};
     gl.GenBuffers(2, buffers.data());
-    gl.BindBuffer(gl_array_buffer, buffers[0]);
-    gl.BufferData(gl_array_buffer, static_cast<std::ptrdiff_t>(mesh.vertices.size() * sizeof(WoodsVertex)),
-                  mesh.vertices.data(), gl_static_draw);
-    gl.BindBuffer(gl_element_array_buffer, buffers[1]);
-    gl.BufferData(gl_element_array_buffer,
-                  static_cast<std::ptrdiff_t>(mesh.indices.size() * sizeof(std::uint32_t)),
-                  mesh.indices.data(), gl_static_draw);
-    gl.BindBuffer(gl_array_buffer, 0);
-    gl.BindBuffer(gl_element_array_buffer, 0);
     gl.GenTextures(static_cast<int>(textures.size()), textures.data());
-    for (std::size_t i = 0; i < woods_texture_count; ++i) upload(textures[i], mesh.textures[i]);
+    for (std::size_t i = 0; i < woods_texture_count; ++i) upload(textures[i], mesh->textures[i]);
     gl.BindTexture(gl_texture_2d, 0);
   }
 
@@ -245,14 +245,55 @@ struct WoodsPass::Implementation {
     }
   }
 
+  /// Brings all pieces within reach of the eye into the buffers, if they are not there yet, and some more, so
+  /// that this happens seldom.
+  void hold(const Eigen::Vector3d& eye, double reach_m) {
+    if ((eye - held_from_world).norm() + reach_m <= held_m) return;
+    held_from_world = eye;
+    held_m = reach_m + further_m;
+    first_index.assign(mesh->pieces.size(), std::nullopt);
+    std::vector<std::uint32_t> wanted;
+    std::size_t vertex_count = 0, index_count = 0;
+    for (std::size_t i = 0; i < mesh->pieces.size(); ++i) {
+      const WoodsPiece& piece = mesh->pieces[i];
+      if (piece.box_world.exteriorDistance(eye) > held_m) continue;
+      wanted.push_back(static_cast<std::uint32_t>(i));
+      vertex_count += piece.vertex_count;
+      index_count += piece.index_count;
+    }
+    const auto bytes = [](std::size_t count, std::size_t size) {
+      return static_cast<std::ptrdiff_t>(count * size);
+    };
+    gl.BindBuffer(gl_array_buffer, buffers[0]);
+    gl.BufferData(gl_array_buffer, bytes(vertex_count, sizeof(WoodsVertex)), nullptr, gl_static_draw);
+    gl.BindBuffer(gl_element_array_buffer, buffers[1]);
+    gl.BufferData(gl_element_array_buffer, bytes(index_count, sizeof(std::uint32_t)), nullptr,
+                  gl_static_draw);
+    std::size_t vertices = 0, indices = 0;
+    visit_triangles(*mesh, wanted, [&](std::uint32_t piece, const WoodsTriangles& triangles) {
+      std::vector<std::uint32_t> shifted = triangles.indices;
+      for (std::uint32_t& index : shifted) index += static_cast<std::uint32_t>(vertices);
+      gl.BufferSubData(gl_array_buffer, bytes(vertices, sizeof(WoodsVertex)),
+                       bytes(triangles.vertices.size(), sizeof(WoodsVertex)), triangles.vertices.data());
+      gl.BufferSubData(gl_element_array_buffer, bytes(indices, sizeof(std::uint32_t)),
+                       bytes(shifted.size(), sizeof(std::uint32_t)), shifted.data());
+      first_index[piece] = indices;
+      vertices += triangles.vertices.size();
+      indices += shifted.size();
+    });
+    gl.BindBuffer(gl_array_buffer, 0);
+    gl.BindBuffer(gl_element_array_buffer, 0);
+  }
+
   /// Ranges to draw with one texture.
   struct Batch {
     std::vector<int> counts;
     std::vector<const void*> offsets;
-    void add(const WoodsRange& range) {
+    void add(std::size_t first_of_piece, const WoodsRange& range) {
       if (range.count == 0) return;
       counts.push_back(static_cast<int>(range.count));
-      offsets.push_back(reinterpret_cast<const void*>(sizeof(std::uint32_t) * range.first));
+      offsets.push_back(
+          reinterpret_cast<const void*>(sizeof(std::uint32_t) * (first_of_piece + range.first)));
     }
   };
 
@@ -271,7 +312,7 @@ struct WoodsPass::Implementation {
 
   Batches batches_for(const std::array<Eye, 2>& eyes, WoodsDrawing drawing, const WoodsDetail& detail) const {
     std::vector<std::pair<double, const WoodsPart*>> seen;
-    for (const WoodsPart& part : parts) {
+    for (const WoodsPart& part : mesh->parts) {
       const Eigen::Vector3d eye = eyes[0].T_world_camera.translation();
       const double range_m = part.whole_world.exteriorDistance(eye);
       GeomBox box;
@@ -284,6 +325,7 @@ struct WoodsPass::Implementation {
     const bool is_gray = drawing == WoodsDrawing::gray;
     Batches batches;
     for (const auto& [range_m, part] : seen) {
+      const std::size_t first = first_index[part->piece].value();
       const std::size_t far = range_m > detail.near_m;
       const bool smooth = !is_gray || range_m <= detail.smooth_m;
       const bool tubes = is_gray && far == 0 && part->coarse.count > 0;
@@ -292,10 +334,10 @@ struct WoodsPass::Implementation {
                            : tubes                               ? closed_solids
                                                                  : near_solids;
       const auto texture = static_cast<std::size_t>(part->texture);
-      batches[solids][smooth][texture].add(tubes && range_m > detail.fine_m ? part->coarse
-                                                                            : part->solid[far]);
+      batches[solids][smooth][texture].add(
+          first, tubes && range_m > detail.fine_m ? part->coarse : part->solid[far]);
       constexpr auto leaves = static_cast<std::size_t>(WoodsTexture::leaves);
-      batches[far != 0 ? far_leaves : near_leaves][smooth][leaves].add(part->leaves[far]);
+      batches[far != 0 ? far_leaves : near_leaves][smooth][leaves].add(first, part->leaves[far]);
     }
     return batches;
   }
@@ -335,13 +377,13 @@ struct WoodsPass::Implementation {
     gl.Uniform3f(gl.GetUniformLocation(program, "eye"), place.x(), place.y(), place.z());
     gl.Uniform3f(gl.GetUniformLocation(program, "turned_to"), turn.x(), turn.y(), turn.z());
     gl.Uniform3f(gl.GetUniformLocation(program, "haze"), 0.78f, 0.83f, 0.86f);
-    gl.Uniform1f(gl.GetUniformLocation(program, "haze_m"), haze_m);
+    gl.Uniform1f(gl.GetUniformLocation(program, "haze_m"), static_cast<float>(mesh->haze_m));
     gl.Uniform1i(gl.GetUniformLocation(program, "picture"), 0);
   }
 };
 
-WoodsPass::WoodsPass(const WoodsMesh& mesh, const OffscreenContext& context)
-    : implementation_(std::make_unique<Implementation>(mesh, context)) {}
+WoodsPass::WoodsPass(std::shared_ptr<const WoodsMesh> mesh, const OffscreenContext& context)
+    : implementation_(std::make_unique<Implementation>(std::move(mesh), context)) {}
 
 WoodsPass::~WoodsPass() {
   const Implementation& my = *implementation_;
@@ -352,7 +394,8 @@ WoodsPass::~WoodsPass() {
 
 void WoodsPass::draw(const std::array<Eye, 2>& eyes, std::size_t count, WoodsDrawing drawing,
                      const WoodsDetail& detail, bool clears) {
-  const Implementation& my = *implementation_;
+  Implementation& my = *implementation_;
+  my.hold(eyes[0].T_world_camera.translation(), detail.reach_m);
   my.gl.PushAttrib(gl_all_attrib_bits);
   my.gl.PushClientAttrib(gl_client_all);
   using My = Implementation;

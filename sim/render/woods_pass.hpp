@@ -22,12 +22,12 @@ struct WoodsDetail {
   double reach_m = 80;  ///< nothing is drawn beyond
 };
 
-/// Draws a wood with OpenGL in the context that is current, beside what MuJoCo draws. Keeps the mesh in the
-/// context's memory. Needs OpenGL 2.0; restores the state that MuJoCo relies on.
+/// Draws a wood with OpenGL in the context that is current, beside what MuJoCo draws. Keeps in the context's
+/// memory the pieces of the mesh that are near. Needs OpenGL 2.0; restores the state that MuJoCo relies on.
 class WoodsPass {
  public:
   /// Throws std::runtime_error in one line where the context cannot compile the shaders.
-  WoodsPass(const WoodsMesh& mesh, const OffscreenContext& context);
+  WoodsPass(std::shared_ptr<const WoodsMesh> mesh, const OffscreenContext& context);
   ~WoodsPass();
   WoodsPass(const WoodsPass&) = delete;
   WoodsPass& operator=(const WoodsPass&) = delete;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include "sim/scene/mesh_builder.hpp"
@@ -205,16 +206,17 @@ void add_thicket(MeshBuilder& builder, const Vector2d& place, const Vector3d& ti
 
 }  // namespace
 
-void add_forest_floor(MeshBuilder& builder, const std::vector<Obstacle>& obstacles,
-                      const std::vector<Tree>& trees, const Eigen::AlignedBox2d& stand,
-                      const Eigen::AlignedBox2d& course, const WoodsConfig& config) {
+void add_forest_floor(MeshBuilder& builder, const std::shared_ptr<const WoodsPlan>& plan,
+                      const Eigen::AlignedBox2d& stand, const Eigen::AlignedBox2d& course) {
+  const std::vector<Tree>& trees = plan->trees;
   const WoodsNumbers numbers{trees.size()};
-  FloorPainter floor(builder, config, numbers);
   const Vector2d low = (stand.min() - Vector2d::Constant(far_reach_m + 25)) / patch_m,
                  high = (stand.max() + Vector2d::Constant(far_reach_m + 25)) / patch_m;
   for (int row = static_cast<int>(std::floor(low.y())); row < high.y(); ++row)
     for (int column = static_cast<int>(std::floor(low.x())); column < high.x(); ++column)
-      floor.paint(Vector2d(column, row) * patch_m);
+      builder.add_piece([plan, numbers, row, column](MeshBuilder& to) {
+        FloorPainter(to, plan->config, numbers).paint(Vector2d(column, row) * patch_m);
+      });
   if (trees.empty()) return;
   const auto number = static_cast<std::uint16_t>(numbers.far_wood());
   const Eigen::AlignedBox2d reach(stand.min() - Vector2d::Constant(far_reach_m),
@@ -223,20 +225,24 @@ void add_forest_floor(MeshBuilder& builder, const std::vector<Obstacle>& obstacl
   const Eigen::AlignedBox2d around(stand.min() - Vector2d(18, 1), stand.max() + Vector2d(4, 1));
   const double density = std::clamp(static_cast<double>(trees.size()) / stand.volume(), 0.01, 0.04);
   const int count = static_cast<int>(0.7 * density * reach.volume());
-  const Vector3d tint = config.season == Season::winter ? Vector3d(112, 100, 80) : green;
+  const Vector3d tint = plan->config.season == Season::winter ? Vector3d(112, 100, 80) : green;
   for (int i = 0; i < count; ++i) {
     const double x = builder.uniform(reach.min().x(), reach.max().x());
     const Vector2d place(x, builder.uniform(reach.min().y(), reach.max().y()));
     const auto pick = static_cast<std::size_t>(builder.uniform(0, 0.999) * static_cast<double>(trees.size()));
     // The clearing of the launch stays free.
     if (around.contains(place) || (place.x() < stand.min().x() && std::abs(place.y()) < 8)) continue;
-    add_far_tree(builder, trees[pick], obstacles[trees[pick].first].radius_m, place, config, number);
     const double beside_m = course.isEmpty() ? far_reach_m : course.exteriorDistance(place);
-    if (beside_m < far_lean_m) builder.mesh.parts.pop_back();
     // Thickets close the view under the crowns, where there would be a horizon.
-    if (around.exteriorDistance(place) <= 4) continue;
-    add_thicket(builder, place, tint, number);
-    if (beside_m < thicket_half_m) builder.mesh.parts.pop_back();
+    const bool has_thicket = around.exteriorDistance(place) > 4;
+    builder.add_piece([=](MeshBuilder& to) {
+      const Tree& tree = plan->trees[pick];
+      add_far_tree(to, tree, plan->obstacles[tree.first].radius_m, place, plan->config, number);
+      if (beside_m < far_lean_m) to.mesh.parts.pop_back();
+      if (!has_thicket) return;
+      add_thicket(to, place, tint, number);
+      if (beside_m < thicket_half_m) to.mesh.parts.pop_back();
+    });
   }
 }
 

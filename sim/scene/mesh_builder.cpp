@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace understory {
 namespace {
@@ -12,6 +13,7 @@ using Eigen::Vector3d;
 
 constexpr double tile_width_m = 0.7, tile_height_m = 1.4;  ///< of bark
 constexpr double relief_m = 0.12;
+constexpr std::size_t most_kept_bytes = 64'000'000;
 
 /// Where a picture of leaves has leaves, x and y from -1 to 1: what lies outside costs time and shows
 /// nothing.
@@ -90,6 +92,34 @@ double MeshBuilder::sun_at(const Vector3d& place) const {
   return dapple_.rgba[static_cast<std::size_t>(4 * (y * dapple_.width_px + x))] / 128.0;
 }
 
+void MeshBuilder::add_piece(std::function<void(MeshBuilder&)> grow) {
+  WoodsPiece piece{std::move(grow), generator_, {}, 0, 0, {}};
+  const std::size_t first = mesh.parts.size();
+  piece.grow(*this);
+  for (std::size_t i = first; i < mesh.parts.size(); ++i) {
+    mesh.parts[i].piece = static_cast<std::uint32_t>(mesh.pieces.size());
+    piece.box_world.extend(mesh.parts[i].whole_world);
+  }
+  piece.vertex_count = triangles.vertices.size();
+  piece.index_count = triangles.indices.size();
+  kept_bytes_ += piece.vertex_count * sizeof(WoodsVertex) + piece.index_count * sizeof(std::uint32_t);
+  if (kept_bytes_ <= most_kept_bytes)
+    piece.triangles = std::exchange(triangles, {});
+  else
+    for (WoodsPiece& kept : mesh.pieces) kept.triangles = {};
+  triangles = {};
+  mesh.pieces.push_back(std::move(piece));
+}
+
+const WoodsTriangles& MeshBuilder::grown_again(const WoodsPiece& piece) {
+  generator_ = piece.generator;
+  triangles = {};
+  mesh.parts.clear();
+  mesh.leaf_cards.clear();
+  piece.grow(*this);
+  return triangles;
+}
+
 void MeshBuilder::begin_part(WoodsTexture texture) {
   part_ = {};
   part_.texture = texture;
@@ -98,7 +128,7 @@ void MeshBuilder::begin_part(WoodsTexture texture) {
 Eigen::AlignedBox3d MeshBuilder::box_of(const WoodsRange& range) const {
   Eigen::AlignedBox3d box;
   for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
-    const std::array<float, 3>& place = mesh.vertices[mesh.indices[i]].position_world;
+    const std::array<float, 3>& place = triangles.vertices[triangles.indices[i]].position_world;
     box.extend(Vector3d(place[0], place[1], place[2]));
   }
   return box;
@@ -114,13 +144,13 @@ std::uint32_t MeshBuilder::add_vertex(const Vector3d& place, double u, double v,
   vertex.tint[3] = 255;
   vertex.texture = {static_cast<float>(u), static_cast<float>(v)};
   vertex.object = {static_cast<std::uint8_t>(object & 255), static_cast<std::uint8_t>(object >> 8), 0, 255};
-  mesh.vertices.push_back(vertex);
+  triangles.vertices.push_back(vertex);
   part_.box_world.extend(place);
-  return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+  return static_cast<std::uint32_t>(triangles.vertices.size() - 1);
 }
 
 void MeshBuilder::add_quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-  for (const std::uint32_t index : {a, b, c, a, c, d}) mesh.indices.push_back(index);
+  for (const std::uint32_t index : {a, b, c, a, c, d}) triangles.indices.push_back(index);
 }
 
 void MeshBuilder::add_tube(const std::vector<Vector3d>& axis, const std::vector<double>& radii_m, int sides,
@@ -136,7 +166,7 @@ void MeshBuilder::add_tube(const std::vector<Vector3d>& axis, const std::vector<
     const Vector3d reference = std::abs(direction.z()) > 0.7 ? Vector3d::UnitX() : Vector3d::UnitZ();
     const Vector3d side = (reference - reference.dot(direction) * direction).normalized();
     const Vector3d other = direction.cross(side);
-    const auto ring = static_cast<std::uint32_t>(mesh.vertices.size());
+    const auto ring = static_cast<std::uint32_t>(triangles.vertices.size());
     const double sun = sun_at(axis[i]);
     for (int corner = 0; corner <= sides; ++corner) {
       const double angle = turn_rad + 2 * std::numbers::pi * corner / sides;
@@ -161,13 +191,13 @@ void MeshBuilder::add_ribbon(const std::vector<Vector3d>& axis, const std::vecto
   for (std::size_t i = 0; i < axis.size(); ++i) {
     if (i > 0) along_m += (axis[i] - axis[i - 1]).norm();
     const Vector3d direction = direction_at(axis, i);
-    const auto pair = static_cast<std::uint32_t>(mesh.vertices.size());
+    const auto pair = static_cast<std::uint32_t>(triangles.vertices.size());
     const Vector3d shaded = lit(sun_at(axis[i]) * tint, mesh.to_sun_world.cross(direction).unitOrthogonal());
     for (const double side : {-1.0, 1.0}) {
       add_vertex(axis[i], half_round * (0.5 + 0.5 * side), along_m / tile_height_m, shaded, object);
       const Vector3d beside = side * radii_m[i] * direction;
       for (int axis_of = 0; axis_of < 3; ++axis_of)
-        mesh.vertices.back().ribbon[axis_of] = static_cast<float>(beside[axis_of]);
+        triangles.vertices.back().ribbon[axis_of] = static_cast<float>(beside[axis_of]);
     }
     if (i > 0) add_quad(before, before + 1, pair + 1, pair);
     before = pair;
@@ -180,7 +210,7 @@ void MeshBuilder::add_card(const Card& card, const Vector3d& low_tint, const Vec
   const double u = 0.25 * (cell % 4), v = 0.5 * (cell / 4);
   constexpr double inset_u = 0.002, inset_v = 0.004;
   const std::vector<Vector2d> outline = outline_of(card.picture);
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  const auto first = static_cast<std::uint32_t>(triangles.vertices.size());
   for (const Vector2d& at : outline) {
     const Vector2d share = 0.5 * (at + Vector2d::Ones());
     add_vertex(card.middle + at.x() * card.x + at.y() * card.y,
@@ -188,7 +218,7 @@ void MeshBuilder::add_card(const Card& card, const Vector3d& low_tint, const Vec
                low_tint + share.y() * (high_tint - low_tint), object);
   }
   for (std::uint32_t corner = 2; corner < outline.size(); ++corner)
-    for (const std::uint32_t index : {0u, corner - 1, corner}) mesh.indices.push_back(first + index);
+    for (const std::uint32_t index : {0u, corner - 1, corner}) triangles.indices.push_back(first + index);
 }
 
 }  // namespace understory

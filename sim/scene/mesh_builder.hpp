@@ -39,12 +39,17 @@ class MeshBuilder {
   }
   WoodsPart& part() { return part_; }
 
+  /// Grows a piece of the mesh. `grow` may be called again after the mesh is made.
+  void add_piece(std::function<void(MeshBuilder&)> grow);
+  /// The triangles of a piece, as they were when it was added.
+  const WoodsTriangles& grown_again(const WoodsPiece& piece);
+
   /// Calls `add` and returns the indices that it added as a range.
   template <typename Add>
   WoodsRange range_of(Add&& add) {
-    WoodsRange range{static_cast<std::uint32_t>(mesh.indices.size())};
+    WoodsRange range{static_cast<std::uint32_t>(triangles.indices.size())};
     add();
-    range.count = static_cast<std::uint32_t>(mesh.indices.size()) - range.first;
+    range.count = static_cast<std::uint32_t>(triangles.indices.size()) - range.first;
     return range;
   }
 
@@ -65,15 +70,24 @@ class MeshBuilder {
                 std::uint16_t object);
 
   WoodsMesh mesh;
+  WoodsTriangles triangles;  ///< of the piece that grows
   std::uint32_t noise_seed;
 
  private:
   double sun_at(const Eigen::Vector3d& place) const;
 
   std::mt19937_64 generator_;
+  std::size_t kept_bytes_ = 0;
   double sun_share_;  ///< of the light that comes straight from the sun
   WoodsPicture dapple_;
   WoodsPart part_;
+};
+
+/// What woods are grown from. Pieces that are grown again share it.
+struct WoodsPlan {
+  std::vector<Obstacle> obstacles;
+  std::vector<Tree> trees;
+  WoodsConfig config;
 };
 
 /// A tree beyond the course, out of the aircraft's reach: a stem of few sides and large squares of leaves.
@@ -83,8 +97,7 @@ void add_far_tree(MeshBuilder& builder, const Tree& tree, double radius_m, const
 /// Patches of ground with their plants and fallen logs, out to where trees hide the rim, and the far wood
 /// with thickets between its trees, which are like those of the stand. No far tree and no
 /// thicket stands within the course (an empty box: anywhere).
-void add_forest_floor(MeshBuilder& builder, const std::vector<Obstacle>& obstacles,
-                      const std::vector<Tree>& trees, const Eigen::AlignedBox2d& stand,
-                      const Eigen::AlignedBox2d& course, const WoodsConfig& config);
+void add_forest_floor(MeshBuilder& builder, const std::shared_ptr<const WoodsPlan>& plan,
+                      const Eigen::AlignedBox2d& stand, const Eigen::AlignedBox2d& course);
 
 }  // namespace understory

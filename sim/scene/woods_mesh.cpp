@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <span>
 
 #include "sim/scene/mesh_builder.hpp"
@@ -277,14 +279,14 @@ void add_listed(MeshBuilder& builder, const Obstacle& obstacle, std::size_t numb
                                                                     : WoodsTexture::ground);
   const Eigen::Isometry3d T_world_mesh = obstacle.T_world_box();
   const WoodsRange range = builder.range_of([&] {
-    const auto first = static_cast<std::uint32_t>(builder.mesh.vertices.size());
+    const auto first = static_cast<std::uint32_t>(builder.triangles.vertices.size());
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
       builder.add_vertex(T_world_mesh * mesh.vertices[i], mesh.texture[i].x(), mesh.texture[i].y(),
                          builder.lit(Vector3d::Constant(128), T_world_mesh.linear() * mesh.normals[i]),
                          static_cast<std::uint16_t>(number));
     for (const Eigen::Vector3i& face : mesh.faces)
       for (const int corner : face)
-        builder.mesh.indices.push_back(first + static_cast<std::uint32_t>(corner));
+        builder.triangles.indices.push_back(first + static_cast<std::uint32_t>(corner));
   });
   builder.part().solid = {range, range};
   builder.end_part();
@@ -328,16 +330,37 @@ void add_far_tree(MeshBuilder& builder, const Tree& tree, double radius_m, const
 WoodsMesh woods_mesh(const std::vector<Obstacle>& obstacles, const std::vector<Tree>& trees,
                      const Eigen::AlignedBox2d& stand, const Eigen::AlignedBox2d& course,
                      const WoodsConfig& config, std::uint64_t seed) {
+  const auto plan = std::make_shared<const WoodsPlan>(WoodsPlan{obstacles, trees, config});
   MeshBuilder builder(config, seed);
+  builder.mesh.builder = [config, seed] { return MeshBuilder(config, seed); };
   const WoodsNumbers numbers{trees.size()};
   for (std::size_t i = 0; i < trees.size(); ++i)
-    TreePainter(builder, obstacles, trees[i], config, numbers, i).paint();
+    builder.add_piece([plan, numbers, i](MeshBuilder& to) {
+      TreePainter(to, plan->obstacles, plan->trees[i], plan->config, numbers, i).paint();
+    });
   std::size_t alone = 0;
-  for (const Obstacle& obstacle : obstacles)
-    if (obstacle.tree < 0) add_listed(builder, obstacle, numbers.alone(alone++));
+  for (const Obstacle& obstacle : plan->obstacles)
+    if (obstacle.tree < 0)
+      builder.add_piece([plan, &obstacle, number = numbers.alone(alone++)](MeshBuilder& to) {
+        add_listed(to, obstacle, number);
+      });
   builder.mesh.obstacle_parts = builder.mesh.parts.size();
-  add_forest_floor(builder, obstacles, trees, stand, course, config);
+  add_forest_floor(builder, plan, stand, course);
   return std::move(builder.mesh);
+}
+
+void visit_triangles(const WoodsMesh& mesh, std::span<const std::uint32_t> pieces,
+                     const std::function<void(std::uint32_t piece, const WoodsTriangles&)>& use) {
+  std::optional<MeshBuilder> builder;
+  for (const std::uint32_t number : pieces) {
+    const WoodsPiece& piece = mesh.pieces[number];
+    if (!piece.triangles.indices.empty()) {
+      use(number, piece.triangles);
+      continue;
+    }
+    if (!builder) builder.emplace(mesh.builder());
+    use(number, builder->grown_again(piece));
+  }
 }
 
 void paint(WoodsMesh& mesh) {

@@ -4,6 +4,10 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <random>
+#include <span>
 #include <vector>
 
 #include "sim/scene/trees.hpp"
@@ -22,7 +26,7 @@ struct WoodsVertex {
   std::array<float, 3> ribbon;
 };
 
-/// Indices of a part's triangles.
+/// Indices of a part's triangles, in those of its piece.
 struct WoodsRange {
   std::uint32_t first = 0;
   std::uint32_t count = 0;
@@ -39,6 +43,24 @@ struct WoodsPart {
   /// none.
   WoodsRange coarse;
   WoodsTexture texture = WoodsTexture::ground;  ///< of the solid pieces
+  std::uint32_t piece = 0;
+};
+
+struct WoodsTriangles {
+  std::vector<WoodsVertex> vertices;
+  std::vector<std::uint32_t> indices;
+};
+
+class MeshBuilder;
+
+/// What is grown at once, as a few parts: a tree, a listed obstacle, a patch of the floor, a far tree with
+/// its thicket.
+struct WoodsPiece {
+  std::function<void(MeshBuilder&)> grow;
+  std::mt19937_64 generator;      ///< as it was before the piece grew
+  Eigen::AlignedBox3d box_world;  ///< around its parts
+  std::size_t vertex_count = 0, index_count = 0;
+  WoodsTriangles triangles;  ///< empty where the wood is large: then the piece is grown again to be drawn
 };
 
 /// A drawn square of a tree's leaves: its middle, and from there half of its width and of its height.
@@ -46,10 +68,10 @@ struct LeafCard {
   Eigen::Vector3d middle_world, x_m, y_m;
 };
 
-/// Everything that is drawn of a wood, ready for the GPU's memory.
+/// Everything that is drawn of a wood. The triangles of a wood of a kilometre would fill 200 MB: a large one
+/// keeps none.
 struct WoodsMesh {
-  std::vector<WoodsVertex> vertices;
-  std::vector<std::uint32_t> indices;
+  std::vector<WoodsPiece> pieces;
   std::vector<WoodsPart> parts;    ///< obstacles first, then the floor and the far wood
   std::size_t obstacle_parts = 0;  ///< number of parts that are obstacles
   std::array<WoodsPicture, woods_texture_count> textures;  ///< empty until painted, and where no part uses it
@@ -57,8 +79,13 @@ struct WoodsMesh {
   Eigen::Vector3d to_sun_world = Eigen::Vector3d::UnitZ();
   double haze_m = 100;
   double overcast = 0;
-  std::uint32_t seed = 0;  ///< of the textures
+  std::uint32_t seed = 0;                ///< of the textures
+  std::function<MeshBuilder()> builder;  ///< to grow pieces again
 };
+
+/// Calls `use` with the triangles of each of these pieces, one after the other.
+void visit_triangles(const WoodsMesh& mesh, std::span<const std::uint32_t> pieces,
+                     const std::function<void(std::uint32_t piece, const WoodsTriangles&)>& use);
 
 /// Paints the textures, which only images need.
 void paint(WoodsMesh& mesh);

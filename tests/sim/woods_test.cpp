@@ -139,10 +139,11 @@ TEST(Trees, GrowAsTheyWereMeasured) {
 int far_corners_near(const Eigen::AlignedBox2d& course, double within_m, const World& world, int far_wood) {
   int near = 0;
   for (const WoodsPart& part : world.woods->parts) {
+    const WoodsTriangles& triangles = world.woods->pieces[part.piece].triangles;
     const bool is_tree = part.solid[0].count > 0;
     const WoodsRange& range = is_tree ? part.solid[0] : part.leaves[0];
     for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
-      const WoodsVertex& corner = world.woods->vertices[world.woods->indices[i]];
+      const WoodsVertex& corner = triangles.vertices[triangles.indices[i]];
       if (corner.object[0] + 256 * corner.object[1] != far_wood || corner.position_world[2] > 6) continue;
       const Eigen::Vector2d place(corner.position_world[0], corner.position_world[1]);
       near += course.exteriorDistance(place) < (is_tree ? within_m : 1e-6);
@@ -253,6 +254,27 @@ TEST(Woods, DrawnTrunksLieWhereTheirCapsulesAre) {
       }
   }
   EXPECT_GT(checked, 2000);
+}
+
+/// A large wood keeps no triangles. What is near is grown again, and again where the aircraft has flown on.
+TEST(Woods, PiecesThatAreGrownAgainAreDrawnAsTheyWere) {
+  const Wood wood = wood_of(60);
+  const World kept = world_of(wood, Scenery::woods), dropped = world_of(wood, Scenery::woods);
+  for (WoodsPiece& piece : dropped.woods->pieces) {
+    ASSERT_FALSE(piece.triangles.indices.empty());
+    piece.triangles = {};
+  }
+  StereoCameras seeing(kept, paper_rig(), exact_camera(), {}),
+      again(dropped, paper_rig(), exact_camera(), {});
+  for (const double x_m : {-10.0, 25.0, 60.0, -10.0}) {
+    const Eigen::Isometry3d body = pose_at(x_m, 0.3);
+    const cv::Mat picture = seeing.capture(body, 0).left.clone();
+    cv::Scalar mean, deviation;
+    cv::meanStdDev(picture, mean, deviation);
+    EXPECT_GT(deviation[0], 5) << "something is to be seen at " << x_m;
+    EXPECT_EQ(cv::norm(picture, again.capture(body, 0).left, cv::NORM_INF), 0) << "at " << x_m;
+    EXPECT_EQ(cv::norm(seeing.true_view(body).objects, again.true_view(body).objects, cv::NORM_INF), 0);
+  }
 }
 
 TEST(Woods, InvisibleTreesAreInNoPictureAndTouchedAllTheSame) {
