@@ -61,7 +61,7 @@ std::vector<Evidence> of_obstacle(const ObstacleStory& touched, const FlightLog&
                  was_detected ? fmt::format("{} was first detected {:.2f} s before the end, {:.1f} m away.",
                                             name, ahead_s, touched.detected_m)
                               : fmt::format("{} was never detected.", name)});
-  all.push_back({"not detected", "detection", was_in_view && touched.frames_with_hits < 3,
+  all.push_back({"not detected", "detection", was_at_depth && touched.frames_with_hits < 3,
                  fmt::format("{} was detected in {} frames, with {} hits.", name, touched.frames_with_hits,
                              touched.hits)});
   all.push_back({"forgotten", "map", was_detected && (touched.forgotten_s.has_value() || touched.points == 0),
@@ -173,7 +173,11 @@ Conclusion conclusion_of(const Explanation& explanation, const std::vector<Evide
                                  fmt::join(explanation.parts, ", "))};
   const Effect& effect = *std::ranges::find(explanation.effects, explanation.cause, &Effect::part);
   Conclusion conclusion;
-  const auto of_part = [&](const Evidence& one) { return one.part == explanation.cause; };
+  // Sight saves also whoever missed a thing while it stood where the detector looks: an ideal detection that
+  // comes later does not find it.
+  const auto of_part = [&](const Evidence& one) {
+    return one.part == explanation.cause || (explanation.cause == "sight" && one.cause == "not detected");
+  };
   auto shown =
       std::ranges::find_if(evidence, [&](const Evidence& one) { return of_part(one) && one.is_there; });
   const bool is_shown = shown != evidence.end();

@@ -136,5 +136,22 @@ TEST(Evidence, OnlyAFaultOfASensorIsASensorsFault) {
   EXPECT_EQ(conclusion_of(explanation, evidence_in(log)).cause, "wrong place");
 }
 
+/// A detection that becomes ideal when the thing has passed the depth that is looked at does not find it.
+TEST(Evidence, WhatWasMissedAtItsDepthIsNotDetectedAlsoWhereOnlySightSaves) {
+  Explanation explanation;
+  explanation.cause = "sight";
+  explanation.decisive_s = {1};
+  explanation.effects.emplace_back().part = "sight";
+  std::vector<Evidence> evidence{{"never in view", "sight", false, ""},
+                                 {"seen too late", "sight", false, ""},
+                                 {"not detected", "detection", true, ""}};
+  EXPECT_EQ(conclusion_of(explanation, evidence).cause, "not detected");
+  evidence[0].is_there = true;
+  EXPECT_EQ(conclusion_of(explanation, evidence).cause, "never in view");
+  evidence[0].is_there = evidence[2].is_there = false;
+  evidence[1].is_there = true;
+  EXPECT_EQ(conclusion_of(explanation, evidence).cause, "seen too late");
+}
+
 }  // namespace
 }  // namespace understory
