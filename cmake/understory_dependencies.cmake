@@ -14,6 +14,7 @@ target_link_libraries(opencv_core_parts INTERFACE opencv_core opencv_imgproc ope
 add_library(opencv_file_parts INTERFACE)      # images and videos, for readers and recorders
 target_link_libraries(opencv_file_parts INTERFACE opencv_core_parts opencv_imgcodecs opencv_videoio)
 
+find_package(ZLIB REQUIRED)  # calibrations that OpenCV packs
 find_package(PNG REQUIRED)  # the pictures of recordings, without all that comes with OpenCV's
 
 find_library(ZSTD_LIBRARY zstd REQUIRED)  # logs of flights, problems of planners

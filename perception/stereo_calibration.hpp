@@ -10,11 +10,18 @@
 
 namespace understory {
 
+/// How a lens bends rays: by a polynomial of the tangent of their angle to the axis, as OpenCV's calib3d has
+/// it, or by one of the angle itself (Kannala & Brandt 2006, TPAMI 28(8)), as cv::fisheye and, under this
+/// name, Kalibr and ROS have it.
+enum class LensModel { radial_tangential, equidistant };
+
 /// One raw camera and its place in the rectified pair, in OpenCV's terms (calib3d's documentation):
 /// a rectified direction is turned back by `rectification`, distorted, and projected by `camera_matrix`.
 struct CameraCalibration {
   cv::Matx33d camera_matrix = cv::Matx33d::eye();  ///< of the raw image: fx, fy, cx, cy in pixels, no skew
-  std::vector<double> distortion;  ///< k1 k2 p1 p2 [k3 [k4 k5 k6]]: 4, 5 or 8 numbers, or none
+  LensModel lens = LensModel::radial_tangential;
+  /// k1 k2 p1 p2 [k3 [k4 k5 k6]]: 4, 5 or 8 numbers, or none. Of an equidistant lens k1 k2 k3 k4.
+  std::vector<double> distortion;
   cv::Matx33d rectification = cv::Matx33d::eye();  ///< R1 or R2: raw camera axes into rectified ones
   cv::Matx34d projection =
       cv::Matx34d::zeros();  ///< P1 or P2: rectified pixels; P2(0,3) = -focal * baseline, m

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <opencv2/calib3d.hpp>
 
 #include "perception/io/calibration_formats.hpp"
 #include "perception/io/field_reader.hpp"
@@ -85,8 +84,7 @@ void visit_fields(FieldVisitor& visit, RigText& text) {
 }
 
 CalibratedRig from_rig_file(const fs::path& path, const CalibrationOptions& options) {
-  if (options.meters_per_unit != 1)
-    refuse_input(path.string(), "unit", "a rig file is in metres: --unit is for OpenCV's files");
+  require_metres(path.string(), "a rig file", options);
   CalibratedRig read{read_rig(path), std::nullopt};
   agreed_image_size(path.string(), ImageSize{read.rig.width_px, read.rig.height_px}, options);
   look_at(read.rig, options.detection_depth_m.value_or(read.rig.detection_depth_m), path);
@@ -107,102 +105,124 @@ CalibratedRig from_cameras(StereoCalibration calibration, const fs::path& path,
   return read;
 }
 
-/// Says which form a calibration has that people have and that is not read: a file, or one in the folder.
-void refuse_other_forms(const fs::path& path) {
-  using Marks = std::vector<const char*>;
-  const std::vector<std::pair<const char*, Marks>> forms{
-      {"OpenCV's JSON", {"{", "\"opencv-matrix\"", "\"rows\":"}},
-      {"OpenCV's base64 (WRITE_BASE64)", {"opencv-matrix", "!!binary"}},
-      {"OpenCV's base64 (WRITE_BASE64)", {"opencv-matrix", "\"binary\""}},
-      {"Kalibr's camchain", {"camera_model:", "distortion_coeffs:"}},
-      {"ROS's camera_info", {"camera_matrix:", "projection_matrix:"}},
-      {"KITTI's", {"P0:", "P1:"}},
-      {"KITTI's", {"P_rect_00:", "P_rect_01:"}},
-      {"Middlebury's", {"cam0=[", "cam1=["}},
-      {"one camera's sensor.yaml of a EuRoC folder", {"T_BS:", "distortion_coefficients:"}}};
-  std::error_code ignored;
-  std::vector<fs::path> files{path};
-  for (const auto& entry : fs::directory_iterator(path, ignored)) files.push_back(entry.path());
-  for (const fs::path& file : files) {
-    if (!fs::is_regular_file(file, ignored) || fs::file_size(file, ignored) > maximum_keyed_bytes) continue;
-    const std::string text = read_file(file);
-    for (const auto& [form, marks] : forms)
-      if (std::ranges::all_of(marks, [&](const char* mark) { return text.find(mark) != std::string::npos; }))
-        refuse_input(
-            file.string(), "",
-            fmt::format(
-                "this calibration is {}, which is not read; read are a rig file, OpenCV's XML or YAML with "
-                "M1 D1 M2 D2 and R T or R1 R2 P1 P2, and a EuRoC folder (docs/detect.md)",
-                form));
+/// A form that states no unit: whose baseline is hardly one in metres was written in another.
+CalibratedRig in_stated_unit(const CalibratedRig& read, const fs::path& path,
+                             const CalibrationOptions& options) {
+  constexpr double nearest_m = 0.01, widest_m = 1;
+  const double baseline_m = read.rig.baseline_m;
+  if (!options.meters_per_unit && !(baseline_m >= nearest_m && baseline_m <= widest_m))
+    refuse_input(
+        path.string(), "baseline",
+        fmt::format("is {:.6g} in a unit that the file does not state: say it with --unit m, cm, mm, "
+                    "or the metres of a chessboard's square, as --unit 0.025",
+                    baseline_m));
+  return read;
+}
+
+CalibratedRig from_rectified(StereoRig rig, const fs::path& path, const CalibrationOptions& options) {
+  rig.name = name_of(path);
+  require_in_range(rig, path);
+  look_at(rig, options.detection_depth_m.value_or(10), path);
+  return {rig, std::nullopt};
+}
+
+enum class Form { rig_file, opencv, kalibr, ros, kitti, middlebury, euroc_camera };
+
+/// What a calibration's text gives away.
+Form form_of(const std::string& text) {
+  const auto has = [&](std::string_view mark) { return text.find(mark) != std::string::npos; };
+  const auto begins_line = [&](const std::string& mark) {
+    return text.starts_with(mark) || has("\n" + mark);
+  };
+  if (looks_like_opencv(text)) return Form::opencv;
+  if (has("T_BS:")) return Form::euroc_camera;
+  if (has("camera_model:") && has("distortion_coeffs:")) return Form::kalibr;
+  if (has("camera_matrix:") && has("projection_matrix:")) return Form::ros;
+  if (begins_line("cam0=")) return Form::middlebury;
+  for (const char* key : {"P0:", "P2:", "P_rect_00:", "P_rect_02:"})
+    if (begins_line(key)) return Form::kitti;
+  return Form::rig_file;
+}
+
+/// The other camera's file beside this one: left.yaml and right.yaml.
+fs::path partner_of(const fs::path& file) {
+  const std::string name = file.filename().string();
+  for (const auto& [mine, other] : {std::pair<std::string, std::string>("left", "right"),
+                                    {"right", "left"},
+                                    {"cam0", "cam1"},
+                                    {"cam1", "cam0"}})
+    if (const std::size_t at = name.find(mine); at != std::string::npos) {
+      std::string partner = name;
+      const fs::path beside = file.parent_path() / partner.replace(at, mine.size(), other);
+      std::error_code ignored;
+      if (fs::is_regular_file(beside, ignored)) return beside;
+    }
+  refuse_input(
+      file.string(), "",
+      "this is one camera of ROS's camera_info: name the folder that holds the files of both, or call "
+      "them left.yaml and right.yaml");
+}
+
+CalibratedRig read_form(Form form, const fs::path& file, const fs::path& path,
+                        const CalibrationOptions& options) {
+  switch (form) {
+    case Form::opencv:
+      return in_stated_unit(from_cameras(read_opencv_calibration(file, options), path, options), path,
+                            options);
+    case Form::kalibr:
+      return from_cameras(read_kalibr_calibration(file, options), path, options);
+    case Form::ros:
+      return in_stated_unit(
+          from_cameras(read_ros_calibration({file, partner_of(file)}, options), path, options), path,
+          options);
+    case Form::kitti:
+      return from_rectified(read_kitti_calibration(file, options), path, options);
+    case Form::middlebury:
+      return from_rectified(read_middlebury_calibration(file, options), path, options);
+    case Form::euroc_camera:
+      refuse_input(file.string(), "",
+                   "this is one camera of a EuRoC folder: name the folder that holds cam0 and cam1");
+    case Form::rig_file:
+      break;
   }
+  return from_rig_file(file, options);
+}
+
+/// A folder that is not EuRoC's: OpenCV's matrices, two files of ROS, or one file of another form.
+CalibratedRig read_folder(const fs::path& path, const CalibrationOptions& options) {
+  std::error_code ignored;
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(path, ignored))
+    if (entry.is_regular_file(ignored) && entry.file_size(ignored) <= maximum_keyed_bytes)
+      files.push_back(entry.path());
+  std::ranges::sort(files);
+  std::vector<std::pair<Form, fs::path>> told;
+  for (const fs::path& file : files)
+    if (const Form form = form_of(calibration_text(file)); form != Form::rig_file)
+      told.emplace_back(form, file);
+  const auto is = [&](Form form) { return [form](const auto& one) { return one.first == form; }; };
+  if (told.size() == 2 && std::ranges::all_of(told, is(Form::ros)))
+    return in_stated_unit(
+        from_cameras(read_ros_calibration({told[0].second, told[1].second}, options), path, options), path,
+        options);
+  if (told.size() == 1 && told[0].first != Form::opencv)
+    return read_form(told[0].first, told[0].second, path, options);
+  return in_stated_unit(from_cameras(read_opencv_calibration(path, options), path, options), path, options);
 }
 
 CalibratedRig read_any_form(const fs::path& path, const CalibrationOptions& options) {
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) {
-    if (const auto folder = euroc_folder(path)) {
-      const EurocCalibration euroc = read_euroc_calibration(*folder, options);
-      CalibratedRig read = from_cameras(euroc.calibration, path, options, euroc.detection_depth_m);
-      if (is_rectified(read.calibration->left) && is_rectified(read.calibration->right))
-        read.calibration.reset();
-      return read;
-    }
-    return from_cameras(read_opencv_calibration(path, options), path, options);
-  }
-  if (looks_like_opencv(read_file(path)))
-    return from_cameras(read_opencv_calibration(path, options), path, options);
-  return from_rig_file(path, options);
+  if (!fs::is_directory(path, ignored))
+    return read_form(form_of(calibration_text(path)), path, path, options);
+  const auto folder = euroc_folder(path);
+  if (!folder) return read_folder(path, options);
+  const EurocCalibration euroc = read_euroc_calibration(*folder, options);
+  CalibratedRig read = from_cameras(euroc.calibration, path, options, euroc.detection_depth_m);
+  if (is_rectified(read.calibration->left) && is_rectified(read.calibration->right)) read.calibration.reset();
+  return read;
 }
 
 }  // namespace
-
-ImageSize agreed_image_size(const std::string& file, std::optional<ImageSize> of_file,
-                            const CalibrationOptions& options) {
-  const auto fail = [&](const std::string& expected) { refuse_input(file, "image size", expected); };
-  const auto in_range = [](int size_px) { return size_px >= minimum_size_px && size_px <= maximum_size_px; };
-  if (options.width_px.has_value() != options.height_px.has_value())
-    fail("image_width and image_height belong together, one is missing");
-  if (!options.width_px) {
-    if (of_file) return *of_file;
-    if (options.images_at_hand) return {options.images_at_hand->width, options.images_at_hand->height};
-    fail("not in the file (image_width, image_height): name it with --size WxH");
-  }
-  const ImageSize given{*options.width_px, *options.height_px};
-  if (!in_range(given.width_px) || !in_range(given.height_px))
-    fail(fmt::format("must be from {} to {} px, is {}x{}", minimum_size_px, maximum_size_px, given.width_px,
-                     given.height_px));
-  if (of_file && *of_file != given)
-    fail(fmt::format("the file says {}x{}, --size says {}x{}", of_file->width_px, of_file->height_px,
-                     given.width_px, given.height_px));
-  return given;
-}
-
-bool is_rotation(const cv::Matx33d& matrix) {
-  constexpr double tolerance = 1e-3;
-  return cv::norm(matrix * matrix.t() - cv::Matx33d::eye(), cv::NORM_INF) < tolerance &&
-         cv::determinant(matrix) > 0;
-}
-
-bool rectify_pair(StereoCalibration& calibration, const cv::Matx33d& R_right_left,
-                  const cv::Vec3d& t_right_m) {
-  CameraCalibration& left = calibration.left;
-  CameraCalibration& right = calibration.right;
-  const cv::Size size(calibration.width_px, calibration.height_px);
-  cv::Mat disparity_to_depth;
-  try {
-    cv::stereoRectify(left.camera_matrix, left.distortion, right.camera_matrix, right.distortion, size,
-                      R_right_left, t_right_m, left.rectification, right.rectification, left.projection,
-                      right.projection, disparity_to_depth, cv::CALIB_ZERO_DISPARITY, 0, size);
-  } catch (const cv::Exception&) {
-    return false;  // the caller knows the file's name
-  }
-  double sum = 0;  // finite only if every term is
-  for (const CameraCalibration* camera : {&left, &right}) {
-    for (const double value : camera->rectification.val) sum += value;
-    for (const double value : camera->projection.val) sum += value;
-  }
-  return std::isfinite(sum);
-}
 
 Eigen::Isometry3d T_body_camera_of(const Eigen::Vector3d& left_camera_body_m, double pitch_down_rad) {
   const double c = std::cos(pitch_down_rad), s = std::sin(pitch_down_rad);
@@ -228,14 +248,10 @@ StereoRig read_rig(const std::filesystem::path& file) {
 }
 
 CalibratedRig read_calibrated_rig(const fs::path& path, const CalibrationOptions& options) {
-  if (!(options.meters_per_unit > 0 && options.meters_per_unit <= 1000))
+  const double unit_m = options.meters_per_unit.value_or(1);
+  if (!(unit_m > 0 && unit_m <= 1000))
     refuse_input(path.string(), "unit", "must be above 0 and at most 1000 m");
-  try {
-    return read_any_form(path, options);
-  } catch (const InputError&) {
-    refuse_other_forms(path);
-    throw;
-  }
+  return read_any_form(path, options);
 }
 
 }  // namespace understory

@@ -10,7 +10,9 @@ namespace understory {
 
 /// Values that some calibration formats do not contain.
 struct CalibrationOptions {
-  double meters_per_unit = 1;  ///< of the file's translations: 0.01 if they are in centimetres
+  /// Of the file's translations: 0.01 if they are in centimetres. If nothing is said they are in metres, and
+  /// of forms that state no unit a baseline is refused that is hardly one in metres.
+  std::optional<double> meters_per_unit{};
   std::optional<int> width_px{}, height_px{};  ///< of the images, both, if the files do not state it
   std::optional<double> detection_depth_m{};   ///< overrides the rig file's own; 10 m if neither is given
   std::optional<cv::Size> images_at_hand{};    ///< size of the images, if neither files nor options state it

@@ -1,10 +1,15 @@
 #pragma once
 
+#include <array>
+#include <filesystem>
 #include <opencv2/core/matx.hpp>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "perception/io/calibration_file.hpp"
+#include "perception/io/strict_map.hpp"
 
 /// What the readers of the several formats share, and the readers themselves (read_calibrated_rig chooses).
 namespace understory {
@@ -30,6 +35,31 @@ struct ImageSize {
 /// if none is known, if file and options differ, or if the options' size is invalid.
 ImageSize agreed_image_size(const std::string& file, std::optional<ImageSize> of_file,
                             const CalibrationOptions& options);
+
+/// fu, fv, cu, cv in px.
+cv::Matx33d pinhole_matrix(StrictMap& map, const std::string& key);
+
+/// Width and height in px.
+ImageSize resolution(StrictMap& map, const std::string& key);
+
+/// What a form calls a lens.
+struct LensWord {
+  std::string_view word;
+  LensModel lens;
+};
+
+/// Throws InputError, naming the words, where the value is none of them.
+LensModel lens_model(StrictMap& map, const std::string& key, std::span<const LensWord> words);
+
+/// Throws InputError where the value is another.
+void require_text(StrictMap& map, const std::string& key, const std::string& expected);
+
+/// Throws InputError where the user says a unit, and the form is in metres by its documentation.
+void require_metres(const std::string& file, const std::string& form, const CalibrationOptions& options);
+
+/// The content of a calibration file, unpacked where it is gzip's (OpenCV writes .xml.gz). Throws as
+/// read_file does.
+std::string calibration_text(const std::filesystem::path& file);
 
 /// Orthonormal to 0.001, since files are rounded by hand, and right-handed.
 bool is_rotation(const cv::Matx33d& matrix);
@@ -65,7 +95,27 @@ EurocCalibration read_euroc_calibration(const std::filesystem::path& folder,
 StereoCalibration read_opencv_calibration(const std::filesystem::path& path,
                                           const CalibrationOptions& options);
 
-/// Whether `text` is XML or OpenCV's kind of YAML (else it may be a rig file).
+/// Whether `text` is XML, or OpenCV's kind of YAML or JSON (else it may be a rig file).
 bool looks_like_opencv(const std::string& text);
+
+/// Reads the raw pair cam0 (left) and cam1 (right) from a camchain as Kalibr writes it: pinhole cameras with
+/// radtan or equidistant lenses, resolution, T_cn_cnm1 in metres (rectified here). It defines no body: see
+/// read_opencv_calibration.
+StereoCalibration read_kalibr_calibration(const std::filesystem::path& file,
+                                          const CalibrationOptions& options);
+
+/// Reads the raw pair from two files of ROS's camera_info, in any order: camera_matrix, distortion_model
+/// (plumb_bob, rational_polynomial or equidistant), rectification_matrix and projection_matrix, whose (0, 3)
+/// tells the right camera and the baseline. The same body.
+StereoCalibration read_ros_calibration(const std::array<std::filesystem::path, 2>& files,
+                                       const CalibrationOptions& options);
+
+/// Reads the rectified gray pair, or the colour pair where there is no gray one, from KITTI's calib.txt (P0:
+/// P1:) or calib_cam_to_cam.txt (P_rect_00: P_rect_01:, S_rect_00: its size). In metres. The same body.
+StereoRig read_kitti_calibration(const std::filesystem::path& file, const CalibrationOptions& options);
+
+/// Reads the rectified pair from Middlebury's calib.txt (cam0=[...], cam1=[...], doffs, baseline in mm,
+/// width, height), which ETH3D has, too. The same body.
+StereoRig read_middlebury_calibration(const std::filesystem::path& file, const CalibrationOptions& options);
 
 }  // namespace understory

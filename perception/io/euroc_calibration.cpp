@@ -1,5 +1,5 @@
 #include <Eigen/Geometry>
-#include <cmath>
+#include <array>
 #include <opencv2/core/eigen.hpp>
 
 #include "perception/io/calibration_formats.hpp"
@@ -39,11 +39,6 @@ Eigen::Isometry3d pose(StrictMap& map, double meters_per_unit) {
   return T_body_sensor;
 }
 
-void require_text(StrictMap& map, const std::string& key, const std::string& expected) {
-  if (const std::string found = map.text(key); found != expected)
-    map.fail(key, "expected " + expected + ", found '" + found + "'");
-}
-
 /// What `understory record` adds to the layout: how the pair was rectified, which its detector's hits hang
 /// on.
 void read_additions(StrictMap& map, Sensor& sensor) {
@@ -65,23 +60,17 @@ Sensor read_sensor(const fs::path& file, double meters_per_unit) {
   StrictMap map(parse_yaml(read_file(file), file.string()));
   Sensor sensor;
   sensor.T_body_sensor = pose(map, meters_per_unit);
-  const std::vector<double> size = map.numbers("resolution", 2, minimum_size_px, maximum_size_px);
-  if (size[0] != std::floor(size[0]) || size[1] != std::floor(size[1]))
-    map.fail("resolution", "must be whole numbers");
-  sensor.size = {static_cast<int>(size[0]), static_cast<int>(size[1])};
+  sensor.size = resolution(map, "resolution");
   require_text(map, "camera_model", "pinhole");
-  const std::vector<double> pinhole = map.numbers("intrinsics", 4, minimum_center_px, maximum_focal_px);
-  if (std::min(pinhole[0], pinhole[1]) < minimum_focal_px ||
-      std::max(pinhole[2], pinhole[3]) > maximum_center_px)
-    map.fail(
-        "intrinsics",
-        "must be fu, fv, cu, cv in px: here a focal length is too short or a center too far from the image");
-  sensor.camera.camera_matrix = cv::Matx33d(pinhole[0], 0, pinhole[2], 0, pinhole[1], pinhole[3], 0, 0, 1);
-  require_text(map, "distortion_model", "radial-tangential");
+  sensor.camera.camera_matrix = pinhole_matrix(map, "intrinsics");
+  constexpr std::array<LensWord, 2> words{
+      {{"radial-tangential", LensModel::radial_tangential}, {"equidistant", LensModel::equidistant}}};
+  sensor.camera.lens = lens_model(map, "distortion_model", words);
   // EuRoC has four; cameras that need more of OpenCV's k1 k2 p1 p2 k3 k4 k5 k6 say them in that order.
   const std::size_t found = map.length("distortion_coefficients");
-  sensor.camera.distortion = map.numbers("distortion_coefficients", found == 5 || found == 8 ? found : 4,
-                                         -maximum_coefficient, maximum_coefficient);
+  const bool has_more = sensor.camera.lens == LensModel::radial_tangential && (found == 5 || found == 8);
+  sensor.camera.distortion =
+      map.numbers("distortion_coefficients", has_more ? found : 4, -maximum_coefficient, maximum_coefficient);
   read_additions(map, sensor);
   map.refuse_others(" sensor_type comment rate_hz ");
   return sensor;
@@ -98,9 +87,11 @@ std::optional<fs::path> euroc_folder(const fs::path& path) {
 
 EurocCalibration read_euroc_calibration(const fs::path& folder, const CalibrationOptions& options) {
   const fs::path right_file = folder / "cam1" / "sensor.yaml";
-  const Sensor left = read_sensor(folder / "cam0" / "sensor.yaml", options.meters_per_unit);
-  const Sensor right = read_sensor(right_file, options.meters_per_unit);
+  const Sensor left = read_sensor(folder / "cam0" / "sensor.yaml", options.meters_per_unit.value_or(1));
+  const Sensor right = read_sensor(right_file, options.meters_per_unit.value_or(1));
   if (left.size != right.size) refuse_input(right_file.string(), "resolution", "must be that of cam0");
+  if (left.camera.lens != right.camera.lens)
+    refuse_input(right_file.string(), "distortion_model", "must be that of cam0");
   const ImageSize size = agreed_image_size(folder.string(), left.size, options);
 
   StereoCalibration calibration;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <opencv2/core/persistence.hpp>
 #include <vector>
 
 #include "perception/io/calibration_formats.hpp"
@@ -24,17 +25,62 @@ struct Matrix {
   std::vector<double> values;  // row by row
 };
 
+constexpr std::string_view json_mark = "$base64$";
+
+/// Whether the data are bytes, as cv::FileStorage::WRITE_BASE64 makes them.
+bool is_base64(StrictMap& fields) {
+  return fields.type("data") == "binary" || fields.joined_text("data").starts_with(json_mark);
+}
+
+/// By OpenCV's own reader, which is given the matrix alone, after its size and its head are known.
+std::vector<double> from_base64(StrictMap& fields, const std::string& type, std::size_t count) {
+  std::string bytes = fields.joined_text("data");
+  if (bytes.starts_with(json_mark)) bytes.erase(0, json_mark.size());
+  std::erase_if(bytes, [](char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; });
+  constexpr std::size_t head_bytes = 24;  // "1d" and blanks, which is this in base64
+  std::string head = type == "d" ? "MWQg" : "MWYg";
+  while (head.size() < head_bytes / 3 * 4) head += "ICAg";
+  const std::size_t all_bytes = head_bytes + count * (type == "d" ? sizeof(double) : sizeof(float));
+  const bool is_plain = bytes.find_first_not_of(
+                            "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+                            "0123456789+/=") == std::string::npos;
+  if (!is_plain || !bytes.starts_with(head) || bytes.size() != (all_bytes + 2) / 3 * 4)
+    fields.fail("data",
+                fmt::format("must be {} numbers of type {} in base64, as OpenCV writes them", count, type));
+  cv::Mat read;
+  try {
+    const cv::FileStorage storage(
+        fmt::format("%YAML:1.0\n---\nm: !!opencv-matrix\n   rows: {}\n   cols: 1\n   dt: {}\n"
+                    "   data: !!binary |\n      {}\n",
+                    count, type, bytes),
+        cv::FileStorage::READ | cv::FileStorage::MEMORY);
+    storage["m"] >> read;
+    read.convertTo(read, CV_64F);
+  } catch (const cv::Exception&) {
+    read.release();
+  }
+  const std::vector<double> values(read.begin<double>(), read.end<double>());
+  if (values.size() != count) fields.fail("data", "its base64 is broken");
+  for (const double value : values)
+    if (!(std::abs(value) <= maximum_value))
+      fields.fail("data", fmt::format("must be numbers within +-{}, one is {}", maximum_value, value));
+  return values;
+}
+
 Matrix matrix(StrictMap& map, const std::string& key) {
   constexpr int maximum_side = 16;
-  if (map.type(key) != "opencv-matrix") map.fail(key, "must be an OpenCV matrix (opencv-matrix)");
   StrictMap fields = map.map(key);
+  const std::string kind =
+      fields.has("type_id") ? fields.text("type_id") : map.type(key);  // JSON has no tags
+  if (kind != "opencv-matrix") map.fail(key, "must be an OpenCV matrix (opencv-matrix)");
   Matrix matrix;
   matrix.rows = fields.whole("rows", 0, maximum_side);
   matrix.cols = fields.whole("cols", 0, maximum_side);
   const std::string type = fields.text("dt");
   if (type != "d" && type != "f") fields.fail("dt", "must be d or f, is '" + type + "'");
   const auto count = static_cast<std::size_t>(matrix.rows * matrix.cols);
-  matrix.values = fields.numbers("data", count, -maximum_value, maximum_value);
+  matrix.values = is_base64(fields) ? from_base64(fields, type, count)
+                                    : fields.numbers("data", count, -maximum_value, maximum_value);
   return matrix;
 }
 
@@ -117,7 +163,7 @@ bool is_xml(const std::string& text) {
 }
 
 TextNode read_tree(const fs::path& file) {
-  const std::string text = read_file(file), name = file.string();
+  const std::string text = calibration_text(file), name = file.string();
   return is_xml(text) ? parse_opencv_xml(text, name) : parse_yaml(text, name);
 }
 
@@ -132,7 +178,7 @@ StrictMap read_keys(const fs::path& path) {
   if (!is_folder) return StrictMap(all);
   for (const std::string name :
        {"intrinsics", "extrinsics", "M1", "D1", "R1", "P1", "M2", "D2", "R2", "P2", "R", "T"})
-    for (const char* extension : {".xml", ".yml", ".yaml"})
+    for (const char* extension : {".xml", ".yml", ".yaml", ".json", ".xml.gz", ".yml.gz"})
       if (const fs::path file = path / (name + extension); fs::exists(file, ignored))
         for (TextNode& child : read_tree(file).children) all.children.push_back(std::move(child));
   refuse_double_keys(all);
@@ -179,19 +225,29 @@ void rectify(StrictMap& keys, StereoCalibration& calibration, double meters_per_
     keys.fail("R", "cv::stereoRectify cannot bring the two cameras side by side");
 }
 
-/// The lens must be the one that D1 and D2 are read as: a fisheye's numbers look the same. What programs
-/// write for the record beside the matrices changes nothing; all else might.
+/// Which lens D1 and D2 are of: a fisheye's numbers look like another's, so files of cv::fisheye say it.
+LensModel lens_in(StrictMap& keys) {
+  constexpr LensModel bent = LensModel::radial_tangential, wide = LensModel::equidistant;
+  constexpr std::array<LensWord, 4> flags{{{"0", bent}, {"false", bent}, {"1", wide}, {"true", wide}}};
+  constexpr std::array<LensWord, 2> cameras{{{"pinhole", bent}, {"fisheye", wide}}};
+  constexpr std::array<LensWord, 6> lenses{{{"radial-tangential", bent},
+                                            {"radtan", bent},
+                                            {"plumb_bob", bent},
+                                            {"rational_polynomial", bent},
+                                            {"equidistant", wide},
+                                            {"fisheye", wide}}};
+  LensModel lens = bent;
+  const auto look_for = [&](const char* key, std::span<const LensWord> words) {
+    if (keys.has(key) && lens_model(keys, key, words) == wide) lens = wide;
+  };
+  look_for("fisheye_model", flags);
+  look_for("camera_model", cameras);
+  look_for("distortion_model", lenses);
+  return lens;
+}
+
+/// What programs write for the record beside the matrices changes nothing; all else might.
 void check_other_keys(StrictMap& keys) {
-  using Words = std::vector<std::string>;
-  const std::array<std::pair<const char*, Words>, 3> lenses{
-      {{"fisheye_model", {"0", "false"}},
-       {"camera_model", {"pinhole"}},
-       {"distortion_model", {"radial-tangential", "radtan", "plumb_bob", "rational_polynomial"}}}};
-  for (const auto& [key, read] : lenses)
-    if (keys.has(key))
-      if (const std::string found = keys.text(key); std::ranges::find(read, found) == read.end())
-        keys.fail(key, fmt::format("must be {}, is '{}': other lenses are not read", fmt::join(read, " or "),
-                                   found));
   keys.refuse_others(
       " R T E F Q image_width image_height calibration_time date time name comment nframes board_width "
       "board_height square_size marker_size flags avg_reprojection_error per_view_reprojection_errors rms "
@@ -201,7 +257,7 @@ void check_other_keys(StrictMap& keys) {
 }  // namespace
 
 bool looks_like_opencv(const std::string& text) {
-  return is_xml(text) || text.starts_with("%YAML:1.0") || text.find("!!opencv-matrix") != std::string::npos;
+  return is_xml(text) || text.starts_with("%YAML:1.0") || text.find("opencv-matrix") != std::string::npos;
 }
 
 StereoCalibration read_opencv_calibration(const fs::path& path, const CalibrationOptions& options) {
@@ -212,17 +268,22 @@ StereoCalibration read_opencv_calibration(const fs::path& path, const Calibratio
   calibration.left.distortion = opencv_distortion(keys, "D1");
   calibration.right.camera_matrix = opencv_camera_matrix(keys, "M2");
   calibration.right.distortion = opencv_distortion(keys, "D2");
+  calibration.left.lens = calibration.right.lens = lens_in(keys);
+  for (const auto& [key, camera] : {std::pair("D1", &calibration.left), {"D2", &calibration.right}})
+    if (camera->lens == LensModel::equidistant && camera->distortion.size() != 4)
+      keys.fail(key, "must be the 4 coefficients of a fisheye lens, as the file says that it is one");
   const std::optional<ImageSize> of_file = size_in(keys);
   const ImageSize size = agreed_image_size(path.string(), of_file, options);
   if (!of_file && !options.width_px) check_principal_point(keys, calibration.left.camera_matrix, size);
   calibration.width_px = size.width_px;
   calibration.height_px = size.height_px;
+  const double unit_m = options.meters_per_unit.value_or(1);
   // Where both are there, R and T say nothing more: these are what the rig's maker rectified with.
   const std::array<std::string, 4> rectified{"R1", "R2", "P1", "P2"};
   if (std::any_of(rectified.begin(), rectified.end(), [&](const auto& key) { return keys.has(key); }))
-    read_rectification(keys, calibration, options.meters_per_unit);
+    read_rectification(keys, calibration, unit_m);
   else
-    rectify(keys, calibration, options.meters_per_unit);
+    rectify(keys, calibration, unit_m);
   check_other_keys(keys);
   return calibration;
 }

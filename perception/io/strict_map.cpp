@@ -21,6 +21,13 @@ std::string StrictMap::text(const std::string& key) {
   return node.text;
 }
 
+std::string StrictMap::joined_text(const std::string& key) {
+  const TextNode& node = take(key);
+  std::string text = node.text;
+  for (const TextNode& child : node.children) text += child.text;
+  return text;
+}
+
 double StrictMap::number(const std::string& key, double minimum, double maximum) {
   return number(take(key), key, minimum, maximum);
 }

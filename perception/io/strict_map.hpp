@@ -17,6 +17,8 @@ class StrictMap {
   bool has(const std::string& key) const { return find_child(map_, key) != nullptr; }
 
   std::string text(const std::string& key);
+  /// The words of a list one after the other, or a text.
+  std::string joined_text(const std::string& key);
   double number(const std::string& key, double minimum, double maximum);
   int whole(const std::string& key, int minimum, int maximum);
   /// A list of numbers, `count` of them.

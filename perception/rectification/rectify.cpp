@@ -12,8 +12,12 @@ namespace {
 void make_maps(const CameraCalibration& camera, const cv::Size& size, bool nearest, cv::Mat& places,
                cv::Mat& fractions) {
   cv::Mat u, v;
-  cv::initUndistortRectifyMap(camera.camera_matrix, camera.distortion, camera.rectification,
-                              camera.projection, size, CV_32FC1, u, v);
+  if (camera.lens == LensModel::equidistant)
+    cv::fisheye::initUndistortRectifyMap(camera.camera_matrix, camera.distortion, camera.rectification,
+                                         camera.projection, size, CV_32FC1, u, v);
+  else
+    cv::initUndistortRectifyMap(camera.camera_matrix, camera.distortion, camera.rectification,
+                                camera.projection, size, CV_32FC1, u, v);
   cv::convertMaps(u, v, places, fractions, CV_16SC2, nearest);
 }
 

@@ -77,8 +77,9 @@ int jobs_or_cores(int jobs) {
 }
 
 void add_calibration_options(Command& command, CalibrationArguments& arguments) {
-  command.choice("--unit", arguments.meters_per_unit, meters_per_unit,
-                 "unit of the lengths in the calibration");
+  command.text("--unit", "UNIT", arguments.unit,
+               "unit of the lengths in a calibration of OpenCV or ROS: m, cm, mm, or a number of metres, for "
+               "example 0.025 where they are counted in squares of a chessboard");
   command.text("--size", "WxH", arguments.size,
                "image size that the calibration is for, for example 376x240, if its files do not state it");
   command.number("--depth", arguments.depth_m, 0.1, 1000,
@@ -87,7 +88,15 @@ void add_calibration_options(Command& command, CalibrationArguments& arguments) 
 
 CalibrationOptions calibration_options(const CalibrationArguments& arguments) {
   CalibrationOptions options;
-  options.meters_per_unit = arguments.meters_per_unit;
+  if (!arguments.unit.empty()) {
+    const auto named =
+        std::ranges::find(meters_per_unit, arguments.unit, [](const auto& one) { return one.first; });
+    options.meters_per_unit =
+        named != meters_per_unit.end() ? named->second : number_in<double>(arguments.unit);
+    if (!options.meters_per_unit)
+      throw ScenarioError(fmt::format("--unit {}: must be m, cm, mm or a number of metres, for example 0.025",
+                                      arguments.unit));
+  }
   options.detection_depth_m = arguments.depth_m;
   if (arguments.size.empty()) return options;
   const std::size_t cross = std::min(arguments.size.find('x'), arguments.size.size() - 1);

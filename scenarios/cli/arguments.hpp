@@ -37,7 +37,7 @@ GateRule rule_of(GateRule rule, const std::vector<std::string>& tolerances);
 
 /// --unit, --size and --depth, as every command that reads a calibration has them.
 struct CalibrationArguments {
-  double meters_per_unit = 1;
+  std::string unit;               ///< empty: nothing is said
   std::string size;               ///< empty: the files say it
   std::optional<double> depth_m;  ///< nothing: the rig's own
 };

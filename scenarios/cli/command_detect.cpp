@@ -102,7 +102,8 @@ void add_rig_command(CommandLine& line) {
                                "understory rig long --out rig.svg"});
   command
       .text("FILE", "RIG", arguments->rig,
-            "rig file, OpenCV XML or YAML file or a folder of them, EuRoC folder, or a name in models/rigs")
+            "rig file, calibration of OpenCV, Kalibr, ROS, KITTI or Middlebury, EuRoC folder, or a name in "
+            "models/rigs")
       .required();
   add_calibration_options(command, *arguments);
   command.text(

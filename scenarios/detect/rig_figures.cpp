@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 namespace understory {
 namespace {
@@ -16,9 +17,10 @@ double field_of_view_rad(int size_px, double center_px, double focal_px) {
 
 std::string images_text(const CalibratedRig& calibrated) {
   if (!calibrated.calibration) return "come rectified";
-  return fmt::format("raw: rectified here, {} distortion coefficients left, {} right",
-                     calibrated.calibration->left.distortion.size(),
-                     calibrated.calibration->right.distortion.size());
+  const auto& [left, right] = std::tie(calibrated.calibration->left, calibrated.calibration->right);
+  return fmt::format("raw: rectified here, {}{} distortion coefficients left, {} right",
+                     left.lens == LensModel::equidistant ? "fisheye (equidistant), " : "",
+                     left.distortion.size(), right.distortion.size());
 }
 
 }  // namespace

@@ -38,8 +38,10 @@ std::string pinhole_text(const CameraCalibration& camera, const StereoRig& rig, 
   return fmt::format(
       "\nrate_hz: {}\nresolution: [{}, {}]\ncamera_model: pinhole\n"
       "intrinsics: [{}, {}, {}, {}] # fu, fv, cu, cv\n"
-      "distortion_model: radial-tangential\ndistortion_coefficients: [{}]\n",
-      rate_hz, rig.width_px, rig.height_px, K(0, 0), K(1, 1), K(0, 2), K(1, 2), list_text(camera.distortion));
+      "distortion_model: {}\ndistortion_coefficients: [{}]\n",
+      rate_hz, rig.width_px, rig.height_px, K(0, 0), K(1, 1), K(0, 2), K(1, 2),
+      camera.lens == LensModel::equidistant ? "equidistant" : "radial-tangential",
+      list_text(camera.distortion));
 }
 
 CameraCalibration rectified_camera(const StereoRig& rig, double center_x_px) {

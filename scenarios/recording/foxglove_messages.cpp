@@ -162,7 +162,9 @@ foxglove::CameraCalibration calibration_of(const CalibratedRig& rig, bool is_lef
   };
   if (rig.calibration) {
     const CameraCalibration& raw = is_left ? rig.calibration->left : rig.calibration->right;
-    message.set_distortion_model(raw.distortion.size() > 5 ? "rational_polynomial" : "plumb_bob");
+    message.set_distortion_model(raw.lens == LensModel::equidistant ? "kannala_brandt"
+                                 : raw.distortion.size() > 5        ? "rational_polynomial"
+                                                                    : "plumb_bob");
     for (const double number : raw.distortion) message.add_d(number);
     put(raw.camera_matrix, message.mutable_k());
     put(raw.rectification, message.mutable_r());

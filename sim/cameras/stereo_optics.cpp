@@ -19,14 +19,18 @@ constexpr double steepest = 2.0;
 
 /// The angle to the axis (its tangent) up to which the radial distortion grows outward. Beyond, its
 /// polynomials fold back onto pixels that already have a ray; no ray belongs there.
-double fold_of(const std::vector<double>& distortion) {
-  std::vector<double> k = distortion;  // k1 k2 p1 p2 k3 k4 k5 k6
+double fold_of(const CameraCalibration& camera) {
+  std::vector<double> k = camera.distortion;  // k1 k2 p1 p2 k3 k4 k5 k6, or k1 k2 k3 k4
   k.resize(8, 0.0);
+  const auto bent = [&](double r) {
+    const bool is_equidistant = camera.lens == LensModel::equidistant;
+    const double angle = is_equidistant ? std::atan(r) : r, q = angle * angle;
+    if (is_equidistant) return angle * (1 + q * (k[0] + q * (k[1] + q * (k[2] + q * k[3]))));
+    return r * (1 + q * (k[0] + q * (k[1] + q * k[4]))) / (1 + q * (k[5] + q * (k[6] + q * k[7])));
+  };
   double before = 0;
   for (double r = 0.001; r < steepest; r += 0.001) {
-    const double q = r * r;
-    const double here =
-        r * (1 + q * (k[0] + q * (k[1] + q * k[4]))) / (1 + q * (k[5] + q * (k[6] + q * k[7])));
+    const double here = bent(r);
     if (here <= before) return r;
     before = here;
   }
@@ -38,12 +42,19 @@ cv::Mat rays_of(const CameraCalibration& camera, const cv::Size& size) {
   std::vector<cv::Point2d> pixels, rays, again;
   for (int row = 0; row < size.height; ++row)
     for (int column = 0; column < size.width; ++column) pixels.emplace_back(column, row);
-  cv::undistortPoints(pixels, rays, camera.camera_matrix, camera.distortion, cv::noArray(), cv::noArray(),
-                      cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 200, 1e-8));
-  std::vector<cv::Point3d> points;
-  for (const cv::Point2d& ray : rays) points.emplace_back(ray.x, ray.y, 1);
-  cv::projectPoints(points, cv::Vec3d(), cv::Vec3d(), camera.camera_matrix, camera.distortion, again);
-  const double fold = fold_of(camera.distortion), none = std::numeric_limits<double>::quiet_NaN();
+  const cv::TermCriteria until(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 200, 1e-8);
+  if (camera.lens == LensModel::equidistant) {
+    cv::fisheye::undistortPoints(pixels, rays, camera.camera_matrix, camera.distortion, cv::noArray(),
+                                 cv::noArray(), until);
+    cv::fisheye::distortPoints(rays, again, camera.camera_matrix, camera.distortion);
+  } else {
+    cv::undistortPoints(pixels, rays, camera.camera_matrix, camera.distortion, cv::noArray(), cv::noArray(),
+                        until);
+    std::vector<cv::Point3d> points;
+    for (const cv::Point2d& ray : rays) points.emplace_back(ray.x, ray.y, 1);
+    cv::projectPoints(points, cv::Vec3d(), cv::Vec3d(), camera.camera_matrix, camera.distortion, again);
+  }
+  const double fold = fold_of(camera), none = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const bool holds = cv::norm(again[i] - pixels[i]) < 0.01 && cv::norm(rays[i]) < fold;
     if (!holds) rays[i] = {none, none};

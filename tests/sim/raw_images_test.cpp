@@ -5,6 +5,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
 #include "perception/full_stereo/full_stereo.hpp"
 #include "perception/io/calibration_file.hpp"
@@ -12,14 +13,15 @@
 #include "perception/rectification/rectify.hpp"
 #include "tests/sim/camera_scenes.hpp"
 
-/// Raw images of the two real rigs: rendered by undoing the distortion, checked by OpenCV's projection (which
-/// distorts), by the stack's own rectification and by its detector.
+/// Raw images of the two real rigs and of fisheye lenses: rendered by undoing the distortion, checked by
+/// OpenCV's projection (which distorts), by the stack's own rectification and by its detector.
 namespace understory {
 namespace {
 
 struct Cameras {
-  const char* name;
-  double unit_m, depth_m;
+  const char* file;
+  std::optional<double> unit_m;
+  double depth_m;
 };
 
 class RawImages : public testing::TestWithParam<Cameras> {
@@ -29,8 +31,8 @@ class RawImages : public testing::TestWithParam<Cameras> {
     CalibrationOptions options;
     options.meters_per_unit = GetParam().unit_m;
     options.detection_depth_m = GetParam().depth_m;
-    CalibratedRig read = read_calibrated_rig(
-        std::filesystem::path(UNDERSTORY_SOURCE_DIR) / "models/rigs/raw" / GetParam().name, options);
+    CalibratedRig read =
+        read_calibrated_rig(std::filesystem::path(UNDERSTORY_SOURCE_DIR) / GetParam().file, options);
     Eigen::Matrix3d rectified_of_raw;
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) rectified_of_raw(i, j) = read.calibration->left.rectification(i, j);
@@ -46,8 +48,12 @@ cv::Point2d raw_pixel(const CameraCalibration& camera, const Eigen::Vector3d& po
   const cv::Vec3d point_raw =
       camera.rectification.t() * cv::Vec3d(point_rectified.x(), point_rectified.y(), point_rectified.z());
   std::vector<cv::Point2d> pixels;
-  cv::projectPoints(std::vector<cv::Point3d>{cv::Point3d(point_raw)}, cv::Vec3d(), cv::Vec3d(),
-                    camera.camera_matrix, camera.distortion, pixels);
+  const std::vector<cv::Point3d> points{cv::Point3d(point_raw)};
+  if (camera.lens == LensModel::equidistant)
+    cv::fisheye::projectPoints(points, pixels, cv::Vec3d(), cv::Vec3d(), camera.camera_matrix,
+                               camera.distortion);
+  else
+    cv::projectPoints(points, cv::Vec3d(), cv::Vec3d(), camera.camera_matrix, camera.distortion, pixels);
   return pixels.front();
 }
 
@@ -138,8 +144,12 @@ TEST_P(RawImages, DetectorsThatKnowNoRawPairsGetRectifiedOnes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rigs, RawImages,
-                         testing::Values(Cameras{"paper.xml", 0.01, 4.8}, Cameras{"long.xml", 1, 10.1}),
-                         [](const auto& rig) { return std::string(rig.param.name).substr(0, 4); });
+                         testing::Values(Cameras{"models/rigs/raw/paper.xml", 0.01, 4.8},
+                                         Cameras{"models/rigs/raw/long.xml", 1, 10.1},
+                                         Cameras{"tests/data/fisheye_camchain.yaml", {}, 2.5}),
+                         [](const auto& rig) {
+                           return std::filesystem::path(rig.param.file).stem().string();
+                         });
 
 TEST(RawMisalignment, IsInTheRawImagesOwnPixels) {
   CalibrationOptions options;
