@@ -6,7 +6,7 @@
 #include <exception>
 
 #include "estimation/filter.hpp"
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/io/stereo_recording.hpp"
 #include "perception/map/local_map.hpp"
 #include "perception/pushbroom/pushbroom_stereo.hpp"

@@ -8,7 +8,6 @@
 #include <string>
 #include <string_view>
 
-#include "perception/io/calibration_formats.hpp"
 #include "perception/io/machine_limits.hpp"
 #include "perception/io/picture_codecs.hpp"
 #include "perception/io/png_codec.hpp"
@@ -136,7 +135,7 @@ cv::Mat read_gray_image(const std::filesystem::path& file, int depth) {
   if (!begins_as_image(bytes)) throw expected("no image, or a damaged one");
   if (bytes[0] == '\x89') bytes = without_texts(bytes);
   const ClaimedSize size = claimed_size(bytes);
-  if (std::max(size.width_px, size.height_px) > rig_limits::maximum_size_px)
+  if (std::max(size.width_px, size.height_px) > maximum_side_px)
     throw expected(std::to_string(size.width_px) + "x" + std::to_string(size.height_px) +
                    " px: at most 8192x8192 are read");
   cv::Mat image;

@@ -5,6 +5,9 @@
 
 namespace understory {
 
+/// No image is wider or higher.
+inline constexpr int maximum_side_px = 8192;
+
 /// Whether the name ends as an image's does (png, jpg, jpeg, bmp, tif, tiff, pgm), in any case.
 bool is_image_name(const std::filesystem::path& file);
 

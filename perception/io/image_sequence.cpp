@@ -5,7 +5,6 @@
 #include <set>
 #include <string>
 
-#include "perception/io/calibration_file.hpp"
 #include "perception/io/image_file.hpp"
 #include "perception/io/machine_limits.hpp"
 #include "perception/io/text_file.hpp"
@@ -260,6 +259,13 @@ ImageSequence single_pair(const fs::path& left, const fs::path& right) {
   sequence.pairs.push_back({0, left, right});
   take_times(sequence);
   return sequence;
+}
+
+std::optional<fs::path> euroc_folder(const fs::path& path) {
+  std::error_code ignored;
+  for (const fs::path& folder : {path, path / "mav0"})
+    if (fs::is_directory(folder / "cam0", ignored)) return folder;
+  return std::nullopt;
 }
 
 }  // namespace understory

@@ -69,4 +69,7 @@ struct LoneName {
 std::optional<LoneName> first_unpaired(const std::vector<std::string>& first,
                                        const std::vector<std::string>& second);
 
+/// The folder that has cam0 and cam1: `path` or its mav0; empty if neither has them.
+std::optional<std::filesystem::path> euroc_folder(const std::filesystem::path& path);
+
 }  // namespace understory

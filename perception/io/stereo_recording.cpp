@@ -6,7 +6,6 @@
 #include <opencv2/videoio.hpp>
 #include <string>
 
-#include "perception/io/calibration_formats.hpp"
 #include "perception/io/image_file.hpp"
 #include "perception/io/picture_codecs.hpp"
 #include "perception/io/text_file.hpp"
@@ -56,7 +55,7 @@ SideBySideVideo::SideBySideVideo(const std::filesystem::path& file)
   expect(both_px % 2 == 0,
          "left and right image side by side, so an even width, found " + std::to_string(both_px));
   width_px_ = both_px / 2;
-  expect(std::max(width_px_, height_px_) <= rig_limits::maximum_size_px, "images of at most 8192x8192 px");
+  expect(std::max(width_px_, height_px_) <= maximum_side_px, "images of at most 8192x8192 px");
 }
 
 SideBySideVideo::~SideBySideVideo() = default;

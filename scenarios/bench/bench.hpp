@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/stereo_frame.hpp"
 #include "scenarios/scenario/scenario.hpp"
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/io/text_table.hpp"
 #include "scenarios/campaign/gate.hpp"
 #include "scenarios/output/errors.hpp"

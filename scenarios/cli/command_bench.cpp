@@ -2,7 +2,8 @@
 
 #include <memory>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
+#include "perception/io/image_sequence.hpp"
 #include "perception/io/stereo_recording.hpp"
 #include "scenarios/bench/bench.hpp"
 #include "scenarios/cli/arguments.hpp"

@@ -28,9 +28,15 @@ struct ExplainArguments {
 
 Scenario scenario_of_run(const fs::path& run) {
   std::error_code ignored;
+  if (!fs::is_directory(run, ignored))
+    throw ScenarioError(fmt::format("{}: {}; expected the folder of a run or of a campaign", run.string(),
+                                    fs::exists(run, ignored) ? "this is a file" : "there is no such folder"));
   for (const char* file : {"scenario.yaml", "result.json"})
     if (!fs::exists(run / file, ignored))
-      throw ScenarioError(fmt::format("{}: not the folder of a run: {} is missing", run.string(), file));
+      throw ScenarioError(
+          fmt::format("{}: not the folder of a run ({} is missing), nor of a campaign "
+                      "(campaign.json is missing)",
+                      run.string(), file));
   return load_scenario(run / "scenario.yaml");
 }
 
@@ -113,6 +119,8 @@ void explain_campaign(const fs::path& path, RendererKind renderer, int jobs, int
   const CampaignFolder folder{path};
   const Campaign campaign = read_campaign(folder);
   std::vector<FlightRow> lost = gather(folder, campaign).rows;
+  if (std::ranges::none_of(lost, &FlightRow::flown))
+    throw ScenarioError(fmt::format("{}: none of its flights is flown yet", path.string()));
   std::erase_if(lost, [](const FlightRow& row) { return !row.flown() || row.reached_goal(); });
   prepare_output_folder(folder.path / "explained");
   for (std::size_t i = 0; i < lost.size(); ++i) {
@@ -123,15 +131,24 @@ void explain_campaign(const fs::path& path, RendererKind renderer, int jobs, int
     const Scenario scenario =
         scenario_from_text(condition->scenario_text, condition->name, {fmt::format("seed={}", row.seed)});
     const Unfinished work(folder.path / ".explain");
-    const Explained explained = explained_flight(scenario, options_of(work.path(), renderer, jobs, flights),
-                                                 fmt::format("{} of {} lost flights: ", i + 1, lost.size()));
+    const Explained explained = [&] {
+      try {
+        return explained_flight(scenario, options_of(work.path(), renderer, jobs, flights),
+                                fmt::format("{} of {} lost flights: ", i + 1, lost.size()));
+      } catch (const Stopped& stopped) {
+        throw Stopped(
+            stopped.signal,
+            fmt::format("{} of {} lost flights are explained; the same command goes on", i, lost.size()));
+      }
+    }();
     write_whole_file(folder.explanation_file(row.id), explained.json);
-    fmt::print("{}: {}\n", row.id, explained.conclusion.sentence);
+    fmt::print("{}: {} {}\n", row.id, explained.conclusion.sentence, explained.conclusion.disagreement);
     std::fflush(stdout);
   }
   const Collected collected = collect(folder, campaign);
   const std::vector<ExplainedRow> rows = explained_rows(folder, collected.rows);
-  fmt::print("{}\n{}\n", to_text(causes_table(rows)), to_text(savings_table(rows)));
+  fmt::print("{}\n{}\nunderstory report {} puts this on the campaign's page\n", to_text(causes_table(rows)),
+             to_text(savings_table(rows)), path.string());
 }
 
 void add_explain_command(CommandLine& line) {
@@ -143,10 +160,12 @@ void add_explain_command(CommandLine& line) {
       .text("folder", "FOLDER", arguments->folder,
             "folder of a run whose flight was lost, or of a campaign: its lost flights")
       .required();
-  command.whole("--flights", arguments->flights, 60, 10'000, "fly at most so many flights");
+  command.whole("--flights", arguments->flights, 130, 10'000,
+                "fly at most so many flights, 130 or more: fewer do not try every part");
   command.whole(
       "--first-seed", arguments->first_seed, 1, 1'000'000,
-      "for one run: first seed of the noise that is drawn anew; another one gives a second opinion");
+      "for one run: first seed of the noise that is drawn anew; another one gives a second opinion, which "
+      "takes the place of the first");
   add_jobs_option(command, arguments->jobs, "flights");
   add_renderer_option(command, arguments->renderer);
   command.runs([arguments] { return run_explain(*arguments); });

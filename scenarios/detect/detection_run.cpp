@@ -9,8 +9,9 @@
 #include <iterator>
 #include <memory>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/io/hit_files.hpp"
+#include "perception/io/image_sequence.hpp"
 #include "perception/io/pose_file.hpp"
 #include "perception/io/stereo_recording.hpp"
 #include "scenarios/config/bad_input.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "perception/rectification/rectify.hpp"
 #include "scenarios/scenario/scenario_io.hpp"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/map/local_map.hpp"
 
 namespace understory {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "scenarios/report/line_plot.hpp"
 

@@ -10,7 +10,8 @@
 #include <set>
 #include <thread>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
+#include "perception/io/image_sequence.hpp"
 #include "scenarios/config/bad_input.hpp"
 #include "scenarios/evaluation/evaluation_recording.hpp"
 

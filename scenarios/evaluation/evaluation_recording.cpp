@@ -10,8 +10,9 @@
 #include <set>
 #include <stdexcept>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/io/image_file.hpp"
+#include "perception/io/image_sequence.hpp"
 #include "perception/io/text_file.hpp"
 #include "perception/io/text_table.hpp"
 #include "scenarios/scenario/scenario_io.hpp"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/io/image_sequence.hpp"
 #include "perception/io/pose_file.hpp"
 #include "perception/rectification/rectify.hpp"

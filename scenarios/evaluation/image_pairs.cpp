@@ -7,8 +7,9 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/io/image_file.hpp"
+#include "perception/io/image_sequence.hpp"
 #include "scenarios/config/bad_input.hpp"
 #include "scenarios/evaluation/disparity_files.hpp"
 #include "scenarios/evaluation/evaluation_recording.hpp"

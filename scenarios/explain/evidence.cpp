@@ -160,16 +160,17 @@ std::vector<Evidence> evidence_in(const FlightLog& log) {
 }
 
 Conclusion conclusion_of(const Explanation& explanation, const std::vector<Evidence>& evidence) {
-  const std::string no_return =
-      explanation.no_return_s
-          ? fmt::format("{:.2f} s before its end the flight was past return", *explanation.no_return_s)
+  const std::string last_chance =
+      explanation.last_chance_s
+          ? fmt::format("The flight still had a chance {:.2f} s before its end", *explanation.last_chance_s)
           : "At no moment that was tried had the flight a chance of one in five";
   if (explanation.cause == "infeasible")
     return {"infeasible", "Not even an aircraft that knows everything got through."};
   if (explanation.cause == "chance")
-    return {"chance", no_return + ", and no part would have helped: with other noise it might have arrived."};
+    return {"chance",
+            last_chance + ", and no part would have helped: with other noise it might have arrived."};
   if (explanation.cause == "joint")
-    return {"joint", fmt::format("{}; no single part would have helped, but {} together.", no_return,
+    return {"joint", fmt::format("{}; no single part would have helped, but {} together.", last_chance,
                                  fmt::join(explanation.parts, ", "))};
   const Effect& effect = *std::ranges::find(explanation.effects, explanation.cause, &Effect::part);
   Conclusion conclusion;
@@ -183,10 +184,13 @@ Conclusion conclusion_of(const Explanation& explanation, const std::vector<Evide
   const bool is_shown = shown != evidence.end();
   if (!is_shown) shown = std::ranges::find_if(evidence, of_part);
   conclusion.cause = shown != evidence.end() ? shown->cause : explanation.cause;
+  const std::string beginning = is_shown ? std::string(lead(conclusion.cause))
+                                         : fmt::format("An ideal {} would have saved it", explanation.cause);
   conclusion.sentence = fmt::format(
-      "{}: of 100 flights that go on from {} s before its end, {:.0f} more survive with an ideal {}. {}",
-      lead(conclusion.cause), fmt::join(explanation.decisive_s, " or "), 100 * effect.difference(),
-      explanation.cause, shown != evidence.end() ? shown->sentence : "");
+      "{}: of {} flights that went on from {} s before its end, {} survived with an ideal {}, and {} "
+      "without. {}",
+      beginning, effect.pairs.pairs(), fmt::join(explanation.decisive_s, " or "), effect.pairs.second(),
+      explanation.cause, effect.pairs.first(), shown != evidence.end() ? shown->sentence : "");
   if (!is_shown)
     conclusion.disagreement = fmt::format(
         "The log itself does not show it: what it shows of {} is within bounds.", explanation.cause);

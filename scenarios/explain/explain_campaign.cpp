@@ -36,9 +36,10 @@ std::vector<ExplainedRow> explained_rows(const CampaignFolder& folder, const std
     const fs::path file = folder.explanation_file(row.id);
     const auto text = text_if_there(file);
     if (!text) continue;
-    const auto [why, conclusion] = explanation_from_json(*text, file.string());
-    ExplainedRow& one = explained.emplace_back(ExplainedRow{row.id, row.condition, row.seed, conclusion.cause,
-                                                            why.cause, conclusion.sentence, why.no_return_s});
+    const auto [why, conclusion, evidence] = explanation_from_json(*text, file.string());
+    ExplainedRow& one =
+        explained.emplace_back(ExplainedRow{row.id, row.condition, row.seed, conclusion.cause, why.cause,
+                                            conclusion.sentence, why.last_chance_s});
     for (const Effect& effect : why.effects) one.effects[effect.part] = effect.difference();
   }
   return explained;
@@ -96,10 +97,10 @@ std::vector<SheetSection> causes_chapter(const std::vector<ExplainedRow>& rows) 
   savings.text =
       "Share of the lost flights that survive with the part ideal, less the share that other noise saves; "
       "95 % intervals over the flights (BCa bootstrap).";
-  Table flights{{"flight", "cause", "part", "past return, s before the end", "in words"}};
+  Table flights{{"flight", "cause", "part", "last chance, s before the end", "in words"}};
   for (const ExplainedRow& row : rows)
-    flights.add(row.id, row.cause, row.part, row.no_return_s ? fmt::format("{:.2f}", *row.no_return_s) : "-",
-                row.sentence);
+    flights.add(row.id, row.cause, row.part,
+                row.last_chance_s ? fmt::format("{:.2f}", *row.last_chance_s) : "-", row.sentence);
   return {causes, savings, {.title = "Explained flights", .table = flights}};
 }
 

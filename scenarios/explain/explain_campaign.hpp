@@ -15,7 +15,7 @@ struct ExplainedRow {
   std::string id, condition;
   std::uint64_t seed = 0;
   std::string cause, part, sentence;
-  std::optional<double> no_return_s;
+  std::optional<double> last_chance_s;
   std::map<std::string, double> effects =
       {};  ///< by part: more of its redraws survive with it ideal, -1 .. 1
 };

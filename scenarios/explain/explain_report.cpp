@@ -26,7 +26,7 @@ std::string to_json(const ExplainedFlight& explained, const std::vector<Evidence
             {"parts", why.parts},
             {"sentence", conclusion.sentence},
             {"disagreement", conclusion.disagreement},
-            {"no_return_s", why.no_return_s ? Json(*why.no_return_s) : Json()},
+            {"last_chance_s", why.last_chance_s ? Json(*why.last_chance_s) : Json()},
             {"decisive_s", why.decisive_s}};
   for (const Effect& effect : why.effects)
     json["effects"].push_back({{"part", effect.part},
@@ -60,6 +60,10 @@ ToldExplanation explanation_from_json(const std::string& text, const std::string
   for (const Json& one : json.at("flights"))
     told.explanation.flights.push_back({one.at("parts").get<std::vector<std::string>>(),
                                         one.at("before_end_s"), one.at("redraw"), one.at("survived")});
+  if (const Json& moment = json.at("last_chance_s"); !moment.is_null())
+    told.explanation.last_chance_s = moment;
+  for (const Json& one : json.at("evidence"))
+    told.evidence.push_back({one.at("cause"), one.at("part"), one.at("is_there"), one.at("sentence")});
   summarise(told.explanation);
   return told;
 } catch (const Json::exception&) {
@@ -69,13 +73,15 @@ ToldExplanation explanation_from_json(const std::string& text, const std::string
 std::vector<SheetSection> explanation_chapter(const ToldExplanation& told) {
   const Explanation& why = told.explanation;
   LinePlot plot{.title = "Chance to survive", .x_label = "before the end, s", .y_label = "survived, %"};
+  double beside_s = 0;  // bars at one place would hide each other
   const auto add = [&](const std::string& part, const std::string& name, Mark mark) {
     Series series{.name = name, .mark = mark};
+    if (mark == Mark::dots) beside_s += 0.03;
     for (const Chance& chance : why.chances) {
       if (chance.part != part) continue;
       const Interval interval =
           wilson_interval(static_cast<int>(chance.flown.with), static_cast<int>(chance.flown.of));
-      series.x.push_back(chance.before_end_s);
+      series.x.push_back(chance.before_end_s + (mark == Mark::dots ? beside_s - 0.03 : 0));
       series.y.push_back(100 * (mark == Mark::line ? chance.fitted : chance.flown.value()));
       if (mark == Mark::line) continue;
       series.low.push_back(100 * interval.minimum);
@@ -87,31 +93,47 @@ std::vector<SheetSection> explanation_chapter(const ToldExplanation& told) {
   add(std::string(the_control), "control", Mark::dots);
   std::size_t shown = 0;
   for (const Effect& effect : why.effects)
-    if (effect.part == why.cause || (effect.part != all_ideal && shown < 3)) {
+    if (effect.part == why.cause || effect.part == all_ideal || shown < 3) {
       add(effect.part, "ideal " + effect.part, Mark::dots);
-      ++shown;
+      shown += effect.part != all_ideal;
     }
-  if (why.no_return_s) plot.references.push_back({*why.no_return_s, "point of no return", true});
+  if (why.last_chance_s) plot.references.push_back({*why.last_chance_s, "last chance", true});
   std::vector<SheetSection> sections{{.title = "Why it was lost: " + told.conclusion.cause,
                                       .text = told.conclusion.sentence,
                                       .plots = {plot},
                                       .table = effects_table(why)}};
   if (!told.conclusion.disagreement.empty()) sections.front().text += " " + told.conclusion.disagreement;
+  Table log{{"cause", "part", "the log shows it", "what the log says"}};
+  for (const Evidence& one : told.evidence)
+    log.add(one.cause, one.part, one.is_there ? "yes" : "no", one.sentence);
+  sections.push_back({.title = "What the log shows of each cause", .table = log});
   return sections;
 }
 
 Table effects_table(const Explanation& explanation) {
-  Table table{{"ideal part", "more survive, %", "95 %", "pairs"}};
-  for (const Effect& effect : explanation.effects)
-    table.add(
-        effect.part, fmt::format("{:+.0f}", 100 * effect.difference()),
-        fmt::format("{:+.0f} to {:+.0f}", 100 * effect.interval().minimum, 100 * effect.interval().maximum),
-        effect.pairs.pairs());
+  Table table{{"ideal part"}};
+  for (const double moment_s : explanation.decisive_s)
+    table.head.push_back(fmt::format("from {:.2f} s: survived, control", moment_s));
+  table.head.insert(table.head.end(), {"more survive, %", "95 %", "pairs"});
+  std::vector<std::string> all(ideal_part_names.begin(), ideal_part_names.end());
+  for (const Effect& effect : explanation.effects) {
+    std::vector<std::string>& cells = table.rows.emplace_back();
+    cells.push_back(effect.part);
+    const std::vector<std::string> parts = effect.part == all_ideal ? all : std::vector{effect.part};
+    for (const double moment_s : explanation.decisive_s) {
+      const PairedOutcomes at = pairs_at(explanation, parts, moment_s);
+      cells.push_back(fmt::format("{} of {}, {}", at.second(), at.pairs(), at.first()));
+    }
+    cells.push_back(fmt::format("{:+.0f}", 100 * effect.difference()));
+    cells.push_back(
+        fmt::format("{:+.0f} to {:+.0f}", 100 * effect.interval().minimum, 100 * effect.interval().maximum));
+    cells.push_back(fmt::format("{}", effect.pairs.pairs()));
+  }
   return table;
 }
 
 Table chances_table(const Explanation& explanation) {
-  Table table{{"before the end, s", "survived", "of", "fitted chance, %"}};
+  Table table{{"control from, s before the end", "survived", "of", "fitted chance, %"}};
   for (const Chance& chance : explanation.chances)
     if (chance.part == the_control)
       table.add(fmt::format("{:.2f}", chance.before_end_s), chance.flown.with, chance.flown.of,

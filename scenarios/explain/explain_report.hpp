@@ -18,6 +18,7 @@ std::string to_json(const ExplainedFlight& explained, const std::vector<Evidence
 struct ToldExplanation {
   Explanation explanation;
   Conclusion conclusion;
+  std::vector<Evidence> evidence;
 };
 /// Throws ScenarioError, naming `name`, where the text is none.
 ToldExplanation explanation_from_json(const std::string& text, const std::string& name);
@@ -25,7 +26,8 @@ ToldExplanation explanation_from_json(const std::string& text, const std::string
 /// The chapter of a flight's page: one sentence, the chances over the moments, the effects.
 std::vector<SheetSection> explanation_chapter(const ToldExplanation& told);
 
-/// A row for each part: its effect with its interval, and the chances at the decisive moments.
+/// A row for each part: how many survived from each decisive moment on, with it and as control over the same
+/// noise, and its effect with its interval.
 Table effects_table(const Explanation& explanation);
 /// A row for each moment: how many of the control's redraws survived, and the fitted chance.
 Table chances_table(const Explanation& explanation);

@@ -61,11 +61,12 @@ const Redraw* control_of(const Explanation& result, const Redraw& redraw) {
 /// Over the same noise, at the decisive moments.
 PairedOutcomes pairs_of(const Explanation& result, const std::vector<std::string>& parts) {
   PairedOutcomes pairs;
-  for (const Redraw& one : result.flights) {
-    if (one.parts != parts ||
-        std::ranges::find(result.decisive_s, one.before_end_s) == result.decisive_s.end())
-      continue;
-    if (const Redraw* control = control_of(result, one)) pairs.count(control->survived, one.survived);
+  for (const double moment_s : result.decisive_s) {
+    const PairedOutcomes at = pairs_at(result, parts, moment_s);
+    pairs.both += at.both;
+    pairs.only_first += at.only_first;
+    pairs.only_second += at.only_second;
+    pairs.neither += at.neither;
   }
   return pairs;
 }
@@ -131,6 +132,7 @@ class Inquiry {
     for (const Chance& chance : result_.chances)
       if (chance.part == the_control)
         (chance.fitted < small_chance ? hopeless : hopeful).push_back(chance.before_end_s);
+    result_.last_chance_s = hopeful.empty() ? std::nullopt : std::optional(hopeful.front());
     if (!hopeless.empty()) result_.decisive_s.push_back(hopeless.back());
     if (!hopeful.empty()) result_.decisive_s.push_back(hopeful.front());
     if (hopeful.empty() && hopeless.size() > 1)  // it had no chance all along: with some time left
@@ -229,12 +231,6 @@ class Inquiry {
 void summarise(Explanation& explanation) {
   explanation.chances = chances_of(explanation.flights);
   explanation.effects = effects_of(explanation);
-  const auto is_hopeful = [](const Chance& chance) {
-    return chance.part == the_control && chance.fitted >= small_chance;
-  };
-  const auto latest = std::ranges::find_if(explanation.chances, is_hopeful);
-  explanation.no_return_s =
-      latest == explanation.chances.end() ? std::nullopt : std::optional(latest->before_end_s);
 }
 
 std::vector<double> moments_of(double flown_s) {
@@ -242,6 +238,16 @@ std::vector<double> moments_of(double flown_s) {
   for (const double moment_s : {0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0})
     if (moments.empty() || moment_s < flown_s - 0.2) moments.push_back(moment_s);
   return moments;
+}
+
+PairedOutcomes pairs_at(const Explanation& explanation, const std::vector<std::string>& parts,
+                        double before_end_s) {
+  PairedOutcomes pairs;
+  for (const Redraw& one : explanation.flights) {
+    if (one.parts != parts || one.before_end_s != before_end_s) continue;
+    if (const Redraw* control = control_of(explanation, one)) pairs.count(control->survived, one.survived);
+  }
+  return pairs;
 }
 
 Explanation explain(const ExplanationOptions& options, const FlyRedraws& fly) {

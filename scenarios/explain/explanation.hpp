@@ -52,16 +52,17 @@ struct Effect {
 struct Explanation {
   std::vector<Redraw> flights;
   std::vector<Chance> chances;
-  /// The latest moment at which the control's fitted chance is at least one in five, before the end; nothing
+  /// The point of no return: the latest moment at which the control's fitted chance is at least one in five
+  /// (before the parts were tried: the decisive moments lie around it), before the end; nothing
   /// where it is smaller at every moment that was tried.
-  std::optional<double> no_return_s;
+  std::optional<double> last_chance_s;
   std::vector<double> decisive_s;  ///< the moments whose pairs make the effects
   std::vector<Effect> effects;     ///< the greatest first
   std::string cause;               ///< a part; joint, infeasible or chance
   std::vector<std::string> parts;  ///< of a joint cause: those that act together
 };
 
-/// Chances, the point of no return and effects, from the flights and the decisive moments.
+/// Chances and effects, from the flights and the decisive moments.
 void summarise(Explanation& explanation);
 
 struct ExplanationOptions {
@@ -73,6 +74,11 @@ struct ExplanationOptions {
 
 /// Moments to try for a flight that was in the air for `flown_s`.
 std::vector<double> moments_of(double flown_s);
+
+/// Of the redraws from this moment on that were flown both with these parts and as control, with the same
+/// noise.
+PairedOutcomes pairs_at(const Explanation& explanation, const std::vector<std::string>& parts,
+                        double before_end_s);
 
 /// Flies what tells most, and decides. Equal answers give equal questions.
 Explanation explain(const ExplanationOptions& options, const FlyRedraws& fly);

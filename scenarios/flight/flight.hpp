@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "estimation/state_source.hpp"
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/obstacle_detector.hpp"
 #include "planning/autopilot.hpp"
 #include "scenarios/flight/flight_computer.hpp"

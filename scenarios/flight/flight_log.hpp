@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "estimation/samples.hpp"
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/obstacle_point.hpp"
 #include "planning/airframe.hpp"
 #include "planning/plan.hpp"

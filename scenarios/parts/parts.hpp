@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "estimation/state_source.hpp"
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/obstacle_detector.hpp"
 #include "planning/planner.hpp"
 #include "scenarios/config/any_config.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "estimation/samples.hpp"
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "planning/airframe.hpp"
 #include "sim/aircraft/truth.hpp"
 #include "sim/scene/trees.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "scenarios/config/config_tree.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/perception_config.hpp"
 #include "scenarios/scenario/scenario.hpp"
 

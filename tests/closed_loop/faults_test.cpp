@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "planning/autopilot.hpp"
 #include "scenarios/flight/flight.hpp"
 #include "scenarios/flight/onboard_sensors.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <deque>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "planning/autopilot.hpp"
 #include "scenarios/config/named_seed.hpp"
 #include "scenarios/flight/flight.hpp"

@@ -1,4 +1,4 @@
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "tests/fuzz/fuzzed_file.hpp"
 
 /// Both cameras' sensor.yaml in one input, cut apart at the first line of '='.

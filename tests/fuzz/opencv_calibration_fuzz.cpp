@@ -1,4 +1,4 @@
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "tests/fuzz/fuzzed_file.hpp"
 
 /// XML, YAML or what is taken for a rig file, as its bytes say; in metres and, with a size beside it, in

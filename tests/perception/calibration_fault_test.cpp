@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <random>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "tests/perception/rigs.hpp"
 #include "tests/support/euroc_text.hpp"
 #include "tests/support/temporary_folder.hpp"

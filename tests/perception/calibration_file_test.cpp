@@ -1,4 +1,4 @@
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <opencv2/core/persistence.hpp>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/rectification/rectify.hpp"
 #include "tests/perception/rigs.hpp"
 #include "tests/support/temporary_folder.hpp"

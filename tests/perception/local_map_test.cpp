@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 
 namespace understory {
 namespace {

@@ -6,7 +6,7 @@
 #include <opencv2/core/persistence.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/rectification/rectify.hpp"
 #include "tests/perception/rigs.hpp"
 #include "tests/support/euroc_text.hpp"

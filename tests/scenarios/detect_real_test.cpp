@@ -5,7 +5,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/io/stereo_recording.hpp"
 #include "perception/io/text_table.hpp"
 #include "perception/rectification/rectify.hpp"

@@ -74,7 +74,7 @@ TEST(Explanation, WhereNothingHelpsAndARedrawArrivesItWasChance) {
 TEST(Explanation, WhereNotEvenEverythingHelpsItWasInfeasible) {
   const Explanation why = explained([](const Parts&, double) { return 0.02; });
   EXPECT_EQ(why.cause, "infeasible");
-  EXPECT_FALSE(why.no_return_s.has_value());
+  EXPECT_FALSE(why.last_chance_s.has_value());
 }
 
 TEST(Explanation, TwoPartsThatHelpOnlyTogetherAreJoint) {

@@ -8,7 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "scenarios/evaluation/pair_evaluation.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/text.hpp"

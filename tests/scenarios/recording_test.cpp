@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/io/hit_files.hpp"
 #include "perception/io/pose_file.hpp"
 #include "perception/io/stereo_recording.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "estimation/filter_config.hpp"
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "scenarios/config/config_tree.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "scenarios/scenario/scenario_rig.hpp"

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "perception/full_stereo/full_stereo.hpp"
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "perception/rectification/rectify.hpp"
 #include "tests/sim/camera_scenes.hpp"

@@ -2,7 +2,7 @@
 #include <array>
 #include <opencv2/core/eigen.hpp>
 
-#include "perception/io/calibration_formats.hpp"
+#include "perception/io/calibration/calibration_forms.hpp"
 #include "perception/io/strict_map.hpp"
 #include "perception/io/text_file.hpp"
 
@@ -77,13 +77,6 @@ Sensor read_sensor(const fs::path& file, double meters_per_unit) {
 }
 
 }  // namespace
-
-std::optional<fs::path> euroc_folder(const fs::path& path) {
-  std::error_code ignored;
-  for (const fs::path& folder : {path, path / "mav0"})
-    if (fs::is_directory(folder / "cam0", ignored)) return folder;
-  return std::nullopt;
-}
 
 EurocCalibration read_euroc_calibration(const fs::path& folder, const CalibrationOptions& options) {
   const fs::path right_file = folder / "cam1" / "sensor.yaml";

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <utility>
 
-#include "perception/io/calibration_formats.hpp"
+#include "perception/io/calibration/calibration_forms.hpp"
 #include "perception/io/text_file.hpp"
 
 namespace understory {

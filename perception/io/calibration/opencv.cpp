@@ -6,7 +6,7 @@
 #include <opencv2/core/persistence.hpp>
 #include <vector>
 
-#include "perception/io/calibration_formats.hpp"
+#include "perception/io/calibration/calibration_forms.hpp"
 #include "perception/io/strict_map.hpp"
 #include "perception/io/text_file.hpp"
 

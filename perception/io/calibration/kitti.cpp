@@ -5,7 +5,7 @@
 #include <map>
 #include <sstream>
 
-#include "perception/io/calibration_formats.hpp"
+#include "perception/io/calibration/calibration_forms.hpp"
 #include "perception/io/text_file.hpp"
 #include "perception/io/text_table.hpp"
 

@@ -45,7 +45,4 @@ StereoRig read_rig(const std::filesystem::path& file);
 /// The camera's pose for a mounting: OpenCV axes, looking along body x turned down by pitch_down_rad.
 Eigen::Isometry3d T_body_camera_of(const Eigen::Vector3d& left_camera_body_m, double pitch_down_rad);
 
-/// The folder that has cam0 and cam1: `path` or its mav0; empty if neither has them.
-std::optional<std::filesystem::path> euroc_folder(const std::filesystem::path& path);
-
 }  // namespace understory

@@ -1,4 +1,4 @@
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "perception/io/calibration_formats.hpp"
+#include "perception/io/calibration/calibration_forms.hpp"
 #include "perception/io/field_reader.hpp"
+#include "perception/io/image_sequence.hpp"
 #include "perception/io/text_file.hpp"
 
 namespace understory {

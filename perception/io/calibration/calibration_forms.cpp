@@ -1,4 +1,4 @@
-#include "perception/io/calibration_formats.hpp"
+#include "perception/io/calibration/calibration_forms.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>

@@ -8,7 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "perception/io/calibration_file.hpp"
+#include "perception/io/calibration/calibration_file.hpp"
+#include "perception/io/image_file.hpp"
 #include "perception/io/strict_map.hpp"
 
 /// What the readers of the several formats share, and the readers themselves (read_calibrated_rig chooses).
@@ -17,7 +18,7 @@ namespace understory {
 /// The limits that every reader applies to a rig, rectified or raw, in any file format: wide enough for any
 /// camera and frame size that flies, narrow enough to catch a wrong unit.
 namespace rig_limits {
-inline constexpr int minimum_size_px = 32, maximum_size_px = 8192;
+inline constexpr int minimum_size_px = 32, maximum_size_px = maximum_side_px;
 inline constexpr double minimum_focal_px = 10, maximum_focal_px = 20000;
 inline constexpr double minimum_baseline_m = 0.01, maximum_baseline_m = 10;
 inline constexpr double minimum_center_px = -8192, maximum_center_px = 16384;

@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "perception/io/calibration_formats.hpp"
+#include "perception/io/calibration/calibration_forms.hpp"
 #include "perception/io/text_file.hpp"
 
 namespace understory {
