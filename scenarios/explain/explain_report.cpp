@@ -115,13 +115,11 @@ Table effects_table(const Explanation& explanation) {
   for (const double moment_s : explanation.decisive_s)
     table.head.push_back(fmt::format("survived from {:.2f} s", moment_s));
   table.head.insert(table.head.end(), {"more survive, %", "95 %", "pairs"});
-  std::vector<std::string> all(ideal_part_names.begin(), ideal_part_names.end());
   for (const Effect& effect : explanation.effects) {
     std::vector<std::string>& cells = table.rows.emplace_back();
     cells.push_back(effect.part);
-    const std::vector<std::string> parts = effect.part == all_ideal ? all : std::vector{effect.part};
     for (const double moment_s : explanation.decisive_s) {
-      const PairedOutcomes at = pairs_at(explanation, parts, moment_s);
+      const PairedOutcomes at = pairs_at(explanation, effect.part, moment_s);
       cells.push_back(fmt::format("{} of {}, control {}", at.second(), at.pairs(), at.first()));
     }
     cells.push_back(fmt::format("{:+.0f}", 100 * effect.difference()));

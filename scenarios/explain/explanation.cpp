@@ -59,10 +59,10 @@ const Redraw* control_of(const Explanation& result, const Redraw& redraw) {
 }
 
 /// Over the same noise, at the decisive moments.
-PairedOutcomes pairs_of(const Explanation& result, const std::vector<std::string>& parts) {
+PairedOutcomes pairs_of(const Explanation& result, const std::string& part) {
   PairedOutcomes pairs;
   for (const double moment_s : result.decisive_s) {
-    const PairedOutcomes at = pairs_at(result, parts, moment_s);
+    const PairedOutcomes at = pairs_at(result, part, moment_s);
     pairs.both += at.both;
     pairs.only_first += at.only_first;
     pairs.only_second += at.only_second;
@@ -73,8 +73,8 @@ PairedOutcomes pairs_of(const Explanation& result, const std::vector<std::string
 
 std::vector<Effect> effects_of(const Explanation& result) {
   std::vector<Effect> all;
-  for (const std::string& part : all_parts()) all.push_back({part, pairs_of(result, {part})});
-  all.push_back({std::string(all_ideal), pairs_of(result, all_parts())});
+  for (const std::string& part : all_parts()) all.push_back({part, pairs_of(result, part)});
+  all.push_back({std::string(all_ideal), pairs_of(result, std::string(all_ideal))});
   std::ranges::stable_sort(all, std::ranges::greater{}, &Effect::difference);
   return all;
 }
@@ -240,11 +240,10 @@ std::vector<double> moments_of(double flown_s) {
   return moments;
 }
 
-PairedOutcomes pairs_at(const Explanation& explanation, const std::vector<std::string>& parts,
-                        double before_end_s) {
+PairedOutcomes pairs_at(const Explanation& explanation, const std::string& part, double before_end_s) {
   PairedOutcomes pairs;
   for (const Redraw& one : explanation.flights) {
-    if (one.parts != parts || one.before_end_s != before_end_s) continue;
+    if (one.before_end_s != before_end_s || name_of(one.parts) != part) continue;
     if (const Redraw* control = control_of(explanation, one)) pairs.count(control->survived, one.survived);
   }
   return pairs;

@@ -75,10 +75,9 @@ struct ExplanationOptions {
 /// Moments to try for a flight that was in the air for `flown_s`.
 std::vector<double> moments_of(double flown_s);
 
-/// Of the redraws from this moment on that were flown both with these parts and as control, with the same
-/// noise.
-PairedOutcomes pairs_at(const Explanation& explanation, const std::vector<std::string>& parts,
-                        double before_end_s);
+/// Of the redraws from this moment on that were flown both with this part (or `everything`) and as control,
+/// with the same noise.
+PairedOutcomes pairs_at(const Explanation& explanation, const std::string& part, double before_end_s);
 
 /// Flies what tells most, and decides. Equal answers give equal questions.
 Explanation explain(const ExplanationOptions& options, const FlyRedraws& fly);

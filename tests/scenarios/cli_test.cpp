@@ -172,7 +172,8 @@ TEST_F(Cli, BadRigsAreNamedInOneLine) {
   expect_refusal("rig", "FILE");
   expect_refusal("rig nowhere", "rigs of the library: long, paper");
   expect_refusal("rig " + raw_rigs + "paper.xml", "paper.xml: baseline in m: must be from 0.01 to 10");
-  expect_refusal("rig " + raw_rigs + "long.xml --unit ft", "--unit ft: must be m, cm, mm or a number of metres");
+  expect_refusal("rig " + raw_rigs + "long.xml --unit ft",
+                 "--unit ft: must be m, cm, mm or a number of metres");
   for (const char* size : {"376", "376x", "x240", "376x240x8", "wide"})
     expect_refusal("rig " + raw_rigs + "long.xml --size " + size, "must be WIDTHxHEIGHT");
   expect_refusal("rig " + raw_rigs + "long.xml --size 640x480", "image size: the file says 376x240");

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "perception/io/calibration/calibration_forms.hpp"
 #include "perception/io/field_reader.hpp"
+#include "perception/io/image_file.hpp"
 #include "perception/io/image_sequence.hpp"
 #include "perception/io/text_file.hpp"
 
@@ -106,10 +108,11 @@ CalibratedRig from_cameras(StereoCalibration calibration, const fs::path& path,
   return read;
 }
 
-/// A form that states no unit: whose baseline is hardly one in metres was written in another.
-CalibratedRig in_stated_unit(const CalibratedRig& read, const fs::path& path,
-                             const CalibrationOptions& options) {
+/// Of a form that states no unit: a baseline that is hardly one in metres was written in another.
+CalibratedRig from_unstated_unit(StereoCalibration calibration, const fs::path& path,
+                                 const CalibrationOptions& options) {
   constexpr double nearest_m = 0.01, widest_m = 1;
+  CalibratedRig read = from_cameras(std::move(calibration), path, options);
   const double baseline_m = read.rig.baseline_m;
   if (!options.meters_per_unit && !(baseline_m >= nearest_m && baseline_m <= widest_m))
     refuse_input(
@@ -168,14 +171,11 @@ CalibratedRig read_form(Form form, const fs::path& file, const fs::path& path,
                         const CalibrationOptions& options) {
   switch (form) {
     case Form::opencv:
-      return in_stated_unit(from_cameras(read_opencv_calibration(file, options), path, options), path,
-                            options);
+      return from_unstated_unit(read_opencv_calibration(file, options), path, options);
     case Form::kalibr:
       return from_cameras(read_kalibr_calibration(file, options), path, options);
     case Form::ros:
-      return in_stated_unit(
-          from_cameras(read_ros_calibration({file, partner_of(file)}, options), path, options), path,
-          options);
+      return from_unstated_unit(read_ros_calibration({file, partner_of(file)}, options), path, options);
     case Form::kitti:
       return from_rectified(read_kitti_calibration(file, options), path, options);
     case Form::middlebury:
@@ -192,9 +192,10 @@ CalibratedRig read_form(Form form, const fs::path& file, const fs::path& path,
 /// A folder that is not EuRoC's: OpenCV's matrices, two files of ROS, or one file of another form.
 CalibratedRig read_folder(const fs::path& path, const CalibrationOptions& options) {
   std::error_code ignored;
-  std::vector<fs::path> files;
+  std::vector<fs::path> files;  // pictures lie beside a data set's calibration: they are not opened
   for (const auto& entry : fs::directory_iterator(path, ignored))
-    if (entry.is_regular_file(ignored) && entry.file_size(ignored) <= maximum_keyed_bytes)
+    if (entry.is_regular_file(ignored) && entry.file_size(ignored) <= maximum_keyed_bytes &&
+        !is_image_name(entry.path()))
       files.push_back(entry.path());
   std::ranges::sort(files);
   std::vector<std::pair<Form, fs::path>> told;
@@ -203,12 +204,10 @@ CalibratedRig read_folder(const fs::path& path, const CalibrationOptions& option
       told.emplace_back(form, file);
   const auto is = [&](Form form) { return [form](const auto& one) { return one.first == form; }; };
   if (told.size() == 2 && std::ranges::all_of(told, is(Form::ros)))
-    return in_stated_unit(
-        from_cameras(read_ros_calibration({told[0].second, told[1].second}, options), path, options), path,
-        options);
+    return from_unstated_unit(read_ros_calibration({told[0].second, told[1].second}, options), path, options);
   if (told.size() == 1 && told[0].first != Form::opencv)
     return read_form(told[0].first, told[0].second, path, options);
-  return in_stated_unit(from_cameras(read_opencv_calibration(path, options), path, options), path, options);
+  return from_unstated_unit(read_opencv_calibration(path, options), path, options);
 }
 
 CalibratedRig read_any_form(const fs::path& path, const CalibrationOptions& options) {

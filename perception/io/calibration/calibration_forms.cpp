@@ -34,6 +34,15 @@ ImageSize agreed_image_size(const std::string& file, std::optional<ImageSize> of
   return given;
 }
 
+bool has_camera_form(const cv::Matx33d& matrix) {
+  return matrix(0, 1) == 0 && matrix(1, 0) == 0 && matrix.row(2) == cv::Matx13d(0, 0, 1);
+}
+
+bool has_projection_form(const cv::Matx34d& matrix) {
+  return matrix(0, 1) == 0 && matrix(1, 0) == 0 && matrix(1, 3) == 0 &&
+         matrix.row(2) == cv::Matx14d(0, 0, 1, 0);
+}
+
 bool is_rotation(const cv::Matx33d& matrix) {
   constexpr double tolerance = 1e-3;
   return cv::norm(matrix * matrix.t() - cv::Matx33d::eye(), cv::NORM_INF) < tolerance &&

@@ -23,7 +23,8 @@ inline constexpr double minimum_focal_px = 10, maximum_focal_px = 20000;
 inline constexpr double minimum_baseline_m = 0.01, maximum_baseline_m = 10;
 inline constexpr double minimum_center_px = -8192, maximum_center_px = 16384;
 inline constexpr double minimum_depth_m = 0.1, maximum_depth_m = 1000;
-inline constexpr double maximum_offset_m = 10;  ///< of a camera from the body's origin
+inline constexpr double maximum_coefficient = 1e4;  ///< of a lens: wild ones reach 13 (the paper's rig)
+inline constexpr double maximum_offset_m = 10;      ///< of a camera from the body's origin
 }  // namespace rig_limits
 
 struct ImageSize {
@@ -61,6 +62,11 @@ void require_metres(const std::string& file, const std::string& form, const Cali
 /// The content of a calibration file, unpacked where it is gzip's (OpenCV writes .xml.gz). Throws as
 /// read_file does.
 std::string calibration_text(const std::filesystem::path& file);
+
+/// fx 0 cx, 0 fy cy, 0 0 1.
+bool has_camera_form(const cv::Matx33d& matrix);
+/// f 0 cx t, 0 f cy 0, 0 0 1 0: of rectified cameras side by side.
+bool has_projection_form(const cv::Matx34d& matrix);
 
 /// Orthonormal to 0.001, since files are rounded by hand, and right-handed.
 bool is_rotation(const cv::Matx33d& matrix);

@@ -56,7 +56,6 @@ void read_additions(StrictMap& map, Sensor& sensor) {
 }
 
 Sensor read_sensor(const fs::path& file, double meters_per_unit) {
-  constexpr double maximum_coefficient = 1e4;
   StrictMap map(parse_yaml(read_file(file), file.string()));
   Sensor sensor;
   sensor.T_body_sensor = pose(map, meters_per_unit);

@@ -8,7 +8,7 @@
 namespace understory {
 namespace {
 
-constexpr double maximum_coefficient = 1e4;
+using namespace rig_limits;
 
 struct Camera {
   CameraCalibration calibration;

@@ -22,9 +22,10 @@ struct Line {
 
 std::map<std::string, Line> lines_of(const std::string& file, const std::string& text) {
   // Of calib.txt, its kinds for odometry and for objects, and of calib_cam_to_cam.txt.
-  constexpr std::array<std::string_view, 15> known{
-      "P", "P_rect", "S_rect",  "R_rect",         "R0_rect",        "S",          "K",          "D",
-      "R", "T",      "Tr_velo", "Tr_velo_to_cam", "Tr_imu_to_velo", "calib_time", "corner_dist"};
+  constexpr std::array<std::string_view, 17> known{
+      "Tr",         "Tr_velo_cam", "P", "P_rect", "S_rect",  "R_rect",         "R0_rect",        "S",
+      "K",          "D",           "R", "T",      "Tr_velo", "Tr_velo_to_cam", "Tr_imu_to_velo", "calib_time",
+      "corner_dist"};
   std::map<std::string, Line> lines;
   std::istringstream stream(text);
   std::string line;
@@ -36,8 +37,7 @@ std::map<std::string, Line> lines_of(const std::string& file, const std::string&
     const std::string key = line.substr(0, colon);
     const std::string kind = key.substr(0, key.find_last_not_of("0123456789") + 1);
     const std::string plain = kind.ends_with('_') ? kind.substr(0, kind.size() - 1) : kind;
-    if (std::ranges::find(known, plain) == known.end() && std::ranges::find(known, key) == known.end() &&
-        key != "Tr" && key != "Tr_velo_cam")
+    if (std::ranges::find(known, plain) == known.end() && std::ranges::find(known, key) == known.end())
       refuse_input(place, key, "a calibration of KITTI's has no such key");
     std::istringstream words(line.substr(colon + 1));
     Line& its = lines[key];

@@ -17,7 +17,6 @@ namespace fs = std::filesystem;
 using namespace rig_limits;
 
 constexpr double maximum_value = 1e9;           // of anything: focal lengths times millimetres stay far below
-constexpr double maximum_coefficient = 1e4;     // wild calibrations reach 13 (the paper's rig)
 constexpr double coefficient_tolerance = 1e-9;  // what counts as 0
 
 struct Matrix {
@@ -104,8 +103,7 @@ cv::Matx33d opencv_rotation(StrictMap& map, const std::string& key) {
 /// 3x3: fx 0 cx, 0 fy cy, 0 0 1.
 cv::Matx33d opencv_camera_matrix(StrictMap& map, const std::string& key) {
   const auto camera = matrix_of_shape<3, 3>(map, key);
-  if (camera(0, 1) != 0 || camera(1, 0) != 0 || camera(2, 0) != 0 || camera(2, 1) != 0 || camera(2, 2) != 1)
-    map.fail(key, "must have the form fx 0 cx, 0 fy cy, 0 0 1");
+  if (!has_camera_form(camera)) map.fail(key, "must have the form fx 0 cx, 0 fy cy, 0 0 1");
   for (const double focal_px : {camera(0, 0), camera(1, 1)})
     if (!in_range(focal_px, minimum_focal_px, maximum_focal_px))
       map.fail(key, fmt::format("focal lengths must be from {} to {} px, one is {}", minimum_focal_px,
@@ -120,9 +118,7 @@ cv::Matx33d opencv_camera_matrix(StrictMap& map, const std::string& key) {
 /// 3x4: f 0 cx t, 0 f cy 0, 0 0 1 0; t in focal lengths times the file's unit.
 cv::Matx34d opencv_projection(StrictMap& map, const std::string& key) {
   const auto projection = matrix_of_shape<3, 4>(map, key);
-  const bool has_form = projection(0, 1) == 0 && projection(1, 0) == 0 && projection(1, 3) == 0 &&
-                        projection.row(2) == cv::Matx14d(0, 0, 1, 0);
-  if (!has_form)
+  if (!has_projection_form(projection))
     map.fail(key, "must have the form f 0 cx t, 0 f cy 0, 0 0 1 0, of rectified cameras side by side");
   return projection;
 }

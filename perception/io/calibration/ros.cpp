@@ -34,7 +34,7 @@ std::vector<double> coefficients(StrictMap& map, const std::string& key, const s
   StrictMap fields = map.map(key);
   fields.whole("rows", 1, 1);
   fields.whole("cols", count, count);
-  return fields.numbers("data", static_cast<std::size_t>(count), -1e4, 1e4);
+  return fields.numbers("data", static_cast<std::size_t>(count), -maximum_coefficient, maximum_coefficient);
 }
 
 /// Nothing of the sensor may be left out or put together: calibrations are of the whole image.
@@ -58,8 +58,7 @@ Camera read_camera(const std::filesystem::path& file) {
                  map.whole("image_height", minimum_size_px, maximum_size_px)};
   its.camera_matrix = matrix<3, 3>(map, "camera_matrix");
   const cv::Matx33d& K = its.camera_matrix;
-  if (K(0, 1) != 0 || K(1, 0) != 0 || K.row(2) != cv::Matx13d(0, 0, 1) || K(0, 0) < minimum_focal_px ||
-      K(1, 1) < minimum_focal_px)
+  if (!has_camera_form(K) || K(0, 0) < minimum_focal_px || K(1, 1) < minimum_focal_px)
     map.fail("camera_matrix",
              "must have the form fx 0 cx, 0 fy cy, 0 0 1, with focal lengths of 10 px or more");
   its.lens = lens_model(map, "distortion_model", words);
@@ -67,8 +66,7 @@ Camera read_camera(const std::filesystem::path& file) {
   its.rectification = matrix<3, 3>(map, "rectification_matrix");
   if (!is_rotation(its.rectification)) map.fail("rectification_matrix", "must be a rotation, row by row");
   its.projection = matrix<3, 4>(map, "projection_matrix");
-  const cv::Matx34d& P = its.projection;
-  if (P(0, 1) != 0 || P(1, 0) != 0 || P(1, 3) != 0 || P.row(2) != cv::Matx14d(0, 0, 1, 0))
+  if (!has_projection_form(its.projection))
     map.fail("projection_matrix", "must have the form f 0 cx t, 0 f cy 0, 0 0 1 0, of cameras side by side");
   require_whole_image(map);
   map.refuse_others(" camera_name header D K R P height width ");
