@@ -38,4 +38,14 @@ StereoRig rectified_rig(const StereoCalibration& calibration, double detection_d
   return rig;
 }
 
+CameraCalibration rectified_camera(const StereoRig& rig, double center_x_px, double right_of_left_m) {
+  const double f = rig.focal_px;
+  CameraCalibration camera;
+  camera.camera_matrix = cv::Matx33d(f, 0, center_x_px, 0, f, rig.center_y_px, 0, 0, 1);
+  camera.distortion = {0, 0, 0, 0};
+  camera.projection =
+      cv::Matx34d(f, 0, center_x_px, -f * right_of_left_m, 0, f, rig.center_y_px, 0, 0, 0, 1, 0);
+  return camera;
+}
+
 }  // namespace understory

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <opencv2/core/matx.hpp>
 #include <optional>
 #include <string>
@@ -25,6 +26,12 @@ struct CameraCalibration {
   cv::Matx33d rectification = cv::Matx33d::eye();  ///< R1 or R2: raw camera axes into rectified ones
   cv::Matx34d projection =
       cv::Matx34d::zeros();  ///< P1 or P2: rectified pixels; P2(0,3) = -focal * baseline, m
+
+  /// Whether the lens has any distortion: an equidistant one always has.
+  bool bends() const {
+    return lens == LensModel::equidistant ||
+           std::ranges::any_of(distortion, [](double coefficient) { return coefficient != 0; });
+  }
 };
 
 /// A stereo pair of raw cameras. Raw and rectified images have the same size.
@@ -49,5 +56,9 @@ struct CalibratedRig {
 /// std::runtime_error where the projections are no rectified pair (unequal focal lengths or rows, no positive
 /// baseline).
 StereoRig rectified_rig(const StereoCalibration& calibration, double detection_depth_m);
+
+/// A camera of `rig` whose images come rectified, so that rectifying them changes nothing. `right_of_left_m`:
+/// 0, or the baseline for the right one.
+CameraCalibration rectified_camera(const StereoRig& rig, double center_x_px, double right_of_left_m);
 
 }  // namespace understory

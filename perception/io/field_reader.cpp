@@ -45,7 +45,7 @@ class FieldReader : public FieldVisitor {
   }
 
   void numbers(std::string_view name, FieldNumbers& numbers, std::string_view) override {
-    const TextNode* node = take(name);
+    const TextNode* node = take(name, numbers.shape != Shape::optional);
     if (node == nullptr) return;
     numbers.values.clear();
     if (numbers.shape == Shape::optional && node->kind == TextNode::Kind::nothing) return;
@@ -106,10 +106,11 @@ class FieldReader : public FieldVisitor {
   }
 
  private:
-  const TextNode* take(std::string_view name) {
+  const TextNode* take(std::string_view name, bool can_be_required = true) {
     known_.emplace_back(name);
     const TextNode* node = find_child(map_, name);
-    if (node == nullptr && keys_ == Keys::all_required) refuse_input(map_.origin, full(name), "missing");
+    if (node == nullptr && can_be_required && keys_ == Keys::all_required)
+      refuse_input(map_.origin, full(name), "missing");
     return node;
   }
 

@@ -11,8 +11,8 @@ namespace understory {
 
 /// Takes values for the fields from a map of keys. Fields without a key in the map keep their values. Throws
 /// InputError "file:line: key: expected ..., got ..." for a wrong type, for a value out of range, and for
-/// keys that no field has; with Keys::all_required also for a field without a key. `path` stands before the
-/// keys in messages.
+/// keys that no field has; with Keys::all_required also for a field without a key, unless it is optional.
+/// `path` stands before the keys in messages.
 enum class Keys { optional, all_required };
 void read_fields(const TextNode& map, const Fields& fields, const std::string& path = "",
                  Keys keys = Keys::optional);

@@ -11,9 +11,9 @@ cv::Mat decode(const std::string& bytes) {
   return cv::imdecode(row, cv::IMREAD_UNCHANGED);
 }
 
-std::vector<unsigned char> encode_jpeg(const cv::Mat& picture) {
+std::vector<unsigned char> encode_jpeg(const cv::Mat& picture, int quality) {
   std::vector<unsigned char> bytes;
-  cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, 85});
+  cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
   return bytes;
 }
 

@@ -16,8 +16,8 @@ struct PictureCodecs {
   /// The image that these bytes hold, as it was stored; empty if they hold none or a damaged one. Throws
   /// cv::Exception if OpenCV refuses them. May print to stderr, as the film functions do.
   cv::Mat (*decode)(const std::string& bytes);
-  /// The picture as a JPEG file.
-  std::vector<unsigned char> (*encode_jpeg)(const cv::Mat& picture);
+  /// The picture as a JPEG file; `quality` of 100.
+  std::vector<unsigned char> (*encode_jpeg)(const cv::Mat& picture, int quality);
   /// A film for FFmpeg to read; isOpened() tells whether it can.
   std::unique_ptr<cv::VideoCapture> (*read_film)(const std::string& file);
   /// A film in H.264, BGR 8-bit; isOpened() is false where FFmpeg has no encoder for it.

@@ -80,8 +80,8 @@ class Flights {
 
   void launch(const CampaignTask& task) {
     fs::remove(folder_.flight_file(task));  // how it failed the last time is no answer any more
-    const pid_t child = start_this_program(flight_arguments(folder_, campaign_, task, config_.keeps_runs),
-                                           SIGKILL, folder_.log_file(task));
+    const pid_t child = start_this_program(flight_arguments(folder_, campaign_, task, config_), SIGKILL,
+                                           folder_.log_file(task));
     air_[child] = {&task};
   }
 
@@ -164,7 +164,7 @@ void count(const FlightRow& row, CampaignProgress& progress) {
 }
 
 std::vector<std::string> flight_arguments(const CampaignFolder& folder, const Campaign& campaign,
-                                          const CampaignTask& task, bool keeps_run) {
+                                          const CampaignTask& task, const LocalEngineConfig& config) {
   const CampaignFolder whole{fs::absolute(folder.path).lexically_normal()};
   const std::string condition = whole.condition_file(campaign.conditions[task.condition]).string();
   std::vector<std::string> arguments{"fly", condition, "--seed", fmt::format("{}", task.seed), "--quiet"};
@@ -173,7 +173,9 @@ std::vector<std::string> flight_arguments(const CampaignFolder& folder, const Ca
   if (fs::exists(track.parent_path()))
     arguments.insert(arguments.end(), {"--track", track.string()});  // not in a tuning
   arguments.insert(arguments.end(), {"--renderer", campaign.renderer});
-  if (keeps_run) arguments.insert(arguments.end(), {"--out", (whole.path / "runs" / task.id).string()});
+  arguments.insert(arguments.end(), config.more.begin(), config.more.end());
+  if (config.keeps_runs)
+    arguments.insert(arguments.end(), {"--out", (whole.path / "runs" / task.id).string()});
   return arguments;
 }
 

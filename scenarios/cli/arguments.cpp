@@ -68,6 +68,12 @@ void add_renderer_option(Command& command, RendererKind& renderer) {
                  "there is a GPU, else osmesa)");
 }
 
+void add_recording_options(Command& command, const std::string& name, RecordingChoice& choice,
+                           const std::string& meaning) {
+  command.choice(name, choice.form, recording_forms, meaning);
+  command.whole("--every", choice.every, 1, 10'000, "record every N-th stereo pair only");
+}
+
 void add_jobs_option(Command& command, int& jobs, const std::string& what) {
   command.whole("--jobs", jobs, 1, 1024, "number of " + what + " at a time (default: number of cores)");
 }

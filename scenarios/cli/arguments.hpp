@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scenarios/cli/command_line.hpp"
+#include "scenarios/recording/recording_choice.hpp"
 #include "scenarios/scenario/data_files.hpp"
 #include "sim/render/renderer_kind.hpp"
 
@@ -25,6 +26,9 @@ void add_with_option(Command& command, std::vector<std::string>& with);
 void add_vision_options(Command& command, VisionConfigSources& sources);
 /// --renderer, as every command that draws has it.
 void add_renderer_option(Command& command, RendererKind& renderer);
+/// The option `name` for a data set's form, and --every.
+void add_recording_options(Command& command, const std::string& name, RecordingChoice& choice,
+                           const std::string& meaning);
 /// --jobs, how many of `what` at a time; 0 if it is not given.
 void add_jobs_option(Command& command, int& jobs, const std::string& what);
 /// `jobs`, or one a core if that is 0.

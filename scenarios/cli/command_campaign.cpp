@@ -6,6 +6,7 @@
 
 #include "scenarios/campaign/campaign_file.hpp"
 #include "scenarios/campaign/campaign_folder.hpp"
+#include "scenarios/campaign/data_set.hpp"
 #include "scenarios/campaign/engines.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
@@ -42,6 +43,7 @@ struct CampaignArguments {
   bool print_tasks = false;
   bool keeps_runs = false;
   bool explains = false;
+  RecordingChoice recording;
 };
 
 /// Of every condition, before anything is flown: a rig that is not there would fail every flight.
@@ -71,7 +73,7 @@ int print_tasks(const CampaignFolder& folder, const Campaign& campaign) {
   for (const CampaignTask& task : tasks_of(campaign)) {
     if (const auto file = read_flight(folder, task); file && file->row.flown()) continue;
     std::string line = quoted(program.string());
-    for (const std::string& argument : flight_arguments(folder, campaign, task, false))
+    for (const std::string& argument : flight_arguments(folder, campaign, task, {}))
       line += fmt::format(" {}", quoted(argument));
     fmt::print("{}\n", line);
   }
@@ -84,7 +86,10 @@ enum class Finish { all_over, stopped };
 Finish fly_here(const CampaignFolder& folder, const Campaign& campaign, const CampaignArguments& arguments) {
   LocalEngineConfig config;
   config.jobs = jobs_or_cores(arguments.jobs);
-  config.keeps_runs = arguments.keeps_runs;
+  config.keeps_runs = arguments.keeps_runs || arguments.recording.form;
+  if (arguments.recording.form)
+    config.more = {"--record", std::string(word_for(*arguments.recording.form)), "--every",
+                   fmt::format("{}", arguments.recording.every)};
   ProgressLine line;
   const bool finished = fly_locally(folder, campaign, in_flying_order(campaign), config,
                                     [&](const CampaignProgress& progress) { show(line, progress); });
@@ -115,6 +120,7 @@ void require_engine(const CampaignArguments& arguments) {
   refuse(on_slurm && arguments.jobs != 0, "--jobs", "local");
   refuse(on_slurm && arguments.keeps_runs, "--keep-runs", "local");
   refuse(on_slurm && arguments.explains, "--explain", "local");
+  refuse(on_slurm && arguments.recording.form, "--record", "local");
 }
 
 /// Of a campaign file, or of the folder of a campaign that is to go on.
@@ -172,6 +178,7 @@ int run_campaign(const CampaignArguments& arguments) {
   const Collected collected = collect(folder, campaign);
   if (finish == Finish::all_over) {
     const int status = report(folder, campaign, collected, arguments.junit);
+    if (arguments.recording.form) write_data_set_files(folder, collected.rows, *arguments.recording.form);
     if (arguments.explains)
       explain_campaign(folder.path, arguments.renderer, jobs_or_cores(arguments.jobs),
                        ExplainOptions().flights);
@@ -260,6 +267,10 @@ void add_campaign_command(CommandLine& line) {
   command.text("--junit", "FILE", arguments->junit, "write each flight as a JUnit test case (XML)");
   command.flag("--explain", arguments->explains,
                "then find out why flights were lost, as explain does (docs/explain.md)");
+  add_recording_options(
+      command, "--record", arguments->recording,
+      "record each flight as a data set in FOLDER/runs, with a list, a licence and checksums "
+      "(docs/record.md): euroc, kitti or middlebury");
   command.flag("--keep-runs", arguments->keeps_runs, "keep the run folder of each flight in FOLDER/runs");
   command.runs([arguments] { return run_campaign(*arguments); });
 }

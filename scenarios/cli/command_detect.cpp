@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "perception/io/calibration/calibration_file.hpp"
+#include "perception/io/calibration/write_calibration.hpp"
 #include "perception/perception_config.hpp"
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
@@ -48,24 +49,47 @@ int run_detect(const DetectArguments& arguments) {
   return exit_goal;
 }
 
+constexpr std::array<std::pair<std::string_view, CalibrationForm>, 4> form_names{
+    {{"rig", CalibrationForm::rig_file},
+     {"opencv", CalibrationForm::opencv},
+     {"kalibr", CalibrationForm::kalibr},
+     {"ros", CalibrationForm::ros}}};
+
 struct RigArguments : CalibrationArguments {
   std::string rig;
-  std::string out;  // empty: no picture
+  std::string out;  // empty: nothing is written
+  CalibrationForm form = CalibrationForm::rig_file;
 };
+
+/// Of a form without a mounting: what it does not say.
+std::string lost_in(CalibrationForm form, const StereoRig& rig) {
+  const bool is_usual = rig.T_body_camera.translation().isZero();
+  return form == CalibrationForm::rig_file || is_usual
+             ? ""
+             : "this form does not say where the camera is mounted; --form rig does\n";
+}
 
 int run_rig(const RigArguments& arguments) {
   const fs::path out = arguments.out;
-  if (!out.empty() && out.extension() != ".svg")
-    throw ScenarioError(fmt::format("--out {}: the name must end in .svg", arguments.out));
   const CalibrationOptions options = calibration_options(arguments);
   const fs::path path = rig_path(arguments.rig);
   require_separate({out}, {path});
-  require_writable(out);
+  const bool is_picture = out.extension() == ".svg";
+  if (is_picture || arguments.form != CalibrationForm::ros) require_writable(out);
   const CalibratedRig calibrated = bad_input_if_refused([&] { return read_calibrated_rig(path, options); });
   const RigFigures figures = rig_figures(calibrated.rig, PushbroomConfig());
-  if (!out.empty()) write_whole_file(out, to_svg(rig_plots(calibrated.rig, figures), 2));
+  std::vector<CalibrationText> texts;
+  if (is_picture)
+    texts.push_back({out, to_svg(rig_plots(calibrated.rig, figures), 2)});
+  else if (!out.empty())
+    texts = bad_input_if_refused([&] { return calibration_texts(calibrated, arguments.form, out); });
+  for (const CalibrationText& text : texts) {
+    if (text.file != out) prepare_output_folder(text.file.parent_path());
+    write_whole_file(text.file, text.text);
+  }
   fmt::print("{}", to_report(calibrated, figures));
-  if (!arguments.out.empty()) fmt::print("  {:<20}{}\n", "picture", arguments.out);
+  for (const CalibrationText& text : texts) fmt::print("  {:<20}{}\n", "written", text.file.string());
+  if (!texts.empty() && !is_picture) fmt::print("{}", lost_in(arguments.form, calibrated.rig));
   return 0;
 }
 
@@ -108,7 +132,12 @@ void add_rig_command(CommandLine& line) {
   add_calibration_options(command, *arguments);
   command.text(
       "--out", "FILE", arguments->out,
-      "write an .svg drawing of the rig from above and of the image columns that the detector compares");
+      "write the calibration in another form, or, where the name ends in .svg, a drawing of the rig from "
+      "above and of the image columns that the detector compares");
+  command.choice(
+      "--form", arguments->form, form_names,
+      "form of --out: a rig file (.yaml), which scenarios fly; OpenCV's (.xml, .yaml, .json); Kalibr's "
+      "camchain (.yaml); ROS's camera_info (a folder)");
   command.runs([arguments] { return run_rig(*arguments); });
 }
 

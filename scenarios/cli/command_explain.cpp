@@ -73,10 +73,14 @@ struct Explained {
   std::string json;
 };
 
-Explained explained_flight(const Scenario& scenario, ExplainOptions options, const std::string& title = "") {
-  ProgressLine line;
-  options.on_progress = [&](std::size_t flown, std::size_t asked) {
-    line.show(fmt::format("{}{} of {} flights", title, flown, asked), flown, asked - flown);
+/// `flown_before` and `flown_after` are the flights of the lost flights explained before and after it.
+Explained explained_flight(const Scenario& scenario, ExplainOptions options, ProgressLine& line,
+                           const std::string& title = "", std::size_t flown_before = 0,
+                           std::size_t flown_after = 0) {
+  const auto most = static_cast<std::size_t>(options.flights);
+  options.on_progress = [&](std::size_t flown) {
+    line.show(fmt::format("{}{} of at most {} flights", title, flown, most), flown_before + flown,
+              flown_after + most - std::min(flown, most));
   };
   Explained explained{explain_flight(scenario, options), {}, ""};
   const std::vector<Evidence> evidence = evidence_in(explained.flight.log);
@@ -92,9 +96,12 @@ int explain_run(const ExplainArguments& arguments) {
   FolderMark mark(run, flight_results, run);
   mark.require_own("explain.json");
   const Unfinished work(run / ".explain");
+  ProgressLine line;
   const Explained explained =
-      explained_flight(scenario, options_of(work.path(), arguments.renderer, jobs_or_cores(arguments.jobs),
-                                            arguments.flights, arguments.first_seed));
+      explained_flight(scenario,
+                       options_of(work.path(), arguments.renderer, jobs_or_cores(arguments.jobs),
+                                  arguments.flights, arguments.first_seed),
+                       line);
   write_whole_file(run / "explain.json", explained.json, &mark);
   const Explanation& why = explained.flight.explanation;
   fmt::print("{}\n{}\n{}\n{}", explained.conclusion.sentence, to_text(effects_table(why)),
@@ -123,30 +130,38 @@ void explain_campaign(const fs::path& path, RendererKind renderer, int jobs, int
     throw ScenarioError(fmt::format("{}: none of its flights is flown yet", path.string()));
   std::erase_if(lost, [](const FlightRow& row) { return !row.flown() || row.reached_goal(); });
   prepare_output_folder(folder.path / "explained");
-  for (std::size_t i = 0; i < lost.size(); ++i) {
-    const FlightRow& row = lost[i];
-    std::error_code ignored;
-    if (fs::exists(folder.explanation_file(row.id), ignored)) continue;
+  std::vector<FlightRow> asked = lost;
+  std::error_code ignored;
+  std::erase_if(asked,
+                [&](const FlightRow& row) { return fs::exists(folder.explanation_file(row.id), ignored); });
+  if (asked.empty() && !lost.empty())
+    fmt::print("all {} lost flights are explained; delete {} to explain one again\n", lost.size(),
+               folder.explanation_file("FLIGHT").string());
+  ProgressLine line;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    const FlightRow& row = asked[i];
     const auto condition = std::ranges::find(campaign.conditions, row.condition, &Condition::name);
     const Scenario scenario =
         scenario_from_text(condition->scenario_text, condition->name, {fmt::format("seed={}", row.seed)});
     const Unfinished work(folder.path / ".explain");
+    const auto most = static_cast<std::size_t>(flights);
     const Explained explained = [&] {
       try {
-        return explained_flight(scenario, options_of(work.path(), renderer, jobs, flights),
-                                fmt::format("{} of {} lost flights: ", i + 1, lost.size()));
+        return explained_flight(scenario, options_of(work.path(), renderer, jobs, flights), line,
+                                fmt::format("lost flight {} of {}: ", i + 1, asked.size()), i * most,
+                                (asked.size() - i - 1) * most);
       } catch (const Stopped& stopped) {
-        throw Stopped(
-            stopped.signal,
-            fmt::format("{} of {} lost flights are explained; the same command goes on", i, lost.size()));
+        throw Stopped(stopped.signal,
+                      fmt::format("{} of {} lost flights are explained; the same command goes on",
+                                  lost.size() - asked.size() + i, lost.size()));
       }
     }();
     write_whole_file(folder.explanation_file(row.id), explained.json);
     fmt::print("{}: {} {}\n", row.id, explained.conclusion.sentence, explained.conclusion.disagreement);
     std::fflush(stdout);
+    collect(folder, campaign);  // so that flights.csv has the cause already
   }
-  const Collected collected = collect(folder, campaign);
-  const std::vector<ExplainedRow> rows = explained_rows(folder, collected.rows);
+  const std::vector<ExplainedRow> rows = explained_rows(folder, collect(folder, campaign).rows);
   fmt::print("{}\n{}\nunderstory report {} puts this on the campaign's page\n", to_text(causes_table(rows)),
              to_text(savings_table(rows)), path.string());
 }

@@ -17,7 +17,6 @@
 #include "scenarios/output/output_folder.hpp"
 #include "scenarios/output/progress_line.hpp"
 #include "scenarios/recording/carried_path.hpp"
-#include "scenarios/recording/euroc_recording.hpp"
 #include "scenarios/recording/flight_mcap.hpp"
 #include "scenarios/recording/record.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
@@ -36,6 +35,7 @@ struct FlightArguments {
   std::string seed;                   // over all; empty: theirs
   std::string out;                    // of fly, empty: runs/<name>-<seed>, or with a row no run folder at all
   RendererKind renderer = RendererKind::osmesa;
+  RecordingChoice recording;
   bool mcap = false;
   bool quiet = false;
   bool force = false;
@@ -153,10 +153,11 @@ int run_fly(const FlyArguments& arguments) {
   options.report = arguments.report;
   options.video = arguments.video || arguments.report;
   const fs::path folder = folder_of(arguments, scenario);
-  if (folder.empty() && (options.video || arguments.mcap))
-    throw ScenarioError(fmt::format("--{} requires --out where --row is given", options.report  ? "report"
-                                                                                : options.video ? "video"
-                                                                                                : "mcap"));
+  if (folder.empty() && (options.video || arguments.mcap || arguments.recording.form))
+    throw ScenarioError(fmt::format("--{} requires --out where --row is given", options.report   ? "report"
+                                                                                : options.video  ? "video"
+                                                                                : arguments.mcap ? "mcap"
+                                                                                                 : "record"));
   require_separate_outputs(arguments, folder, scenario);
   std::optional<OutputFolder> output;
   if (!folder.empty()) {
@@ -179,7 +180,8 @@ int run_fly(const FlyArguments& arguments) {
     line.show(fmt::format("building a world with {} obstacles", obstacles));
   FlightResult result;
   try {
-    result = fly(scenario, options);
+    result = arguments.recording.form ? fly_recorded(scenario, options, arguments.recording).result
+                                      : fly(scenario, options);
   } catch (const LostFilm&) {
     output->finish();
     throw;
@@ -241,10 +243,11 @@ std::string record(const RecordArguments& arguments, const Scenario& scenario, F
   options.on_progress = [&](const FlightProgress& progress) { show(line, progress); };
   FlightLogger logger;
   const std::unique_ptr<FlightMcap> mcap = mcap_of(arguments, logger, options);
-  if (!path.empty()) return report_of(follow_recorded(scenario, path, options));
-  if (!arguments.walk_mps) return report_of(fly_recorded(scenario, options));
-  return report_of(walk_recorded(
-      scenario, {*arguments.walk_mps, arguments.height_m.value_or(WalkConfig{}.height_m)}, options));
+  if (!path.empty()) return report_of(follow_recorded(scenario, path, options, arguments.recording));
+  if (!arguments.walk_mps) return report_of(fly_recorded(scenario, options, arguments.recording));
+  return report_of(walk_recorded(scenario,
+                                 {*arguments.walk_mps, arguments.height_m.value_or(WalkConfig{}.height_m)},
+                                 options, arguments.recording));
 }
 
 int run_record(const RecordArguments& arguments) {
@@ -293,17 +296,22 @@ void add_fly_command(CommandLine& line) {
       "--video", arguments->video,
       "also write a video (flight.mp4) and a picture of the frame with the most detections (still.png)");
   command.flag("--report", arguments->report, "also write report.html, a page with replay, charts and video");
+  add_recording_options(command, "--record", arguments->recording,
+                        "also record the flight as a data set, as record does: euroc, kitti or middlebury");
   command.runs([arguments] { return run_fly(*arguments); });
 }
 
 void add_record_command(CommandLine& line) {
   const auto arguments = std::make_shared<RecordArguments>();
-  Command& command =
-      line.add({"record",
-                "record images, true depth and poses of a flight, a walk or a given path as a EuRoC data set",
-                "understory record forest --out recordings/forest", "the recording is complete"});
+  Command& command = line.add(
+      {"record", "record images, true depth and poses of a flight, a walk or a given path as a data set",
+       "understory record forest --out recordings/forest", "the recording is complete"});
   add_flight_options(command, *arguments, "folder of the recording", "the run or recording in the folder")
       .required();
+  arguments->recording.form = RecordingForm::euroc;
+  add_recording_options(
+      command, "--format", arguments->recording,
+      "layout of the data set: EuRoC, or stereo pairs with disparities as KITTI's or Middlebury's");
   command.flag_or_number("--walk", 1.4, arguments->walk_mps, 0.1, 5.0,
                          "move the cameras through the course at walking speed instead of flying; "
                          "--walk=SPEED sets the speed in m/s (default: 1.4)");

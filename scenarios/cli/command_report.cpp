@@ -46,7 +46,7 @@ struct ReportArguments : AgainArguments {
 };
 
 struct McapArguments : AgainArguments {
-  bool compress = false;
+  bool exact_images = false;
   bool no_images = false;
 };
 
@@ -206,14 +206,14 @@ int run_mcap(const McapArguments& arguments) {
   if (arguments.no_images) {
     AgainOutput output(arguments, flight_results, "flight.mcap");
     const FlightLog log = log_of_run(run);
-    FlightMcap(log, output.file, arguments.compress, output.listed_in()).write_whole_log();
+    FlightMcap(log, output.file, arguments.exact_images, output.listed_in()).write_whole_log();
     return told(output.file, warning_of_digest(log.result, digest_of_run(run)), arguments.quiet);
   }
   FlyOptions options;
   options.expected_digest = digest_of_run(run);
   AgainOutput output(arguments, flight_results, "flight.mcap");
   FlightLogger logger;
-  FlightMcap mcap(logger.log(), output.file, arguments.compress, output.listed_in());
+  FlightMcap mcap(logger.log(), output.file, arguments.exact_images, output.listed_in());
   options.logger = &logger;
   options.observers.push_back(&mcap);
   return fly_again(scenario, arguments, options, output.file, [] {});
@@ -265,7 +265,8 @@ void add_mcap_command(CommandLine& line) {
                 "the MCAP file was written, but the repeated flight differs from the run (another digest)"});
   add_again_options(command, *arguments, "folder of a run",
                     "name of the MCAP file (default: FOLDER/flight.mcap)");
-  command.flag("--zstd", arguments->compress, "compress the MCAP file with zstd");
+  command.flag("--exact-images", arguments->exact_images,
+               "store every image as the autopilot had it (PNG); otherwise JPEG, 60 pairs a second");
   command.flag("--no-images", arguments->no_images,
                "make the MCAP file without images from the run's flight.log; this takes no new flight");
   command.runs([arguments] { return run_mcap(*arguments); });

@@ -148,7 +148,7 @@ SheetSection write_worst_frames(const Evaluation& evaluation, const fs::path& fo
   for (const WorstPicture& worst : worst_pictures(evaluation)) {
     write_picture(folder / fmt::format("{}-{:02}.png", worst.algorithm, numbers[worst.algorithm]++),
                   worst.picture);
-    const auto jpeg = picture_codecs().encode_jpeg(worst.picture);
+    const auto jpeg = picture_codecs().encode_jpeg(worst.picture, 85);
     section.pictures.push_back({worst.caption, {jpeg.begin(), jpeg.end()}});
   }
   return section;

@@ -60,25 +60,23 @@ Table causes_table(const std::vector<ExplainedRow>& rows) {
 }
 
 Table savings_table(const std::vector<ExplainedRow>& rows) {
-  Table table{{"condition", "explained"}};
+  constexpr std::size_t least_for_interval = 5;  // the bootstrap of fewer flights is too narrow
+  Table table{{"condition", "ideal part", "flights", "saved, %", "95 %"}};
   std::vector<std::string> parts(ideal_part_names.begin(), ideal_part_names.end());
   parts.push_back("everything");
-  for (const std::string& part : parts) table.head.push_back("ideal " + part + ", %");
-  for (const std::string& condition : distinct(rows, &ExplainedRow::condition)) {
-    const std::vector<ExplainedRow> own = of_condition(rows, condition);
-    std::vector<std::string>& cells = table.rows.emplace_back();
-    cells = {condition, fmt::format("{}", own.size())};
+  for (const std::string& condition : distinct(rows, &ExplainedRow::condition))
     for (const std::string& part : parts) {
       std::vector<double> effects;
-      for (const ExplainedRow& row : own)
+      for (const ExplainedRow& row : of_condition(rows, condition))
         if (const auto effect = row.effects.find(part); effect != row.effects.end())
           effects.push_back(100 * effect->second);
+      if (effects.empty()) continue;
       const BootstrapEstimate saved = bootstrap(effects);
-      cells.push_back(effects.size() < 2 ? fmt::format("{:.0f}", effects.empty() ? 0 : effects.front())
-                                         : fmt::format("{:.0f} ({:.0f} to {:.0f})", saved.value,
-                                                       saved.interval.minimum, saved.interval.maximum));
+      table.add(condition, part, effects.size(), fmt::format("{:.0f}", saved.value),
+                effects.size() < least_for_interval
+                    ? "-"
+                    : fmt::format("{:.0f} to {:.0f}", saved.interval.minimum, saved.interval.maximum));
     }
-  }
   return table;
 }
 
@@ -96,7 +94,7 @@ std::vector<SheetSection> causes_chapter(const std::vector<ExplainedRow>& rows) 
   SheetSection savings{.title = "What an ideal part would have saved", .table = savings_table(rows)};
   savings.text =
       "Share of the lost flights that survive with the part ideal, less the share that other noise saves; "
-      "95 % intervals over the flights (BCa bootstrap).";
+      "95 % intervals over the flights (BCa bootstrap), from five flights on.";
   Table flights{{"flight", "cause", "part", "last chance, s before the end", "in words"}};
   for (const ExplainedRow& row : rows)
     flights.add(row.id, row.cause, row.part,

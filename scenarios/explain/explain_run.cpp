@@ -82,7 +82,7 @@ ExplainedFlight explain_flight(const Scenario& scenario, const ExplainOptions& o
     }
     const std::vector<CampaignTask> tasks = tasks_of(campaign);
     const auto tell = [&](const CampaignProgress& progress) {
-      if (options.on_progress) options.on_progress(flown + progress.over, flown + asked.size());
+      if (options.on_progress) options.on_progress(flown + progress.over);
     };
     if (!fly_locally(folder, campaign, tasks, {options.jobs, false}, tell)) throw Stopped{};
     for (std::size_t i = 0; i < asked.size(); ++i) {

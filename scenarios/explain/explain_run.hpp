@@ -17,7 +17,7 @@ struct ExplainOptions {
   int jobs = 1;        ///< flights at a time
   int first_seed = 1;  ///< of the redraws
   int flights = 170;   ///< at most so many beside the lost one
-  std::function<void(std::size_t flown, std::size_t asked)> on_progress = {};  ///< may be empty
+  std::function<void(std::size_t flown)> on_progress = {};  ///< may be empty
 };
 
 /// A lost flight and why it was lost.

@@ -163,7 +163,7 @@ std::string flight_page(const FlightLog& log, const FlightPageExtras& extras) {
     page.arrays.add("film_t", 1, extras.film_times_s);
     page.film = read_file(extras.film, maximum_film_bytes);
     if (!extras.last_picture.empty()) {
-      const auto still = picture_codecs().encode_jpeg(extras.last_picture);
+      const auto still = picture_codecs().encode_jpeg(extras.last_picture, 85);
       page.still.assign(still.begin(), still.end());
     }
   }

@@ -20,7 +20,7 @@ const ResultKind flight_results{
     .last = "result.json",
     .patterns = {"result.json", "scenario.yaml", "flight.log", "trajectory.csv", "map.ply", "obstacles.csv",
                  "truth.tum", "estimate.tum", "flight.mp4", "still.png", "mav0/*/*.csv", "mav0/*/sensor.yaml",
-                 "mav0/*/data/*.png"},
+                 "mav0/*/data/*.png", "training/*/*", "training/*.txt", "pairs/*/*", "pairs/*.txt"},
     .added = {"report.html", "flight.mcap", "explain.json"}};
 
 const ResultKind campaign_results{
@@ -30,7 +30,8 @@ const ResultKind campaign_results{
     .last = "summary.md",
     .grows = true,
     .patterns = {"campaign.json", "flights.csv", "flights.jsonl", "costs.csv", "summary.md", "campaign.svg",
-                 "slurm.sh", "conditions/*.yaml", "flights/*", "tracks/*", "logs/*", "runs/*", "explained/*"},
+                 "slurm.sh", "scenes.csv", "LICENSE.txt", "SHA256SUMS", "conditions/*.yaml", "flights/*",
+                 "tracks/*", "logs/*", "runs/*", "explained/*"},
     .added = {"report.html"}};
 
 const ResultKind tuning_results{

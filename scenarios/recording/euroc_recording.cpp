@@ -7,7 +7,6 @@
 #include <opencv2/core.hpp>
 
 #include "scenarios/config/named_seed.hpp"
-#include "scenarios/flight/flight.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/report/pictures.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
@@ -16,8 +15,6 @@ namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::int64_t kept_ns = 1'000'000'000;
 
 std::string text_of(const char* header, const std::map<std::int64_t, std::string>& lines) {
   std::string text = header;
@@ -42,11 +39,12 @@ cv::Mat depth_in_millimetres(const cv::Mat& depth_m) {
 }
 
 EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario, const CalibratedRig& rig,
-                               double expected_s)
-    : folder_(folder / "mav0"),
+                               double expected_s, int every)
+    : Recording(every),
+      folder_(folder / "mav0"),
       rig_(rig.rig),
       truth_every_steps_(physics_rate_hz / scenario.sensors.imu_rate_hz),
-      expected_frames_(expected_s * scenario.cameras.rate_hz) {
+      expected_frames_(expected_s * scenario.cameras.rate_hz / every) {
   const Wood wood = course_wood(scenario);
   const std::size_t last_number = wood.scenery == Scenery::plain
                                       ? object_first_obstacle + wood.obstacles.size()
@@ -77,11 +75,6 @@ EurocRecording::EurocRecording(const fs::path& folder, const Scenario& scenario,
                    state_sensor_text("the simulation's truth; biases are the flight's constants"));
 }
 
-void EurocRecording::on_frame(const Flight& flight) {
-  observe(flight.truth());
-  add(flight.frame(), *flight.cameras());
-}
-
 void EurocRecording::on_step(const Flight& flight) {
   observe(flight.truth());
   if (!flight.clock().imu()) return;
@@ -107,36 +100,8 @@ void EurocRecording::add_sensors(const Flight& flight) {
   sensor_lines_["body0"] += body_line(flight.truth());
 }
 
-void EurocRecording::observe(const Truth& truth) {
-  if (!recent_.empty() && recent_.back().t_ns == truth.t_ns) return;
-  recent_.push_back(truth);
-  while (recent_.front().t_ns < truth.t_ns - kept_ns) recent_.pop_front();
+void EurocRecording::add_step(const Truth& truth) {
   if (steps_++ % truth_every_steps_ == 0) add_true_state(truth);
-}
-
-/// An image's time may lie between two steps; that of the first image lies before all of them.
-Truth EurocRecording::truth_at(std::int64_t t_ns) const {
-  auto after = recent_.begin();
-  while (after != recent_.end() && after->t_ns < t_ns) ++after;
-  if (after == recent_.end()) return recent_.back();
-  Truth truth = *after;
-  if (truth.t_ns == t_ns || after == recent_.begin()) {
-    truth.t_ns = t_ns;
-    return truth;
-  }
-  const Truth& before = *std::prev(after);
-  const double share =
-      static_cast<double>(t_ns - before.t_ns) / static_cast<double>(after->t_ns - before.t_ns);
-  const Eigen::Quaterniond from(before.T_world_body.linear()), to(after->T_world_body.linear());
-  const auto between = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) -> Eigen::Vector3d {
-    return (1 - share) * a + share * b;
-  };
-  truth.t_ns = t_ns;
-  truth.T_world_body =
-      Eigen::Translation3d(between(before.T_world_body.translation(), after->T_world_body.translation())) *
-      from.slerp(share, to);
-  truth.velocity_world_mps = between(before.velocity_world_mps, after->velocity_world_mps);
-  return truth;
 }
 
 void EurocRecording::add_true_state(const Truth& truth) {
@@ -152,13 +117,11 @@ void EurocRecording::add_estimate(const State& state) {
                                                  state.gyro_bias_radps, state.accelerometer_bias_mps2}));
 }
 
-void EurocRecording::add(const StereoFrame& frame, const StereoCameras& cameras) {
-  const Truth truth = truth_at(frame.t_ns);
+void EurocRecording::add_frame(const StereoFrame& frame, const Truth& truth, const TrueView& view) {
   add_true_state(truth);
   const std::string name = fmt::format("{}.png", recorded_ns(frame.t_ns));
   write_picture(folder_ / "cam0/data" / name, frame.left);
   write_picture(folder_ / "cam1/data" / name, frame.right);
-  const TrueView view = cameras.true_view(truth.T_world_body);
   write_picture(folder_ / "depth0/data" / name, depth_in_millimetres(view.depth_m));
   write_picture(folder_ / "depth1/data" / name, depth_in_millimetres(view.right_depth_m));
   write_picture(folder_ / "objects0/data" / name, view.objects);
@@ -166,13 +129,13 @@ void EurocRecording::add(const StereoFrame& frame, const StereoCameras& cameras)
   for (const char* folder : {"cam0", "cam1", "depth0", "depth1", "objects0"})
     bytes_ +=
         (fs::file_size(folder_ / folder / "data" / name) + 4095) / 4096 * 4096;  // a disk counts in blocks
-  if (++frames_ == 10 || frames_ % 120 == 0) require_room();
+  if (const std::int64_t written = frames() + 1; written == 10 || written % 120 == 0) require_room(written);
 }
 
 /// That the disk holds what is still to come, by what the frames so far took there.
-void EurocRecording::require_room() const {
-  const double frame_bytes = static_cast<double>(bytes_) / static_cast<double>(frames_);
-  const double needed = frame_bytes * (expected_frames_ - static_cast<double>(frames_));
+void EurocRecording::require_room(std::int64_t frames) const {
+  const double frame_bytes = static_cast<double>(bytes_) / static_cast<double>(frames);
+  const double needed = frame_bytes * (expected_frames_ - static_cast<double>(frames));
   std::error_code error;
   const auto available = static_cast<double>(fs::space(folder_, error).available);
   if (!error && available < needed)
@@ -183,9 +146,7 @@ void EurocRecording::require_room() const {
 }
 
 void EurocRecording::finish() {
-  if (frames_ == 0)
-    throw ScenarioError(
-        fmt::format("{}: the scenario's cameras gave no frame", folder_.parent_path().string()));
+  require_frames(folder_.parent_path());
   for (const char* camera : {"cam0", "cam1", "depth0", "depth1", "objects0"})
     write_whole_file(folder_ / camera / "data.csv", image_header + image_lines_);
   write_whole_file(folder_ / "imu0/data.csv", imu_header + imu_lines_);

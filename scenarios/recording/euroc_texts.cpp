@@ -44,15 +44,6 @@ std::string pinhole_text(const CameraCalibration& camera, const StereoRig& rig, 
       list_text(camera.distortion));
 }
 
-CameraCalibration rectified_camera(const StereoRig& rig, double center_x_px) {
-  CameraCalibration camera;
-  camera.camera_matrix = cv::Matx33d(rig.focal_px, 0, center_x_px, 0, rig.focal_px, rig.center_y_px, 0, 0, 1);
-  camera.distortion = {0, 0, 0, 0};
-  camera.projection =
-      cv::Matx34d(rig.focal_px, 0, center_x_px, 0, 0, rig.focal_px, rig.center_y_px, 0, 0, 0, 1, 0);
-  return camera;
-}
-
 std::string vector_text(const Eigen::Vector3d& v, int digits) {
   return fmt::format(",{:.{}f},{:.{}f},{:.{}f}", v.x(), digits, v.y(), digits, v.z(), digits);
 }
@@ -67,8 +58,8 @@ std::array<RecordedCamera, 2> recorded_cameras(const CalibratedRig& calibrated) 
   const StereoRig& rig = calibrated.rig;
   Eigen::Isometry3d T_body_right = T_body_right_of(rig);
   if (!calibrated.calibration)
-    return {RecordedCamera{rectified_camera(rig, rig.center_left_x_px), rig.T_body_camera},
-            RecordedCamera{rectified_camera(rig, rig.center_right_x_px), T_body_right}};
+    return {RecordedCamera{rectified_camera(rig, rig.center_left_x_px, 0), rig.T_body_camera},
+            RecordedCamera{rectified_camera(rig, rig.center_right_x_px, rig.baseline_m), T_body_right}};
   const StereoCalibration& raw = *calibrated.calibration;
   Eigen::Matrix3d R_rectified_raw;
   cv::cv2eigen(raw.right.rectification, R_rectified_raw);
@@ -98,14 +89,14 @@ std::string depth_sensor_text(const StereoRig& rig, int rate_hz, Side side) {
                    fmt::format("true depth along the optical axis of the rectified {} camera",
                                left ? "left" : "right"),
                    T_body_eye) +
-         pinhole_text(rectified_camera(rig, left ? rig.center_left_x_px : rig.center_right_x_px), rig,
+         pinhole_text(rectified_camera(rig, left ? rig.center_left_x_px : rig.center_right_x_px, 0), rig,
                       rate_hz) +
          "depth_unit_m: 0.001 # 16-bit PNG; 0: nothing within 65.535 m\n";
 }
 
 std::string objects_sensor_text(const StereoRig& rig, int rate_hz) {
   return head_text("objects", "which object the rectified left camera sees", rig.T_body_camera) +
-         pinhole_text(rectified_camera(rig, rig.center_left_x_px), rig, rate_hz) +
+         pinhole_text(rectified_camera(rig, rig.center_left_x_px, 0), rig, rate_hz) +
          "objects: objects.csv # 16-bit PNG; 0: nothing\n";
 }
 

@@ -16,6 +16,9 @@
 namespace understory {
 namespace {
 
+// A little less than the period of 60 and 30 a second, since frames come at whole physics steps.
+constexpr std::int64_t image_every_ns = 16'000'000, map_every_ns = 33'000'000;
+
 /// A type's file and all that it imports.
 void add_file(const google::protobuf::FileDescriptor& file, std::set<std::string>& known,
               google::protobuf::FileDescriptorSet& files) {
@@ -45,9 +48,8 @@ struct FlightMcap::Implementation {
     file.add(topic, t_ns, message.SerializeAsString());
   }
 
-  Implementation(const FlightLog& flight_log, const std::filesystem::path& name, bool compress,
-                 FolderMark* mark)
-      : log(flight_log), file(name, compress, mark) {}
+  Implementation(const FlightLog& flight_log, const std::filesystem::path& name, bool exact, FolderMark* mark)
+      : log(flight_log), file(name, mark), exact_images(exact) {}
 
   std::uint16_t left_image = channel<foxglove::CompressedImage>("/camera/left/image");
   std::uint16_t right_image = channel<foxglove::CompressedImage>("/camera/right/image");
@@ -70,7 +72,8 @@ struct FlightMcap::Implementation {
 
   // What has been written of the log.
   std::size_t frames = 0, plans = 0, moments = 0;
-  std::int64_t next_begin_ns = 0, map_points = 0;
+  bool exact_images;
+  std::int64_t next_begin_ns = 0, next_map_ns = 0, next_image_ns = 0, map_points = 0;
   bool launched = false, fell_back = false;
 
   void say(std::int64_t t_ns, foxglove::Log::Level level, const std::string& text) {
@@ -109,6 +112,8 @@ void FlightMcap::Implementation::begin(std::int64_t t_ns) {
 void FlightMcap::Implementation::put_frame(const LogFrame& frame) {
   const auto first = log.hits_camera.begin() + frame.first_hit;
   put(hits, frame.arrival_ns, cloud("left_rectified", {first, first + frame.hits}, frame.t_ns));
+  if (frame.arrival_ns < next_map_ns) return;
+  next_map_ns = frame.arrival_ns + map_every_ns;
   std::vector<Eigen::Vector3d> remembered;
   for (const LogPoint& one : log.points)
     if (one.from_ns <= frame.arrival_ns && frame.arrival_ns < one.to_ns)
@@ -197,9 +202,9 @@ void FlightMcap::Implementation::catch_up(std::int64_t until_ns) {
   }
 }
 
-FlightMcap::FlightMcap(const FlightLog& log, const std::filesystem::path& file, bool compress,
+FlightMcap::FlightMcap(const FlightLog& log, const std::filesystem::path& file, bool exact_images,
                        FolderMark* mark)
-    : implementation_(std::make_unique<Implementation>(log, file, compress, mark)) {}
+    : implementation_(std::make_unique<Implementation>(log, file, exact_images, mark)) {}
 
 FlightMcap::~FlightMcap() = default;
 
@@ -207,8 +212,10 @@ void FlightMcap::on_frame(const Flight& flight) {
   Implementation& to = *implementation_;
   const StereoFrame& frame = flight.frame();
   const std::int64_t now_ns = flight.clock().t_ns();
-  to.put(to.left_image, now_ns, image_message(frame.left, true, frame.t_ns));
-  to.put(to.right_image, now_ns, image_message(frame.right, false, frame.t_ns));
+  if (!to.exact_images && frame.t_ns < to.next_image_ns) return;
+  to.next_image_ns = frame.t_ns + image_every_ns;
+  to.put(to.left_image, now_ns, image_message(frame.left, true, frame.t_ns, to.exact_images));
+  to.put(to.right_image, now_ns, image_message(frame.right, false, frame.t_ns, to.exact_images));
 }
 
 void FlightMcap::on_step(const Flight& flight) { implementation_->catch_up(flight.clock().t_ns()); }

@@ -14,9 +14,10 @@ namespace understory {
 /// All but the images comes from the flight's log.
 class FlightMcap : public FlightObserver {
  public:
-  /// `log`: of the flight, kept by an observer that is called earlier. `compress`: in zstd. Throws
-  /// ScenarioError where the file cannot be made.
-  FlightMcap(const FlightLog& log, const std::filesystem::path& file, bool compress,
+  /// `log`: of the flight, kept by an observer that is called earlier. Images are JPEG, at most 60 pairs a
+  /// second, which looks the same; `exact_images`: every one, as PNG. Throws ScenarioError where the file
+  /// cannot be made.
+  FlightMcap(const FlightLog& log, const std::filesystem::path& file, bool exact_images,
              FolderMark* mark = nullptr);
   ~FlightMcap() override;
 

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <opencv2/core/matx.hpp>
 
+#include "perception/io/picture_codecs.hpp"
 #include "perception/io/png_codec.hpp"
 #include "scenarios/recording/foxglove.pb.h"
 
@@ -105,18 +106,18 @@ foxglove::PointCloud cloud(const char* frame, const std::vector<Eigen::Vector3d>
   set_time(message.mutable_timestamp(), t_ns);
   message.set_frame_id(frame);
   set_pose(message.mutable_pose(), Eigen::Isometry3d::Identity());
-  message.set_point_stride(3 * sizeof(double));
+  message.set_point_stride(3 * sizeof(float));
   std::uint32_t offset = 0;
   for (const char* const name : {"x", "y", "z"}) {
     foxglove::PackedElementField* field = message.add_fields();
     field->set_name(name);
     field->set_offset(offset);
-    field->set_type(foxglove::PackedElementField::FLOAT64);
-    offset += sizeof(double);
+    field->set_type(foxglove::PackedElementField::FLOAT32);
+    offset += sizeof(float);
   }
   std::string& data = *message.mutable_data();
   for (const Eigen::Vector3d& point : points)
-    for (const double coordinate : point)
+    for (const auto coordinate : Eigen::Vector3f(point.cast<float>()))
       data.append(reinterpret_cast<const char*>(&coordinate), sizeof coordinate);
   return message;
 }
@@ -189,12 +190,14 @@ Eigen::Isometry3d camera_pose(const CalibratedRig& rig, bool is_left) {
   return pose;
 }
 
-foxglove::CompressedImage image_message(const cv::Mat& image, bool is_left, std::int64_t t_ns) {
+foxglove::CompressedImage image_message(const cv::Mat& image, bool is_left, std::int64_t t_ns, bool exact) {
   foxglove::CompressedImage message;
   set_time(message.mutable_timestamp(), t_ns);
   message.set_frame_id(is_left ? "left_camera" : "right_camera");
-  message.set_format("png");
-  const std::vector<unsigned char> bytes = encode_png(image);
+  constexpr int quality = 50;  // of 100: a noisy picture of 376x240 in 12 kB
+  message.set_format(exact ? "png" : "jpeg");
+  const std::vector<unsigned char> bytes =
+      exact ? encode_png(image) : picture_codecs().encode_jpeg(image, quality);
   message.set_data(bytes.data(), bytes.size());
   return message;
 }

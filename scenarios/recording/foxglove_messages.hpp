@@ -41,6 +41,6 @@ foxglove::CameraCalibration calibration_of(const CalibratedRig& rig, bool is_lef
 Eigen::Isometry3d camera_pose(const CalibratedRig& rig, bool is_left);
 
 /// As PNG.
-foxglove::CompressedImage image_message(const cv::Mat& image, bool is_left, std::int64_t t_ns);
+foxglove::CompressedImage image_message(const cv::Mat& image, bool is_left, std::int64_t t_ns, bool exact);
 
 }  // namespace understory

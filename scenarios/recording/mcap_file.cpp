@@ -63,8 +63,7 @@ std::string compressed(const std::string& bytes) {
 
 }  // namespace
 
-McapFile::McapFile(const std::filesystem::path& file, bool compress, FolderMark* mark)
-    : file_(file, mark), compress_(compress) {
+McapFile::McapFile(const std::filesystem::path& file, FolderMark* mark) : file_(file, mark) {
   write(magic);
   write(record(header_record, sized("").append(sized(std::string("understory ") + understory_version))));
 }
@@ -113,12 +112,11 @@ void McapFile::add(std::uint16_t channel, std::int64_t t_ns, std::string_view me
 
 void McapFile::end_chunk() {
   if (chunk_.records.empty()) return;
-  const std::string name = compress_ ? "zstd" : "";
-  const std::string bytes = compress_ ? compressed(chunk_.records) : chunk_.records;
+  const std::string bytes = compressed(chunk_.records);
   const std::uint64_t size = chunk_.records.size(), start = position_;
   write(record(chunk_record,
                (number(chunk_.from_ns) + number(chunk_.to_ns) + number(size) +
-                number(crc_of(chunk_.records)) + sized(name) + number(std::uint64_t{bytes.size()}))
+                number(crc_of(chunk_.records)) + sized("zstd") + number(std::uint64_t{bytes.size()}))
                    .append(bytes)));
   const std::uint64_t length = position_ - start, indexes = position_;
   std::string offsets;
@@ -131,7 +129,7 @@ void McapFile::end_chunk() {
   chunk_index_records_ +=
       record(chunk_index_record, number(chunk_.from_ns) + number(chunk_.to_ns) + number(start) +
                                      number(length) + sized(offsets) + number(position_ - indexes) +
-                                     sized(name) + number(std::uint64_t{bytes.size()}) + number(size));
+                                     sized("zstd") + number(std::uint64_t{bytes.size()}) + number(size));
   ++chunks_;
   chunk_ = {};
 }

@@ -12,12 +12,12 @@
 
 namespace understory {
 
-/// An MCAP file (mcap.dev/spec) of messages in order of time: chunks with checksums and indexes, a summary at
-/// its end. It is an OutputFile.
+/// An MCAP file (mcap.dev/spec) of messages in order of time: chunks in zstd with checksums and indexes, a
+/// summary at its end. It is an OutputFile.
 class McapFile {
  public:
-  /// `compress`: chunks in zstd. Throws ScenarioError where the file cannot be made.
-  McapFile(const std::filesystem::path& file, bool compress, FolderMark* mark);
+  /// Throws ScenarioError where the file cannot be made.
+  McapFile(const std::filesystem::path& file, FolderMark* mark);
 
   /// A topic of protobuf messages of the type `schema` ("foxglove.Log"), which `descriptors`, a serialised
   /// google.protobuf.FileDescriptorSet, describes. Gives the channel's number.
@@ -38,7 +38,6 @@ class McapFile {
   std::string statistics() const;
 
   OutputFile file_;
-  bool compress_;
   std::uint64_t position_ = 0;
   Chunk chunk_;
   std::map<std::string, std::uint16_t, std::less<>> schemas_;

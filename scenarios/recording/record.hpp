@@ -6,6 +6,7 @@
 #include "perception/io/pose_file.hpp"
 #include "scenarios/flight/fly.hpp"
 #include "scenarios/recording/carried_path.hpp"
+#include "scenarios/recording/recording.hpp"
 #include "scenarios/scenario/scenario.hpp"
 
 namespace understory {
@@ -16,11 +17,11 @@ struct FlownRecording {
 };
 
 /// Flies `scenario` and leaves, beside the run's files, its recording in options.output_folder
-/// (EurocRecording). The flight is the one that fly() flies. Throws as both do.
-FlownRecording fly_recorded(const Scenario& scenario, FlyOptions options);
+/// (recording_of). The flight is the one that fly() flies. Throws as both do.
+FlownRecording fly_recorded(const Scenario& scenario, FlyOptions options, const RecordingChoice& choice);
 
 /// A recording of carried cameras and IMU, without estimator and autopilot. Leaves scenario.yaml and the
-/// recording (EurocRecording) in options.output_folder: the truth as pose, no estimates. Every frame arrives,
+/// recording (recording_of) in options.output_folder: the truth as pose, no estimates. Every frame arrives,
 /// without the scenario's faults and lost frames.
 struct Carried {
   double carried_s = 0;
@@ -34,12 +35,13 @@ struct RecordedWalk {
 };
 
 /// Carries cameras and IMU past the scenario's obstacles on foot. Ends at the goal plane or after
-/// time_limit_s. Throws as walk_path and EurocRecording do.
-RecordedWalk walk_recorded(const Scenario& scenario, const WalkConfig& config, const FlyOptions& options);
+/// time_limit_s. Throws as walk_path and recording_of do.
+RecordedWalk walk_recorded(const Scenario& scenario, const WalkConfig& config, const FlyOptions& options,
+                           const RecordingChoice& choice);
 
 /// Carries cameras and IMU along `poses` of read_path, smoothly, from the first to the last, regardless of
-/// obstacles. Time starts with the first pose; time_limit_s does not count. Throws as EurocRecording does.
+/// obstacles. Time starts with the first pose; time_limit_s does not count. Throws as recording_of does.
 Carried follow_recorded(const Scenario& scenario, const std::vector<TimedPose>& poses,
-                        const FlyOptions& options);
+                        const FlyOptions& options, const RecordingChoice& choice = {});
 
 }  // namespace understory

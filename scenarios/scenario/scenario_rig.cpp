@@ -26,10 +26,6 @@ void require_alike(const StereoRig& rectified, const StereoRig& rig, const fs::p
                     rectified.width_px, rectified.height_px, rectified.focal_px, rectified.baseline_m));
 }
 
-fs::path raw_file_of(const fs::path& rig_file) {
-  return rig_file.parent_path() / "raw" / (rig_file.stem().string() + ".xml");
-}
-
 CalibratedRig raw_rig(const fs::path& rig_file, const StereoRig& rig, double meters_per_unit) {
   const fs::path file = raw_file_of(rig_file);
   if (!fs::exists(file)) throw std::runtime_error("the rig's calibration is missing: " + file.string());
@@ -38,6 +34,7 @@ CalibratedRig raw_rig(const fs::path& rig_file, const StereoRig& rig, double met
   options.detection_depth_m = rig.detection_depth_m;
   CalibratedRig raw = read_calibrated_rig(file, options);
   require_alike(raw.rig, rig, file);
+  if (!raw.calibration) throw std::runtime_error(file.string() + ": these cameras give rectified images");
   Eigen::Matrix3d rectified_of_raw;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) rectified_of_raw(i, j) = raw.calibration->left.rectification(i, j);

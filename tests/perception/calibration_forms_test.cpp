@@ -4,6 +4,7 @@
 #include <opencv2/core/persistence.hpp>
 
 #include "perception/io/calibration/calibration_file.hpp"
+#include "perception/io/calibration/write_calibration.hpp"
 #include "perception/rectification/rectify.hpp"
 #include "tests/perception/rigs.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -286,6 +287,113 @@ TEST_F(CalibrationForms, OneCameraOfAPairIsNotEnough) {
   expect_line(refusal_of([&] { read(ros); }), ros.string(), "name the folder that holds the files of both");
   const auto euroc = folder.write("sensor.yaml", "T_BS:\n  cols: 4\ndistortion_coefficients: [0]\n");
   expect_line(refusal_of([&] { read(euroc); }), euroc.string(), "name the folder that holds cam0 and cam1");
+}
+
+void expect_near(const cv::Mat& a, const cv::Mat& b, const std::string& what) {
+  ASSERT_EQ(a.size(), b.size()) << what;
+  EXPECT_LT(cv::norm(a, b, cv::NORM_INF), 1e-9) << what << "\n" << a << "\n" << b;
+}
+
+void expect_same_rig(const StereoRig& a, const StereoRig& b) {
+  EXPECT_EQ(cv::Size(a.width_px, a.height_px), cv::Size(b.width_px, b.height_px));
+  EXPECT_NEAR(a.focal_px, b.focal_px, 1e-9);
+  EXPECT_NEAR(a.baseline_m, b.baseline_m, 1e-9);
+  EXPECT_NEAR(a.center_left_x_px, b.center_left_x_px, 1e-9);
+  EXPECT_NEAR(a.center_right_x_px, b.center_right_x_px, 1e-9);
+  EXPECT_NEAR(a.center_y_px, b.center_y_px, 1e-9);
+}
+
+void expect_same_cameras(const CalibratedRig& a, const CalibratedRig& b) {
+  ASSERT_EQ(a.calibration.has_value(), b.calibration.has_value());
+  if (!a.calibration) return;
+  for (const auto side : {&StereoCalibration::left, &StereoCalibration::right}) {
+    const CameraCalibration &one = (*a.calibration).*side, &other = (*b.calibration).*side;
+    EXPECT_EQ(one.lens, other.lens);
+    expect_near(cv::Mat(one.camera_matrix), cv::Mat(other.camera_matrix), "camera matrix");
+    std::vector<double> k = one.distortion, other_k = other.distortion;
+    k.resize(8), other_k.resize(8);
+    expect_near(cv::Mat(k), cv::Mat(other_k), "distortion");
+    expect_near(cv::Mat(one.rectification), cv::Mat(other.rectification), "rectification");
+    expect_near(cv::Mat(one.projection), cv::Mat(other.projection), "projection");
+  }
+}
+
+/// Each form of each calibration, written and read back, is the same to 1e-9.
+TEST_F(CalibrationForms, ThereAndBack) {
+  const std::filesystem::path models = std::filesystem::path(UNDERSTORY_SOURCE_DIR) / "models/rigs";
+  folder.write("camchain.yaml", kalibr_text);
+  folder.write("ros/left.yaml", ros_text(0, "rational_polynomial", "1, 2, .1, .2, .3, 1, 2, .5"));
+  folder.write("ros/right.yaml", ros_text(-63));
+  folder.write("kitti/calib.txt", kitti_raw_text);
+  folder.write("middlebury/calib.txt", middlebury_text);
+  const std::filesystem::path at = folder.path();
+  for (const std::filesystem::path& source :
+       {at / "camchain.yaml", fisheye_file, at / "ros", at / "kitti", at / "middlebury", models / "long.yaml",
+        models / "raw/long.xml"}) {
+    SCOPED_TRACE(source.string());
+    const CalibratedRig first = read(source);
+    const auto there_and_back = [&](CalibrationForm form, const std::string& out) {
+      for (const auto& [file, text] : calibration_texts(first, form, at / "out" / out))
+        folder.write(std::filesystem::relative(file, at).string(), text);
+      return read(at / "out" / out);
+    };
+    const CalibratedRig rig = there_and_back(CalibrationForm::rig_file, "rig.yaml");
+    expect_same_rig(rig.rig, first.rig);
+    EXPECT_LT((rig.rig.T_body_camera.matrix() - first.rig.T_body_camera.matrix()).cwiseAbs().maxCoeff(),
+              1e-9);
+    if (first.calibration) expect_same_cameras(read(raw_file_of(at / "out/rig.yaml")), first);
+    for (const char* out : {"cv.xml", "cv.yaml", "cv.yml", "cv.json"}) {
+      const CalibratedRig opencv = there_and_back(CalibrationForm::opencv, out);
+      expect_same_rig(opencv.rig, first.rig);
+      expect_same_cameras(opencv, first);
+    }
+    const CalibratedRig ros = there_and_back(CalibrationForm::ros, "ros");
+    expect_same_rig(ros.rig, first.rig);
+    expect_same_cameras(ros, first);
+    if (source == at / "ros" || source == models / "raw/long.xml") continue;  // rectified by their makers
+    const CalibratedRig kalibr = there_and_back(CalibrationForm::kalibr, "camchain.yaml");
+    expect_same_rig(kalibr.rig, first.rig);
+    expect_same_cameras(kalibr, first);
+  }
+}
+
+/// Kalibr's form does not say how a pair is rectified: of the real rig, the raw cameras come back.
+TEST_F(CalibrationForms, KalibrKeepsTheRawCamerasOfAPairThatItsMakerRectified) {
+  const std::filesystem::path source =
+      std::filesystem::path(UNDERSTORY_SOURCE_DIR) / "models/rigs/raw/long.xml";
+  const CalibratedRig first = read(source);
+  CalibratedRig short_lens = first;
+  short_lens.calibration->left.distortion.resize(4);
+  short_lens.calibration->right.distortion.resize(4);
+  for (const auto& [file, text] :
+       calibration_texts(short_lens, CalibrationForm::kalibr, folder.path() / "k.yaml"))
+    folder.write(file.filename().string(), text);
+  const CalibratedRig back = read(folder.path() / "k.yaml");
+  EXPECT_NEAR(back.rig.baseline_m, first.rig.baseline_m, 1e-9);
+  const auto turn = [](const CalibratedRig& rig) {
+    return rig.calibration->right.rectification.t() * rig.calibration->left.rectification;
+  };
+  expect_near(cv::Mat(turn(back)), cv::Mat(turn(first)), "rotation from the left camera to the right");
+  expect_line(refusal_of([&] { calibration_texts(first, CalibrationForm::kalibr, "k.yaml"); }),
+              "k.yaml: distortion_coeffs: ", "OpenCV's and ROS's");
+  expect_line(refusal_of([&] { calibration_texts(first, CalibrationForm::opencv, "k.txt"); }),
+              "k.txt: ", ".xml");
+}
+
+/// A EuRoC body has x up and z ahead, where yaw and roll cannot be told apart.
+TEST_F(CalibrationForms, RigFilesHoldAnyMounting) {
+  CalibratedRig calibrated = read(std::filesystem::path(UNDERSTORY_SOURCE_DIR) / "models/rigs/long.yaml");
+  Eigen::Matrix3d up_and_ahead;  // columns: the camera's axes right, down, ahead
+  up_and_ahead << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  for (const double turn : {0.0, 1e-12, 1e-6, 0.01, 1.0, 3.0})
+    for (const Eigen::Vector3d& axis :
+         {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0.6, 0, 0.8), Eigen::Vector3d(0, 1, 0)}) {
+      calibrated.rig.T_body_camera.linear() = up_and_ahead * Eigen::AngleAxisd(turn, axis).toRotationMatrix();
+      folder.write("rig.yaml",
+                   calibration_texts(calibrated, CalibrationForm::rig_file, "rig.yaml").front().text);
+      const Eigen::Matrix4d back = read_rig(folder.path() / "rig.yaml").T_body_camera.matrix();
+      EXPECT_LT((back - calibrated.rig.T_body_camera.matrix()).cwiseAbs().maxCoeff(), 1e-9) << turn;
+    }
 }
 
 }  // namespace

@@ -59,9 +59,7 @@ void require_in_range(const StereoRig& rig, const fs::path& path) {
 
 /// Whether rectifying would leave this camera's images as they are.
 bool is_rectified(const CameraCalibration& camera) {
-  const bool is_bent = std::any_of(camera.distortion.begin(), camera.distortion.end(),
-                                   [](double coefficient) { return coefficient != 0; });
-  return !is_bent && camera.rectification == cv::Matx33d::eye() &&
+  return !camera.bends() && camera.rectification == cv::Matx33d::eye() &&
          camera.projection.get_minor<3, 3>(0, 0) == camera.camera_matrix;
 }
 
@@ -70,6 +68,7 @@ struct RigText {
   StereoRig rig;
   Eigen::Vector3d left_camera_body_m = Eigen::Vector3d::Zero();
   double pitch_down_deg = 0;
+  std::optional<double> yaw_left_deg = {}, roll_right_deg = {};
 };
 
 void visit_fields(FieldVisitor& visit, RigText& text) {
@@ -84,6 +83,8 @@ void visit_fields(FieldVisitor& visit, RigText& text) {
   visit("detection_depth_m", text.rig.detection_depth_m, minimum_depth_m, maximum_depth_m);
   visit("left_camera_body_m", text.left_camera_body_m, -maximum_offset_m, maximum_offset_m);
   visit("pitch_down_deg", text.pitch_down_deg, -90, 90);
+  visit("yaw_left_deg", text.yaw_left_deg, -180, 180);
+  visit("roll_right_deg", text.roll_right_deg, -180, 180);
 }
 
 CalibratedRig from_rig_file(const fs::path& path, const CalibrationOptions& options) {
@@ -104,7 +105,8 @@ CalibratedRig from_cameras(StereoCalibration calibration, const fs::path& path,
   read.rig.name = calibration.name = name_of(path);
   require_in_range(read.rig, path);
   look_at(read.rig, options.detection_depth_m.value_or(default_depth_m), path);
-  read.calibration = std::move(calibration);
+  if (!is_rectified(calibration.left) || !is_rectified(calibration.right))
+    read.calibration = std::move(calibration);
   return read;
 }
 
@@ -217,21 +219,30 @@ CalibratedRig read_any_form(const fs::path& path, const CalibrationOptions& opti
   const auto folder = euroc_folder(path);
   if (!folder) return read_folder(path, options);
   const EurocCalibration euroc = read_euroc_calibration(*folder, options);
-  CalibratedRig read = from_cameras(euroc.calibration, path, options, euroc.detection_depth_m);
-  if (is_rectified(read.calibration->left) && is_rectified(read.calibration->right)) read.calibration.reset();
-  return read;
+  return from_cameras(euroc.calibration, path, options, euroc.detection_depth_m);
 }
 
 }  // namespace
 
-Eigen::Isometry3d T_body_camera_of(const Eigen::Vector3d& left_camera_body_m, double pitch_down_rad) {
+Eigen::Isometry3d T_body_camera_of(const Eigen::Vector3d& left_camera_body_m, double pitch_down_rad,
+                                   double yaw_left_rad, double roll_right_rad) {
   const double c = std::cos(pitch_down_rad), s = std::sin(pitch_down_rad);
   Eigen::Isometry3d T_body_camera = Eigen::Isometry3d::Identity();
   T_body_camera.linear().col(0) = Eigen::Vector3d(0, -1, 0);   // camera x: to the right
   T_body_camera.linear().col(1) = Eigen::Vector3d(-s, 0, -c);  // camera y: down
   T_body_camera.linear().col(2) = Eigen::Vector3d(c, 0, -s);   // camera z: ahead
+  if (yaw_left_rad != 0 || roll_right_rad != 0) {
+    const Eigen::Matrix3d ahead_only = T_body_camera_of(Eigen::Vector3d::Zero(), 0).linear();
+    T_body_camera.linear() = Eigen::AngleAxisd(yaw_left_rad, Eigen::Vector3d::UnitZ()) *
+                             Eigen::AngleAxisd(pitch_down_rad, Eigen::Vector3d::UnitY()) *
+                             Eigen::AngleAxisd(roll_right_rad, Eigen::Vector3d::UnitX()) * ahead_only;
+  }
   T_body_camera.translation() = left_camera_body_m;
   return T_body_camera;
+}
+
+fs::path raw_file_of(const fs::path& rig_file) {
+  return rig_file.parent_path() / "raw" / (rig_file.stem().string() + ".xml");
 }
 
 StereoRig read_rig(const std::filesystem::path& file) {
@@ -240,7 +251,10 @@ StereoRig read_rig(const std::filesystem::path& file) {
   read_fields(map, fields_of(text), "", Keys::all_required);
   StereoRig& rig = text.rig;
   if (rig.name.empty()) refuse_input(map.origin, "name", "expected a word");
-  rig.T_body_camera = T_body_camera_of(text.left_camera_body_m, text.pitch_down_deg * std::numbers::pi / 180);
+  constexpr double radians = std::numbers::pi / 180;
+  rig.T_body_camera =
+      T_body_camera_of(text.left_camera_body_m, text.pitch_down_deg * radians,
+                       text.yaw_left_deg.value_or(0) * radians, text.roll_right_deg.value_or(0) * radians);
   if (!rig.can_look_at(std::round(rig.disparity_px(rig.detection_depth_m))))
     refuse_input(find_child(map, "detection_depth_m")->origin, "detection_depth_m",
                  "must be a depth more than a pixel of disparity nearer than infinity and inside the image");

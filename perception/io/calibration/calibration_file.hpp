@@ -30,19 +30,26 @@ struct CalibrationOptions {
 /// The rig is named after its file or folder. The pose in the body: a rig file's own mounting; EuRoC's T_BS,
 /// whose body is the file's own (the IMU, x up); OpenCV's files define no body, so the raw left camera is at
 /// its origin and looks along its x axis. The returned rig fits a detector (the detection depth's disparity
-/// lies in the images) and a Rectifier. Throws InputError, one line "file[:line]: key: what was expected", if
-/// anything is missing, of a wrong type, not finite or out of range, if the images' size is needed and
-/// unknown or contradictory, and if no rectified pair results. No content of a file causes another exception.
+/// lies in the images) and a Rectifier; where rectifying would change nothing, it has no calibration. Throws
+/// InputError, one line "file[:line]: key: what was expected", if anything is missing, of a wrong type, not
+/// finite or out of range, if the images' size is needed and unknown or contradictory, and if no rectified
+/// pair results. No content of a file causes another exception.
 CalibratedRig read_calibrated_rig(const std::filesystem::path& path, const CalibrationOptions& options);
 
-/// Reads a rig from YAML. Every key is required, and no others are allowed: name, width_px, height_px,
+/// Reads a rig from YAML. These keys are required, and no others are allowed: name, width_px, height_px,
 /// focal_px, baseline_m, center_left_x_px, center_right_x_px, center_y_px, detection_depth_m,
 /// left_camera_body_m (x forward, y left, z up of the centre of mass), pitch_down_deg (of both cameras
-/// against body x). Throws InputError "file:line: key: what was expected" at an unknown, doubled, missing,
-/// mistyped or out-of-range key, at broken YAML, and at a file that cannot be read.
+/// against body x); but yaw_left_deg and roll_right_deg may be left out (0). Throws InputError "file:line:
+/// key: what was expected" at an unknown, doubled, missing, mistyped or out-of-range key, at broken YAML, and
+/// at a file that cannot be read.
 StereoRig read_rig(const std::filesystem::path& file);
 
-/// The camera's pose for a mounting: OpenCV axes, looking along body x turned down by pitch_down_rad.
-Eigen::Isometry3d T_body_camera_of(const Eigen::Vector3d& left_camera_body_m, double pitch_down_rad);
+/// The camera's pose for a mounting: OpenCV axes, looking along body x; rolled to the right about body x,
+/// then pitched down, then yawed to the left about body z.
+Eigen::Isometry3d T_body_camera_of(const Eigen::Vector3d& left_camera_body_m, double pitch_down_rad,
+                                   double yaw_left_rad = 0, double roll_right_rad = 0);
+
+/// raw/NAME.xml beside a rig file NAME.yaml: the OpenCV calibration of the raw cameras behind it.
+std::filesystem::path raw_file_of(const std::filesystem::path& rig_file);
 
 }  // namespace understory

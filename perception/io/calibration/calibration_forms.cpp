@@ -49,10 +49,34 @@ bool is_rotation(const cv::Matx33d& matrix) {
          cv::determinant(matrix) > 0;
 }
 
+namespace {
+
+/// Whether raw cameras are a rectified pair already, whose images should stay as they are.
+bool are_aligned(const CameraCalibration& left, const CameraCalibration& right,
+                 const cv::Matx33d& R_right_left, const cv::Vec3d& t_right_m) {
+  const cv::Matx33d &K = left.camera_matrix, &other = right.camera_matrix;
+  const bool is_equal =
+      K(0, 0) == K(1, 1) && other(0, 0) == K(0, 0) && other(1, 1) == K(0, 0) && other(1, 2) == K(1, 2);
+  return is_equal && !left.bends() && !right.bends() && R_right_left == cv::Matx33d::eye() &&
+         t_right_m[0] < 0 && t_right_m[1] == 0 && t_right_m[2] == 0;
+}
+
+}  // namespace
+
 bool rectify_pair(StereoCalibration& calibration, const cv::Matx33d& R_right_left,
                   const cv::Vec3d& t_right_m) {
   CameraCalibration& left = calibration.left;
   CameraCalibration& right = calibration.right;
+  if (are_aligned(left, right, R_right_left, t_right_m)) {
+    left.projection = cv::Matx34d::eye();
+    for (int row = 0; row < 3; ++row)
+      for (int col = 0; col < 3; ++col) {
+        left.projection(row, col) = left.camera_matrix(row, col);
+        right.projection(row, col) = right.camera_matrix(row, col);
+      }
+    right.projection(0, 3) = right.camera_matrix(0, 0) * t_right_m[0];
+    return true;
+  }
   const cv::Size size(calibration.width_px, calibration.height_px);
   cv::Mat disparity_to_depth;
   try {

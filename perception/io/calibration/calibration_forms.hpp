@@ -74,7 +74,7 @@ bool is_rotation(const cv::Matx33d& matrix);
 /// Fills both cameras' `rectification` and `projection` with cv::stereoRectify's (CALIB_ZERO_DISPARITY, alpha
 /// 0: principal points alike, every rectified pixel seen by the raw image). Camera matrices, distortion and
 /// size must be set. A point x in left camera coordinates is R_right_left * x + t_right in right ones. False
-/// if no rectified pair results.
+/// if no rectified pair results. A pair without distortion that is aligned already stays as it is.
 bool rectify_pair(StereoCalibration& calibration, const cv::Matx33d& R_right_left,
                   const cv::Vec3d& t_right_m);
 

@@ -89,13 +89,21 @@ const result = JSON.parse(await readFile(join(run, 'result.json')));
 const truth = (await readFile(join(run, 'truth.tum'), 'utf8')).trim().split('\n').map((line) => line.split(' ').map(Number));
 const obstacles = (await readFile(join(run, 'obstacles.csv'), 'utf8')).trim().split('\n').length - 1;
 
+/** Of the frame header, the marker SOF0. */
+function jpegSize(bytes) {
+  for (let at = 2; at < bytes.length; at += 2 + bytes.readUInt16BE(at + 2))
+    if (bytes[at + 1] === 0xc0) return [bytes.readUInt16BE(at + 7), bytes.readUInt16BE(at + 5)];
+  return [0, 0];
+}
+
 for (const side of ['left', 'right']) {
   const images = decoded(`/camera/${side}/image`);
   const [calibration] = decoded(`/camera/${side}/calibration`);
-  expect(images.length === result.frames, `${side}: ${images.length} images, ${result.frames} frames`);
-  const png = Buffer.from(images[0].data);
-  expect(png.toString('latin1', 1, 4) === 'PNG' && png.readUInt32BE(16) === calibration.width &&
-         png.readUInt32BE(20) === calibration.height, `${side}: a PNG of the calibration's size`);
+  expect(images.length >= result.frames / 2 - 1 && images.length < result.frames / 2 + 2,
+         `${side}: ${images.length} images, every second of ${result.frames} frames`);
+  const [width, height] = jpegSize(Buffer.from(images[0].data));
+  expect(images[0].format === 'jpeg' && width === calibration.width && height === calibration.height,
+         `${side}: a JPEG of the calibration's size`);
   expect(calibration.K.length === 9 && calibration.P.length === 12 && calibration.K[0] > 0, `${side}: a calibration`);
   expect(images.every((image) => image.frame_id === `${side}_camera`), `${side}: the camera's frame`);
 }
@@ -104,7 +112,8 @@ const stride = (cloud) => cloud.point_stride;
 const points = (cloud) => cloud.data.length / stride(cloud);
 const hits = decoded('/hits').reduce((sum, cloud) => sum + points(cloud), 0);
 expect(hits === result.detections, `${hits} hits in the log, ${result.detections} in the result`);
-expect(decoded('/map').length === result.frames, 'a map for each frame');
+const maps = decoded('/map').length;
+expect(maps > result.frames / 4 - 2 && maps < result.frames / 3, `${maps} maps, one for each fourth of ${result.frames} frames`);
 const [trunks] = decoded('/obstacles');
 const [crowns] = decoded('/crowns');
 expect(points(crowns) === 0, 'no crowns in plain scenery');
