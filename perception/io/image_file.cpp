@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
 #include <initializer_list>
+#include <opencv2/imgproc.hpp>
 #include <string>
 #include <string_view>
 
@@ -125,11 +127,15 @@ bool is_video_name(const std::filesystem::path& file) {
   return ends_as_one_of(file, {".mp4", ".m4v", ".mov", ".mkv", ".avi", ".webm", ".mpg", ".mpeg", ".ogv"});
 }
 
-cv::Mat read_gray_image(const std::filesystem::path& file, int depth) {
-  const std::string kind = depth == CV_8U ? "an 8-bit gray image" : "a 16-bit gray image";
-  const auto expected = [&](const std::string& found) {
-    return InputError(file.string() + ": expected " + kind + ", found " + found);
-  };
+namespace {
+
+std::string unexpected(const std::filesystem::path& file, const std::string& kind, const std::string& found) {
+  return file.string() + ": expected " + kind + ", found " + found;
+}
+
+/// As it is stored.
+cv::Mat read_image(const std::filesystem::path& file, const std::string& kind) {
+  const auto expected = [&](const std::string& found) { return InputError(unexpected(file, kind, found)); };
   std::string bytes = read_file(file, maximum_image_bytes);
   if (bytes.empty()) throw expected("an empty file");
   if (!begins_as_image(bytes)) throw expected("no image, or a damaged one");
@@ -150,8 +156,46 @@ cv::Mat read_gray_image(const std::filesystem::path& file, int depth) {
   }
   if (image.empty()) require_resources(file);
   if (image.empty()) throw expected("no image, or a damaged one");
-  if (image.type() != CV_MAKETYPE(depth, 1)) throw expected(kind_of(image));
   return image;
+}
+
+}  // namespace
+
+cv::Mat read_gray_image(const std::filesystem::path& file, int depth) {
+  const std::string kind = depth == CV_8U ? "an 8-bit gray image" : "a 16-bit gray image";
+  const cv::Mat image = read_image(file, kind);
+  if (image.type() != CV_MAKETYPE(depth, 1)) throw InputError(unexpected(file, kind, kind_of(image)));
+  return image;
+}
+
+cv::Mat read_gray_image_of_8_or_16_bits(const std::filesystem::path& file) {
+  constexpr double fewest_of_16_bits = 4096;
+  const std::string kind = "a gray image of 8 or 16 bits";
+  const cv::Mat image = read_image(file, kind);
+  if (image.type() == CV_8UC1) return image;
+  if (image.type() != CV_16UC1) throw InputError(unexpected(file, kind, kind_of(image)));
+  double greatest = 0;
+  cv::minMaxLoc(image, nullptr, &greatest);
+  if (greatest < fewest_of_16_bits)
+    throw InputError(unexpected(
+        file, kind,
+        "16-bit numbers up to " + std::to_string(std::lround(greatest)) + ", whose scale is not known"));
+  cv::Mat upper(image.size(), CV_8UC1);
+  for (int row = 0; row < image.rows; ++row)
+    for (int column = 0; column < image.cols; ++column)
+      upper.at<std::uint8_t>(row, column) =
+          static_cast<std::uint8_t>(image.at<std::uint16_t>(row, column) >> 8);
+  return upper;
+}
+
+cv::Mat read_image_as_gray(const std::filesystem::path& file) {
+  const cv::Mat image = read_image(file, "an 8-bit image");
+  if (image.type() == CV_8UC1) return image;
+  cv::Mat gray;
+  if (image.type() != CV_8UC3 && image.type() != CV_8UC4)
+    throw InputError(unexpected(file, "an 8-bit image", kind_of(image)));
+  cv::cvtColor(image, gray, image.channels() == 3 ? cv::COLOR_BGR2GRAY : cv::COLOR_BGRA2GRAY);
+  return gray;
 }
 
 }  // namespace understory

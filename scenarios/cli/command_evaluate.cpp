@@ -94,6 +94,7 @@ void run_pairs(const EvaluateArguments& arguments, EvaluationSettings settings, 
   for (const std::string& folder : arguments.inputs)
     for (ImagePair& pair : read_image_pairs(folder, arguments.every)) {
       expected += whole_disparities(pair, rig).size();
+      if (arguments.inputs.size() > 1) pair.name = recording_name(folder);
       pairs.push_back(std::move(pair));
     }
   OutputFolder output(out, evaluation_results, "", Replace::anything);
@@ -192,8 +193,8 @@ void add_evaluate_command(CommandLine& line) {
       "disparities of another program for each pair, PFM or 16-bit PNG in 1/256 px, named as the left "
       "images (docs/evaluate.md); repeatable");
   command.flag("--pairs", arguments->pairs,
-               "the folders hold pairs with true disparities instead (left.png, right.png, disparity.png or "
-               ".pfm), or folders of such pairs: score the detectors at each whole disparity");
+               "the folders hold pairs with true disparities instead (KITTI's, Middlebury's, ETH3D's; "
+               "docs/evaluate.md): score the detectors at each whole disparity; several folders are scenes");
   command.whole("--every", arguments->every, 1, 1000, "use every N-th frame only");
   add_jobs_option(command, arguments->jobs, "recordings");
   command.text("--out", "FOLDER", arguments->out, "results folder (default: evaluations/NAME)");

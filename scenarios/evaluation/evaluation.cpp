@@ -71,6 +71,7 @@ void EvaluationSum::make_room(const EvaluationSettings& settings) {
   paced.resize(count);
   cost_ms.resize(count);
   disparities.resize(count);
+  for (std::vector<Rates>& rates : agreement) rates.resize(count);
 }
 
 void EvaluationSum::add(const EvaluationSum& other) {
@@ -85,6 +86,7 @@ void EvaluationSum::add(const EvaluationSum& other) {
     paced[i].frames += other.paced[i].frames;
     append(paced[i].sightings, other.paced[i].sightings);
     disparities[i].add(other.disparities[i]);
+    for (std::size_t j = 0; j < agreement.size(); ++j) agreement[j][i].add(other.agreement[j][i]);
   }
   for (std::size_t i = 0; i < published.size(); ++i) published[i].add(other.published[i]);
   for (std::size_t i = 0; i < invariance.size(); ++i) {

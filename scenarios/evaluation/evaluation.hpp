@@ -91,6 +91,8 @@ struct EvaluationSum {
   std::vector<DisparityErrors> disparities;  ///< of those that match every pixel
   std::array<PublishedScores, published_algorithms.size()> published;
   std::vector<InvarianceRow> invariance;
+  /// Without true depth: with StereoBM's and StereoSGBM's depths in its place, at one pixel.
+  std::array<std::vector<Rates>, 2> agreement;
   std::vector<PrecisionRecallCurve> curves;
 
   /// Places for all algorithms of the settings, with nothing in them.

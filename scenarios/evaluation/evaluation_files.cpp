@@ -20,14 +20,32 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+/// What the recordings lack, and the tables that are missing for it.
+std::string lacking(const Evaluation& evaluation) {
+  std::string text;
+  if (!evaluation.has_depth)
+    text +=
+        "No true depth (depth0): precision, recall, false detections and errors of disparities are not "
+        "known.\n";
+  else if (!evaluation.has_objects)
+    text += "No objects (objects0): obstacles found and kinds of surfaces are not known.\n";
+  if (!evaluation.has_poses)
+    text +=
+        "No poses (state_groundtruth_estimate0 or mocap0): the paper's evaluations 2 and 3, which remember "
+        "points, cannot be made.\n";
+  return text;
+}
+
 std::string heading(const Evaluation& evaluation) {
   const RecordingEvaluation& first = evaluation.recordings.front();
   return fmt::format(
-      "{} recording{}, {} frames, {:.1f} s; rig {}, looking {:.2f} m ahead, one pixel is "
-      "{:.2f} to {:.2f} m\n",
-      evaluation.recordings.size(), evaluation.recordings.size() == 1 ? "" : "s", evaluation.all.frames,
-      evaluation.all.seconds, one_line(first.rig.name), first.detection_depth.depth_m,
-      first.detection_depth.one_pixel.near_m, first.detection_depth.one_pixel.far_m);
+             "{} recording{}, {} frames, {:.1f} s; rig {}, looking {:.2f} m ahead, one pixel is "
+             "{:.2f} to {:.2f} m\n",
+             evaluation.recordings.size(), evaluation.recordings.size() == 1 ? "" : "s",
+             evaluation.all.frames, evaluation.all.seconds, one_line(first.rig.name),
+             first.detection_depth.depth_m, first.detection_depth.one_pixel.near_m,
+             first.detection_depth.one_pixel.far_m) +
+         lacking(evaluation);
 }
 
 /// What the figures say, before anything else.
@@ -111,6 +129,10 @@ Json sum_json(const EvaluationSum& sum) {
                              {"single_frame", to_json(sum.published[i].single_frame)},
                              {"false_positives", to_json(sum.published[i].false_positives)},
                              {"false_negatives", to_json(sum.published[i].false_negatives)}});
+  for (std::size_t j = 0; j < sum.agreement.size(); ++j)
+    for (std::size_t i = 0; i < sum.algorithms.size(); ++i)
+      if (const Rates& rates = sum.agreement[j][i]; rates.precision.of > 0)
+        json["agreement"][algorithm_names[algorithm::stereo_bm + j]][sum.algorithms[i]] = to_json(rates);
   for (const InvarianceRow& row : sum.invariance) {
     json["invariance"].push_back(
         {{"parameters", row.parameters}, {"filter", row.filter}, {"hits", row.hits}});

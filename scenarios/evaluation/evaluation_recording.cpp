@@ -105,6 +105,7 @@ EvaluationRecording::EvaluationRecording(const fs::path& folder, const Calibrati
     if (const std::string rig = rig_named_in(folder); !rig.empty())
       camera_.rig.name = rig;  // else the folder's
     true_poses_ = poses_where_there(folder_ / "state_groundtruth_estimate0/data.csv");
+    if (true_poses_.empty()) true_poses_ = poses_where_there(folder_ / "mocap0/data.csv");  // TUM-VI's
     estimates_ = poses_where_there(folder_ / "estimate0/data.csv");
     has_depth_ = fs::exists(folder_ / "depth0/data.csv");
     const fs::path objects = folder_ / "objects0/objects.csv";
@@ -133,7 +134,8 @@ EvaluationFrame EvaluationRecording::frame(std::size_t index) {
   const StereoFiles& files = sequence_.pairs[index];
   EvaluationFrame frame;
   bad_input_where_refused([&] {
-    frame.pair = {files.t_ns, read_gray_image(files.left), read_gray_image(files.right)};
+    frame.pair = {files.t_ns, read_gray_image_of_8_or_16_bits(files.left),
+                  read_gray_image_of_8_or_16_bits(files.right)};
     const fs::path name = files.left.filename();
     if (has_depth_) {
       frame.truth.depth_mm = read_16_bit_image(folder_ / "depth0/data" / name, rig());

@@ -106,6 +106,20 @@ EvaluationTable published_table(const Evaluation& evaluation) {
   return {"paper", "The paper's evaluations, StereoBM as truth; percent", std::move(table)};
 }
 
+EvaluationTable agreement_table(const Evaluation& evaluation) {
+  Table table{{"algorithm", "detections/frame", "confirmed by StereoBM, %", "of StereoBM's blocks found, %",
+               "confirmed by StereoSGBM, %", "of StereoSGBM's blocks found, %"}};
+  const EvaluationSum& all = evaluation.all;
+  for (std::size_t i = 0; i < all.algorithms.size(); ++i) {
+    if (i == algorithm::true_depth) continue;
+    table.add(all.algorithms[i], per_frame(all.hits[i], all, 1));
+    for (const std::vector<Rates>& rates : all.agreement)
+      for (const Share& share : {rates[i].precision, rates[i].recall})
+        table.rows.back().push_back(share.of > 0 ? percent(share.value()) : "-");
+  }
+  return {"agreement", "Agreement with full stereo, which is no truth, at one pixel", std::move(table)};
+}
+
 EvaluationTable algorithms_table(const Evaluation& evaluation) {
   Table table{{"algorithm", "detections/frame", "precision 0.25 m", "0.50 m", "1.00 m", "one pixel",
                "trunk precision", "recall 0.25 m", "0.50 m", "1.00 m", "one pixel", "F", "false/s",
@@ -278,6 +292,8 @@ std::vector<EvaluationTable> evaluation_tables(const Evaluation& evaluation) {
     tables.push_back(parts_table(evaluation));
     tables.push_back(false_hits_table(evaluation));
     tables.push_back(disparities_table(evaluation));
+  } else {
+    tables.push_back(agreement_table(evaluation));
   }
   tables.push_back(invariance_table(evaluation));
   return tables;

@@ -11,9 +11,15 @@
 namespace understory {
 namespace {
 
-/// The rig with images of this size, whose detection depth has this disparity.
+/// The pair's own rig, or else this one with images of its size, looking at this disparity.
 StereoRig rig_looking_at(int disparity_px, const ImagePair& pair, const StereoRig& rig) {
   StereoRig looking;
+  if (pair.rig) {
+    looking = *pair.rig;
+    looking.name = rig.name;
+    looking.detection_depth_m = looking.depth_m(disparity_px);
+    return looking;
+  }
   looking.name = rig.name;
   looking.width_px = pair.left.cols;
   looking.height_px = pair.left.rows;
@@ -66,7 +72,7 @@ std::vector<PairScore> evaluate_pairs(const std::vector<ImagePair>& pairs, const
     const std::size_t first = scores.size();
     const std::vector<int> disparities = whole_disparities(pair, rig);
     for (const ComparedDetector& one : compared_detectors(at_the_rigs_depth, rig))
-      scores.push_back({pair.name, one.name, static_cast<int>(disparities.size()), {}});
+      scores.push_back({pair.name, one.name, static_cast<int>(disparities.size())});
     for (const int px : disparities) {
       const StereoRig looking = rig_looking_at(px, pair, rig);
       const TrueImages truth = truth_of(pair, looking);
@@ -79,7 +85,12 @@ std::vector<PairScore> evaluate_pairs(const std::vector<ImagePair>& pairs, const
         std::erase_if(hits, [&](const StereoHit& hit) {
           return !content_between(truth, hit.column_px, hit.row_px, {0.001, 65.535}, Surfaces::any).holds();
         });
-        count_one_pixel(truth, grid, expected, hits, scores[place++].rates);
+        PairScore& score = scores[place++];
+        count_one_pixel(truth, grid, expected, hits, score.rates);
+        if (!pair.rig) continue;
+        for (const StereoHit& hit : hits)
+          for (std::size_t i = 0; i < tolerances_m.size(); ++i)
+            score.within_m[i].count(true_within(hit, truth, grid)[i]);
       }
       on_disparity();
     }
@@ -88,21 +99,26 @@ std::vector<PairScore> evaluate_pairs(const std::vector<ImagePair>& pairs, const
 }
 
 Table pair_table(const std::vector<PairScore>& scores) {
-  Table table{{"pair", "algorithm", "disparities", "detections", "precision, %", "blocks", "recall, %", "F"}};
-  const auto add = [&](const PairScore& score) {
-    table.add(score.pair, score.algorithm, score.disparities, score.rates.precision.of,
-              percent_text(score.rates.precision), score.rates.recall.of, percent_text(score.rates.recall),
-              number_text(score.rates.f_score(), 3));
+  std::vector<PairScore> rows;
+  const auto add = [&](const std::string& pair, const PairScore& score) {
+    auto row = std::ranges::find_if(
+        rows, [&](const PairScore& one) { return one.pair == pair && one.algorithm == score.algorithm; });
+    if (row == rows.end()) row = rows.insert(rows.end(), {pair, score.algorithm});
+    row->disparities += score.disparities;
+    row->rates.add(score.rates);
+    for (std::size_t i = 0; i < tolerances_m.size(); ++i) row->within_m[i].add(score.within_m[i]);
   };
-  std::vector<PairScore> sums;
-  for (const PairScore& score : scores) {
-    add(score);
-    auto sum = std::ranges::find(sums, score.algorithm, &PairScore::algorithm);
-    if (sum == sums.end()) sum = sums.insert(sums.end(), {"all", score.algorithm, 0, {}});
-    sum->disparities += score.disparities;
-    sum->rates.add(score.rates);
+  for (const PairScore& score : scores) add(score.pair, score);
+  for (const PairScore& score : scores) add("all", score);
+  Table table{{"pair", "algorithm", "disparities", "detections", "precision, %", "blocks", "recall, %", "F"}};
+  for (const double tolerance_m : tolerances_m)
+    table.head.push_back(fmt::format("within {:g} m, %", tolerance_m));
+  for (const PairScore& row : rows) {
+    table.add(row.pair, row.algorithm, row.disparities, row.rates.precision.of,
+              percent_text(row.rates.precision), row.rates.recall.of, percent_text(row.rates.recall),
+              number_text(row.rates.f_score(), 3));
+    for (const Share& share : row.within_m) table.rows.back().push_back(percent_text(share));
   }
-  for (const PairScore& sum : sums) add(sum);
   return table;
 }
 

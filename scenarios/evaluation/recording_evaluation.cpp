@@ -255,6 +255,18 @@ class Evaluator {
       bad.back() = {index, false_positives, hits};
   }
 
+  /// What full stereo matches takes the truth's place: StereoBM and StereoSGBM are the first two of dense_.
+  void add_agreement() {
+    for (std::size_t reference = 0; reference < result_.sum.agreement.size(); ++reference) {
+      TrueImages stereo;
+      dense_[reference].depth_m->convertTo(stereo.depth_mm, CV_16UC1, 1000);
+      stereo.shared_depth_mm = stereo.depth_mm;
+      const std::vector<ExpectedBlock> expected = expected_blocks(stereo, grid_);
+      for (std::size_t i = 0; i < hits_.size(); ++i)
+        count_one_pixel(stereo, grid_, expected, hits_[i], result_.sum.agreement[reference][i]);
+    }
+  }
+
   /// `next_t_ns`: the moment of the frame after it.
   void add(const EvaluationFrame& frame, std::size_t index, std::int64_t next_t_ns) {
     detect(frame);
@@ -274,6 +286,8 @@ class Evaluator {
       for (std::size_t i = 0; i < places.size(); ++i)
         keep_if_bad(frame, index, hits_[places[i]], result_.worst[i]);
       sweeps_->add(frame, due[one_pixel]);
+    } else {
+      add_agreement();
     }
     add_invariance(frame, due[one_pixel]);
     for (std::size_t i = 0; i < published_.size(); ++i) {

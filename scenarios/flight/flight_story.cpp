@@ -74,7 +74,7 @@ std::string outcome_sentence(const FlightLog& log) {
 
 std::optional<double> first_in_view_s(const FlightLog& log, std::size_t obstacle) {
   for (const LogFrame& frame : log.frames)
-    if (pixels_in_view(log, frame.T_world_body, obstacle, in_view_px) >= in_view_px)
+    if (pixels_in_view(log, frame.t_ns, frame.T_world_body, obstacle, in_view_px) >= in_view_px)
       return seconds(frame.t_ns);
   return std::nullopt;
 }
@@ -105,7 +105,7 @@ bool was_in_view_at_depth(const FlightLog& log, std::size_t index,
       return one.near_m <= depth_m && depth_m <= one.far_m;
     };
     return std::ranges::any_of(intervals, holds) &&
-           pixels_in_view(log, frame.T_world_body, index, in_view_px) >= in_view_px;
+           pixels_in_view(log, frame.t_ns, frame.T_world_body, index, in_view_px) >= in_view_px;
   });
 }
 

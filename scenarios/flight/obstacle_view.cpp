@@ -6,6 +6,7 @@
 
 #include "scenarios/flight/clearance.hpp"
 #include "scenarios/parts/oracles.hpp"
+#include "sim/sensors/faults.hpp"
 
 namespace understory {
 namespace {
@@ -47,14 +48,19 @@ ImageWindow window_of(const StereoRig& rig, const Eigen::Isometry3d& T_camera_wo
 
 }  // namespace
 
-int pixels_in_view(const FlightLog& log, const Eigen::Isometry3d& T_world_body, std::size_t obstacle,
-                   int enough) {
+int pixels_in_view(const FlightLog& log, std::int64_t t_ns, const Eigen::Isometry3d& T_world_body,
+                   std::size_t obstacle, int enough) {
   const StereoRig& rig = log.rig.rig;
   const Eigen::Isometry3d T_world_camera = T_world_body * rig.T_body_camera;
   const Eigen::Vector3d eye_world = T_world_camera.translation();
   const Obstacle& target = log.obstacles[obstacle];
   if (distance_m(eye_world, target) > log.scenario.cameras.view_distance_m) return 0;
-  const ImageWindow window = window_of(rig, T_world_camera.inverse(), target);
+  ImageWindow window = window_of(rig, T_world_camera.inverse(), target);
+  if (const auto cover = Faults(log.scenario.faults).value(FaultySensor::camera, FaultKind::cover, t_ns)) {
+    const auto [first, end] = free_columns(*cover, rig.width_px);
+    window.first_column = std::max(window.first_column, first);
+    window.last_column = std::min(window.last_column, end - 1);
+  }
   int pixels = 0;
   for (int row = window.first_row; row <= window.last_row; ++row)
     for (int column = window.first_column; column <= window.last_column; ++column) {

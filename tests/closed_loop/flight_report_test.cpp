@@ -108,7 +108,7 @@ TEST(FlightStory, TellsWhenTheTrunkWasSeen) {
   ASSERT_NE(first, told.log().frames.end());
   EXPECT_NEAR(seconds(first->t_ns), seen->t_s, 0.05);
   const LogFrame& last = told.log().frames.back();
-  EXPECT_NEAR(pixels_in_view(told.log(), last.T_world_body, touched, 1 << 30), drawn_px(last),
+  EXPECT_NEAR(pixels_in_view(told.log(), last.t_ns, last.T_world_body, touched, 1 << 30), drawn_px(last),
               0.03 * drawn_px(last) + 20);
 }
 

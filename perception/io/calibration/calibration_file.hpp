@@ -15,6 +15,7 @@ struct CalibrationOptions {
   std::optional<double> meters_per_unit{};
   std::optional<int> width_px{}, height_px{};  ///< of the images, both, if the files do not state it
   std::optional<double> detection_depth_m{};   ///< overrides the rig file's own; 10 m if neither is given
+  bool of_colour_pair = false;                 ///< of KITTI's two pairs, which stand in one file
   std::optional<cv::Size> images_at_hand{};    ///< size of the images, if neither files nor options state it
 };
 

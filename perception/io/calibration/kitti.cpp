@@ -72,8 +72,10 @@ StereoRig read_kitti_calibration(const std::filesystem::path& path, const Calibr
   using Pair = std::array<std::string, 2>;
   const std::array<Pair, 4> pairs{
       {{"P_rect_00", "P_rect_01"}, {"P0", "P1"}, {"P_rect_02", "P_rect_03"}, {"P2", "P3"}}};
-  const auto pair = std::ranges::find_if(
-      pairs, [&](const Pair& one) { return lines.contains(one[0]) && lines.contains(one[1]); });
+  const std::size_t first = options.of_colour_pair ? 2 : 0;
+  const auto pair = std::find_if(pairs.begin() + first, pairs.end(), [&](const Pair& one) {
+    return lines.contains(one[0]) && lines.contains(one[1]);
+  });
   if (pair == pairs.end()) refuse_input(file, "P0", "missing, with P1: the cameras' projections");
   const cv::Matx34d left(numbers(lines, (*pair)[0], 12).data()), right(numbers(lines, (*pair)[1], 12).data());
   std::optional<ImageSize> size;
