@@ -17,6 +17,18 @@ void visit_fields(FieldVisitor& visit, CameraConfig& config) {
   visit("exposure_views", config.exposure_views, 1, 64,
         "Number of images rendered at times spread over the exposure and averaged; each costs a rendering. "
         "At 4 ms of exposure, more than four change nothing for the planner.");
+  visit("rolling_shutter_s", config.rolling_shutter_s, 0.0, 0.05,
+        "Time from the exposure of an image's first row to that of its last; the line time is this over the "
+        "rows. A frame's timestamp is that of its middle row. 0: a global shutter.");
+  visit("rolling_shutter_views", config.rolling_shutter_views, 2, 64,
+        "Number of images rendered at times spread over the readout. Each gives a band of rows, within which "
+        "nothing moves.");
+  visit(
+      "auto_exposure_s", config.auto_exposure_s, 0.0, 10.0,
+      "Time constant with which the camera brings the left image's mean to auto_exposure_gray: by a shorter "
+      "exposure, or by more gain, which amplifies the noise. It acts on later frames. 0: no automatic.");
+  visit("auto_exposure_gray", config.auto_exposure_gray, 10.0, 245.0,
+        "mean gray level that the automatic exposure aims at");
   visit("light", config.light, 0.001, 10.0,
         "light that reaches a pixel, as a factor on the rendered brightness; less than 1 at dusk");
   visit("gain", config.gain, 0.1, 64.0, "factor by which the camera amplifies a pixel's signal");
@@ -33,6 +45,10 @@ void visit_fields(FieldVisitor& visit, CameraConfig& config) {
       "supersampling", config.supersampling, 1, 4,
       "Number of samples of a pixel along either axis: images are rendered so many times as wide and as high "
       "and averaged down. For recordings and stills: the rendering takes about its square times as long.");
+  visit(
+      "bayer", config.bayer,
+      "Gives the images of a colour sensor with a Bayer pattern, turned to gray: bilinear, weights of ITU-R "
+      "BT.601. What is rendered is gray: this costs sharpness, and makes the noise of neighbours alike.");
   visit("vertical_misalignment_px", config.vertical_misalignment_px, -20.0, 20.0,
         "Distance by which the right image lies lower than the stack assumes, in pixels of the camera's "
         "image.");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <opencv2/core.hpp>
 
 namespace understory {
 namespace {
@@ -45,7 +46,7 @@ ImageNoise::ImageNoise(double deviation_gray, std::uint64_t seed)
   table_ = rounded_gaussians(table_size, deviation_gray, generator_);
 }
 
-void ImageNoise::add_to(cv::Mat& gray) {
+void ImageNoise::add_to(cv::Mat& gray, float gain) {
   if (silent_) return;
   const int columns =
       gray.cols;  // a local copy: bytes could alias a member, and the loop would not become SIMD
@@ -53,6 +54,12 @@ void ImageNoise::add_to(cv::Mat& gray) {
     const std::int8_t* noise =
         table_.data() + generator_() % (table_size - static_cast<std::size_t>(columns));
     std::uint8_t* pixel = gray.ptr<std::uint8_t>(row);
+    if (gain != 1) {
+      for (int column = 0; column < columns; ++column)
+        pixel[column] = cv::saturate_cast<std::uint8_t>(static_cast<float>(pixel[column]) +
+                                                        gain * static_cast<float>(noise[column]));
+      continue;
+    }
     for (int column = 0; column < columns; ++column) {
       const std::int16_t sum = static_cast<std::int16_t>(pixel[column] + noise[column]);
       pixel[column] = static_cast<std::uint8_t>(std::min<std::int16_t>(std::max<std::int16_t>(sum, 0), 255));
@@ -73,12 +80,13 @@ PixelResponse::PixelResponse(const CameraConfig& config, std::array<cv::Mat, 2> 
   for (float& value : normal_) value = standard(generator_);
 }
 
-void PixelResponse::apply(int eye, cv::Mat& gray) {
-  if (neutral_) return;
+void PixelResponse::apply(int eye, cv::Mat& gray, float automatic) {
+  if (neutral_ && automatic == 1) return;
   const cv::Mat& falloff = falloff_[static_cast<std::size_t>(eye)];
   // Local copies: bytes could alias a member, and the loops would not become SIMD.
   const int columns = gray.cols;
-  const float light = light_, gain = gain_, variance_per_gray = variance_per_gray_;
+  const float light = light_ * std::min(automatic, 1.0f), gain = gain_ * std::max(automatic, 1.0f),
+              variance_per_gray = variance_per_gray_;
   std::vector<float> seen(static_cast<std::size_t>(columns));
   const std::vector<float> no_lens(falloff.empty() ? static_cast<std::size_t>(columns) : 0, 1.0f);
   for (int row = 0; row < gray.rows; ++row) {
@@ -96,6 +104,15 @@ void PixelResponse::apply(int eye, cv::Mat& gray) {
       pixel[i] = static_cast<std::uint8_t>(static_cast<int>(std::min(std::max(read, 0.0f), 255.0f)));
     }
   }
+}
+
+void AutoExposure::observe(const cv::Mat& gray, std::int64_t t_ns) {
+  constexpr double most = 64;
+  if (lag_s_ <= 0) return;
+  const double passed_s = before_ns_ < 0 ? 0 : 1e-9 * static_cast<double>(t_ns - before_ns_);
+  before_ns_ = t_ns;
+  const double wanted = target_gray_ / std::max(1.0, cv::mean(gray)[0]);
+  factor_ = std::clamp(factor_ * std::pow(wanted, 1 - std::exp(-passed_s / lag_s_)), 1 / most, most);
 }
 
 std::vector<std::int8_t> rounded_gaussians(std::size_t count, double deviation, std::mt19937_64& generator) {

@@ -123,7 +123,8 @@ struct StereoCameras::Implementation {
   SceneRenderer scene;
   PixelResponse response;
   ImageNoise noise;
-  std::int64_t exposure_ns, right_delay_ns;
+  AutoExposure automatic;
+  std::int64_t exposure_ns, right_delay_ns, readout_ns;
   PoseHistory poses;
 
   Implementation(const mjModel& model_, const StereoRig& rig_, const CameraConfig& config_, CameraSeeds seeds,
@@ -137,11 +138,13 @@ struct StereoCameras::Implementation {
               config.supersampling * rig.height_px, renderer, woods),
         response(config, falloff_of(optics, config), seeds.shot),
         noise(config.noise_gray, seeds.noise),
+        automatic(config),
         exposure_ns(config.exposure_ns()),
         right_delay_ns(config.right_delay_ns()),
-        poses(exposure_ns + right_delay_ns) {}
+        readout_ns(config.readout_ns()),
+        poses(exposure_ns + right_delay_ns + readout_ns) {}
 
-  bool takes_time() const { return exposure_ns > 0 || right_delay_ns > 0; }
+  bool takes_time() const { return exposure_ns > 0 || right_delay_ns > 0 || readout_ns > 0; }
 
   /// Both views at one moment, each pixel the mean of its samples.
   std::array<cv::Mat, 2> rendered(std::array<Eye, 2> eyes) {
@@ -153,13 +156,35 @@ struct StereoCameras::Implementation {
     return views;
   }
 
-  /// Both images of an exposure that ends now: the mean of views spread evenly over the exposure.
+  /// Both images of a moment.
+  std::array<cv::Mat, 2> captured(const Eigen::Isometry3d& now, std::int64_t t_ns) {
+    if (takes_time()) poses.observe(now, t_ns);
+    std::array<cv::Mat, 2> images;
+    if (readout_ns == 0) images = exposed(now, t_ns);
+    // Each band of rows is of an image that was exposed when the band's middle row was.
+    for (int band = 0; readout_ns > 0 && band < config.rolling_shutter_views; ++band) {
+      const int count = config.rolling_shutter_views;
+      const std::array<cv::Mat, 2> whole =
+          exposed(now, t_ns - readout_ns + (2 * band + 1) * readout_ns / (2 * count));
+      for (std::size_t eye = 0; eye < 2; ++eye) {
+        images[eye].create(whole[eye].size(), whole[eye].type());
+        const cv::Range rows(band * whole[eye].rows / count, (band + 1) * whole[eye].rows / count);
+        whole[eye].rowRange(rows).copyTo(images[eye].rowRange(rows));
+      }
+    }
+    // In 8 bits OpenCV blurs with whole numbers, the same on every machine.
+    if (config.psf_px > 0)
+      for (cv::Mat& image : images) cv::GaussianBlur(image, image, {}, config.psf_px);
+    return images;
+  }
+
+  /// Both images of an exposure that ends at t_ns, before the lens's blur: the mean of views spread evenly
+  /// over the exposure.
   std::array<cv::Mat, 2> exposed(const Eigen::Isometry3d& now, std::int64_t t_ns) {
     std::array<cv::Mat, 2> views, sums;
     if (!takes_time()) {
       views = rendered(optics.eyes(now, now));
     } else {
-      poses.observe(now, t_ns);
       const int count = exposure_ns > 0 ? config.exposure_views : 1;
       for (int i = 0; i < count; ++i) {
         const std::int64_t right_ns = t_ns - exposure_ns + (2 * i + 1) * exposure_ns / (2 * count);
@@ -171,11 +196,7 @@ struct StereoCameras::Implementation {
       }
       for (std::size_t eye = 0; eye < 2; ++eye) sums[eye].convertTo(views[eye], CV_8UC1, 1.0 / count);
     }
-    std::array<cv::Mat, 2> images{optics.image(0, views[0]), optics.image(1, views[1])};
-    // In 8 bits OpenCV blurs with whole numbers, the same on every machine.
-    if (config.psf_px > 0)
-      for (cv::Mat& image : images) cv::GaussianBlur(image, image, {}, config.psf_px);
-    return images;
+    return {optics.image(0, views[0]), optics.image(1, views[1])};
   }
 };
 
@@ -202,14 +223,19 @@ StereoFrame StereoCameras::capture(const Eigen::Isometry3d& T_world_body, std::i
     frame.left = cv::Mat::zeros(size, CV_8UC1);
     frame.right = cv::Mat::zeros(size, CV_8UC1);
   } else {
-    const auto images = self.exposed(T_world_body, t_ns);
+    const auto images = self.captured(T_world_body, t_ns);
     frame.left = images[0];
     frame.right = images[1];
   }
-  self.response.apply(0, frame.left);
-  self.response.apply(1, frame.right);
-  self.noise.add_to(frame.left);
-  self.noise.add_to(frame.right);
+  const float automatic = self.automatic.factor(), amplified = std::max(automatic, 1.0f);
+  self.response.apply(0, frame.left, automatic);
+  self.response.apply(1, frame.right, automatic);
+  self.noise.add_to(frame.left, amplified);
+  self.noise.add_to(frame.right, amplified);
+  self.automatic.observe(frame.left, t_ns);
+  if (self.config.bayer)
+    for (cv::Mat* image : {&frame.left, &frame.right})
+      cv::cvtColor(image->clone(), *image, cv::COLOR_BayerRG2GRAY);
   return frame;
 }
 

@@ -247,6 +247,112 @@ TEST(CameraFaults, ABlurredPairIsTheMeanOfItsViews) {
   EXPECT_LT(cv::norm(seen, mean, cv::NORM_L1) / static_cast<double>(mean.total()), 0.5);
 }
 
+/// A camera that turns at a constant rate sees an upright edge slanted: each row lies where a camera of that
+/// row's heading sees it.
+TEST(CameraFaults, ARollingShutterSlantsAnEdgeByTheTurnWhileItReads) {
+  const double rate_radps = 3, readout_s = 0.016;
+  const StereoRig rig = paper_rig();
+  const World wall = bare_world("<geom type='box' size='.1 10 40' rgba='0 0 0 1' pos='10 10 0'/>");
+  CameraConfig config = noiseless();
+  config.rolling_shutter_s = readout_s;
+  config.rolling_shutter_views = 60;
+  StereoCameras cameras(wall, rig, config, {1, 1});
+  const auto heading = [&](std::int64_t t_ns) { return rate_radps * 1e-9 * static_cast<double>(t_ns); };
+  const std::int64_t end_ns = time_of_step_ns(40);
+  const auto body = [&](std::int64_t t_ns) {
+    return body_at({0, 0, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(heading(t_ns), Eigen::Vector3d::UnitZ())));
+  };
+  for (std::int64_t step = 0; step <= 40; ++step)
+    cameras.observe(body(time_of_step_ns(step)), time_of_step_ns(step));
+  const StereoFrame frame = cameras.capture(body(end_ns), end_ns);
+  EXPECT_EQ(frame.t_ns, end_ns - 8'000'000) << "a frame bears its middle row's time";
+  int compared = 0;
+  for (int row = 60; row < 180; ++row) {
+    const double t_s =
+        1e-9 * static_cast<double>(frame.t_ns) + readout_s * ((row + 0.5) / rig.height_px - 0.5);
+    // The wall's right edge is at y = 0, 9.9 m ahead of the body; the camera turns about the body.
+    const Eigen::Isometry3d camera = body(std::llround(t_s * 1e9)) * rig.T_body_camera;
+    const double v = (row - rig.center_y_px) / rig.focal_px;
+    // The point of the edge that lies in this row: z of the world such that it projects there.
+    double z = 0;
+    for (int i = 0; i < 20; ++i) {
+      const Eigen::Vector3d seen = camera.inverse() * Eigen::Vector3d(9.9, 0, z);
+      z += (seen.y() / seen.z() - v) * seen.z();  // up is less v
+    }
+    const Eigen::Vector3d seen = camera.inverse() * Eigen::Vector3d(9.9, 0, z);
+    const double expected_px = rig.focal_px * seen.x() / seen.z() + rig.center_left_x_px;
+    int edge = 0;
+    const auto* pixels = frame.left.ptr<std::uint8_t>(row);
+    while (edge < rig.width_px && pixels[edge] < 100) ++edge;
+    EXPECT_NEAR(edge - 0.5, expected_px, 1.0) << row;
+    ++compared;
+  }
+  EXPECT_EQ(compared, 120);
+  config.rolling_shutter_s = 0;
+  StereoCameras global(wall, rig, config, {1, 1});
+  EXPECT_FALSE(equal(global.capture(body(frame.t_ns), frame.t_ns).left, frame.left));
+}
+
+TEST(CameraFaults, TheAutomaticExposureComesToItsGrayWithItsTimeConstant) {
+  const CameraConfig config{.auto_exposure_s = 0.2, .auto_exposure_gray = 120};
+  AutoExposure automatic(config);
+  const double light_gray = 40, period_s = 1.0 / 120;
+  for (int frame = 0; frame < 120; ++frame) {
+    const double expected =
+        120 / light_gray * std::pow(light_gray / 120, std::exp(-std::max(0, frame - 1) * period_s / 0.2));
+    EXPECT_NEAR(automatic.factor(), expected, 0.02 * expected) << frame;
+    automatic.observe(cv::Mat(8, 8, CV_8UC1, cv::Scalar(std::lround(light_gray * automatic.factor()))),
+                      std::llround(frame * period_s * 1e9));
+  }
+  EXPECT_EQ(AutoExposure(CameraConfig()).factor(), 1);
+
+  // At a quarter of the light the gain is four times as high, and so is the noise.
+  const World sky = bare_world("");
+  CameraConfig dark{.noise_gray = 1, .auto_exposure_s = 0.05, .light = 0.25};
+  dark.auto_exposure_gray = cv::mean(still(sky, noiseless()).left)[0];
+  StereoCameras cameras(sky, paper_rig(), dark, {1, 2});
+  StereoFrame frame;
+  for (int i = 0; i < 120; ++i)
+    frame = cameras.capture(body_at({0, 0, 0}, level), std::llround(i * period_s * 1e9));
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(frame.left.row(0), mean, deviation);  // one height: one gray
+  EXPECT_NEAR(cv::mean(frame.left)[0], dark.auto_exposure_gray, 1.5);
+  EXPECT_NEAR(deviation[0], 4, 0.6);
+}
+
+TEST(CameraFaults, ABayerSensorSpreadsAPixelAsItsInterpolationSays) {
+  CameraConfig config = noiseless();
+  config.bayer = true;
+  const World sky = bare_world("");
+  const cv::Mat plain = still(sky, noiseless()).left, colour = still(sky, config).left;
+  cv::Mat difference;
+  cv::absdiff(plain.rowRange(2, 238).colRange(2, 374), colour.rowRange(2, 238).colRange(2, 374), difference);
+  EXPECT_LE(cv::norm(difference, cv::NORM_INF), 2);  // a smooth sky stays
+  // An upright edge: the two columns beside it mix, others stay.
+  const World wall = bare_world("<geom type='box' size='.1 5 20' rgba='0 0 0 1' pos='10 5 0'/>");
+  const cv::Mat sharp = still(wall, noiseless()).left, mixed = still(wall, config).left;
+  const auto* before = sharp.ptr<std::uint8_t>(80);
+  int edge = 8;
+  while (edge < sharp.cols - 8 && !(before[edge - 1] < 5 && before[edge] > 50)) ++edge;
+  ASSERT_LT(edge, sharp.cols - 8);
+  double dark_side = 0, bright_side = 0;
+  for (int row = 80; row < 120; ++row) {
+    const auto* after = mixed.ptr<std::uint8_t>(row);
+    dark_side += after[edge - 1] / 40.0;
+    bright_side += (before[edge] - after[edge]) / 40.0;
+    EXPECT_LE(after[edge - 3], 5);
+    EXPECT_NEAR(after[edge + 2], before[edge + 2], 3);
+  }
+  // What of the column beyond the edge enters a gray level (BT.601), by pencil: in a column of red and green
+  // pixels, at red a quarter of green and half of blue, at green half of blue; in one of green and blue the
+  // same with red for blue.
+  const double red = 0.299, green = 0.587, blue = 0.114;
+  const double of_red_column = (green / 4 + blue / 2 + blue / 2) / 2,
+               of_blue_column = (green / 4 + red / 2 + red / 2) / 2;
+  EXPECT_NEAR(std::min(dark_side, bright_side) / before[edge], of_red_column, 0.01);
+  EXPECT_NEAR(std::max(dark_side, bright_side) / before[edge], of_blue_column, 0.01);
+}
+
 TEST(CameraFaults, FramesDropAsOftenAsTheProbabilitySays) {
   FrameDrops drops(0.05, 7), again(0.05, 7), never(0, 7), always(1, 7);
   int lost = 0;
