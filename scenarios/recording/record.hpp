@@ -18,7 +18,7 @@ struct FlownRecording {
 
 /// Flies `scenario` and leaves, beside the run's files, its recording in options.output_folder
 /// (recording_of). The flight is the one that fly() flies. Throws as both do.
-FlownRecording fly_recorded(const Scenario& scenario, FlyOptions options, const RecordingChoice& choice);
+FlownRecording fly_recorded(const Scenario& scenario, FlyOptions options, const RecordingChoice& choice = {});
 
 /// A recording of carried cameras and IMU, without estimator and autopilot. Leaves scenario.yaml and the
 /// recording (recording_of) in options.output_folder: the truth as pose, no estimates. Every frame arrives,
@@ -37,7 +37,7 @@ struct RecordedWalk {
 /// Carries cameras and IMU past the scenario's obstacles on foot. Ends at the goal plane or after
 /// time_limit_s. Throws as walk_path and recording_of do.
 RecordedWalk walk_recorded(const Scenario& scenario, const WalkConfig& config, const FlyOptions& options,
-                           const RecordingChoice& choice);
+                           const RecordingChoice& choice = {});
 
 /// Carries cameras and IMU along `poses` of read_path, smoothly, from the first to the last, regardless of
 /// obstacles. Time starts with the first pose; time_limit_s does not count. Throws as recording_of does.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <sstream>
 #include <string>
@@ -150,6 +151,29 @@ TEST_F(CampaignRun, RefusesFoldersThatAreNotItsOwn) {
   expect_refusal(
       "campaign " + file("rig.yaml", "scenario: clear\nseeds: 1\ngrid: {rig: [monocle]}\n") + out("rig"),
       "condition clear-rig=monocle");
+}
+
+/// Two scenes as a data set: a list, a licence, and checksums that coreutils confirm.
+TEST_F(CampaignRun, RecordsADataSet) {
+  const std::string campaign = file("two.yaml", "scenario: forest\nseeds: [1003, 1004]\n");
+  const std::string options =
+      " --set time_limit_s=0.6 --set cameras.rate_hz=60 --record kitti --every 10" + out("set");
+  expect_success("campaign " + campaign + options);
+  const std::string scenes = text("set/scenes.csv");
+  expect_part(scenes, "folder,condition,seed,pairs,outcome\nruns/");
+  EXPECT_EQ(std::ranges::count(scenes, '\n'), 3);
+  expect_part(text("set/LICENSE.txt"), "CC0-1.0");
+  const std::string sums = text("set/SHA256SUMS");
+  for (const char* name : {"disp_occ/000000_10.png", "training/calib/000000.txt", "poses.txt", "scenes.csv",
+                           "LICENSE.txt", "conditions/"})
+    expect_part(sums, name);
+  EXPECT_EQ(
+      std::system(("cd " + (path / "set").string() + " && sha256sum --check --quiet SHA256SUMS").c_str()), 0);
+  expect_success("campaign " + campaign + options +
+                 " --resume");  // nothing is flown again, nothing is refused
+  expect_refusal("campaign " + campaign + " --record kitti --engine slurm" + out("x"),
+                 "--record: needs --engine local");
+  expect_refusal("campaign " + campaign + " --record png" + out("x"), "--record");
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ TEST(ImagePairs, ReadsPairsWithTheirDisparitiesAndSaysWhatIsWrong) {
     return refusal_of([&] { read_image_pairs(at, 1); });
   };
   expect_part(refusal(folder.path() / "none"), "there is no such folder");
-  expect_part(refusal(folder.path()), "expected a recording in EuRoC's layout, left.png and right.png");
+  expect_part(refusal(folder.path()), "expected a recording in EuRoC's layout, KITTI's folder, left.png and right.png");
   const std::filesystem::path one = folder.path() / "set" / "one";
   std::filesystem::create_directories(one);
   const cv::Mat image = normal_noise({64, 48}, 100, 20, 1);
@@ -153,6 +153,16 @@ TEST(ImagePairs, ReadsPairsWithTheirDisparitiesAndSaysWhatIsWrong) {
     EXPECT_EQ(narrow.disparity_px.at<float>(3, 5), 2.125F);
     EXPECT_EQ(narrowed(pair, 100).left.size(), pair.left.size());
   }
+  // A calibration beside it makes depths of disparities; of another size it is refused.
+  const std::string calibration =
+      "cam0=[100 0 32; 0 100 24; 0 0 1]\ncam1=[100 0 32; 0 100 24; 0 0 1]\ndoffs=0\nbaseline=200\n";
+  folder.write("set/one/calib.txt", calibration + "width=64\nheight=48\nndisp=20\n");
+  EXPECT_NEAR(read_image_pairs(one, 1).at(0).rig.value().depth_m(4), 5, 1e-12);
+  folder.write("set/one/calib.txt", calibration + "width=65\nheight=48\nndisp=20\n");
+  expect_part(refusal(one), "calib.txt: is of images of 65x48, left.png has 64x48");
+  folder.write("set/one/calib.txt", "cam0=[100 0 32\n");
+  expect_part(refusal(one), "calib.txt:1: cam0");
+  std::filesystem::remove(one / "calib.txt");
   cv::imwrite(one / "disparity.png", steps(cv::Rect(0, 0, 10, 10)));
   expect_part(refusal(one), "the disparities must be 64x48 as left.png, are 10x10");
   cv::imwrite(one / "right.png", image(cv::Rect(0, 0, 60, 48)));
@@ -210,6 +220,58 @@ TEST(PairEvaluation, FindsWhatIsThereAtEachDisparityAndNothingElse) {
   unknown_truth.disparity_px.release();
   expect_part(refusal_of([&] { evaluate_pairs({unknown_truth}, {}, rig, [] {}); }),
               "walls: requires disparity.png or disparity.pfm");
+}
+
+/// As KITTI's stereo benchmarks, Middlebury and ETH3D unpack: colour becomes gray, the colour pair has its
+/// own calibration, only the first image of a KITTI pair has disparities.
+TEST(ImagePairs, ReadsTheFoldersOfBenchmarks) {
+  const TemporaryFolder folder;
+  const cv::Mat gray = normal_noise({64, 48}, 100, 20, 1);
+  cv::Mat colour, steps(48, 64, CV_16U, cv::Scalar(256 * 5)), disparity(48, 64, CV_32F, cv::Scalar(6.5));
+  cv::cvtColor(gray, colour, cv::COLOR_GRAY2BGR);
+  const auto write = [&](const std::string& name, const cv::Mat& image) {
+    std::filesystem::create_directories((folder.path() / name).parent_path());
+    cv::imwrite(folder.path() / name, image);
+  };
+  for (const std::string eye : {"2015/training/image_2/", "2015/training/image_3/"})
+    for (const char* name : {"000003_10.png", "000003_11.png", "000007_10.png"}) write(eye + name, colour);
+  for (const std::string eye : {"2012/training/image_0/", "2012/training/image_1/"})
+    write(eye + "000000_10.png", gray);
+  write("2015/training/disp_occ_0/000003_10.png", steps);
+  write("2015/training/disp_occ_0/000007_10.png", steps);
+  write("2012/training/disp_occ/000000_10.png", steps);
+  const auto projection = [](const char* key, double shift) {
+    return std::string(key) + ": 100 0 32 " + std::to_string(shift) + " 0 100 24 0 0 0 1 0\n";
+  };
+  folder.write("2015/training/calib_cam_to_cam/000003.txt",
+               "S_rect_00: 64 48\n" + projection("P_rect_00", 0) + projection("P_rect_01", -54) +
+                   projection("P_rect_02", 5) + projection("P_rect_03", -48));
+  folder.write("2012/training/calib/000000.txt", projection("P0", 0) + projection("P1", -54));
+  for (const char* at : {"2015", "2015/training"}) {
+    const std::vector<ImagePair> pairs = read_image_pairs(folder.path() / at, 1);
+    ASSERT_EQ(pairs.size(), 2u);
+    EXPECT_EQ(pairs[0].name, "000003");
+    EXPECT_EQ(cv::norm(pairs[0].left, gray, cv::NORM_INF), 0);
+    EXPECT_EQ(pairs[0].disparity_px.at<float>(3, 3), 5);
+    EXPECT_NEAR(pairs[0].rig.value().baseline_m, 0.53, 1e-12) << "of the colour pair";
+    EXPECT_FALSE(pairs[1].rig);
+  }
+  EXPECT_NEAR(read_image_pairs(folder.path() / "2012", 1).at(0).rig.value().baseline_m, 0.54, 1e-12);
+  write("2012/training/image_1/000000_10.png", gray(cv::Rect(0, 0, 60, 48)));
+  expect_part(refusal_of([&] { read_image_pairs(folder.path() / "2012", 1); }),
+              "image_1/000000_10.png: must be 64x48 as 000000_10.png, is 60x48");
+  std::filesystem::remove(folder.path() / "2012/training/image_1/000000_10.png");
+  expect_part(refusal_of([&] { read_image_pairs(folder.path() / "2012", 1); }), "image_1/000000_10.png");
+
+  for (const std::string scene : {"eth/scene/", "middlebury/scene/"})
+    for (const char* name : {"im0.png", "im1.png"}) write(scene + name, colour);
+  std::string pfm = "Pf\n64 48\n-1.0\n";
+  for (int row = 47; row >= 0; --row)
+    pfm.append(reinterpret_cast<const char*>(disparity.ptr(row)), 64 * sizeof(float));
+  folder.write("eth_gt/scene/disp0GT.pfm", pfm);
+  folder.write("middlebury/scene/disp0.pfm", pfm);
+  for (const char* at : {"eth", "middlebury"})
+    EXPECT_EQ(read_image_pairs(folder.path() / at, 1).at(0).disparity_px.at<float>(2, 2), 6.5F) << at;
 }
 
 }  // namespace

@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
 #include <string>
 
 #include "tests/support/program.hpp"
@@ -53,7 +57,89 @@ TEST_F(RecordCommand, TwoRecordingsOfAWoodHoldTheSameBytes) {
   for (const char* kind : {"trunk", "branch", "foliage", "undergrowth"}) expect_part(objects, kind);
 }
 
+std::vector<double> numbers_in(const fs::path& file) {
+  std::istringstream stream(content_of(file));
+  return {std::istream_iterator<double>(stream), {}};
+}
+
+std::vector<fs::path> images_in(const fs::path& at) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(at)) files.push_back(entry.path());
+  std::ranges::sort(files);
+  return files;
+}
+
+/// Three recordings of one flight say the same of it, read by OpenCV: EuRoC's depth in millimetres, KITTI's
+/// disparities in 256ths, Middlebury's in PFM.
+TEST_F(RecordCommand, TheFormsOfKittiAndOfMiddleburySayWhatEurocsSays) {
+  for (const std::string form : {"euroc", "kitti", "middlebury"})
+    expect_success("record --quiet" + flight + " --every 10 --format " + form + " --out " + path(form));
+  const std::vector<fs::path> lefts = images_in(path("euroc/mav0/cam0/data")),
+                              depths = images_in(path("euroc/mav0/depth0/data"));
+  const std::vector<double> poses = numbers_in(path("kitti/training/poses.txt")),
+                            times = numbers_in(path("kitti/training/times.txt"));
+  ASSERT_GT(lefts.size(), 3u);
+  ASSERT_EQ(times.size(), lefts.size());
+  ASSERT_EQ(poses.size(), 12 * lefts.size());
+  EXPECT_EQ(content_of(path("kitti/training/poses.txt")), content_of(path("middlebury/pairs/poses.txt")));
+  std::istringstream calibration(content_of(path("kitti/training/calib/000000.txt")));
+  std::string left_name, right_name;
+  cv::Matx34d left_camera, right_camera;
+  calibration >> left_name;
+  for (double& value : left_camera.val) calibration >> value;
+  calibration >> right_name;
+  for (double& value : right_camera.val) calibration >> value;
+  EXPECT_EQ(left_name + right_name, "P0:P1:");
+  const double focal_px = left_camera(0, 0), baseline_m = -right_camera(0, 3) / focal_px;
+  const double infinity_px = left_camera(0, 2) - right_camera(0, 2);
+  std::int64_t seen = 0, hidden = 0;
+  for (std::size_t i = 0; i < lefts.size(); ++i) {
+    const std::string number = "00000" + std::to_string(i), pair = path("middlebury/pairs/" + number);
+    const auto image = [](const std::string& file) { return cv::imread(file, cv::IMREAD_UNCHANGED); };
+    const cv::Mat left = image(lefts[i].string());
+    EXPECT_EQ(cv::norm(left, image(path("kitti/training/image_0/" + number + "_10.png")), cv::NORM_INF), 0);
+    EXPECT_EQ(cv::norm(left, image(pair + "/im0.png"), cv::NORM_INF), 0);
+    const cv::Mat depth_mm = image(depths[i].string()), disparity = image(pair + "/disp0.pfm"),
+                  mask = image(pair + "/mask0nocc.png"),
+                  all = image(path("kitti/training/disp_occ/" + number + "_10.png")),
+                  shared = image(path("kitti/training/disp_noc/" + number + "_10.png"));
+    ASSERT_EQ(disparity.type(), CV_32FC1);
+    ASSERT_EQ(all.type(), CV_16UC1);
+    for (int row = 0; row < left.rows; row += 3)
+      for (int column = 0; column < left.cols; column += 3) {
+        const double depth_m = 1e-3 * depth_mm.at<std::uint16_t>(row, column);
+        const float exact = disparity.at<float>(row, column);
+        const double rounded = all.at<std::uint16_t>(row, column) / 256.0;
+        const int both = shared.at<std::uint16_t>(row, column), sees = mask.at<std::uint8_t>(row, column);
+        if (depth_m == 0) continue;
+        const double expected = focal_px * baseline_m / depth_m + infinity_px;
+        ASSERT_NEAR(exact, expected, 0.001 * expected);
+        ASSERT_NEAR(rounded, exact, 0.5 / 256 + 1e-6);
+        ASSERT_EQ(both != 0, sees == 255);
+        if (both != 0) {
+          ASSERT_EQ(both, all.at<std::uint16_t>(row, column));
+        }
+        (sees == 255 ? seen : hidden) += 1;
+      }
+  }
+  EXPECT_GT(seen, 10 * hidden);
+  EXPECT_GT(hidden, 100);  // beside trunks, and at the left edge
+  // Poses count from the first camera's: forward is z.
+  EXPECT_EQ(poses[0], 1);
+  EXPECT_EQ(poses[11], 0);
+  EXPECT_GT(poses[poses.size() - 1], 3);
+  for (const std::string pairs : {"kitti", "middlebury/pairs"})
+    expect_part(
+        expect_success("evaluate --pairs " + path(pairs) + " --every 3 --out " + path("evaluated")).text,
+        "within 0.5 m, %");
+}
+
 TEST_F(RecordCommand, WrongArgumentsAreBadInput) {
+  expect_refusal("record forest --format kitti --set cameras.raw=true --out " + path("raw"),
+                 "cameras.raw: KITTI's and Middlebury's forms hold rectified pairs");
+  expect_refusal("record forest --format pdf --out " + path("pdf"), "--format");
+  expect_refusal("record forest --every 0 --out " + path("none"), "--every");
+  expect_refusal("fly forest --record kitti --row " + path("row.json"), "--record requires --out");
   const std::string out = " --out " + path("out");
   expect_refusal("record forest", "--out");
   expect_refusal("record nowhere" + out, "nowhere");
