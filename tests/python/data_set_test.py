@@ -32,7 +32,7 @@ class Middlebury(InFolder):
         flight = understory.Flight("forest", seed=1003, set=settings, images=True)
         times = np.loadtxt(pairs / "times.txt")
         for number, time_s in enumerate(times):
-            while flight.t_ns < 1e9 * time_s - 1000:
+            while flight.t_s < time_s - 1e-6:
                 flight.step("physics")
             pair = pairs / f"{number:06}"
             calibration = read_calibration(pair / "calib.txt")
