@@ -180,12 +180,9 @@ cv::Mat read_gray_image_of_8_or_16_bits(const std::filesystem::path& file) {
     throw InputError(unexpected(
         file, kind,
         "16-bit numbers up to " + std::to_string(std::lround(greatest)) + ", whose scale is not known"));
-  cv::Mat upper(image.size(), CV_8UC1);
-  for (int row = 0; row < image.rows; ++row)
-    for (int column = 0; column < image.cols; ++column)
-      upper.at<std::uint8_t>(row, column) =
-          static_cast<std::uint8_t>(image.at<std::uint16_t>(row, column) >> 8);
-  return upper;
+  cv::Mat eight_bits;
+  image.convertTo(eight_bits, CV_8U, 1 / 257.0);
+  return eight_bits;
 }
 
 cv::Mat read_image_as_gray(const std::filesystem::path& file) {

@@ -346,6 +346,38 @@ TextNode parse_yaml_value(const std::string& text, const std::string& origin, co
   return value;
 }
 
+TextNode parse_keyed_lines(const std::string& text, const std::string& file, char separator) {
+  const auto node_of = [](TextNode::Kind kind, const std::string& place) {
+    TextNode node;
+    node.kind = kind;
+    node.origin = place;
+    return node;
+  };
+  TextNode root = node_of(TextNode::Kind::map, file);
+  std::istringstream stream(text);
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const std::string place = place_in(file, number);
+    const std::size_t at = line.find(separator);
+    if (at == std::string::npos)
+      refuse_input(place, "", std::string("expected KEY") + separator + " and numbers");
+    TextNode value = node_of(TextNode::Kind::list, place);
+    std::ranges::replace_if(
+        line, [](char c) { return c == '[' || c == ']' || c == ';'; }, ' ');
+    std::istringstream words(line.substr(at + 1));
+    for (std::string word; words >> word;) {
+      value.children.push_back(node_of(TextNode::Kind::scalar, place));
+      value.children.back().text = word;
+    }
+    if (value.children.size() == 1) value = TextNode(value.children.front());
+    value.key = line.substr(0, at);
+    root.children.push_back(std::move(value));
+  }
+  refuse_double_keys(root);
+  return root;
+}
+
 TextNode parse_opencv_xml(const std::string& text, const std::string& file) {
   TextNode root = XmlReader(text, file).document();
   refuse_double_keys(root);

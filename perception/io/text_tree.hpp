@@ -36,6 +36,10 @@ TextNode parse_yaml_value(const std::string& text, const std::string& origin, co
 /// several words in an element a list. No DOCTYPE, no CDATA. Throws as parse_yaml does.
 TextNode parse_opencv_xml(const std::string& text, const std::string& file);
 
+/// Reads lines of a key, `separator`, and words, which are parted by blanks, brackets and semicolons: a
+/// scalar, or a list of several. Throws InputError at another line, and at a key given twice.
+TextNode parse_keyed_lines(const std::string& text, const std::string& file, char separator);
+
 /// Throws InputError where a map in the tree holds a key twice, as the parsers above do. `path` stands before
 /// the tree's own keys in the message.
 void refuse_double_keys(const TextNode& node, const std::string& path = "");

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/report/pictures.hpp"
@@ -26,16 +25,11 @@ bool is_shared(const TrueView& view, int row, int column, float disparity_px) {
   return false;
 }
 
-/// 0 where it is not known.
+/// 0 where it is not known, or does not fit.
 cv::Mat in_256ths(const cv::Mat& disparity_px) {
-  cv::Mat numbers(disparity_px.size(), CV_16UC1);
-  for (int row = 0; row < numbers.rows; ++row)
-    for (int column = 0; column < numbers.cols; ++column) {
-      const double value = 256.0 * static_cast<double>(disparity_px.at<float>(row, column));
-      const bool fits = value >= 1 && value < std::numeric_limits<std::uint16_t>::max();
-      numbers.at<std::uint16_t>(row, column) =
-          fits ? static_cast<std::uint16_t>(std::lround(value)) : std::uint16_t{0};
-    }
+  cv::Mat numbers, known = disparity_px.clone();
+  known.setTo(0, disparity_px > 255.99);
+  known.convertTo(numbers, CV_16U, 256);
   return numbers;
 }
 
@@ -73,18 +67,6 @@ std::string middlebury_calibration_text(const StereoRig& rig) {
 
 }  // namespace
 
-cv::Mat disparity_of_depth(const cv::Mat& depth_m, const StereoRig& rig) {
-  cv::Mat disparity_px(depth_m.size(), CV_32FC1);
-  for (int row = 0; row < depth_m.rows; ++row)
-    for (int column = 0; column < depth_m.cols; ++column) {
-      const auto depth = static_cast<double>(depth_m.at<float>(row, column));
-      disparity_px.at<float>(row, column) = depth > 0 && std::isfinite(depth)
-                                                ? static_cast<float>(rig.disparity_px(depth))
-                                                : std::numeric_limits<float>::infinity();
-    }
-  return disparity_px;
-}
-
 PairRecording::PairRecording(const fs::path& folder, const CalibratedRig& rig, const RecordingChoice& choice)
     : Recording(choice.every), folder_(folder), rig_(rig.rig), form_(*choice.form) {
   if (rig.calibration)
@@ -102,7 +84,8 @@ PairRecording::PairRecording(const fs::path& folder, const CalibratedRig& rig, c
 }
 
 void PairRecording::add_frame(const StereoFrame& frame, const Truth& truth, const TrueView& view) {
-  const cv::Mat disparity_px = disparity_of_depth(view.depth_m, rig_);
+  // Infinite where nothing is: there the depth is 0.
+  const cv::Mat disparity_px = rig_.focal_px * rig_.baseline_m / view.depth_m + rig_.infinity_disparity_px();
   cv::Mat shared(disparity_px.size(), CV_8UC1);  // as Middlebury's mask: 255 both see it, 128 one, 0 unknown
   for (int row = 0; row < shared.rows; ++row)
     for (int column = 0; column < shared.cols; ++column) {

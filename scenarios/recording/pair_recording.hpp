@@ -32,8 +32,4 @@ class PairRecording : public Recording {
   std::string poses_, times_;
 };
 
-/// The disparity of each pixel that has a depth (CV_32FC1, m, 0 where there is none): u_left - u_right in px,
-/// infinite elsewhere.
-cv::Mat disparity_of_depth(const cv::Mat& depth_m, const StereoRig& rig);
-
 }  // namespace understory

@@ -170,7 +170,7 @@ TEST_F(Cli, RigDrawsWhatItSays) {
 
 TEST_F(Cli, BadRigsAreNamedInOneLine) {
   expect_refusal("rig", "FILE");
-  expect_refusal("rig nowhere", "rigs of the library: long, paper");
+  expect_refusal("rig nowhere", "rigs of the library: fisheye, long, paper");
   expect_refusal("rig " + raw_rigs + "paper.xml", "paper.xml: baseline in m: must be from 0.01 to 10");
   expect_refusal("rig " + raw_rigs + "long.xml --unit ft",
                  "--unit ft: must be m, cm, mm or a number of metres");
@@ -188,7 +188,7 @@ TEST_F(Cli, BadRigsAreNamedInOneLine) {
 
 TEST_F(Cli, APictureThatCannotBeWrittenIsBadInput) {
   expect_refusal("rig long --out " + (folder.path() / "none" / "rig.svg").string(), "cannot write here");
-  expect_refusal("rig long --out " + path("rig.xyz"), "the name must end in .svg");
+  expect_refusal("rig long --out " + path("rig.xyz"), "the name must end in .yaml");
 }
 
 #ifdef UNDERSTORY_HAS_SIM
