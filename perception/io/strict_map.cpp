@@ -40,7 +40,12 @@ int StrictMap::whole(const std::string& key, int minimum, int maximum) {
 
 std::vector<double> StrictMap::numbers(const std::string& key, std::size_t count, double minimum,
                                        double maximum) {
-  const TextNode& list = take(key);
+  TextNode list = take(key);
+  std::vector<TextNode> joined;  // of the rows, where it is a list of lists
+  for (TextNode& child : list.children)
+    std::ranges::move(child.kind == TextNode::Kind::list ? child.children : std::vector{child},
+                      std::back_inserter(joined));
+  list.children = std::move(joined);
   const bool is_list =
       list.kind == TextNode::Kind::list || (count == 0 && list.kind == TextNode::Kind::nothing);
   if (!is_list || list.children.size() != count)

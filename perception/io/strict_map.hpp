@@ -21,7 +21,7 @@ class StrictMap {
   std::string joined_text(const std::string& key);
   double number(const std::string& key, double minimum, double maximum);
   int whole(const std::string& key, int minimum, int maximum);
-  /// A list of numbers, `count` of them.
+  /// A list of numbers, `count` of them; or a list of such lists, as rows of a matrix.
   std::vector<double> numbers(const std::string& key, std::size_t count, double minimum, double maximum);
   /// How many values the list has; 0 if it is missing or not a list.
   std::size_t length(const std::string& key) const;

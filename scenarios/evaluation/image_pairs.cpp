@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "perception/io/calibration/calibration_file.hpp"
@@ -21,17 +20,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Infinite where nothing is known: there the depth is 0.
 cv::Mat disparity_of(const TrueImages& truth, const StereoRig& rig) {
   if (truth.depth_mm.empty()) return {};
-  cv::Mat disparity(truth.depth_mm.size(), CV_32FC1);
-  for (int row = 0; row < disparity.rows; ++row)
-    for (int column = 0; column < disparity.cols; ++column) {
-      const std::uint16_t depth_mm = truth.depth_mm.at<std::uint16_t>(row, column);
-      disparity.at<float>(row, column) = depth_mm == 0
-                                             ? std::numeric_limits<float>::quiet_NaN()
-                                             : static_cast<float>(rig.disparity_px(1e-3 * depth_mm));
-    }
-  return disparity;
+  cv::Mat depth_m;
+  truth.depth_mm.convertTo(depth_m, CV_32F, 1e-3);
+  return rig.focal_px * rig.baseline_m / depth_m + rig.infinity_disparity_px();
 }
 
 std::vector<ImagePair> pairs_of_recording(const fs::path& folder, int every) {

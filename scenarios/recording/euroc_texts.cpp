@@ -4,8 +4,8 @@
 
 #include <cmath>
 #include <opencv2/core/eigen.hpp>
-#include <span>
 
+#include "perception/io/calibration/write_calibration.hpp"
 #include "scenarios/output/program.hpp"
 
 namespace understory {
@@ -23,13 +23,6 @@ std::string pose_text(const Eigen::Isometry3d& T_body_sensor) {
 std::string head_text(const char* type, const std::string& comment, const Eigen::Isometry3d& T_body_sensor) {
   return fmt::format("sensor_type: {}\ncomment: understory {}, {}\n\n{}", type, understory_version, comment,
                      pose_text(T_body_sensor));
-}
-
-/// "1, 2, 3". With fmt::join every file would compile fmt's writing of numbers anew.
-std::string list_text(std::span<const double> values) {
-  std::string text;
-  for (const double value : values) text += fmt::format("{}{}", text.empty() ? "" : ", ", value);
-  return text;
 }
 
 /// What cameras and depth images share.

@@ -218,7 +218,7 @@ TEST_F(CalibrationForms, WrongFilesEndInOneLine) {
       {"k.yaml", kalibr_text, "[534.8,", "[4.8,", ":5: cam0.intrinsics: must be fu, fv, cu, cv"},
       {"k.yaml", kalibr_text, "[640, 480]", "[640, 481]", ":17: cam1.resolution: must be that of cam0"},
       {"k.yaml", kalibr_text, ", -0.12]", ", 0.12]", "cam1 must lie to the right of cam0"},
-      {"k.yaml", kalibr_text, ", -0.12]", "]", "cam1.T_cn_cnm1: each row must have 4 numbers"},
+      {"k.yaml", kalibr_text, ", -0.12]", "]", "cam1.T_cn_cnm1: must be a list of 16 numbers, found 15"},
       {"k.yaml", kalibr_text, "[1.0, 0.0, 0.0, -", "[1.1, 0.0, 0.0, -",
        "must be a rotation and a translation"},
       {"k.yaml", kalibr_text, "cam1:", "cam2:", ": cam1: missing"},

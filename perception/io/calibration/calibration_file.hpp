@@ -19,22 +19,15 @@ struct CalibrationOptions {
   std::optional<cv::Size> images_at_hand{};    ///< size of the images, if neither files nor options state it
 };
 
-/// Reads a rig from any of
-/// - our own rig file (YAML, read_rig),
-/// - one OpenCV XML or YAML file with M1 D1 M2 D2 and either R1 R2 P1 P2 or R T (then rectified here with
-///   cv::stereoRectify, alpha 0), names as OpenCV's stereo_calib sample writes them; image_width and
-///   image_height if present,
-/// - a folder of such files: one matrix each (M1.xml, D1.xml, R1.xml, P1.xml, M2.xml ...), or intrinsics.yml
-///   and extrinsics.yml,
-/// - a EuRoC/ASL folder (mav0, or the folder above it): cam0/sensor.yaml (left) and cam1/sensor.yaml (right);
-///   the detection depth if cam0's file has one (read_euroc_calibration).
-/// The rig is named after its file or folder. The pose in the body: a rig file's own mounting; EuRoC's T_BS,
-/// whose body is the file's own (the IMU, x up); OpenCV's files define no body, so the raw left camera is at
-/// its origin and looks along its x axis. The returned rig fits a detector (the detection depth's disparity
-/// lies in the images) and a Rectifier; where rectifying would change nothing, it has no calibration. Throws
-/// InputError, one line "file[:line]: key: what was expected", if anything is missing, of a wrong type, not
-/// finite or out of range, if the images' size is needed and unknown or contradictory, and if no rectified
-/// pair results. No content of a file causes another exception.
+/// Reads a rig from any form that calibration_forms.hpp reads, or from a rig file (read_rig). The form is
+/// told from the contents. A folder is EuRoC's (mav0, or the one above it), holds OpenCV's matrices or ROS's
+/// two files, or one file of another form. The rig is named after its file or folder. The pose in the body: a
+/// rig file's own mounting; EuRoC's T_BS, whose body is the file's own (the IMU, x up); other forms define no
+/// body, so the raw left camera is at its origin and looks along its x axis. The returned rig fits a detector
+/// (the detection depth's disparity lies in the images) and a Rectifier; where rectifying would change
+/// nothing, it has no calibration. Throws InputError, one line "file[:line]: key: what was expected", if
+/// anything is missing, of a wrong type, not finite or out of range, if the images' size is needed and
+/// unknown or contradictory, and if no rectified pair results. No content of a file causes another exception.
 CalibratedRig read_calibrated_rig(const std::filesystem::path& path, const CalibrationOptions& options);
 
 /// Reads a rig from YAML. These keys are required, and no others are allowed: name, width_px, height_px,

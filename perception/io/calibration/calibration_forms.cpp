@@ -140,21 +140,14 @@ std::string calibration_text(const std::filesystem::path& file) {
   const std::string packed = read_file(file);
   if (!packed.starts_with("\x1f\x8b")) return packed;
   std::string text(maximum_keyed_bytes + 1, '\0');
-  z_stream stream{};
-  constexpr int gzip_window_bits = 16 + MAX_WBITS;
-  if (inflateInit2(&stream, gzip_window_bits) != Z_OK) throw MachineError("out of memory");
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
-  stream.avail_in = static_cast<uInt>(packed.size());
-  stream.next_out = reinterpret_cast<Bytef*>(text.data());
-  stream.avail_out = static_cast<uInt>(text.size());
-  const int result = inflate(&stream, Z_FINISH);
-  text.resize(stream.total_out);
-  inflateEnd(&stream);
+  gzFile stream = gzopen(file.c_str(), "rb");
+  const int count = stream == nullptr ? -1 : gzread(stream, text.data(), static_cast<unsigned>(text.size()));
+  const bool is_whole = stream != nullptr && gzclose(stream) == Z_OK && count >= 0;
+  text.resize(static_cast<std::size_t>(std::max(0, count)));
   if (text.size() > maximum_keyed_bytes)
     refuse_input(file.string(), "",
                  fmt::format("unpacked, a file may hold at most {} bytes", maximum_keyed_bytes));
-  if (result != Z_STREAM_END)
-    refuse_input(file.string(), "", "not whole: its gzip data are broken or end early");
+  if (!is_whole) refuse_input(file.string(), "", "not whole: its gzip data are broken or end early");
   return text;
 }
 

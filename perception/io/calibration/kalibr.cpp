@@ -1,6 +1,5 @@
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "perception/io/calibration/calibration_forms.hpp"
 #include "perception/io/text_file.hpp"
@@ -28,29 +27,12 @@ Camera read_camera(StrictMap& map) {
   return camera;
 }
 
-/// Kalibr writes a matrix as a list of its rows: as one list, it can be read as numbers.
-void join_rows(TextNode& top, const std::string& camera, const std::string& key) {
-  for (TextNode& of_top : top.children)
-    for (TextNode& matrix : of_top.children) {
-      if (of_top.key != camera || matrix.key != key) continue;
-      std::vector<TextNode> numbers;
-      for (TextNode& row : matrix.children) {
-        if (row.children.size() != 4)
-          refuse_input(row.origin, camera + "." + key, "each row must have 4 numbers");
-        for (TextNode& number : row.children) numbers.push_back(std::move(number));
-      }
-      matrix.children = std::move(numbers);
-    }
-}
-
 }  // namespace
 
 StereoCalibration read_kalibr_calibration(const std::filesystem::path& file,
                                           const CalibrationOptions& options) {
   require_metres(file.string(), "Kalibr's camchain", options);
-  TextNode tree = parse_yaml(calibration_text(file), file.string());
-  join_rows(tree, "cam1", "T_cn_cnm1");
-  StrictMap top(tree);
+  StrictMap top(parse_yaml(calibration_text(file), file.string()));
   StrictMap first = top.map("cam0"), second = top.map("cam1");
   const Camera left = read_camera(first), right = read_camera(second);
   if (left.size != right.size) second.fail("resolution", "must be that of cam0");

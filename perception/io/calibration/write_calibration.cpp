@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <opencv2/core/persistence.hpp>
-#include <span>
+#include <utility>
 
 #include "perception/io/calibration/calibration_file.hpp"
 #include "perception/io/text_file.hpp"
@@ -16,13 +16,6 @@ namespace understory {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// "1, 2, 3", each number in the fewest digits that read back exactly.
-std::string list_text(std::span<const double> values) {
-  std::string text;
-  for (const double value : values) text += fmt::format("{}{}", text.empty() ? "" : ", ", value);
-  return text;
-}
 
 bool is_equidistant(const StereoCalibration& cameras) { return cameras.left.lens == LensModel::equidistant; }
 
@@ -40,67 +33,47 @@ StereoCalibration cameras_of(const CalibratedRig& calibrated) {
 
 /// A point x in raw left coordinates is R x + t in raw right ones: through the rectified pair, which is
 /// turned alike.
-struct Between {
-  cv::Matx33d R_right_left;
-  cv::Vec3d t_right_m;
-};
-
-Between between(const StereoCalibration& cameras) {
+std::pair<cv::Matx33d, cv::Vec3d> right_of_left(const StereoCalibration& cameras) {
   const cv::Matx33d R_raw_rectified = cameras.right.rectification.t();
   const double baseline_m = -cameras.right.projection(0, 3) / cameras.right.projection(0, 0);
   return {R_raw_rectified * cameras.left.rectification, R_raw_rectified * cv::Vec3d(-baseline_m, 0, 0)};
 }
 
-/// Angles of read_rig, in degrees.
-struct Mounting {
-  double pitch_down_deg = 0, yaw_left_deg = 0, roll_right_deg = 0;
-};
-
-Mounting mounting_of(const Eigen::Matrix3d& R_body_camera) {
-  // The body's axes turned as the camera is: those of T_body_camera_of without any angle are taken back.
+/// Pitch down, yaw to the left, roll to the right of read_rig, in degrees.
+Eigen::Vector3d mounting_deg(const Eigen::Matrix3d& R_body_camera) {
   const Eigen::Matrix3d turned =
       R_body_camera * T_body_camera_of(Eigen::Vector3d::Zero(), 0).linear().transpose();
   const double yaw = std::atan2(turned(1, 0), turned(0, 0));
   const double pitch = std::atan2(-turned(2, 0), std::hypot(turned(0, 0), turned(1, 0)));
   // Of a camera that looks straight up or down yaw is arbitrary. What is left over it and pitch is roll.
-  const Eigen::Matrix3d rolled =
+  const Eigen::Matrix3d R_looking =
       (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()))
-          .toRotationMatrix()
-          .transpose() *
-      turned;
-  const double roll = std::atan2(rolled(2, 1), rolled(1, 1));
-  constexpr double degrees = 180 / std::numbers::pi;
-  return {pitch * degrees, yaw * degrees, roll * degrees};
+          .toRotationMatrix();
+  const Eigen::Matrix3d rolled = R_looking.transpose() * turned;
+  return Eigen::Vector3d(pitch, yaw, std::atan2(rolled(2, 1), rolled(1, 1))) * 180 / std::numbers::pi;
 }
 
-/// In quotes unless it is a plain word in YAML.
-std::string yaml_word(const std::string& word) {
-  const bool is_plain =
-      std::ranges::all_of(word,
-                          [](unsigned char c) { return std::isalpha(c) != 0 || c == '_' || c == '-'; }) &&
-      word.find_first_not_of("_-") == 0;
-  if (is_plain) return word;
-  std::string quoted = "\"";
+std::string quoted(const std::string& word) {
+  std::string text = "\"";
   for (const char c : word) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    if (c == '"' || c == '\\') text += '\\';
+    text += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
   }
-  return quoted + "\"";
+  return text + "\"";
 }
 
 std::string rig_text(const StereoRig& rig) {
-  const Mounting mounting = mounting_of(rig.T_body_camera.linear());
+  const Eigen::Vector3d mounting = mounting_deg(rig.T_body_camera.linear());
   std::string text = fmt::format(
       "name: {}\nwidth_px: {}\nheight_px: {}\nfocal_px: {}\nbaseline_m: {}\ncenter_left_x_px: {}\n"
       "center_right_x_px: {}\ncenter_y_px: {}\ndetection_depth_m: {}\n"
       "# Of the left camera in the body (x forward, y left, z up of the centre of mass).\n"
       "left_camera_body_m: [{}]\npitch_down_deg: {}\n",
-      yaml_word(rig.name), rig.width_px, rig.height_px, rig.focal_px, rig.baseline_m, rig.center_left_x_px,
+      quoted(rig.name), rig.width_px, rig.height_px, rig.focal_px, rig.baseline_m, rig.center_left_x_px,
       rig.center_right_x_px, rig.center_y_px, rig.detection_depth_m,
-      list_text({rig.T_body_camera.translation().data(), 3}), mounting.pitch_down_deg);
-  if (mounting.yaw_left_deg != 0 || mounting.roll_right_deg != 0)
-    text +=
-        fmt::format("yaw_left_deg: {}\nroll_right_deg: {}\n", mounting.yaw_left_deg, mounting.roll_right_deg);
+      list_text({rig.T_body_camera.translation().data(), 3}), mounting[0]);
+  if (mounting[1] != 0 || mounting[2] != 0)
+    text += fmt::format("yaw_left_deg: {}\nroll_right_deg: {}\n", mounting[1], mounting[2]);
   return text;
 }
 
@@ -108,7 +81,7 @@ std::string rig_text(const StereoRig& rig) {
 std::string opencv_text(const StereoCalibration& cameras, const std::string& extension) {
   cv::FileStorage storage("calibration" + extension, cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
   const auto write = [&](const char* key, const auto& matrix) { storage << key << cv::Mat(matrix); };
-  const auto [R_right_left, t_right_m] = between(cameras);
+  const auto [R_right_left, t_right_m] = right_of_left(cameras);
   const CameraCalibration &left = cameras.left, &right = cameras.right;
   storage << "image_width" << cameras.width_px << "image_height" << cameras.height_px;
   if (is_equidistant(cameras)) storage << "fisheye_model" << 1;
@@ -150,7 +123,7 @@ std::string kalibr_camera_text(const char* name, const CameraCalibration& camera
 }
 
 std::string kalibr_text(const StereoCalibration& cameras, const fs::path& out) {
-  const auto [R, t] = between(cameras);
+  const auto [R, t] = right_of_left(cameras);
   std::string pose = "  T_cn_cnm1:\n";
   for (int row = 0; row < 3; ++row)
     pose += fmt::format("  - [{}, {}, {}, {}]\n", R(row, 0), R(row, 1), R(row, 2), t[row]);
@@ -184,6 +157,12 @@ void require_extension(const fs::path& out, std::span<const std::string_view> ex
 }
 
 }  // namespace
+
+std::string list_text(std::span<const double> values) {
+  std::string text;  // with fmt::join every file would compile fmt's writing of numbers anew
+  for (const double value : values) text += fmt::format("{}{}", text.empty() ? "" : ", ", value);
+  return text;
+}
 
 std::vector<CalibrationText> calibration_texts(const CalibratedRig& calibrated, CalibrationForm form,
                                                const fs::path& out) {

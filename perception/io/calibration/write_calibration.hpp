@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,5 +27,8 @@ struct CalibrationText {
 /// ends in something else, and where Kalibr's four coefficients cannot say the lens.
 std::vector<CalibrationText> calibration_texts(const CalibratedRig& calibrated, CalibrationForm form,
                                                const std::filesystem::path& out);
+
+/// "1, 2, 3", each number in the fewest digits that read back exactly.
+std::string list_text(std::span<const double> values);
 
 }  // namespace understory
