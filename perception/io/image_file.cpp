@@ -168,12 +168,17 @@ cv::Mat read_gray_image(const std::filesystem::path& file, int depth) {
   return image;
 }
 
-cv::Mat read_gray_image_of_8_or_16_bits(const std::filesystem::path& file) {
+cv::Mat read_gray_image_of_8_or_16_bits(const std::filesystem::path& file, int& depth) {
   constexpr double fewest_of_16_bits = 4096;
-  const std::string kind = "a gray image of 8 or 16 bits";
+  const std::string kind = depth == CV_8U    ? "an 8-bit gray image"
+                           : depth == CV_16U ? "a 16-bit gray image as before"
+                                             : "a gray image of 8 or 16 bits";
   const cv::Mat image = read_image(file, kind);
-  if (image.type() == CV_8UC1) return image;
-  if (image.type() != CV_16UC1) throw InputError(unexpected(file, kind, kind_of(image)));
+  if (image.channels() != 1 || (image.depth() != CV_8U && image.depth() != CV_16U) ||
+      (depth >= 0 && image.depth() != depth))
+    throw InputError(unexpected(file, kind, kind_of(image)));
+  depth = image.depth();
+  if (depth == CV_8U) return image;
   double greatest = 0;
   cv::minMaxLoc(image, nullptr, &greatest);
   if (greatest < fewest_of_16_bits)

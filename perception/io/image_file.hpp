@@ -22,9 +22,10 @@ bool is_video_name(const std::filesystem::path& file);
 /// to stderr.
 cv::Mat read_gray_image(const std::filesystem::path& file, int depth = CV_8U);
 
-/// The same of 16-bit images, too, scaled to 8 bits, as TUM-VI's need it. Throws InputError where the upper
-/// four bits of all pixels are 0: those are 12-bit numbers, which would become dark.
-cv::Mat read_gray_image_of_8_or_16_bits(const std::filesystem::path& file);
+/// The same of 16-bit images, too, scaled to 8 bits, as TUM-VI's need it. `depth`: of the images read before,
+/// which this one must have, too; -1 before the first. Throws InputError where the upper four bits of all
+/// pixels are 0: those are 12-bit numbers, which would become dark.
+cv::Mat read_gray_image_of_8_or_16_bits(const std::filesystem::path& file, int& depth);
 
 /// The same of 8-bit images that are in colour, too, as cv::cvtColor makes them gray: for comparing data
 /// sets.

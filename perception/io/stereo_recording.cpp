@@ -86,10 +86,10 @@ StereoRecording::StereoRecording(const std::vector<fs::path>& inputs) {
     return;
   }
   sequence_ = sequence_of(inputs);
-  read_image_ = inputs.size() == 1 ? read_gray_image_of_8_or_16_bits
-                                   : [](const fs::path& file) { return read_gray_image(file); };
+  if (inputs.size() == 2) image_depth_ = CV_8U;
   first_file_ = sequence_.pairs.front().left;
-  first_.left = read_image_(first_file_);  // the size that all others must have
+  first_.left =
+      read_gray_image_of_8_or_16_bits(first_file_, image_depth_);  // the size that all others must have
   read_files(first_);
 }
 
@@ -121,7 +121,7 @@ bool StereoRecording::read_files(StereoFrame& frame) {
   if (next_ == sequence_.pairs.size()) return false;
   const StereoFiles& files = sequence_.pairs[next_++];
   const auto read_one = [&](const fs::path& file) {
-    const cv::Mat image = read_image_(file);
+    const cv::Mat image = read_gray_image_of_8_or_16_bits(file, image_depth_);
     if (image.size() != image_size())
       throw InputError(file.string() + ": expected " + text_of_size(image_size()) + " as " +
                        first_file_.string() + " has, found " + text_of_size(image.size()));

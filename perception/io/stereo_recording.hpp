@@ -71,7 +71,7 @@ class StereoRecording {
   bool read_files(StereoFrame& frame);
 
   ImageSequence sequence_;
-  cv::Mat (*read_image_)(const std::filesystem::path& file) = nullptr;
+  int image_depth_ = -1;  ///< of a EuRoC folder: 8 or 16 bits, as the first image
   std::unique_ptr<SideBySideVideo> video_;
   std::filesystem::path first_file_;
   StereoFrame first_;  ///< read ahead, to know the size

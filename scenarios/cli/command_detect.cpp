@@ -75,6 +75,10 @@ int run_rig(const RigArguments& arguments) {
   const fs::path path = rig_path(arguments.rig);
   require_separate({out}, {path});
   const bool is_picture = out.extension() == ".svg";
+  if (!out.empty() && !is_picture && arguments.form == CalibrationForm::rig_file &&
+      out.extension() != ".yaml")
+    throw ScenarioError(
+        fmt::format("--out {}: the name must end in .svg (a drawing) or .yaml (a rig file)", arguments.out));
   if (is_picture || arguments.form != CalibrationForm::ros) require_writable(out);
   const CalibratedRig calibrated = bad_input_if_refused([&] { return read_calibrated_rig(path, options); });
   const RigFigures figures = rig_figures(calibrated.rig, PushbroomConfig());
@@ -82,7 +86,11 @@ int run_rig(const RigArguments& arguments) {
   if (is_picture)
     texts.push_back({out, to_svg(rig_plots(calibrated.rig, figures), 2)});
   else if (!out.empty())
-    texts = bad_input_if_refused([&] { return calibration_texts(calibrated, arguments.form, out); });
+    try {
+      texts = calibration_texts(calibrated, arguments.form, out);
+    } catch (const InputError& error) {
+      throw ScenarioError(fmt::format("--out {}", error.what()));
+    }
   for (const CalibrationText& text : texts) {
     if (text.file != out) prepare_output_folder(text.file.parent_path());
     write_whole_file(text.file, text.text);

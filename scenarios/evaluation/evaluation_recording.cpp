@@ -134,8 +134,8 @@ EvaluationFrame EvaluationRecording::frame(std::size_t index) {
   const StereoFiles& files = sequence_.pairs[index];
   EvaluationFrame frame;
   bad_input_where_refused([&] {
-    frame.pair = {files.t_ns, read_gray_image_of_8_or_16_bits(files.left),
-                  read_gray_image_of_8_or_16_bits(files.right)};
+    frame.pair = {files.t_ns, read_gray_image_of_8_or_16_bits(files.left, image_depth_),
+                  read_gray_image_of_8_or_16_bits(files.right, image_depth_)};
     const fs::path name = files.left.filename();
     if (has_depth_) {
       frame.truth.depth_mm = read_16_bit_image(folder_ / "depth0/data" / name, rig());

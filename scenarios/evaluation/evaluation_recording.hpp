@@ -41,6 +41,7 @@ class EvaluationRecording {
   std::vector<RecordedObject> objects_;
   std::vector<bool> soft_;  ///< by number
   bool has_depth_ = false;
+  int image_depth_ = -1;  ///< 8 or 16 bits, as the first image read
 };
 
 /// Whether recordings of both rigs can be evaluated with one configuration.

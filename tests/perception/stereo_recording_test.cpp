@@ -88,6 +88,36 @@ TEST_F(Recording, SplitsASideBySideVideo) {
   EXPECT_FALSE(recording.read(frame));
 }
 
+/// TUM-VI's images have 16 bits; a data set's images are all alike, and numbers of 12 bits would be dark.
+TEST_F(Recording, ScalesTheImagesOfADataSetWith16Bits) {
+  const auto camera = [&](const std::string& name, const cv::Mat& first, const cv::Mat& second) {
+    folder.write("set/mav0/" + name + "/data.csv", "#timestamp [ns],filename\n1000,1.png\n2000,2.png\n");
+    std::filesystem::create_directories(folder.path() / "set/mav0" / name / "data");
+    cv::imwrite(folder.path() / "set/mav0" / name / "data/1.png", first);
+    cv::imwrite(folder.path() / "set/mav0" / name / "data/2.png", second);
+  };
+  const cv::Mat eight = noise(1);
+  cv::Mat sixteen, twelve;
+  eight.convertTo(sixteen, CV_16U, 257);
+  eight.convertTo(twelve, CV_16U, 16);
+  const std::filesystem::path set = folder.path() / "set";
+  camera("cam0", sixteen, sixteen);
+  camera("cam1", sixteen, sixteen);
+  StereoRecording recording({set});
+  StereoFrame frame;
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(recording.read(frame));
+    EXPECT_TRUE(same(frame.left, eight) && same(frame.right, eight));
+  }
+  camera("cam1", sixteen, eight);
+  support::expect_part(complaint({set}),
+                       "cam1/data/2.png: expected a 16-bit gray image as before, found 8-bit gray");
+  camera("cam1", sixteen, twelve);
+  support::expect_part(
+      complaint({set}),
+      "cam1/data/2.png: expected a 16-bit gray image as before, found 16-bit numbers up to ");
+}
+
 TEST_F(Recording, RefusesWhatIsNoPairOfGrayImagesOfOneSize) {
   const std::string good = image("good.png", noise(1));
   const std::string deep = image("deep.png", noise(1, CV_16UC1));

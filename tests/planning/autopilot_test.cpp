@@ -123,8 +123,8 @@ TEST(Autopilot, WhatIsKnownOrFarAsideIsNoReasonToPlan) {
   Flight flight(seldom());
   const double x_m = flight.after_a_plan_m() + 9;
   EXPECT_EQ(flight.fly(1, trunk_at(x_m, 5)), 0);
-  EXPECT_EQ(flight.fly(1, trunk_at(x_m, 1.2)), 1);  // near, if not in the way
-  EXPECT_EQ(flight.fly(1, trunk_at(x_m, 1.2)), 0);
+  EXPECT_EQ(flight.fly(1, trunk_at(x_m, 1.1)), 1);  // near, if not in the way
+  EXPECT_EQ(flight.fly(1, trunk_at(x_m, 1.1)), 0);
 }
 
 TEST(Autopilot, LooksAfterAManoeuvreMoreOftenThanAfterTheStraightWay) {

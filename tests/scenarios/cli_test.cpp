@@ -188,7 +188,7 @@ TEST_F(Cli, BadRigsAreNamedInOneLine) {
 
 TEST_F(Cli, APictureThatCannotBeWrittenIsBadInput) {
   expect_refusal("rig long --out " + (folder.path() / "none" / "rig.svg").string(), "cannot write here");
-  expect_refusal("rig long --out " + path("rig.xyz"), "the name must end in .yaml");
+  expect_refusal("rig long --out " + path("rig.xyz"), "the name must end in .svg (a drawing) or .yaml");
 }
 
 #ifdef UNDERSTORY_HAS_SIM

@@ -251,10 +251,10 @@ StereoRig read_rig(const std::filesystem::path& file) {
   read_fields(map, fields_of(text), "", Keys::all_required);
   StereoRig& rig = text.rig;
   if (rig.name.empty()) refuse_input(map.origin, "name", "expected a word");
-  constexpr double radians = std::numbers::pi / 180;
+  const auto radians = [](double angle_deg) { return angle_deg * std::numbers::pi / 180; };
   rig.T_body_camera =
-      T_body_camera_of(text.left_camera_body_m, text.pitch_down_deg * radians,
-                       text.yaw_left_deg.value_or(0) * radians, text.roll_right_deg.value_or(0) * radians);
+      T_body_camera_of(text.left_camera_body_m, radians(text.pitch_down_deg),
+                       radians(text.yaw_left_deg.value_or(0)), radians(text.roll_right_deg.value_or(0)));
   if (!rig.can_look_at(std::round(rig.disparity_px(rig.detection_depth_m))))
     refuse_input(find_child(map, "detection_depth_m")->origin, "detection_depth_m",
                  "must be a depth more than a pixel of disparity nearer than infinity and inside the image");
