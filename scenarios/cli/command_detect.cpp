@@ -92,6 +92,7 @@ int run_rig(const RigArguments& arguments) {
       throw ScenarioError(fmt::format("--out {}", error.what()));
     }
   for (const CalibrationText& text : texts) {
+    require_not_within(text.file, {path});  // nor may raw/NAME.xml be what was read
     if (text.file != out) prepare_output_folder(text.file.parent_path());
     write_whole_file(text.file, text.text);
   }

@@ -336,7 +336,10 @@ class Evaluator {
 }  // namespace
 
 FullStereoCrop crop_beside(const PerceptionSection& perception, const StereoRig& rig) {
-  FullStereoCrop crop = one_pixel_crop(rig);
+  StereoRig looking = rig;
+  if (const auto depths_m = stated_depths_m(perception.pushbroom(), rig); !depths_m.empty())
+    looking.detection_depth_m = depths_m.front();
+  FullStereoCrop crop = one_pixel_crop(looking);
   crop.last_row_px = perception.pushbroom().last_row_px;
   crop.cell_px = perception.full_stereo.cell_px;
   crop.minimum_pixels_per_cell = perception.full_stereo.minimum_pixels_per_cell;

@@ -84,8 +84,9 @@ PairRecording::PairRecording(const fs::path& folder, const CalibratedRig& rig, c
 }
 
 void PairRecording::add_frame(const StereoFrame& frame, const Truth& truth, const TrueView& view) {
-  // Infinite where nothing is: there the depth is 0.
-  const cv::Mat disparity_px = rig_.focal_px * rig_.baseline_m / view.depth_m + rig_.infinity_disparity_px();
+  // Infinite where nothing is, as in the sky.
+  cv::Mat disparity_px = rig_.focal_px * rig_.baseline_m / view.depth_m + rig_.infinity_disparity_px();
+  disparity_px.setTo(std::numeric_limits<float>::infinity(), view.objects == 0);
   cv::Mat shared(disparity_px.size(), CV_8UC1);  // as Middlebury's mask: 255 both see it, 128 one, 0 unknown
   for (int row = 0; row < shared.rows; ++row)
     for (int column = 0; column < shared.cols; ++column) {
