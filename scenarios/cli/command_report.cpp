@@ -265,10 +265,13 @@ void add_mcap_command(CommandLine& line) {
                 "the MCAP file was written, but the repeated flight differs from the run (another digest)"});
   add_again_options(command, *arguments, "folder of a run",
                     "name of the MCAP file (default: FOLDER/flight.mcap)");
-  command.flag("--exact-images", arguments->exact_images,
-               "store every image as the autopilot had it (PNG); otherwise JPEG, 60 pairs a second");
-  command.flag("--no-images", arguments->no_images,
-               "make the MCAP file without images from the run's flight.log; this takes no new flight");
+  const Command::Added exact =
+      command.flag("--exact-images", arguments->exact_images,
+                   "store every image as the autopilot had it (PNG); otherwise JPEG, 60 pairs a second");
+  command
+      .flag("--no-images", arguments->no_images,
+            "make the MCAP file without images from the run's flight.log; this takes no new flight")
+      .excludes(exact);
   command.runs([arguments] { return run_mcap(*arguments); });
 }
 

@@ -57,7 +57,7 @@ fs::path first_there(const std::vector<fs::path>& files) {
 std::optional<PairFiles> files_of_folder(const fs::path& folder) {
   const fs::path gt = fs::path(folder.parent_path().string() + "_gt") / folder.filename();
   for (const auto& [left, right] : {std::pair("left.png", "right.png"), {"im0.png", "im1.png"}})
-    if (!first_there({folder / left}).empty() && !first_there({folder / right}).empty())
+    if (!first_there({folder / left, folder / right}).empty())
       return PairFiles{folder.filename().string(), folder / left, folder / right,
                        first_there({folder / "disparity.png", folder / "disparity.pfm",
                                     folder / "disp0GT.pfm", folder / "disp0.pfm", gt / "disp0GT.pfm"}),
@@ -120,8 +120,9 @@ std::vector<ImagePair> read_image_pairs(const fs::path& given, int every) {
   std::vector<PairFiles> files = files_of_kitti(folder);
   if (auto own = files_of_folder(folder.has_filename() ? folder : folder.parent_path()))
     files.push_back(*own);
-  if (files.empty())
-    for (const auto& entry : fs::directory_iterator(folder))
+  if (files.empty())  // of a recording in Middlebury's form, or the folder above pairs
+    for (const auto& entry :
+         fs::directory_iterator(fs::exists(folder / "pairs", ignored) ? folder / "pairs" : folder))
       if (auto own = files_of_folder(entry.path())) files.push_back(*own);
   if (files.empty())
     throw ScenarioError(fmt::format(

@@ -59,6 +59,10 @@ std::vector<int> whole_disparities(const ImagePair& pair, const StereoRig& rig) 
   const auto last = static_cast<int>(std::floor(quantile(known, 0.99)));
   for (auto px = static_cast<int>(std::ceil(quantile(known, 0.01))); px <= last; ++px)
     if (px > 0 && rig_looking_at(px, pair, rig).can_look_at(px)) disparities.push_back(px);
+  if (disparities.empty())
+    throw ScenarioError(
+        fmt::format("{}: no true disparity, {:.4g} to {:.4g} px, is one that images of {} px can show",
+                    pair.name, quantile(known, 0.01), quantile(known, 0.99), pair.left.cols));
   return disparities;
 }
 
