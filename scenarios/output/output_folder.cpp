@@ -79,7 +79,9 @@ OutputFolder::OutputFolder(fs::path folder, const ResultKind& kind, std::string 
       manifest_(std::move(manifest)),
       replace_(replace) {
   std::error_code ignored;
-  if (fs::exists(folder_, ignored) && !fs::is_directory(folder_, ignored)) refuse_output(name_, ENOTDIR);
+  // Asked once: another program may remove the folder between two questions.
+  const fs::file_status status = fs::status(folder_, ignored);
+  if (fs::exists(status) && !fs::is_directory(status)) refuse_output(name_, ENOTDIR);
   stands_alone_ = stands_alone(folder_);
   part_.emplace(folder_, kind_, name_, stands_alone_);
   if (fs::exists(folder_, ignored)) {
