@@ -45,12 +45,14 @@ std::string manifest_of(const Campaign& campaign) {
   for (const auto& [name, digest] : campaign.identity) identity[name] = digest;
   Json pictures = Json::object();
   for (const auto& [scenery, digest] : campaign.pictures) pictures[scenery] = digest;
-  const Json json{{"format", results_format},        {"understory", understory_version},
-                  {"commit", understory_commit},     {"identity", identity},
-                  {"processor", processor_model()},  {"name", campaign.name},
-                  {"renderer", campaign.renderer},   {"pictures", pictures},
-                  {"timeout_s", campaign.timeout_s}, {"conditions", conditions},
-                  {"seeds", campaign.seeds}};
+  Json json{{"format", results_format},        {"understory", understory_version},
+            {"commit", understory_commit},     {"identity", identity},
+            {"processor", processor_model()},  {"name", campaign.name},
+            {"renderer", campaign.renderer},   {"pictures", pictures},
+            {"timeout_s", campaign.timeout_s}, {"conditions", conditions},
+            {"seeds", campaign.seeds}};
+  if (campaign.recording.form)
+    json.update({{"record", word_for(*campaign.recording.form)}, {"every", campaign.recording.every}});
   return json_text(json, 1) + "\n";
 }
 
@@ -82,6 +84,7 @@ void require_same(const CampaignFolder& folder, const Campaign& campaign, bool m
   if (may_grow ? !std::ranges::includes(now, before) : held.seeds != campaign.seeds) refuse("seeds changed");
   if (held.renderer != campaign.renderer) refuse("renderer changed");
   if (held.timeout_s != campaign.timeout_s) refuse("timeout_s changed");
+  if (held.recording != campaign.recording) refuse("--record or --every changed");
   for (const Condition& condition : campaign.conditions) {
     const auto same = [&](const Condition& other) {
       return other.name == condition.name && other.scenario_text == condition.scenario_text &&
@@ -216,6 +219,8 @@ Campaign read_campaign(const CampaignFolder& folder) {
       for (const auto& [scenery, digest] : json.at(key).items())
         campaign.pictures.emplace_back(scenery, digest);
     campaign.commit = json.value(key = "commit", "");
+    for (const auto& [word, form] : recording_forms)
+      if (json.value(key = "record", "") == word) campaign.recording = {form, json.value("every", 1)};
   } catch (const Json::exception&) {
     refuse_manifest(folder, key, "not as `understory campaign` writes it");
   }

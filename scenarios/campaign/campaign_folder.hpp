@@ -11,6 +11,7 @@
 #include "scenarios/campaign/flight_row.hpp"
 #include "scenarios/output/folder_mark.hpp"
 #include "scenarios/output/program.hpp"
+#include "scenarios/recording/recording_choice.hpp"
 
 namespace understory {
 
@@ -43,6 +44,7 @@ struct Campaign {
   Identity identity;                ///< of its flights (identity_of)
   Identity pictures;   ///< scenery, and the digest of a pair of it (pictures_of); empty: of an older program
   std::string commit;  ///< of the program that began it
+  RecordingChoice recording;                 ///< of every flight, in runs/ID
   std::vector<std::filesystem::path> files;  ///< that its description was read from
 };
 

@@ -9,9 +9,8 @@
 namespace understory {
 
 struct LocalEngineConfig {
-  int jobs = 1;                        ///< flights at a time, each a process of its own
-  bool keeps_runs = false;             ///< leaves each flight's run folder in runs/ID
-  std::vector<std::string> more = {};  ///< arguments of fly
+  int jobs = 1;             ///< flights at a time, each a process of its own
+  bool keeps_runs = false;  ///< leaves each flight's run folder in runs/ID
 };
 
 /// How far a campaign is.

@@ -173,8 +173,10 @@ std::vector<std::string> flight_arguments(const CampaignFolder& folder, const Ca
   if (fs::exists(track.parent_path()))
     arguments.insert(arguments.end(), {"--track", track.string()});  // not in a tuning
   arguments.insert(arguments.end(), {"--renderer", campaign.renderer});
-  arguments.insert(arguments.end(), config.more.begin(), config.more.end());
-  if (config.keeps_runs)
+  if (campaign.recording.form)
+    arguments.insert(arguments.end(), {"--record", std::string(word_for(*campaign.recording.form)), "--every",
+                                       fmt::format("{}", campaign.recording.every)});
+  if (config.keeps_runs || campaign.recording.form)
     arguments.insert(arguments.end(), {"--out", (whole.path / "runs" / task.id).string()});
   return arguments;
 }

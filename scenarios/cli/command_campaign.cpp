@@ -86,10 +86,7 @@ enum class Finish { all_over, stopped };
 Finish fly_here(const CampaignFolder& folder, const Campaign& campaign, const CampaignArguments& arguments) {
   LocalEngineConfig config;
   config.jobs = jobs_or_cores(arguments.jobs);
-  config.keeps_runs = arguments.keeps_runs || arguments.recording.form;
-  if (arguments.recording.form)
-    config.more = {"--record", std::string(word_for(*arguments.recording.form)), "--every",
-                   fmt::format("{}", arguments.recording.every)};
+  config.keeps_runs = arguments.keeps_runs;
   ProgressLine line;
   const bool finished = fly_locally(folder, campaign, in_flying_order(campaign), config,
                                     [&](const CampaignProgress& progress) { show(line, progress); });
@@ -120,7 +117,6 @@ void require_engine(const CampaignArguments& arguments) {
   refuse(on_slurm && arguments.jobs != 0, "--jobs", "local");
   refuse(on_slurm && arguments.keeps_runs, "--keep-runs", "local");
   refuse(on_slurm && arguments.explains, "--explain", "local");
-  refuse(on_slurm && arguments.recording.form, "--record", "local");
 }
 
 /// Of a campaign file, or of the folder of a campaign that is to go on.
@@ -161,8 +157,13 @@ int run_campaign(const CampaignArguments& arguments) {
   require_outside(arguments.junit, folder.path);
   require_writable(arguments.junit);
   FolderMark mark(folder.path, campaign_results, folder.path);
-  if (fs::exists(folder.path / campaign_results.manifest))
-    read_campaign(folder);  // before anything is opened
+  if (!arguments.recording.form && arguments.recording.every != 1)
+    throw ScenarioError("--every requires --record");
+  campaign.recording = arguments.recording;
+  if (fs::exists(folder.path / campaign_results.manifest)) {  // before anything is opened
+    const Campaign held = read_campaign(folder);
+    if (!arguments.recording.form) campaign.recording = held.recording;
+  }
   const OpenedRenderer renderer = opened_renderer(arguments.renderer);
   campaign.renderer = word_for(renderer.kind);
   campaign.identity = identity_of(scenarios, data_root() / "models", renderer);
@@ -178,7 +179,7 @@ int run_campaign(const CampaignArguments& arguments) {
   const Collected collected = collect(folder, campaign);
   if (finish == Finish::all_over) {
     const int status = report(folder, campaign, collected, arguments.junit);
-    if (arguments.recording.form) write_data_set_files(folder, collected.rows, *arguments.recording.form);
+    if (campaign.recording.form) write_data_set_files(folder, collected.rows, *campaign.recording.form);
     if (arguments.explains)
       explain_campaign(folder.path, arguments.renderer, jobs_or_cores(arguments.jobs),
                        ExplainOptions().flights);

@@ -22,6 +22,7 @@ constexpr std::string_view word_for(RecordingForm form) {
 struct RecordingChoice {
   std::optional<RecordingForm> form = {};  ///< nothing: no recording
   int every = 1;                           ///< every n-th stereo pair
+  bool operator==(const RecordingChoice&) const = default;
 };
 
 }  // namespace understory

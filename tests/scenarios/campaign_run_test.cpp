@@ -171,8 +171,15 @@ TEST_F(CampaignRun, RecordsADataSet) {
       std::system(("cd " + (path / "set").string() + " && sha256sum --check --quiet SHA256SUMS").c_str()), 0);
   expect_success("campaign " + campaign + options +
                  " --resume");  // nothing is flown again, nothing is refused
-  expect_refusal("campaign " + campaign + " --record kitti --engine slurm" + out("x"),
-                 "--record: needs --engine local");
+  // Whoever goes on without saying so records, too, and nothing else.
+  fs::remove(path / "set/scenes.csv");
+  expect_success("campaign " + (path / "set").string() + " --resume --seeds 1005");
+  EXPECT_EQ(std::ranges::count(text("set/scenes.csv"), '\n'), 4);
+  expect_refusal("campaign " + (path / "set").string() + " --resume --record kitti --every 20",
+                 "--record or --every changed");
+  expect_refusal("campaign " + campaign + " --every 20" + out("x"), "--every requires --record");
+  expect_part(understory("campaign " + campaign + " --record kitti --print-tasks" + out("tasks")).text,
+              "'--record' 'kitti' '--every' '1'");
   expect_refusal("campaign " + campaign + " --record png" + out("x"), "--record");
 }
 
