@@ -44,7 +44,7 @@ CameraCalibration rectified_camera(const StereoRig& rig, double center_x_px, dou
   camera.camera_matrix = cv::Matx33d(f, 0, center_x_px, 0, f, rig.center_y_px, 0, 0, 1);
   camera.distortion = {0, 0, 0, 0};
   camera.projection =
-      cv::Matx34d(f, 0, center_x_px, -f * right_of_left_m, 0, f, rig.center_y_px, 0, 0, 0, 1, 0);
+      cv::Matx34d(f, 0, center_x_px, 0 - f * right_of_left_m, 0, f, rig.center_y_px, 0, 0, 0, 1, 0);
   return camera;
 }
 

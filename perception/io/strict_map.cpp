@@ -40,19 +40,21 @@ int StrictMap::whole(const std::string& key, int minimum, int maximum) {
 
 std::vector<double> StrictMap::numbers(const std::string& key, std::size_t count, double minimum,
                                        double maximum) {
-  TextNode list = take(key);
-  std::vector<TextNode> joined;  // of the rows, where it is a list of lists
-  for (TextNode& child : list.children)
-    std::ranges::move(child.kind == TextNode::Kind::list ? child.children : std::vector{child},
-                      std::back_inserter(joined));
-  list.children = std::move(joined);
+  const TextNode& list = take(key);
   const bool is_list =
       list.kind == TextNode::Kind::list || (count == 0 && list.kind == TextNode::Kind::nothing);
-  if (!is_list || list.children.size() != count)
+  std::vector<const TextNode*> nodes;
+  for (const TextNode& child : list.children) {
+    if (child.kind != TextNode::Kind::list)
+      nodes.push_back(&child);
+    else
+      for (const TextNode& of_row : child.children) nodes.push_back(&of_row);
+  }
+  if (!is_list || nodes.size() != count)
     fail(key, fmt::format("must be a list of {} numbers{}", count,
-                          is_list ? fmt::format(", found {}", list.children.size()) : ""));
+                          is_list ? fmt::format(", found {}", nodes.size()) : ""));
   std::vector<double> values;
-  for (const TextNode& child : list.children) values.push_back(number(child, key, minimum, maximum));
+  for (const TextNode* node : nodes) values.push_back(number(*node, key, minimum, maximum));
   return values;
 }
 

@@ -29,7 +29,7 @@ void remove_parts(const CampaignFolder& folder);
 /// Arguments of this program that fly one task and leave its file, from any folder, on any machine that sees
 /// this one's files.
 std::vector<std::string> flight_arguments(const CampaignFolder& folder, const Campaign& campaign,
-                                          const CampaignTask& task, const LocalEngineConfig& config);
+                                          const CampaignTask& task, bool keeps_run);
 
 /// Flies the tasks that are not flown yet, a process each, so that a crash, a hang or a kill costs one flight
 /// and is written down as such. Flights end with this program. False if SIGINT, SIGTERM or SIGHUP stopped it;

@@ -80,8 +80,8 @@ class Flights {
 
   void launch(const CampaignTask& task) {
     fs::remove(folder_.flight_file(task));  // how it failed the last time is no answer any more
-    const pid_t child = start_this_program(flight_arguments(folder_, campaign_, task, config_), SIGKILL,
-                                           folder_.log_file(task));
+    const pid_t child = start_this_program(flight_arguments(folder_, campaign_, task, config_.keeps_runs),
+                                           SIGKILL, folder_.log_file(task));
     air_[child] = {&task};
   }
 
@@ -164,7 +164,7 @@ void count(const FlightRow& row, CampaignProgress& progress) {
 }
 
 std::vector<std::string> flight_arguments(const CampaignFolder& folder, const Campaign& campaign,
-                                          const CampaignTask& task, const LocalEngineConfig& config) {
+                                          const CampaignTask& task, bool keeps_run) {
   const CampaignFolder whole{fs::absolute(folder.path).lexically_normal()};
   const std::string condition = whole.condition_file(campaign.conditions[task.condition]).string();
   std::vector<std::string> arguments{"fly", condition, "--seed", fmt::format("{}", task.seed), "--quiet"};
@@ -176,7 +176,7 @@ std::vector<std::string> flight_arguments(const CampaignFolder& folder, const Ca
   if (campaign.recording.form)
     arguments.insert(arguments.end(), {"--record", std::string(word_for(*campaign.recording.form)), "--every",
                                        fmt::format("{}", campaign.recording.every)});
-  if (config.keeps_runs || campaign.recording.form)
+  if (keeps_run || campaign.recording.form)
     arguments.insert(arguments.end(), {"--out", (whole.path / "runs" / task.id).string()});
   return arguments;
 }

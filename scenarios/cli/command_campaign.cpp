@@ -73,7 +73,7 @@ int print_tasks(const CampaignFolder& folder, const Campaign& campaign) {
   for (const CampaignTask& task : tasks_of(campaign)) {
     if (const auto file = read_flight(folder, task); file && file->row.flown()) continue;
     std::string line = quoted(program.string());
-    for (const std::string& argument : flight_arguments(folder, campaign, task, {}))
+    for (const std::string& argument : flight_arguments(folder, campaign, task, false))
       line += fmt::format(" {}", quoted(argument));
     fmt::print("{}\n", line);
   }

@@ -14,9 +14,9 @@ struct ExplainOptions {
   /// For the flights' files; made if it is not there, and left.
   std::filesystem::path work_folder;
   RendererKind renderer = RendererKind::osmesa;
-  int jobs = 1;        ///< flights at a time
-  int first_seed = 1;  ///< of the redraws
-  int flights = 170;   ///< at most so many beside the lost one
+  int jobs = 1;                                             ///< flights at a time
+  int first_seed = 1;                                       ///< of the redraws
+  int flights = 170;                                        ///< at most so many beside the lost one
   std::function<void(std::size_t flown)> on_progress = {};  ///< may be empty
 };
 

@@ -161,23 +161,20 @@ foxglove::CameraCalibration calibration_of(const CalibratedRig& rig, bool is_lef
   const auto put = [](const auto& matrix, google::protobuf::RepeatedField<double>* to) {
     for (const double value : matrix.val) to->Add(value);
   };
+  const CameraCalibration camera =
+      rig.calibration
+          ? (is_left ? rig.calibration->left : rig.calibration->right)
+          : rectified_camera(rig.rig, is_left ? rig.rig.center_left_x_px : rig.rig.center_right_x_px,
+                             is_left ? 0 : rig.rig.baseline_m);
   if (rig.calibration) {
-    const CameraCalibration& raw = is_left ? rig.calibration->left : rig.calibration->right;
-    message.set_distortion_model(raw.lens == LensModel::equidistant ? "kannala_brandt"
-                                 : raw.distortion.size() > 5        ? "rational_polynomial"
-                                                                    : "plumb_bob");
-    for (const double number : raw.distortion) message.add_d(number);
-    put(raw.camera_matrix, message.mutable_k());
-    put(raw.rectification, message.mutable_r());
-    put(raw.projection, message.mutable_p());
-    return message;
+    message.set_distortion_model(camera.lens == LensModel::equidistant ? "kannala_brandt"
+                                 : camera.distortion.size() > 5        ? "rational_polynomial"
+                                                                       : "plumb_bob");
+    for (const double number : camera.distortion) message.add_d(number);
   }
-  const double focal = rig.rig.focal_px, row = rig.rig.center_y_px;
-  const double column = is_left ? rig.rig.center_left_x_px : rig.rig.center_right_x_px;
-  const double shift = is_left ? 0 : -focal * rig.rig.baseline_m;
-  put(cv::Matx33d(focal, 0, column, 0, focal, row, 0, 0, 1), message.mutable_k());
-  put(cv::Matx33d::eye(), message.mutable_r());
-  put(cv::Matx34d(focal, 0, column, shift, 0, focal, row, 0, 0, 0, 1, 0), message.mutable_p());
+  put(camera.camera_matrix, message.mutable_k());
+  put(camera.rectification, message.mutable_r());
+  put(camera.projection, message.mutable_p());
   return message;
 }
 

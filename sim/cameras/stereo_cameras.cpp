@@ -156,14 +156,21 @@ struct StereoCameras::Implementation {
     return views;
   }
 
-  /// Both images of a moment.
+  /// Both images, the last row of which is exposed until t_ns.
   std::array<cv::Mat, 2> captured(const Eigen::Isometry3d& now, std::int64_t t_ns) {
     if (takes_time()) poses.observe(now, t_ns);
+    std::array<cv::Mat, 2> images = readout_ns > 0 ? read_out(now, t_ns) : exposed(now, t_ns);
+    // In 8 bits OpenCV blurs with whole numbers, the same on every machine.
+    if (config.psf_px > 0)
+      for (cv::Mat& image : images) cv::GaussianBlur(image, image, {}, config.psf_px);
+    return images;
+  }
+
+  /// Each band of rows is of an image that was exposed when the band's middle row was.
+  std::array<cv::Mat, 2> read_out(const Eigen::Isometry3d& now, std::int64_t t_ns) {
+    const int count = config.rolling_shutter_views;
     std::array<cv::Mat, 2> images;
-    if (readout_ns == 0) images = exposed(now, t_ns);
-    // Each band of rows is of an image that was exposed when the band's middle row was.
-    for (int band = 0; readout_ns > 0 && band < config.rolling_shutter_views; ++band) {
-      const int count = config.rolling_shutter_views;
+    for (int band = 0; band < count; ++band) {
       const std::array<cv::Mat, 2> whole =
           exposed(now, t_ns - readout_ns + (2 * band + 1) * readout_ns / (2 * count));
       for (std::size_t eye = 0; eye < 2; ++eye) {
@@ -172,9 +179,6 @@ struct StereoCameras::Implementation {
         whole[eye].rowRange(rows).copyTo(images[eye].rowRange(rows));
       }
     }
-    // In 8 bits OpenCV blurs with whole numbers, the same on every machine.
-    if (config.psf_px > 0)
-      for (cv::Mat& image : images) cv::GaussianBlur(image, image, {}, config.psf_px);
     return images;
   }
 

@@ -132,7 +132,8 @@ TEST(ImagePairs, ReadsPairsWithTheirDisparitiesAndSaysWhatIsWrong) {
     return refusal_of([&] { read_image_pairs(at, 1); });
   };
   expect_part(refusal(folder.path() / "none"), "there is no such folder");
-  expect_part(refusal(folder.path()), "expected a recording in EuRoC's layout, KITTI's folder, left.png and right.png");
+  expect_part(refusal(folder.path()),
+              "expected a recording in EuRoC's layout, KITTI's folder, left.png and right.png");
   const std::filesystem::path one = folder.path() / "set" / "one";
   std::filesystem::create_directories(one);
   const cv::Mat image = normal_noise({64, 48}, 100, 20, 1);
