@@ -114,6 +114,13 @@ std::vector<TimedPose> parse_poses(std::string_view text, const std::string& nam
   return poses;
 }
 
+Eigen::Isometry3d pose_between(const Eigen::Isometry3d& before, const Eigen::Isometry3d& after,
+                               double share) {
+  const Eigen::Vector3d position = (1 - share) * before.translation() + share * after.translation();
+  const Eigen::Quaterniond from(before.linear()), to(after.linear());
+  return Eigen::Isometry3d(Eigen::Translation3d(position) * from.slerp(share, to));
+}
+
 std::optional<Eigen::Isometry3d> pose_at(const std::vector<TimedPose>& poses, std::int64_t t_ns) {
   const auto is_later = [](std::int64_t t, const TimedPose& pose) { return t < pose.t_ns; };
   const auto after = std::upper_bound(poses.begin(), poses.end(), t_ns, is_later);
@@ -127,10 +134,7 @@ std::optional<Eigen::Isometry3d> pose_at(const std::vector<TimedPose>& poses, st
   }
   const double share =
       static_cast<double>(t_ns - before->t_ns) / static_cast<double>(after->t_ns - before->t_ns);
-  const Eigen::Quaterniond from(before->T_world_body.linear()), to(after->T_world_body.linear());
-  const Eigen::Vector3d position_world =
-      (1 - share) * before->T_world_body.translation() + share * after->T_world_body.translation();
-  return Eigen::Isometry3d(Eigen::Translation3d(position_world) * from.slerp(share, to));
+  return pose_between(before->T_world_body, after->T_world_body, share);
 }
 
 }  // namespace understory

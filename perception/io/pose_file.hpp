@@ -31,9 +31,13 @@ std::vector<TimedPose> read_poses(const std::filesystem::path& file, Repeats rep
 std::vector<TimedPose> parse_poses(std::string_view text, const std::string& name,
                                    Repeats repeats = Repeats::refused);
 
-/// The pose at t_ns: between its two neighbours the position changes linearly, the attitude along the shorter
-/// arc at a constant rate. Nothing before the first or after the last pose, with a margin of 1 us, because
-/// times in seconds that were once a double are that inexact. `poses`: times strictly increasing, from 0.
+/// From one pose to the other: the position linearly, the attitude along the shorter arc at a constant rate.
+/// `share`: 0 to 1 of the way.
+Eigen::Isometry3d pose_between(const Eigen::Isometry3d& before, const Eigen::Isometry3d& after, double share);
+
+/// The pose at t_ns: pose_between its two neighbours. Nothing before the first or after the last pose, with a
+/// margin of 1 us, because times in seconds that were once a double are that inexact. `poses`: times strictly
+/// increasing, from 0.
 std::optional<Eigen::Isometry3d> pose_at(const std::vector<TimedPose>& poses, std::int64_t t_ns);
 
 }  // namespace understory

@@ -219,8 +219,12 @@ Campaign read_campaign(const CampaignFolder& folder) {
       for (const auto& [scenery, digest] : json.at(key).items())
         campaign.pictures.emplace_back(scenery, digest);
     campaign.commit = json.value(key = "commit", "");
-    for (const auto& [word, form] : recording_forms)
-      if (json.value(key = "record", "") == word) campaign.recording = {form, json.value("every", 1)};
+    if (json.contains(key = "record")) {
+      const auto* form = std::ranges::find(recording_forms, json.at(key).get<std::string>(),
+                                           [](const auto& one) { return one.first; });
+      if (form == recording_forms.end()) refuse_manifest(folder, key, "must be euroc, kitti or middlebury");
+      campaign.recording = {form->second, json.value("every", 1)};
+    }
   } catch (const Json::exception&) {
     refuse_manifest(folder, key, "not as `understory campaign` writes it");
   }

@@ -47,7 +47,7 @@ void write_data_set_files(const CampaignFolder& folder, const std::vector<Flight
                   "hold for the positions of its trunks.\n",
                   understory_version));
   const std::string command = fmt::format(
-      "cd {} && find runs conditions scenes.csv LICENSE.txt -type f | LC_ALL=C sort | tr '\\n' '\\0' | "
+      "cd {} && find runs conditions scenes.csv -type f | LC_ALL=C sort | tr '\\n' '\\0' | "
       "xargs -0 sha256sum > SHA256SUMS",
       quoted(folder.path.string()));
   if (std::system(command.c_str()) != 0)

@@ -63,7 +63,7 @@ struct RigArguments : CalibrationArguments {
 
 /// Of a form without a mounting: what it does not say.
 std::string lost_in(CalibrationForm form, const StereoRig& rig) {
-  const bool is_usual = rig.T_body_camera.translation().isZero();
+  const bool is_usual = rig.T_body_camera.isApprox(T_body_camera_of(Eigen::Vector3d::Zero(), 0));
   return form == CalibrationForm::rig_file || is_usual
              ? ""
              : "this form does not say where the camera is mounted; --form rig does\n";
@@ -75,10 +75,6 @@ int run_rig(const RigArguments& arguments) {
   const fs::path path = rig_path(arguments.rig);
   require_separate({out}, {path});
   const bool is_picture = out.extension() == ".svg";
-  if (!out.empty() && !is_picture && arguments.form == CalibrationForm::rig_file &&
-      out.extension() != ".yaml")
-    throw ScenarioError(
-        fmt::format("--out {}: the name must end in .svg (a drawing) or .yaml (a rig file)", arguments.out));
   if (is_picture || arguments.form != CalibrationForm::ros) require_writable(out);
   const CalibratedRig calibrated = bad_input_if_refused([&] { return read_calibrated_rig(path, options); });
   const RigFigures figures = rig_figures(calibrated.rig, PushbroomConfig());
@@ -89,7 +85,7 @@ int run_rig(const RigArguments& arguments) {
     try {
       texts = calibration_texts(calibrated, arguments.form, out);
     } catch (const InputError& error) {
-      throw ScenarioError(fmt::format("--out {}", error.what()));
+      throw ScenarioError(fmt::format("--out {}, or in .svg for a drawing", error.what()));
     }
   for (const CalibrationText& text : texts) {
     require_not_within(text.file, {path});  // nor may raw/NAME.xml be what was read

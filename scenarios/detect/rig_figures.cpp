@@ -71,6 +71,10 @@ std::string to_report(const CalibratedRig& calibrated, const RigFigures& figures
                                   "({:.3f}, {:.3f}, {:.3f})",
                                   position_body_m.x(), position_body_m.y(), position_body_m.z(),
                                   axis_body.x(), axis_body.y(), axis_body.z()));
+  const Eigen::Matrix3d& R_body_camera = rig.T_body_camera.linear();
+  if (const double roll_deg = degrees(std::atan2(-R_body_camera(2, 0), -R_body_camera(2, 1)));
+      std::abs(roll_deg) >= 0.005)
+    line("", fmt::format("rolled {:.2f} deg to the right", roll_deg));
   line("infinity", fmt::format("{:.2f} px of disparity", rig.infinity_disparity_px()));
   line("asked to look at",
        fmt::format("{:.4g} m: {:.2f} px", rig.detection_depth_m, rig.disparity_px(rig.detection_depth_m)));

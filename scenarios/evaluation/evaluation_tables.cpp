@@ -131,7 +131,8 @@ EvaluationTable algorithms_table(const Evaluation& evaluation) {
     for (const Rates& rates : tally.rates) row.push_back(share_text(rates.precision));
     row.push_back(share_text(tally.at_one_pixel().trunk_precision));
     for (const Rates& rates : tally.rates) row.push_back(share_text(rates.recall));
-    row.push_back(number_text(tally.at_one_pixel().f_score(), 3));
+    const bool is_known = tally.at_one_pixel().precision.of + tally.at_one_pixel().recall.of > 0;
+    row.push_back(is_known ? number_text(tally.at_one_pixel().f_score(), 3) : "-");
     row.push_back(number_text(tally.false_per_second(), 0));
     for (const double reach_m : {1.0, 3.0})
       row.push_back(share_text(found_within(all.sightings[i], reach_m)));

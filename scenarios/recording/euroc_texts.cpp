@@ -48,20 +48,16 @@ Eigen::Isometry3d T_body_right_of(const StereoRig& rig) {
 }  // namespace
 
 std::array<RecordedCamera, 2> recorded_cameras(const CalibratedRig& calibrated) {
-  const StereoRig& rig = calibrated.rig;
-  Eigen::Isometry3d T_body_right = T_body_right_of(rig);
-  if (!calibrated.calibration)
-    return {RecordedCamera{rectified_camera(rig, rig.center_left_x_px, 0), rig.T_body_camera},
-            RecordedCamera{rectified_camera(rig, rig.center_right_x_px, rig.baseline_m), T_body_right}};
-  const StereoCalibration& raw = *calibrated.calibration;
+  const StereoCalibration cameras = cameras_of(calibrated);
+  Eigen::Isometry3d T_body_right = T_body_right_of(calibrated.rig);
   Eigen::Matrix3d R_rectified_raw;
-  cv::cv2eigen(raw.right.rectification, R_rectified_raw);
+  cv::cv2eigen(cameras.right.rectification, R_rectified_raw);
   T_body_right.linear() = T_body_right.linear() * R_rectified_raw;
-  std::array<RecordedCamera, 2> cameras{RecordedCamera{raw.left, raw.T_body_left},
-                                        RecordedCamera{raw.right, T_body_right}};
-  for (RecordedCamera& camera : cameras)
-    if (camera.camera.distortion.empty()) camera.camera.distortion = {0, 0, 0, 0};
-  return cameras;
+  std::array<RecordedCamera, 2> recorded{RecordedCamera{cameras.left, cameras.T_body_left},
+                                         RecordedCamera{cameras.right, T_body_right}};
+  for (RecordedCamera& one : recorded)
+    if (one.camera.distortion.empty()) one.camera.distortion = {0, 0, 0, 0};
+  return recorded;
 }
 
 std::string camera_sensor_text(const RecordedCamera& recorded, const StereoRig& rig, int rate_hz) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "perception/io/calibration/write_calibration.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/report/pictures.hpp"
 
@@ -44,15 +45,12 @@ std::string pfm_bytes(const cv::Mat& values) {
 
 /// P0 and P1, rows of 3x4; of gray cameras.
 std::string kitti_calibration_text(const StereoRig& rig) {
-  std::string text;
-  for (const bool is_left : {true, false}) {
-    const CameraCalibration camera = rectified_camera(
-        rig, is_left ? rig.center_left_x_px : rig.center_right_x_px, is_left ? 0 : rig.baseline_m);
-    text += is_left ? "P0:" : "P1:";
-    for (const double value : camera.projection.val) text += fmt::format(" {:.12e}", value);
-    text += "\n";
-  }
-  return text;
+  const StereoCalibration cameras = cameras_of({rig, std::nullopt});
+  std::string text = "P0:";
+  for (const double value : cameras.left.projection.val) text += fmt::format(" {:.12e}", value);
+  text += "\nP1:";
+  for (const double value : cameras.right.projection.val) text += fmt::format(" {:.12e}", value);
+  return text + "\n";
 }
 
 std::string middlebury_calibration_text(const StereoRig& rig) {

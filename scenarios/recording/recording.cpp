@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "perception/io/pose_file.hpp"
 #include "scenarios/output/errors.hpp"
 #include "scenarios/recording/euroc_recording.hpp"
 #include "scenarios/recording/pair_recording.hpp"
@@ -22,13 +23,14 @@ void Recording::observe(const Truth& truth) {
 }
 
 void Recording::add(const StereoFrame& frame, const StereoCameras& cameras) {
-  if (seen_++ % every_ != 0) return;
+  if (frame.t_ns < 0 || seen_++ % every_ != 0)
+    return;  // the first image may be of a time before the first pose
   const Truth truth = truth_at(frame.t_ns);
   add_frame(frame, truth, cameras.true_view(truth.T_world_body));
   ++frames_;
 }
 
-/// An image's time may lie between two steps; that of the first image lies before all of them.
+/// An image's time may lie between two steps.
 Truth Recording::truth_at(std::int64_t t_ns) const {
   auto after = recent_.begin();
   while (after != recent_.end() && after->t_ns < t_ns) ++after;
@@ -41,15 +43,9 @@ Truth Recording::truth_at(std::int64_t t_ns) const {
   const Truth& before = *std::prev(after);
   const double share =
       static_cast<double>(t_ns - before.t_ns) / static_cast<double>(after->t_ns - before.t_ns);
-  const Eigen::Quaterniond from(before.T_world_body.linear()), to(after->T_world_body.linear());
-  const auto between = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) -> Eigen::Vector3d {
-    return (1 - share) * a + share * b;
-  };
   truth.t_ns = t_ns;
-  truth.T_world_body =
-      Eigen::Translation3d(between(before.T_world_body.translation(), after->T_world_body.translation())) *
-      from.slerp(share, to);
-  truth.velocity_world_mps = between(before.velocity_world_mps, after->velocity_world_mps);
+  truth.T_world_body = pose_between(before.T_world_body, after->T_world_body, share);
+  truth.velocity_world_mps = (1 - share) * before.velocity_world_mps + share * after->velocity_world_mps;
   return truth;
 }
 

@@ -144,9 +144,11 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
   check_parts(parts().planners, scenario.autopilot.planners, "autopilot.", scenario, expect);
   check_parts(parts().courses, scenario.courses, "", scenario, expect);
   // The estimator remembers its state for a second and accepts frames up to half a second old.
-  const double cost_s = perception.cost_s();
-  expect(scenario.cameras.latency_s + cost_s + std::min(cost_s, 1.0 / scenario.cameras.rate_hz) <= 0.5,
+  const double cost_s = perception.cost_s(), period_s = 1.0 / scenario.cameras.rate_hz;
+  expect(scenario.cameras.latency_s + cost_s + std::min(cost_s, period_s) <= 0.5,
          "perception.compute.factor: a frame must be processed within 0.5 s of its exposure");
+  expect(std::max(scenario.cameras.exposure_s, scenario.cameras.rolling_shutter_s) <= period_s,
+         "cameras.rolling_shutter_s: it and exposure_s must each be at most 1 / rate_hz");
   check_ideal(scenario.ideal, expect);
   for (std::size_t i = 0; i < scenario.faults.size(); ++i) {
     const FaultConfig& fault = scenario.faults[i];
@@ -248,10 +250,6 @@ Sources sources_of(ConfigNode file, const std::vector<std::string>& settings,
   return sources;
 }
 
-void read_all(const Sources& sources, Scenario& scenario) {
-  for (const ConfigNode& source : sources) read_config(source, scenario);
-}
-
 /// Loads the plug-ins that the sources name, whose parts and keys the sources may name, too, and those of
 /// --plugin. Gives all of them, with absolute paths and hashes.
 std::vector<FileConfig> load_plugins(const Sources& sources) {
@@ -274,7 +272,7 @@ std::vector<FileConfig> load_plugins(const Sources& sources) {
 Scenario compose(const Sources& sources, const std::string& name) {
   const std::vector<FileConfig> plugins = load_plugins(sources);
   Scenario first;
-  read_all(sources, first);
+  for (const ConfigNode& source : sources) read_config(source, first);
   Scenario scenario;
   static_cast<SensorsConfig&>(scenario.sensors) = sensors_of_grade(first.sensors.grade);
   scenario.perception.pushbroom() = pushbroom_of(first.perception.preset, first.rig);
@@ -302,7 +300,7 @@ Scenario compose(const Sources& sources, const std::string& name) {
   filter.start.pitch_rad =
       first.launch.climb_angle_rad + release_angle_of_attack_rad(first.airframe, first.launch.speed_mps);
   take_airframe(first.airframe, scenario);
-  read_all(sources, scenario);
+  for (const ConfigNode& source : sources) read_config(source, scenario);
   require_hashes("plugins", scenario.plugins, plugins, sources);
   scenario.plugins = plugins;
   if (is_rig_file(scenario.rig)) scenario.rig = found_file(scenario.rig, origin_of(sources, "rig"));

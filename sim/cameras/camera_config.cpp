@@ -19,7 +19,9 @@ void visit_fields(FieldVisitor& visit, CameraConfig& config) {
         "At 4 ms of exposure, more than four change nothing for the planner.");
   visit("rolling_shutter_s", config.rolling_shutter_s, 0.0, 0.05,
         "Time from the exposure of an image's first row to that of its last; the line time is this over the "
-        "rows. A frame's timestamp is that of its middle row. 0: a global shutter.");
+        "rows. A frame's timestamp, and the true pose and depth of recordings, are of its middle row. 0: a "
+        "global "
+        "shutter.");
   visit("rolling_shutter_views", config.rolling_shutter_views, 2, 64,
         "Number of images rendered at times spread over the readout. Each gives a band of rows, within which "
         "nothing moves.");

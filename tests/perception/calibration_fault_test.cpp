@@ -114,9 +114,9 @@ TEST_F(CalibrationFaults, OpenCvYaml) {
       {"data: [ 300., 0., 200., 0., 300.", "data: [ .Nan, 0., 200., 0., 300.", ":7: M1.data: ", "'.Nan'"},
       {"rows: 1\n   cols: 5", "rows: 5\n   cols: 3", ":22: D2.data: ", "15 numbers, found 5"},
       {"[ -0.2, 0., 0. ]", "[ -0.2, 0., 0. ", ":", "expected a ]"},
-      {"[ -0.2, 0., 0. ]", "[ 0.2, 0., 0. ]", ": P2: ", "to the right"},
-      {"[ -0.2, 0., 0. ]", "[ 0., -0.2, 0. ]", ": P2: ", "to the right"},
-      {"[ -0.2, 0., 0. ]", "[ 0., 0., 0. ]", ":23: R: ", "side by side"},
+      {"[ -0.2, 0., 0. ]", "[ 0.2, 0., 0. ]", ":28: T: ", "to the right"},
+      {"[ -0.2, 0., 0. ]", "[ 0., -0.2, 0. ]", ":28: T: ", "to the right"},
+      {"[ -0.2, 0., 0. ]", "[ 0., 0., 0. ]", ":28: T: ", "the right camera must lie to the right"},
       {"[ -0.2, 0., 0. ]", "[ -20., 0., 0. ]", ": baseline in m: ", "another unit"},
       {"T:", "t:", ": T: ", "missing"},
       {"M2:", "M1:", ":8: M1: ", "this key is given twice"},
@@ -166,11 +166,11 @@ TEST_F(CalibrationFaults, Euroc) {
       {"[400, 300]", "[400]", ":10: resolution: ", "2 numbers, found 1"},
       {"[400, 300]", "[400, 0]", ":10: resolution: ", "from 32 to 8192"},
       {"[400, 300]", "[400.5, 300]", ":10: resolution: ", "whole numbers"},
-      {"[400, 300]", "[400, 301]", "", "must be that of cam0"},
+      {"[400, 300]", "[400, 301]", "", "resolution: must be that of the left camera"},
       {"pinhole", "omni", ":11: camera_model: ", "expected pinhole, found 'omni'"},
-      {"[300,", "[0,", ":12: intrinsics: ", "too short"},
+      {"[300,", "[0,", ":12: intrinsics: ", "focal lengths must be from 10"},
       {"radial-tangential", "fov", ":13: distortion_model: ", "or equidistant, found 'fov'"},
-      {"radial-tangential", "equidistant", "", "must be that of cam0"},
+      {"radial-tangential", "equidistant", "", "distortion_model: must be that of the left camera"},
       {", -0.0001]", "]", ":14: distortion_coefficients: ", "4 numbers, found 3"},
       {"%YAML:1.0", "a: [", ":", "expected a ]"},
   };
@@ -190,7 +190,8 @@ TEST_F(CalibrationFaults, Euroc) {
 
 TEST_F(CalibrationFaults, FilesAndFolders) {
   expect_line(complaint("/proc/nowhere", {}), "/proc/nowhere: ", "cannot read this file");
-  expect_line(complaint(folder.path(), {}), folder.path().string() + ": M1: ", "M1.xml, M1.yml or M1.yaml");
+  expect_line(complaint(folder.path(), {}), folder.path().string() + ": holds no calibration",
+              "M1.xml, D1.xml");
   expect_line(complaint("/dev/zero", {}), "/dev/zero: ", "this is a device");
   expect_line(complaint(folder.write("empty.xml", ""), {}), folder.path().string(),
               "must be one YAML document");

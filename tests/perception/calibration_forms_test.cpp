@@ -201,11 +201,12 @@ TEST_F(CalibrationForms, OpenCvsFisheyeIsOneWhereItsFileSaysSo) {
   expect_rectified_by_formula(*found.calibration);
 }
 
+const std::string base64_text =
+    "%YAML:1.0\n---\nM1: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: !!binary |\n"
+    "      MWQgICAgICAgICAgICAgICAgICAgICAg\n";
+
 /// Each wrong file ends in one line that says what was expected where.
 TEST_F(CalibrationForms, WrongFilesEndInOneLine) {
-  const std::string base64_text =
-      "%YAML:1.0\n---\nM1: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: !!binary |\n"
-      "      MWQgICAgICAgICAgICAgICAgICAgICAg\n";
   struct Wrong {
     const char* name;
     std::string text, from, to, expected;
@@ -213,20 +214,24 @@ TEST_F(CalibrationForms, WrongFilesEndInOneLine) {
   const std::vector<Wrong> all{
       {"k.yaml", kalibr_text, "pinhole", "omni", ":2: cam0.camera_model: expected pinhole, found 'omni'"},
       {"k.yaml", kalibr_text, "radtan", "fov", ":4: cam0.distortion_model: expected radtan or equidistant"},
-      {"k.yaml", kalibr_text, "radtan", "equidistant", ":15: cam1.distortion_model: must be that of cam0"},
+      {"k.yaml", kalibr_text, "radtan", "equidistant",
+       ":15: cam1.distortion_model: must be that of the left camera"},
       {"k.yaml", kalibr_text, ", -0.0005]", "]", ":3: cam0.distortion_coeffs: must be a list of 4 numbers"},
-      {"k.yaml", kalibr_text, "[534.8,", "[4.8,", ":5: cam0.intrinsics: must be fu, fv, cu, cv"},
-      {"k.yaml", kalibr_text, "[640, 480]", "[640, 481]", ":17: cam1.resolution: must be that of cam0"},
-      {"k.yaml", kalibr_text, ", -0.12]", ", 0.12]", "cam1 must lie to the right of cam0"},
+      {"k.yaml", kalibr_text, "[534.8,", "[4.8,",
+       ":5: cam0.intrinsics: focal lengths must be from 10 to 20000 px"},
+      {"k.yaml", kalibr_text, "[640, 480]", "[640, 481]",
+       ":17: cam1.resolution: must be that of the left camera"},
+      {"k.yaml", kalibr_text, ", -0.12]", ", 0.12]",
+       "cam1.T_cn_cnm1: the right camera must lie to the right of the left one"},
       {"k.yaml", kalibr_text, ", -0.12]", "]", "cam1.T_cn_cnm1: must be a list of 16 numbers, found 15"},
-      {"k.yaml", kalibr_text, "[1.0, 0.0, 0.0, -", "[1.1, 0.0, 0.0, -",
-       "must be a rotation and a translation"},
+      {"k.yaml", kalibr_text, "[1.0, 0.0, 0.0, -", "[1.1, 0.0, 0.0, -", "cam1.T_cn_cnm1: must be a rotation"},
       {"k.yaml", kalibr_text, "cam1:", "cam2:", ": cam1: missing"},
       {"k.yaml", kalibr_text, "  rostopic", "  shutter", ":18: cam1.shutter: "},
       {"left.yaml", ros_text(0), "rows: 3", "rows: 2", ":5: camera_matrix.rows: "},
       {"left.yaml", ros_text(0), "plumb_bob", "thin_prism", "expected plumb_bob or rational_polynomial or"},
       {"left.yaml", ros_text(0), "cols: 5", "cols: 4", "distortion_coefficients.cols: "},
       {"left.yaml", ros_text(0), "[534.8, 0.", "[534.8, 1.", ": camera_matrix: must have the form"},
+      {"left.yaml", ros_text(0), "[534.8, 0., 3", "[534.8, 0., 93", "principal point: of the raw image"},
       {"left.yaml", ros_text(0), "[1., 0., 0., 0.", "[2., 0., 0., 0.",
        ": rectification_matrix: must be a rotation"},
       {"left.yaml", ros_text(0), "[525., 0.", "[525., 7.", ": projection_matrix: must have the form"},

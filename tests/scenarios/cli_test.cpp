@@ -181,14 +181,14 @@ TEST_F(Cli, BadRigsAreNamedInOneLine) {
   expect_refusal("rig " + raw_rigs + "long.xml --depth nan",
                  "--depth nan: must be a number from 0.1 to 1000");
   expect_refusal("rig " + raw_rigs + "long.xml --depth 800", "nearer than infinity");
-  expect_refusal("rig " + folder.path().string(), "M1: missing: it stands in M1.xml");
+  expect_refusal("rig " + folder.path().string(), "holds no calibration: expected cam0 and cam1");
   expect_refusal("rig " + file("rig.yaml", "name: [\n"), "rig.yaml:");
   expect_refusal("rig " + file("rig.xml", "<opencv_storage><M1>"), "rig.xml:1: not valid XML of OpenCV");
 }
 
 TEST_F(Cli, APictureThatCannotBeWrittenIsBadInput) {
   expect_refusal("rig long --out " + (folder.path() / "none" / "rig.svg").string(), "cannot write here");
-  expect_refusal("rig long --out " + path("rig.xyz"), "the name must end in .svg (a drawing) or .yaml");
+  expect_refusal("rig long --out " + path("rig.xyz"), "the name must end in .yaml, or in .svg for a drawing");
 }
 
 #ifdef UNDERSTORY_HAS_SIM

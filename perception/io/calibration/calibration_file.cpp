@@ -100,6 +100,14 @@ CalibratedRig from_cameras(StereoCalibration calibration, const fs::path& path,
                            std::optional<double> depth_said_m = std::nullopt) {
   const double default_depth_m = depth_said_m.value_or(10);
   calibration.name = path.string();  // rectified_rig begins its complaints with it
+  for (const CameraCalibration* camera : {&calibration.left, &calibration.right}) {
+    const cv::Matx33d& K = camera->camera_matrix;
+    if (std::abs(K(0, 2) / calibration.width_px - 0.5) > 1 ||
+        std::abs(K(1, 2) / calibration.height_px - 0.5) > 1)
+      refuse_input(path.string(), "principal point",
+                   fmt::format("of the raw image must be in or near it, is ({:.6g}, {:.6g}) of {}x{} px",
+                               K(0, 2), K(1, 2), calibration.width_px, calibration.height_px));
+  }
   CalibratedRig read;
   read.rig = rectified_rig(calibration, default_depth_m);
   read.rig.name = calibration.name = name_of(path);
@@ -204,8 +212,8 @@ CalibratedRig read_folder(const fs::path& path, const CalibrationOptions& option
   for (const fs::path& file : files)
     if (const Form form = form_of(calibration_text(file)); form != Form::rig_file)
       told.emplace_back(form, file);
-  const auto is = [&](Form form) { return [form](const auto& one) { return one.first == form; }; };
-  if (told.size() == 2 && std::ranges::all_of(told, is(Form::ros)))
+  const auto is_of_ros = [](const auto& one) { return one.first == Form::ros; };
+  if (told.size() == 2 && std::ranges::all_of(told, is_of_ros))
     return from_unstated_unit(read_ros_calibration({told[0].second, told[1].second}, options), path, options);
   if (told.size() == 1 && told[0].first != Form::opencv)
     return read_form(told[0].first, told[0].second, path, options);
@@ -246,7 +254,13 @@ fs::path raw_file_of(const fs::path& rig_file) {
 }
 
 StereoRig read_rig(const std::filesystem::path& file) {
-  const TextNode map = parse_yaml(read_file(file), file.string());
+  const std::string content = read_file(file);
+  if (form_of(content) != Form::rig_file)
+    refuse_input(
+        file.string(), "",
+        fmt::format("must be a rig file: understory rig {} --out rig.yaml makes one of this calibration",
+                    file.string()));
+  const TextNode map = parse_yaml(content, file.string());
   RigText text;
   read_fields(map, fields_of(text), "", Keys::all_required);
   StereoRig& rig = text.rig;

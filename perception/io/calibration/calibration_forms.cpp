@@ -34,19 +34,42 @@ ImageSize agreed_image_size(const std::string& file, std::optional<ImageSize> of
   return given;
 }
 
-bool has_camera_form(const cv::Matx33d& matrix) {
-  return matrix(0, 1) == 0 && matrix(1, 0) == 0 && matrix.row(2) == cv::Matx13d(0, 0, 1);
+StereoCalibration raw_pair(const RawCamera& left, const RawCamera& right, const std::string& file,
+                           const std::string& size_key, const CalibrationOptions& options) {
+  if (left.size != right.size) right.map.fail(size_key, "must be that of the left camera");
+  if (left.calibration.lens != right.calibration.lens)
+    right.map.fail("distortion_model", "must be that of the left camera");
+  const ImageSize size = agreed_image_size(file, left.size, options);
+  return {"",
+          size.width_px,
+          size.height_px,
+          left.calibration,
+          right.calibration,
+          T_body_camera_of(Eigen::Vector3d::Zero(), 0)};
 }
 
-bool has_projection_form(const cv::Matx34d& matrix) {
-  return matrix(0, 1) == 0 && matrix(1, 0) == 0 && matrix(1, 3) == 0 &&
-         matrix.row(2) == cv::Matx14d(0, 0, 1, 0);
+void require_camera_matrix(StrictMap& map, const std::string& key, const cv::Matx33d& K) {
+  if (K(0, 1) != 0 || K(1, 0) != 0 || K.row(2) != cv::Matx13d(0, 0, 1))
+    map.fail(key, "must have the form fx 0 cx, 0 fy cy, 0 0 1");
+  for (const double focal_px : {K(0, 0), K(1, 1)})
+    if (!(focal_px >= minimum_focal_px && focal_px <= maximum_focal_px))
+      map.fail(key, fmt::format("focal lengths must be from {} to {} px, one is {}", minimum_focal_px,
+                                maximum_focal_px, focal_px));
+  for (const double center_px : {K(0, 2), K(1, 2)})
+    if (!(center_px >= minimum_center_px && center_px <= maximum_center_px))
+      map.fail(key, fmt::format("the principal point must be from {} to {} px, is {}", minimum_center_px,
+                                maximum_center_px, center_px));
 }
 
-bool is_rotation(const cv::Matx33d& matrix) {
+void require_projection(StrictMap& map, const std::string& key, const cv::Matx34d& P) {
+  if (P(0, 1) != 0 || P(1, 0) != 0 || P(1, 3) != 0 || P.row(2) != cv::Matx14d(0, 0, 1, 0))
+    map.fail(key, "must have the form f 0 cx t, 0 f cy 0, 0 0 1 0, of rectified cameras side by side");
+}
+
+void require_rotation(StrictMap& map, const std::string& key, const cv::Matx33d& R) {
   constexpr double tolerance = 1e-3;
-  return cv::norm(matrix * matrix.t() - cv::Matx33d::eye(), cv::NORM_INF) < tolerance &&
-         cv::determinant(matrix) > 0;
+  if (!(cv::norm(R * R.t() - cv::Matx33d::eye(), cv::NORM_INF) < tolerance && cv::determinant(R) > 0))
+    map.fail(key, "must be a rotation, row by row: orthonormal, determinant 1");
 }
 
 namespace {
@@ -63,8 +86,10 @@ bool are_aligned(const CameraCalibration& left, const CameraCalibration& right,
 
 }  // namespace
 
-bool rectify_pair(StereoCalibration& calibration, const cv::Matx33d& R_right_left,
-                  const cv::Vec3d& t_right_m) {
+void rectify_pair(StereoCalibration& calibration, const cv::Matx33d& R_right_left, const cv::Vec3d& t_right_m,
+                  const StrictMap& map, const std::string& key) {
+  if (!(t_right_m[0] < 0))
+    map.fail(key, "the right camera must lie to the right of the left one, here it does not");
   CameraCalibration& left = calibration.left;
   CameraCalibration& right = calibration.right;
   if (are_aligned(left, right, R_right_left, t_right_m)) {
@@ -75,10 +100,11 @@ bool rectify_pair(StereoCalibration& calibration, const cv::Matx33d& R_right_lef
         right.projection(row, col) = right.camera_matrix(row, col);
       }
     right.projection(0, 3) = right.camera_matrix(0, 0) * t_right_m[0];
-    return true;
+    return;
   }
   const cv::Size size(calibration.width_px, calibration.height_px);
   cv::Mat disparity_to_depth;
+  double sum = 0;  // finite only if every term is
   try {
     if (left.lens == LensModel::equidistant)
       cv::fisheye::stereoRectify(left.camera_matrix, left.distortion, right.camera_matrix, right.distortion,
@@ -90,24 +116,20 @@ bool rectify_pair(StereoCalibration& calibration, const cv::Matx33d& R_right_lef
                         R_right_left, t_right_m, left.rectification, right.rectification, left.projection,
                         right.projection, disparity_to_depth, cv::CALIB_ZERO_DISPARITY, 0, size);
   } catch (const cv::Exception&) {
-    return false;  // the caller knows the file's name
+    sum = NAN;
   }
-  double sum = 0;  // finite only if every term is
   for (const CameraCalibration* camera : {&left, &right}) {
     for (const double value : camera->rectification.val) sum += value;
     for (const double value : camera->projection.val) sum += value;
   }
-  return std::isfinite(sum);
+  if (!std::isfinite(sum)) map.fail(key, "OpenCV cannot bring the two cameras side by side");
 }
 
 cv::Matx33d pinhole_matrix(StrictMap& map, const std::string& key) {
-  const std::vector<double> pinhole = map.numbers(key, 4, minimum_center_px, maximum_focal_px);
-  if (std::min(pinhole[0], pinhole[1]) < minimum_focal_px ||
-      std::max(pinhole[2], pinhole[3]) > maximum_center_px)
-    map.fail(
-        key,
-        "must be fu, fv, cu, cv in px: here a focal length is too short or a center too far from the image");
-  return {pinhole[0], 0, pinhole[2], 0, pinhole[1], pinhole[3], 0, 0, 1};
+  const std::vector<double> pinhole = map.numbers(key, 4, -1e9, 1e9);
+  const cv::Matx33d K(pinhole[0], 0, pinhole[2], 0, pinhole[1], pinhole[3], 0, 0, 1);
+  require_camera_matrix(map, key, K);
+  return K;
 }
 
 ImageSize resolution(StrictMap& map, const std::string& key) {

@@ -38,6 +38,25 @@ struct ImageSize {
 ImageSize agreed_image_size(const std::string& file, std::optional<ImageSize> of_file,
                             const CalibrationOptions& options);
 
+/// A raw camera as a file states it.
+struct RawCamera {
+  StrictMap map;  ///< the file, or the camera's part of it
+  CameraCalibration calibration;
+  ImageSize size;
+};
+
+/// The left camera is at the body's origin and looks along its x axis, as of forms that define no body.
+/// `size_key`: of the size, which must be the same, as the lens must. Throws InputError.
+StereoCalibration raw_pair(const RawCamera& left, const RawCamera& right, const std::string& file,
+                           const std::string& size_key, const CalibrationOptions& options);
+
+/// Throws InputError where K is not fx 0 cx, 0 fy cy, 0 0 1 within the limits.
+void require_camera_matrix(StrictMap& map, const std::string& key, const cv::Matx33d& K);
+/// Throws InputError where P is not f 0 cx t, 0 f cy 0, 0 0 1 0: of rectified cameras side by side.
+void require_projection(StrictMap& map, const std::string& key, const cv::Matx34d& P);
+/// Throws InputError where R is not right-handed and orthonormal to 0.001, since files are rounded by hand.
+void require_rotation(StrictMap& map, const std::string& key, const cv::Matx33d& R);
+
 /// fu, fv, cu, cv in px.
 cv::Matx33d pinhole_matrix(StrictMap& map, const std::string& key);
 
@@ -63,20 +82,13 @@ void require_metres(const std::string& file, const std::string& form, const Cali
 /// read_file does.
 std::string calibration_text(const std::filesystem::path& file);
 
-/// fx 0 cx, 0 fy cy, 0 0 1.
-bool has_camera_form(const cv::Matx33d& matrix);
-/// f 0 cx t, 0 f cy 0, 0 0 1 0: of rectified cameras side by side.
-bool has_projection_form(const cv::Matx34d& matrix);
-
-/// Orthonormal to 0.001, since files are rounded by hand, and right-handed.
-bool is_rotation(const cv::Matx33d& matrix);
-
 /// Fills both cameras' `rectification` and `projection` with cv::stereoRectify's (CALIB_ZERO_DISPARITY, alpha
 /// 0: principal points alike, every rectified pixel seen by the raw image). Camera matrices, distortion and
-/// size must be set. A point x in left camera coordinates is R_right_left * x + t_right in right ones. False
-/// if no rectified pair results. A pair without distortion that is aligned already stays as it is.
-bool rectify_pair(StereoCalibration& calibration, const cv::Matx33d& R_right_left,
-                  const cv::Vec3d& t_right_m);
+/// size must be set. A point x in left camera coordinates is R_right_left * x + t_right in right ones, as
+/// `map` says under `key`. Throws InputError where no rectified pair results. A pair without distortion that
+/// is aligned already stays as it is.
+void rectify_pair(StereoCalibration& calibration, const cv::Matx33d& R_right_left, const cv::Vec3d& t_right_m,
+                  const StrictMap& map, const std::string& key);
 
 /// A EuRoC/ASL folder's pair of cameras.
 struct EurocCalibration {

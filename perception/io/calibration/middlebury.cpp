@@ -13,8 +13,8 @@ constexpr double metres_per_millimetre = 1e-3;
 /// "[f 0 cx; 0 f cy; 0 0 1]".
 cv::Matx33d camera(StrictMap& lines, const std::string& key) {
   const cv::Matx33d K(lines.numbers(key, 9, minimum_center_px, maximum_focal_px).data());
-  if (!has_camera_form(K) || K(0, 0) != K(1, 1) || K(0, 0) < minimum_focal_px)
-    lines.fail(key, "must have the form [f 0 cx; 0 f cy; 0 0 1], with a focal length of 10 px or more");
+  require_camera_matrix(lines, key, K);
+  if (K(0, 0) != K(1, 1)) lines.fail(key, "must have the same focal length twice");
   return K;
 }
 
@@ -29,8 +29,10 @@ StereoRig read_middlebury_calibration(const std::filesystem::path& path, const C
     lines.fail("cam1", "must have the focal length and the row of cam0: the pair is rectified");
   if (std::abs(right(0, 2) - left(0, 2) - lines.number("doffs", -1e4, 1e4)) > 0.01)
     lines.fail("doffs", "must be the column of cam1's principal point less cam0's");
-  const ImageSize said{lines.whole("width", minimum_size_px, maximum_size_px),
-                       lines.whole("height", minimum_size_px, maximum_size_px)};
+  std::optional<ImageSize> said;
+  if (lines.has("width") || lines.has("height") || !options.width_px)
+    said = {lines.whole("width", minimum_size_px, maximum_size_px),
+            lines.whole("height", minimum_size_px, maximum_size_px)};
   StereoRig rig;
   rig.baseline_m = metres_per_millimetre * lines.number("baseline", 1, 1e5);
   lines.refuse_others(" ndisp isint vmin vmax dyavg dymax ");

@@ -91,35 +91,24 @@ cv::Matx<double, rows, cols> matrix_of_shape(StrictMap& map, const std::string& 
   return cv::Matx<double, rows, cols>(found.values.data());
 }
 
-bool in_range(double value, double minimum, double maximum) { return value >= minimum && value <= maximum; }
-
 /// 3x3.
 cv::Matx33d opencv_rotation(StrictMap& map, const std::string& key) {
   const auto rotation = matrix_of_shape<3, 3>(map, key);
-  if (!is_rotation(rotation)) map.fail(key, "must be a rotation: orthonormal, determinant 1");
+  require_rotation(map, key, rotation);
   return rotation;
 }
 
 /// 3x3: fx 0 cx, 0 fy cy, 0 0 1.
 cv::Matx33d opencv_camera_matrix(StrictMap& map, const std::string& key) {
   const auto camera = matrix_of_shape<3, 3>(map, key);
-  if (!has_camera_form(camera)) map.fail(key, "must have the form fx 0 cx, 0 fy cy, 0 0 1");
-  for (const double focal_px : {camera(0, 0), camera(1, 1)})
-    if (!in_range(focal_px, minimum_focal_px, maximum_focal_px))
-      map.fail(key, fmt::format("focal lengths must be from {} to {} px, one is {}", minimum_focal_px,
-                                maximum_focal_px, focal_px));
-  for (const double center_px : {camera(0, 2), camera(1, 2)})
-    if (!in_range(center_px, minimum_center_px, maximum_center_px))
-      map.fail(key, fmt::format("the principal point must be from {} to {} px, is {}", minimum_center_px,
-                                maximum_center_px, center_px));
+  require_camera_matrix(map, key, camera);
   return camera;
 }
 
 /// 3x4: f 0 cx t, 0 f cy 0, 0 0 1 0; t in focal lengths times the file's unit.
 cv::Matx34d opencv_projection(StrictMap& map, const std::string& key) {
   const auto projection = matrix_of_shape<3, 4>(map, key);
-  if (!has_projection_form(projection))
-    map.fail(key, "must have the form f 0 cx t, 0 f cy 0, 0 0 1 0, of rectified cameras side by side");
+  require_projection(map, key, projection);
   return projection;
 }
 
@@ -177,6 +166,10 @@ StrictMap read_keys(const fs::path& path) {
     for (const char* extension : {".xml", ".yml", ".yaml", ".json", ".xml.gz", ".yml.gz"})
       if (const fs::path file = path / (name + extension); fs::exists(file, ignored))
         for (TextNode& child : read_tree(file).children) all.children.push_back(std::move(child));
+  if (all.children.empty())
+    refuse_input(path.string(), "",
+                 "holds no calibration: expected cam0 and cam1 of EuRoC, M1.xml, D1.xml and so on of OpenCV, "
+                 "left.yaml and right.yaml of ROS, or one file of another form");
   refuse_double_keys(all);
   const StrictMap keys(all);
   for (const char* key : {"M1", "D1", "M2", "D2"})
@@ -217,8 +210,7 @@ void read_rectification(StrictMap& keys, StereoCalibration& calibration, double 
 void rectify(StrictMap& keys, StereoCalibration& calibration, double meters_per_unit) {
   const cv::Matx33d R_right_left = opencv_rotation(keys, "R");
   const cv::Vec3d t_right_m = opencv_translation(keys, "T") * meters_per_unit;
-  if (!rectify_pair(calibration, R_right_left, t_right_m))
-    keys.fail("R", "cv::stereoRectify cannot bring the two cameras side by side");
+  rectify_pair(calibration, R_right_left, t_right_m, keys, "T");
 }
 
 /// Which lens D1 and D2 are of: a fisheye's numbers look like another's, so files of cv::fisheye say it.

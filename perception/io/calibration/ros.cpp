@@ -13,12 +13,6 @@ using namespace rig_limits;
 
 constexpr double maximum_value = 1e9;  // focal lengths times millimetres stay far below
 
-struct Camera {
-  StrictMap map;
-  CameraCalibration calibration;
-  ImageSize size;
-};
-
 template <int rows, int cols>
 cv::Matx<double, rows, cols> matrix(StrictMap& map, const std::string& key) {
   StrictMap fields = map.map(key);
@@ -47,27 +41,23 @@ void require_whole_image(StrictMap& map) {
     if (roi.has(key)) roi.whole(key, 0, 0);
 }
 
-Camera read_camera(const std::filesystem::path& file) {
+RawCamera read_camera(const std::filesystem::path& file) {
   constexpr std::array<LensWord, 3> words{{{"plumb_bob", LensModel::radial_tangential},
                                            {"rational_polynomial", LensModel::radial_tangential},
                                            {"equidistant", LensModel::equidistant}}};
-  Camera camera{StrictMap(parse_yaml(calibration_text(file), file.string())), {}, {}};
+  RawCamera camera{StrictMap(parse_yaml(calibration_text(file), file.string())), {}, {}};
   StrictMap& map = camera.map;
   CameraCalibration& its = camera.calibration;
   camera.size = {map.whole("image_width", minimum_size_px, maximum_size_px),
                  map.whole("image_height", minimum_size_px, maximum_size_px)};
   its.camera_matrix = matrix<3, 3>(map, "camera_matrix");
-  const cv::Matx33d& K = its.camera_matrix;
-  if (!has_camera_form(K) || K(0, 0) < minimum_focal_px || K(1, 1) < minimum_focal_px)
-    map.fail("camera_matrix",
-             "must have the form fx 0 cx, 0 fy cy, 0 0 1, with focal lengths of 10 px or more");
+  require_camera_matrix(map, "camera_matrix", its.camera_matrix);
   its.lens = lens_model(map, "distortion_model", words);
   its.distortion = coefficients(map, "distortion_coefficients", map.text("distortion_model"));
   its.rectification = matrix<3, 3>(map, "rectification_matrix");
-  if (!is_rotation(its.rectification)) map.fail("rectification_matrix", "must be a rotation, row by row");
+  require_rotation(map, "rectification_matrix", its.rectification);
   its.projection = matrix<3, 4>(map, "projection_matrix");
-  if (!has_projection_form(its.projection))
-    map.fail("projection_matrix", "must have the form f 0 cx t, 0 f cy 0, 0 0 1 0, of cameras side by side");
+  require_projection(map, "projection_matrix", its.projection);
   require_whole_image(map);
   map.refuse_others(" camera_name header D K R P height width ");
   return camera;
@@ -77,19 +67,12 @@ Camera read_camera(const std::filesystem::path& file) {
 
 StereoCalibration read_ros_calibration(const std::array<std::filesystem::path, 2>& files,
                                        const CalibrationOptions& options) {
-  Camera left = read_camera(files[0]), right = read_camera(files[1]);
+  RawCamera left = read_camera(files[0]), right = read_camera(files[1]);
   if (left.calibration.projection(0, 3) != 0) std::swap(left, right);
   if (left.calibration.projection(0, 3) != 0)
     left.map.fail("projection_matrix", "its (0, 3) must be 0 for the left camera: here it is for neither");
-  if (left.size != right.size) right.map.fail("image_width", "must be that of the other camera");
-  const ImageSize size = agreed_image_size(files[0].string(), left.size, options);
   right.calibration.projection(0, 3) *= options.meters_per_unit.value_or(1);
-  return {"",
-          size.width_px,
-          size.height_px,
-          left.calibration,
-          right.calibration,
-          T_body_camera_of(Eigen::Vector3d::Zero(), 0)};
+  return raw_pair(left, right, files[0].string(), "image_width", options);
 }
 
 }  // namespace understory

@@ -19,18 +19,6 @@ namespace fs = std::filesystem;
 
 bool is_equidistant(const StereoCalibration& cameras) { return cameras.left.lens == LensModel::equidistant; }
 
-/// The raw cameras; of a rectified pair cameras without distortion that are aligned already.
-StereoCalibration cameras_of(const CalibratedRig& calibrated) {
-  if (calibrated.calibration) return *calibrated.calibration;
-  const StereoRig& rig = calibrated.rig;
-  return {rig.name,
-          rig.width_px,
-          rig.height_px,
-          rectified_camera(rig, rig.center_left_x_px, 0),
-          rectified_camera(rig, rig.center_right_x_px, rig.baseline_m),
-          rig.T_body_camera};
-}
-
 /// A point x in raw left coordinates is R x + t in raw right ones: through the rectified pair, which is
 /// turned alike.
 std::pair<cv::Matx33d, cv::Vec3d> right_of_left(const StereoCalibration& cameras) {
@@ -157,6 +145,17 @@ void require_extension(const fs::path& out, std::span<const std::string_view> ex
 }
 
 }  // namespace
+
+StereoCalibration cameras_of(const CalibratedRig& calibrated) {
+  if (calibrated.calibration) return *calibrated.calibration;
+  const StereoRig& rig = calibrated.rig;
+  return {rig.name,
+          rig.width_px,
+          rig.height_px,
+          rectified_camera(rig, rig.center_left_x_px, 0),
+          rectified_camera(rig, rig.center_right_x_px, rig.baseline_m),
+          rig.T_body_camera};
+}
 
 std::string list_text(std::span<const double> values) {
   std::string text;  // with fmt::join every file would compile fmt's writing of numbers anew

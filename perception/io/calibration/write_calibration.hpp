@@ -11,6 +11,9 @@ namespace understory {
 
 enum class CalibrationForm { rig_file, opencv, kalibr, ros };
 
+/// The raw cameras; of a pair whose images come rectified, cameras such that rectifying changes nothing.
+StereoCalibration cameras_of(const CalibratedRig& calibrated);
+
 struct CalibrationText {
   std::filesystem::path file;
   std::string text;
@@ -23,8 +26,8 @@ struct CalibrationText {
 /// - kalibr (`out`.yaml): a camchain; no mounting. It says nothing of the rectified pair: who reads it
 ///   rectifies anew;
 /// - ros (a folder `out`): left.yaml and right.yaml; no mounting.
-/// Of a rectified pair, the cameras are such that rectifying changes nothing. Throws InputError where `out`
-/// ends in something else, and where Kalibr's four coefficients cannot say the lens.
+/// Throws InputError where `out` ends in something else, and where Kalibr's four coefficients cannot say the
+/// lens.
 std::vector<CalibrationText> calibration_texts(const CalibratedRig& calibrated, CalibrationForm form,
                                                const std::filesystem::path& out);
 
