@@ -68,8 +68,10 @@ fs::path library_file(const std::string& argument, const char* folder, const cha
   if (is_folder) throw ScenarioError(fmt::format("{}: must be a {} file, is a folder", argument, noun));
   if (!is_name) throw ScenarioError(fmt::format("{}: cannot read this {} file", argument, noun));
   const std::vector<std::string> names = yaml_names(library);
-  throw ScenarioError(fmt::format("{}: no such {} file, and none in the library, which has: {}{}", argument,
-                                  noun, fmt::join(names, ", "), did_you_mean(argument, names)));
+  const bool is_scenario = fs::exists(data_root() / "scenarios/library" / (argument + ".yaml"), ignored);
+  throw ScenarioError(fmt::format("{}: {} {} file, and none in the library, which has: {}{}", argument,
+                                  is_scenario ? "is a scenario, no" : "no such", noun, fmt::join(names, ", "),
+                                  did_you_mean(argument, names)));
 }
 
 std::vector<std::string> scenario_names() { return yaml_names(data_root() / "scenarios/library"); }
