@@ -54,8 +54,8 @@ void sort_by_cells(std::vector<CellPoint>& points, IsBefore&& is_before) {
     });
     return;
   }
-  const auto cell = [&](const CellPoint& point) {
-    return static_cast<std::size_t>((point.column - left.column) * rows + point.row - low.row);
+  const auto cell = [rows, left = left.column, low = low.row](const CellPoint& point) {
+    return static_cast<std::size_t>((point.column - left) * rows + point.row - low);
   };
   std::vector<std::uint32_t> ends(static_cast<std::size_t>((right.column - left.column + 1) * rows));
   for (const CellPoint& point : points) ++ends[cell(point)];

@@ -133,13 +133,6 @@ CalibratedRig from_unstated_unit(StereoCalibration calibration, const fs::path& 
   return read;
 }
 
-CalibratedRig from_rectified(StereoRig rig, const fs::path& path, const CalibrationOptions& options) {
-  rig.name = name_of(path);
-  require_in_range(rig, path);
-  look_at(rig, options.detection_depth_m.value_or(10), path);
-  return {rig, std::nullopt};
-}
-
 enum class Form { rig_file, opencv, kalibr, ros, kitti, middlebury, euroc_camera };
 
 /// What a calibration's text gives away.
@@ -187,9 +180,9 @@ CalibratedRig read_form(Form form, const fs::path& file, const fs::path& path,
     case Form::ros:
       return from_unstated_unit(read_ros_calibration({file, partner_of(file)}, options), path, options);
     case Form::kitti:
-      return from_rectified(read_kitti_calibration(file, options), path, options);
+      return from_cameras(read_kitti_calibration(file, options), path, options);
     case Form::middlebury:
-      return from_rectified(read_middlebury_calibration(file, options), path, options);
+      return from_cameras(read_middlebury_calibration(file, options), path, options);
     case Form::euroc_camera:
       refuse_input(file.string(), "",
                    "this is one camera of a EuRoC folder: name the folder that holds cam0 and cam1");

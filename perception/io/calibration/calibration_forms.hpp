@@ -131,10 +131,12 @@ StereoCalibration read_ros_calibration(const std::array<std::filesystem::path, 2
 
 /// Reads the rectified gray pair, or the colour pair where there is no gray one, from KITTI's calib.txt (P0:
 /// P1:) or calib_cam_to_cam.txt (P_rect_00: P_rect_01:, S_rect_00: its size). In metres. The same body.
-StereoRig read_kitti_calibration(const std::filesystem::path& file, const CalibrationOptions& options);
+StereoCalibration read_kitti_calibration(const std::filesystem::path& file,
+                                         const CalibrationOptions& options);
 
 /// Reads the rectified pair from Middlebury's calib.txt (cam0=[...], cam1=[...], doffs, baseline in mm,
 /// width, height), which ETH3D has, too. The same body.
-StereoRig read_middlebury_calibration(const std::filesystem::path& file, const CalibrationOptions& options);
+StereoCalibration read_middlebury_calibration(const std::filesystem::path& file,
+                                              const CalibrationOptions& options);
 
 }  // namespace understory

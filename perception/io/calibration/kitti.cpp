@@ -27,7 +27,8 @@ cv::Matx34d projection(StrictMap& lines, const std::string& key) {
 
 }  // namespace
 
-StereoRig read_kitti_calibration(const std::filesystem::path& path, const CalibrationOptions& options) {
+StereoCalibration read_kitti_calibration(const std::filesystem::path& path,
+                                         const CalibrationOptions& options) {
   const std::string file = path.string();
   require_metres(file, "KITTI's calibration", options);
   StrictMap lines(parse_keyed_lines(calibration_text(path), file, ':'));
@@ -48,11 +49,12 @@ StereoRig read_kitti_calibration(const std::filesystem::path& path, const Calibr
     size = resolution(lines, key);
   lines.refuse_others(other_keys());
   const ImageSize agreed = agreed_image_size(file, size, options);
-  calibration.name = file;
+  for (CameraCalibration* camera : {&calibration.left, &calibration.right})
+    camera->camera_matrix = camera->projection.get_minor<3, 3>(0, 0);
   calibration.width_px = agreed.width_px;
   calibration.height_px = agreed.height_px;
   calibration.T_body_left = T_body_camera_of(Eigen::Vector3d::Zero(), 0);
-  return rectified_rig(calibration, 10);
+  return calibration;
 }
 
 }  // namespace understory

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "perception/io/calibration/calibration_forms.hpp"
+#include "perception/io/calibration/write_calibration.hpp"
 #include "perception/io/strict_map.hpp"
 
 namespace understory {
@@ -20,7 +21,8 @@ cv::Matx33d camera(StrictMap& lines, const std::string& key) {
 
 }  // namespace
 
-StereoRig read_middlebury_calibration(const std::filesystem::path& path, const CalibrationOptions& options) {
+StereoCalibration read_middlebury_calibration(const std::filesystem::path& path,
+                                              const CalibrationOptions& options) {
   const std::string file = path.string();
   require_metres(file, "Middlebury's calibration, whose baseline is in mm,", options);
   StrictMap lines(parse_keyed_lines(calibration_text(path), file, '='));
@@ -44,7 +46,7 @@ StereoRig read_middlebury_calibration(const std::filesystem::path& path, const C
   rig.center_right_x_px = right(0, 2);
   rig.center_y_px = left(1, 2);
   rig.T_body_camera = T_body_camera_of(Eigen::Vector3d::Zero(), 0);
-  return rig;
+  return cameras_of({rig, std::nullopt});
 }
 
 }  // namespace understory
