@@ -74,7 +74,7 @@ std::string to_report(const CalibratedRig& calibrated, const RigFigures& figures
   const Eigen::Matrix3d& R_body_camera = rig.T_body_camera.linear();
   if (const double roll_deg = degrees(std::atan2(-R_body_camera(2, 0), -R_body_camera(2, 1)));
       std::abs(roll_deg) >= 0.005)
-    line("", fmt::format("rolled {:.2f} deg to the right", roll_deg));
+    line("", fmt::format("rolled {:.2f} deg to the {}", std::abs(roll_deg), roll_deg > 0 ? "right" : "left"));
   line("infinity", fmt::format("{:.2f} px of disparity", rig.infinity_disparity_px()));
   line("asked to look at",
        fmt::format("{:.4g} m: {:.2f} px", rig.detection_depth_m, rig.disparity_px(rig.detection_depth_m)));
