@@ -1,14 +1,13 @@
 #include "scenarios/evaluation/evaluation.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
 #include <mutex>
 #include <opencv2/core/utility.hpp>
 #include <set>
-#include <thread>
 
 #include "perception/io/calibration/calibration_file.hpp"
 #include "perception/io/image_sequence.hpp"
@@ -107,24 +106,8 @@ std::vector<std::size_t> followed(const EvaluationSum& sum) {
 }
 
 void in_parallel(std::size_t count, int threads, const std::function<void(std::size_t)>& work) {
-  std::atomic<std::size_t> next = 0;
-  std::exception_ptr failure;
-  std::mutex mutex;  // of the failure
-  const auto take_turns = [&] {
-    for (std::size_t i = next++; i < count; i = next++) try {
-        work(i);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        if (!failure) failure = std::current_exception();
-        next = count;
-      }
-  };
-  std::vector<std::jthread> others;
-  for (std::size_t i = 1; i < std::min(count, static_cast<std::size_t>(threads)); ++i)
-    others.emplace_back(take_turns);
-  take_turns();
-  others.clear();  // joins
-  if (failure) std::rethrow_exception(failure);
+  tbb::task_arena arena(threads);
+  arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, work, tbb::simple_partitioner()); });
 }
 
 Evaluation evaluate(const EvaluationOptions& options) {

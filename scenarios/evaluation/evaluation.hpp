@@ -153,8 +153,8 @@ struct Evaluation {
   bool has_depth = false, has_objects = false, has_poses = false;  ///< any of the recordings
 };
 
-/// Calls work(0) .. work(count - 1), up to `threads` (>= 1) at once. Throws what the first failure threw;
-/// nothing begins after it.
+/// Calls work(0) .. work(count - 1), up to `threads` (>= 1) at once, in any order. Throws what the first
+/// failure threw; nothing begins after it.
 void in_parallel(std::size_t count, int threads, const std::function<void(std::size_t)>& work);
 
 /// Throws ScenarioError, one line, where a folder cannot be read, is given twice, or recordings are of
