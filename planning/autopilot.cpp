@@ -97,14 +97,23 @@ void Autopilot::replan(std::int64_t t_ns) {
   start.position_world += shift_world;
   std::vector<ObstaclePoint> points = map_.trusted_points();
   for (ObstaclePoint& point : points) point.position_world += shift_world;
-  const double map_points = static_cast<double>(points.size());
+  const auto map_points = static_cast<std::int64_t>(points.size());
   const std::int64_t steps_before = planner_->counts().model_steps;
   next_plan_ = planner_->plan({start, effective_ns, std::move(points), state.distance_flown_m, outdated});
   const PlanCost& cost = config_.plan_cost;
-  const double worked_s = cost.point_s * map_points +
+  const double worked_s = cost.point_s * static_cast<double>(map_points) +
                           cost.step_s * static_cast<double>(planner_->counts().model_steps - steps_before);
   for (PlanPoint& point : next_plan_.points) point.position_world.head<2>() -= drift_world_m_;
   next_plan_due_ns_ = t_ns + nanoseconds(std::max(config_.plan_latency_s, worked_s));
+  map_points_ += map_points;
+  late_plans_ += worked_s > config_.plan_latency_s;
+}
+
+PlannerCounts Autopilot::counts() const {
+  PlannerCounts counts = planner_->counts();
+  counts.map_points = map_points_;
+  counts.late_plans = late_plans_;
+  return counts;
 }
 
 Controls Autopilot::controls(std::int64_t t_ns) {

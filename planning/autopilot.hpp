@@ -44,7 +44,7 @@ class Autopilot {
   const std::vector<StereoHit>& hits() const { return hits_; }  ///< of the newest frame
   const LocalMap& map() const { return map_; }
   const Plan& plan() const { return plan_; }
-  const PlannerCounts& counts() const { return planner_->counts(); }
+  PlannerCounts counts() const;
 
  private:
   bool concerns_the_plan(std::int64_t t_ns) const;
@@ -67,6 +67,7 @@ class Autopilot {
   Eigen::Vector2d drift_world_m_ = Eigen::Vector2d::Zero();  ///< newest GPS position less the odometry's
   std::int64_t launch_ns_ = -1;                              ///< when the launch was detected; -1 before
   int strong_samples_ = 0;
+  std::int64_t map_points_ = 0, late_plans_ = 0;  ///< of all plans
 };
 
 }  // namespace understory

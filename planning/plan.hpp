@@ -75,6 +75,8 @@ struct PlannerCounts {
   std::int64_t searches = 0;
   std::int64_t found = 0;
   std::int64_t model_steps = 0;
+  std::int64_t map_points = 0;  ///< counted by the autopilot, as the next
+  std::int64_t late_plans = 0;
 };
 
 /// Every count by name, for results, rows and sums: visit(name, count).
@@ -103,6 +105,11 @@ void visit_fields(Visitor& visit, Counts& counts) {
   visit("found", counts.found, "number of searches that found a free manoeuvre better than the one in force");
   visit("model_steps", counts.model_steps,
         "number of steps of the flight model that all plans took: the planner's work");
+  visit("map_points", counts.map_points,
+        "number of points of the map that all plans were given, summed: the other part of their work");
+  visit(
+      "late_plans", counts.late_plans,
+      "number of plans that were ready later than autopilot.plan_latency_s, with perception.compute.enabled");
 }
 
 }  // namespace understory

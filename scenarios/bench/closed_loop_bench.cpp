@@ -125,9 +125,9 @@ TimedFlight timed_flight(const std::filesystem::path& result_file) {
 }
 
 std::string to_table(const std::vector<BenchRow>& rows) {
-  Table table{{"", "threads", "median ms", "p90", "p99", "against"}};
+  Table table{{"", "threads", "median ms", "p90 ms", "p99 ms", "against"}};
   const bool of_planners = std::ranges::any_of(rows, [](const BenchRow& row) { return row.p99_ratio > 0; });
-  if (of_planners) table.head.emplace_back("p99");
+  if (of_planners) table.head.emplace_back("p99 / StereoBM");
   for (const BenchRow& row : rows)
     table.add(row.name, row.threads, number_text(row.median_ms, 4), number_text(row.p90_ms, 4),
               number_text(row.p99_ms, 4), ratio_text(row.ratio, row.yardstick));

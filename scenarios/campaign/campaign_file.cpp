@@ -135,6 +135,18 @@ std::size_t require_grid(const ConfigNode& top, std::size_t variants) {
   return variants;
 }
 
+/// Conditions are named after the grid's values, so nothing else may give these keys.
+void require_unset(const ConfigNode& grid, const std::vector<Variant>& overrides,
+                   const std::vector<ConfigNode>& over) {
+  for (const ConfigNode& axis : grid.children) {
+    std::string place = origin_of(over, axis.key);
+    for (const Variant& variant : overrides)
+      if (place.empty()) place = origin_of(variant.changes, axis.key);
+    if (!place.empty())
+      refuse_input(place, axis.key, fmt::format("the grid varies this key ({}): leave it out", axis.origin));
+  }
+}
+
 /// "forest-blind-cruise_speed_mps=10".
 std::string name_of(const std::string& scenario, const Variant& variant) {
   std::string name = joined(scenario, variant.name);
@@ -246,6 +258,7 @@ Campaign load_campaign(const fs::path& file, const FindScenario& find_scenario,
     refuse_key(top, "seeds",
                fmt::format("at most {} flights in all, these are {}", maximum_flights,
                            conditions * campaign.seeds.size()));
+  require_unset(text.grid, overrides, over);
   std::vector<Variant> variants = with_grid(std::move(overrides), text.grid);
   for (const ConfigNode& tree : over) {
     if (find_child(tree, "seed") != nullptr) refuse_key(tree, "seed", seeds_decide);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 
@@ -69,8 +70,8 @@ void add_success(Series& series, double x, const ConditionSummary& summary) {
 }
 
 void add_crash_distance(Series& series, double x, const ConditionSummary& summary) {
-  const CrashDistance distance = crash_distance(summary);
-  series.add(x, distance.value_km, distance.interval.minimum, distance.interval.maximum);
+  const auto [value_km, interval] = crash_distance(summary);
+  series.add(x, std::isfinite(interval.maximum) ? value_km : NAN, interval.minimum, interval.maximum);
 }
 
 std::string scenario_of_rows(const std::vector<FlightRow>& rows, const Conditions& conditions) {
@@ -88,6 +89,10 @@ LinePlot success_plot(const std::string& title, const std::string& x_label) {
           .x_label = x_label,
           .y_label = "goal reached (%), 95 % Wilson",
           .y_range = percent_range};
+}
+
+LinePlot crash_distance_plot(const std::string& title, const std::string& x_label) {
+  return {.title = title, .x_label = x_label, .y_label = "km between crashes, 95 % Garwood", .y_log = true};
 }
 
 double span_of(const std::vector<FlightRow>& rows, const PlotAxis& axis) {
@@ -120,6 +125,24 @@ LinePlot over(const PlotAxis& axis, const std::vector<FlightRow>& all_rows, cons
     plot.series.push_back(std::move(series));
     aside += apart;
   }
+  return plot;
+}
+
+/// The plot with a place for each condition.
+LinePlot by_condition(const std::vector<FlightRow>& all_rows, const Conditions& conditions, LinePlot plot,
+                      void (*add)(Series&, double, const ConditionSummary&)) {
+  const std::vector<FlightRow> rows = flown_ones(all_rows);
+  const std::string scenario = scenario_of_rows(rows, conditions);
+  plot.title = titled(scenario, plot.title);
+  for (const ConditionSummary& summary : summarise(rows)) {
+    const auto place = static_cast<double>(plot.series.size() + 1);
+    plot.x_names.emplace_back(place, words_of(condition_of(summary.condition, conditions), scenario));
+    Series series;
+    series.mark = Mark::dots;
+    add(series, place, summary);
+    plot.series.push_back(std::move(series));
+  }
+  plot.x_range = AxisRange{0.3, static_cast<double>(plot.series.size()) + 0.5};
   return plot;
 }
 
@@ -162,27 +185,16 @@ LinePlot success_over(const std::vector<FlightRow>& rows, const Conditions& cond
 
 LinePlot crash_distance_over(const std::vector<FlightRow>& rows, const Conditions& conditions,
                              const PlotAxis& axis) {
-  const LinePlot plot{.title = fmt::format("distance between crashes over {}", axis.name),
-                      .x_label = axis.label,
-                      .y_label = "km between crashes, 95 % Garwood",
-                      .y_log = true};
+  const LinePlot plot = crash_distance_plot(fmt::format("km/crash over {}", axis.name), axis.label);
   return over(axis, rows, conditions, plot, add_crash_distance);
 }
 
-LinePlot success_by_condition(const std::vector<FlightRow>& all_rows, const Conditions& conditions) {
-  const std::vector<FlightRow> rows = flown_ones(all_rows);
-  const std::string scenario = scenario_of_rows(rows, conditions);
-  LinePlot plot = success_plot(titled(scenario, "success by condition"), "");
-  for (const ConditionSummary& summary : summarise(rows)) {
-    const auto place = static_cast<double>(plot.series.size() + 1);
-    plot.x_names.emplace_back(place, words_of(condition_of(summary.condition, conditions), scenario));
-    Series series;
-    series.mark = Mark::dots;
-    add_success(series, place, summary);
-    plot.series.push_back(std::move(series));
-  }
-  plot.x_range = AxisRange{0.3, static_cast<double>(plot.series.size()) + 0.5};
-  return plot;
+LinePlot success_by_condition(const std::vector<FlightRow>& rows, const Conditions& conditions) {
+  return by_condition(rows, conditions, success_plot("success by condition", ""), add_success);
+}
+
+LinePlot crash_distance_by_condition(const std::vector<FlightRow>& rows, const Conditions& conditions) {
+  return by_condition(rows, conditions, crash_distance_plot("km/crash by condition", ""), add_crash_distance);
 }
 
 std::vector<LinePlot> survival_curves(const std::vector<FlightRow>& all_rows, const Conditions& conditions) {
@@ -221,7 +233,10 @@ std::string campaign_svg(const std::vector<FlightRow>& all_rows, const Condition
       panels.push_back(success_over(rows, conditions, axis));
       if (is_long) panels.push_back(crash_distance_over(rows, conditions, axis));
     }
-  if (panels.empty()) panels.push_back(success_by_condition(rows, conditions));
+  if (panels.empty()) {
+    panels.push_back(success_by_condition(rows, conditions));
+    if (is_long) panels.push_back(crash_distance_by_condition(rows, conditions));
+  }
   for (LinePlot& panel : survival_curves(rows, conditions)) panels.push_back(std::move(panel));
   return to_svg(panels, 2);
 }

@@ -10,10 +10,11 @@
 namespace understory {
 namespace {
 
-/// The distance over which a flight was observed, in m of progress: to its end, or, censored, to its goal.
+/// The distance over which a flight was observed, in m of progress: to its end, or, censored, to its goal, or
+/// to where its time was over and it still flew.
 Lifetime lifetime_of(const FlightRow& row) {
   if (row.reached_goal()) return {row.goal_m, false};
-  return {std::max(row.progress_m, 0.0), true};
+  return {std::max(row.progress_m, 0.0), row.outcome != "time"};
 }
 
 std::string success_text(const ConditionSummary& summary) {
@@ -93,7 +94,10 @@ CrashDistance crash_distance(const ConditionSummary& summary) {
 
 std::string crash_distance_text(const ConditionSummary& summary) {
   const auto [value_km, interval] = crash_distance(summary);
-  const auto text = [](double km) { return fmt::format("{:.{}f}", km, km < 1 ? 2 : km < 10 ? 1 : 0); };
+  if (summary.among_obstacles_km == 0) return "-";
+  const auto text = [](double km) {
+    return km < 0.1 ? fmt::format("{:.2g}", km) : fmt::format("{:.{}f}", km, km < 1 ? 2 : km < 10 ? 1 : 0);
+  };
   if (!std::isfinite(interval.maximum)) return "> " + text(value_km);
   return fmt::format("{} ({} to {})", text(value_km), text(interval.minimum), text(interval.maximum));
 }
@@ -106,12 +110,12 @@ std::vector<ConditionSummary> summarise(const std::vector<FlightRow>& rows) {
 
 Table summary_table(const std::vector<ConditionSummary>& summaries) {
   Table table{{"condition", "flown", "goal", "success % (95 %)", "collision", "ground", "bounds", "time",
-               "m/s", "median m", "km/crash (95 %)", "error m", "OMPL %", "not flown"},
+               "m/s", "median m", "km", "km/crash (95 %)", "error m", "OMPL %", "not flown"},
               {}};
   for (const ConditionSummary& summary : summaries)
     table.add(summary.condition, summary.flown, summary.goals, success_text(summary), summary.collision,
               summary.ground, summary.out_of_bounds, summary.time, number_text(summary.mean_speed_mps, 2),
-              median_text(summary), summary.flown == 0 ? "-" : crash_distance_text(summary),
+              median_text(summary), number_text(summary.among_obstacles_km, 2), crash_distance_text(summary),
               number_text(summary.position_error_mean_m, 2), ompl_text(summary), summary.failed_to_run);
   return table;
 }

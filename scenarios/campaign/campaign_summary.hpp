@@ -37,15 +37,16 @@ struct CrashDistance {
   Interval interval;
 };
 CrashDistance crash_distance(const ConditionSummary& summary);
-/// "1.2 (0.6 to 2.8)"; "> 4.0" without a crash.
+/// "1.2 (0.6 to 2.8)"; "> 4.0" without a crash; "-" where nothing was flown among obstacles.
 std::string crash_distance_text(const ConditionSummary& summary);
 
 /// A summary per condition, in order of appearance.
 std::vector<ConditionSummary> summarise(const std::vector<FlightRow>& rows);
 
 /// A row per condition; to_text or to_markdown prints it. `median m`: the distance by which half the flights
-/// have ended, "> 75" where more than half got that far; `km/crash`: crash_distance_text(); `OMPL %`: share
-/// of the replans with an obstacle ahead that use a manoeuvre that OMPL found.
+/// have ended, "> 75" where more than half got that far; `km`: flown among obstacles; `km/crash`:
+/// crash_distance_text(); `OMPL %`: share of the replans with an obstacle ahead that use a manoeuvre that
+/// OMPL found.
 Table summary_table(const std::vector<ConditionSummary>& summaries);
 
 // Plots take a row's scenario, overrides and grid from its condition, or the condition's name alone.
@@ -64,12 +65,15 @@ std::vector<PlotAxis> axes_of(const std::vector<Condition>& conditions);
 /// value.
 LinePlot success_over(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions,
                       const PlotAxis& axis);
-/// The same of the kilometres between crashes; a dot at the foot of a bar that has no upper end is a bound.
+/// The same of the kilometres between crashes. Without a crash there is no dot, but an arrow from the bound
+/// up.
 LinePlot crash_distance_over(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions,
                              const PlotAxis& axis);
 
 /// The same side by side: a place per condition, with its name.
 LinePlot success_by_condition(const std::vector<FlightRow>& rows, const std::vector<Condition>& conditions);
+LinePlot crash_distance_by_condition(const std::vector<FlightRow>& rows,
+                                     const std::vector<Condition>& conditions);
 
 /// Share of flights that get beyond each distance (m of progress): Kaplan and Meier's steps with 95 % bands,
 /// at most six conditions to a panel; of more than six, those of one scenario, which the title names.

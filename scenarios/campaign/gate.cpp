@@ -56,10 +56,15 @@ std::vector<FlightRow> without_partner(const std::vector<FlightRow>& some,
   return alone;
 }
 
-bool asked_alike(const FlightPair& pair) {
+/// What the candidate was asked otherwise: "goal at 75 m instead of 1015 m"; empty: nothing.
+std::string asked_otherwise(const FlightPair& pair) {
   const FlightRow &a = pair.baseline, &b = pair.candidate;
-  return a.cruise_speed_mps == b.cruise_speed_mps && a.square_metres_per_tree == b.square_metres_per_tree &&
-         a.goal_m == b.goal_m;
+  if (a.goal_m != b.goal_m) return fmt::format("goal at {} m instead of {} m", b.goal_m, a.goal_m);
+  if (a.cruise_speed_mps != b.cruise_speed_mps)
+    return fmt::format("cruise speed {} m/s instead of {} m/s", b.cruise_speed_mps, a.cruise_speed_mps);
+  if (a.square_metres_per_tree != b.square_metres_per_tree)
+    return fmt::format("{} m^2 per tree instead of {}", b.square_metres_per_tree, a.square_metres_per_tree);
+  return "";
 }
 
 PairedOutcomes count_goals(const std::vector<FlightPair>& pairs) {
@@ -179,7 +184,11 @@ Comparison compare_campaigns(const std::vector<FlightRow>& baseline, const std::
     for (const auto& [seed, row] : old_rows.at(condition))
       if (const FlightRow* partner = row_of(new_rows, *row)) pairs.push_back({*row, *partner});
     if (pairs.empty()) continue;
-    if (!std::ranges::all_of(pairs, asked_alike)) comparison.altered.push_back(condition);
+    for (const FlightPair& pair : pairs)
+      if (const std::string other = asked_otherwise(pair); !other.empty()) {
+        comparison.altered.push_back(condition + ": " + other);
+        break;
+      }
     for (const auto& [old_row, new_row] : pairs)
       if (!drawn_differently && old_row.flown() && new_row.flown() && old_row.renderer != new_row.renderer)
         comparison.drawn_differently =

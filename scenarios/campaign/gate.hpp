@@ -67,8 +67,8 @@ struct Comparison {
   std::vector<FlightRow> added;            ///< in the candidate only
   std::vector<FlightRow> baseline_failed;  ///< failed to run, in either set, paired or not
   std::vector<FlightRow> candidate_failed;
-  /// Conditions of one name with another speed, density or goal in the two sets: their difference is not due
-  /// to the program alone.
+  /// Conditions of one name with another goal, speed or density in the two sets, and these: "forest: goal at
+  /// 75 m instead of 1015 m". Their difference is not due to the program alone.
   std::vector<std::string> altered;
   /// Why digests say nothing: "A in the baseline, B in the candidate", if the two sets were drawn by
   /// different renderers. Then bit_for_bit is 0 everywhere.

@@ -91,7 +91,7 @@ std::string changed_seeds(const ConditionComparison& condition, bool worse) {
 std::vector<std::string> notes_of(const Comparison& comparison) {
   std::vector<std::string> notes;
   for (const std::string& condition : comparison.altered)
-    notes.push_back(condition + ": asked for another speed, density or goal than in the baseline");
+    notes.push_back(condition + "; the two were asked for different things");
   if (!comparison.drawn_differently.empty())
     notes.push_back("other renderers give other images, and so other flights; outcomes alone are compared: " +
                     comparison.drawn_differently);

@@ -127,12 +127,13 @@ void add_bench_command(CommandLine& line) {
   const auto inputs =
       command.texts("INPUT", "FILE", arguments->inputs,
                     "recorded stereo pairs, in any form that detect accepts (default: rendered pairs)");
-  command.text("--rig", "RIG", arguments->rig,
-               "rig or calibration file, in any form that understory rig accepts (default: INPUT's "
-               "calibration, or the raw cameras of the long rig)");
+  const auto rig =
+      command.text("--rig", "RIG", arguments->rig,
+                   "rig or calibration file, in any form that understory rig accepts (default: INPUT's "
+                   "calibration, or the raw cameras of the long rig)");
   add_calibration_options(command, *arguments);
-  command.whole("--pairs", arguments->pairs, 1, 10000,
-                "number of pairs to render, or largest number to read from INPUT");
+  const auto pairs = command.whole("--pairs", arguments->pairs, 1, 10000,
+                                   "number of pairs to render, or largest number to read from INPUT");
   command.whole("--rounds", arguments->rounds, 1, 100000, "number of times that all pairs are timed");
   command.text("--json", "FILE", arguments->json, "also write the table as JSON");
   const auto closed_loop =
@@ -140,11 +141,15 @@ void add_bench_command(CommandLine& line) {
           .flag(
               "--closed-loop", arguments->closed_loop,
               "time whole flights in the library's forests, first one flight at a time, then two in parallel")
-          .excludes(inputs);
+          .excludes(inputs)
+          .excludes(rig)
+          .excludes(pairs);
   command
       .flag("--planner", arguments->planner,
             "time the planner on 504 recorded problems from flights, against StereoBM")
       .excludes(inputs)
+      .excludes(rig)
+      .excludes(pairs)
       .excludes(closed_loop);
   command.whole("--flights", arguments->flights, 1, 1000,
                 "with --closed-loop: number of flights in each forest");

@@ -111,7 +111,7 @@ class Flight {
   State state_at(std::int64_t t_ns) const { return parts_.state_source->state_at(t_ns); }
   const LocalMap& map() const { return autopilot_.map(); }
   const Plan& plan() const { return autopilot_.plan(); }
-  const PlannerCounts& planner_counts() const { return autopilot_.counts(); }
+  PlannerCounts planner_counts() const { return autopilot_.counts(); }
   const Controls& controls() const { return controls_; }  ///< in force
 
   /// To draw the truth beside the images; null where neither detector nor observer needs images.

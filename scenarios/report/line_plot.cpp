@@ -224,10 +224,12 @@ class Panel {
     }
     for (std::size_t i = 0; i < series.x.size(); ++i) {
       const double x = at_x(series.x[i]), low = at_y(series.low[i]), high = at_y(series.high[i]);
-      text += fmt::format(
-          "<path d=\"M{0:.1f} {1:.1f}V{2:.1f}M{3:.1f} {1:.1f}H{4:.1f}M{3:.1f} {2:.1f}H{4:.1f}\" "
-          "stroke=\"{5}\" fill=\"none\"/>\n",
-          x, low, high, x - 3, x + 3, colour);
+      const std::string head = std::isfinite(series.high[i]) ? fmt::format("M{:.1f} {:.1f}h6", x - 3, high)
+                                                             : fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}l4 7",
+                                                                           x - 4, high + 7, x, high);
+      text +=
+          fmt::format("<path d=\"M{:.1f} {:.1f}h6M{:.1f} {:.1f}V{:.1f}{}\" stroke=\"{}\" fill=\"none\"/>\n",
+                      x - 3, low, x, low, high, head, colour);
     }
   }
 

@@ -46,7 +46,7 @@ void visit_fields(FieldVisitor& visit, ComputeConfig& config) {
   visit(
       "filter_s", config.filter_s, 0.0, 0.001,
       "time of the filter for each IMU sample, before compute.factor; it delays plans, which share its core "
-      "| docs/benchmarks.md");
+      "and keep a tenth of it whatever the filter takes | docs/benchmarks.md");
 }
 
 void visit_fields(FieldVisitor& visit, FileConfig& read) {

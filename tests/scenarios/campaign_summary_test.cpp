@@ -76,6 +76,17 @@ TEST(CampaignSummary, KilometresBetweenCrashes) {
   rows.assign(1, flown_row("long", 1, "goal"));
   rows[0].among_obstacles_m = 14800;
   EXPECT_EQ(crash_distance_text(summary_of(rows)), "> 4.0");  // 14.8 / 3.689
+  rows[0] = flown_row("long", 1, "collision");
+  rows[0].among_obstacles_m = 10;
+  EXPECT_EQ(crash_distance_text(summary_of(rows)), "0.01 (0.0018 to 0.39)");  // by 5.572 and 0.02532
+  rows[0].among_obstacles_m = 0;
+  EXPECT_EQ(crash_distance_text(summary_of(rows)), "-");
+}
+
+TEST(CampaignSummary, WhoRunsOutOfTimeStillFlies) {
+  std::vector<FlightRow> rows{flown_row("long", 1, "time"), flown_row("long", 2, "goal")};
+  EXPECT_FALSE(median_survival(summary_of(rows).survival));
+  EXPECT_EQ(summary_of(rows).survival.steps.back().share, 1);
 }
 
 const std::string speed_key = "autopilot.flight_model.cruise_speed_mps",
@@ -161,7 +172,8 @@ TEST(CampaignPlots, LongCoursesShowKilometresBetweenCrashes) {
   for (FlightRow& row : rows) row.goal_m = 1015, row.among_obstacles_m = 1000;
   const LinePlot plot = crash_distance_over(rows, conditions, axes_of(conditions)[0]);
   ASSERT_EQ(plot.series.size(), 1u);
-  EXPECT_NEAR(plot.series[0].y.at(0), 10 / 3.6889, 1e-4);  // no crash: the bound
+  EXPECT_TRUE(std::isnan(plot.series[0].y.at(0))) << "no crash, no dot";
+  EXPECT_NEAR(plot.series[0].low.at(0), 10 / 3.6889, 1e-4);
   EXPECT_EQ(plot.series[0].high.at(0), HUGE_VAL);
   EXPECT_NEAR(plot.series[0].y.at(1), 2, 1e-12);
   expect_part(campaign_svg(rows, conditions), "km between crashes");
@@ -179,6 +191,9 @@ TEST(CampaignPlots, WithoutAnAxisConditionsStandSideBySide) {
   EXPECT_EQ(plot.series[1].x, std::vector<double>{2});
   EXPECT_EQ(plot.x_names[1], std::pair(2.0, std::string("blind")));
   expect_part(campaign_svg(rows, conditions), "rotate(-90)\" class=\"note\">blind<");
+  expect_no_part(campaign_svg(rows, conditions), "km/crash");
+  for (FlightRow& row : rows) row.goal_m = 1015;
+  expect_part(campaign_svg(rows, conditions), "forest: km/crash by condition");
 }
 
 TEST(CampaignPlots, SurvivalGoesDownInSteps) {

@@ -95,7 +95,7 @@ TEST(Comparison, SaysWhereOneNameMeansTwoThings) {
   FlightRow faster = flown_row("forest", 1, "goal");
   faster.cruise_speed_mps = 14;
   EXPECT_EQ(compare_campaigns({flown_row("forest", 1, "goal")}, {faster}).altered,
-            std::vector<std::string>{"forest"});
+            std::vector<std::string>{"forest: cruise speed 14 m/s instead of 12 m/s"});
 }
 
 TEST(Comparison, RefusesAFlightTwice) {
