@@ -149,7 +149,6 @@ void add_bench_command(CommandLine& line) {
             "time the planner on 504 recorded problems from flights, against StereoBM")
       .excludes(inputs)
       .excludes(rig)
-      .excludes(pairs)
       .excludes(closed_loop);
   command.whole("--flights", arguments->flights, 1, 1000,
                 "with --closed-loop: number of flights in each forest");

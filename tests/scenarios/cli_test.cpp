@@ -260,6 +260,7 @@ TEST_F(Cli, BenchTimesThePlanner) {
        {"168 replans in dense", "168 replans in woods_dense", "168 replans in paper_depths"})
     expect_part(bench.text, part);
   expect_refusal("bench --planner --closed-loop", "--closed-loop");
+  expect_refusal("bench --planner --rig long", "--rig");
   expect_refusal("bench --planner --set autopilot.method=no", "autopilot.method");
 }
 
