@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
 
@@ -70,8 +69,8 @@ void add_success(Series& series, double x, const ConditionSummary& summary) {
 }
 
 void add_crash_distance(Series& series, double x, const ConditionSummary& summary) {
-  const auto [value_km, interval] = crash_distance(summary);
-  series.add(x, std::isfinite(interval.maximum) ? value_km : NAN, interval.minimum, interval.maximum);
+  const CrashDistance distance = crash_distance(summary);
+  series.add(x, distance.measured_km(), distance.interval.minimum, distance.interval.maximum);
 }
 
 std::string scenario_of_rows(const std::vector<FlightRow>& rows, const Conditions& conditions) {

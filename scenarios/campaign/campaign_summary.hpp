@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -35,6 +36,8 @@ ConditionSummary summary_of(const std::vector<FlightRow>& rows);
 struct CrashDistance {
   double value_km = 0;
   Interval interval;
+  /// NaN where the value is a bound: plots draw no dot there.
+  double measured_km() const { return std::isfinite(interval.maximum) ? value_km : NAN; }
 };
 CrashDistance crash_distance(const ConditionSummary& summary);
 /// "1.2 (0.6 to 2.8)"; "> 4.0" without a crash; "-" where nothing was flown among obstacles.

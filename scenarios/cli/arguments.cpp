@@ -85,8 +85,7 @@ int jobs_or_cores(int jobs) {
 void add_calibration_options(Command& command, CalibrationArguments& arguments) {
   command.text("--unit", "UNIT", arguments.unit,
                "unit of the lengths in a calibration of OpenCV or ROS: m (default), cm, mm, or a number of "
-               "metres, for "
-               "example 0.025 where they are counted in squares of a chessboard");
+               "metres, for example 0.025 where they are counted in squares of a chessboard");
   command.text("--size", "WxH", arguments.size,
                "image size that the calibration is for, for example 376x240, if its files do not state it");
   command.number("--depth", arguments.depth_m, 0.1, 1000,

@@ -85,7 +85,9 @@ int run_rig(const RigArguments& arguments) {
     try {
       texts = calibration_texts(calibrated, arguments.form, out);
     } catch (const InputError& error) {
-      throw ScenarioError(fmt::format("--out {}, or in .svg for a drawing", error.what()));
+      const bool is_of_name = arguments.form == CalibrationForm::rig_file;  // a rig file has no other fault
+      throw ScenarioError(
+          fmt::format("--out {}{}", error.what(), is_of_name ? ", or in .svg for a drawing" : ""));
     }
   for (const CalibrationText& text : texts) {
     require_not_within(text.file, {path});  // nor may raw/NAME.xml be what was read

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <opencv2/core/matx.hpp>
 
+#include "perception/io/calibration/write_calibration.hpp"
 #include "perception/io/picture_codecs.hpp"
 #include "perception/io/png_codec.hpp"
 #include "scenarios/recording/foxglove.pb.h"
@@ -161,11 +162,8 @@ foxglove::CameraCalibration calibration_of(const CalibratedRig& rig, bool is_lef
   const auto put = [](const auto& matrix, google::protobuf::RepeatedField<double>* to) {
     for (const double value : matrix.val) to->Add(value);
   };
-  const CameraCalibration camera =
-      rig.calibration
-          ? (is_left ? rig.calibration->left : rig.calibration->right)
-          : rectified_camera(rig.rig, is_left ? rig.rig.center_left_x_px : rig.rig.center_right_x_px,
-                             is_left ? 0 : rig.rig.baseline_m);
+  const StereoCalibration cameras = cameras_of(rig);
+  const CameraCalibration& camera = is_left ? cameras.left : cameras.right;
   if (rig.calibration) {
     message.set_distortion_model(camera.lens == LensModel::equidistant ? "kannala_brandt"
                                  : camera.distortion.size() > 5        ? "rational_polynomial"

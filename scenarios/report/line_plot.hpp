@@ -23,9 +23,8 @@ struct Series {
   std::vector<double> x = {};
   std::vector<double> y = {};
   Mark mark = Mark::line;
-  int colour = -1;  ///< place in the palette (0 to 7); -1: the series' own place
-  std::vector<double> low =
-      {};  ///< empty, or the lower and upper ends of error bars; an infinite end gets an arrow
+  int colour = -1;                ///< place in the palette (0 to 7); -1: the series' own place
+  std::vector<double> low = {};   ///< empty, or the ends of error bars; an infinite end gets an arrow
   std::vector<double> high = {};  ///< as `low`
   bool band = false;              ///< shade between low and high instead of drawing bars
 

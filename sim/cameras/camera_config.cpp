@@ -20,8 +20,7 @@ void visit_fields(FieldVisitor& visit, CameraConfig& config) {
   visit("rolling_shutter_s", config.rolling_shutter_s, 0.0, 0.05,
         "Time from the exposure of an image's first row to that of its last; the line time is this over the "
         "rows. A frame's timestamp, and the true pose and depth of recordings, are of its middle row. 0: a "
-        "global "
-        "shutter.");
+        "global shutter.");
   visit("rolling_shutter_views", config.rolling_shutter_views, 2, 64,
         "Number of images rendered at times spread over the readout. Each gives a band of rows, within which "
         "nothing moves.");

@@ -152,8 +152,8 @@ Section limits_section() {
         const CrashDistance distance = crash_distance(summary);
         const double aside_mps = 0.04 * (static_cast<double>(i) - 2.5);  // bars would hide each other
         const auto add = [&](Series& to, double at, double scale) {
-          to.add(at, std::isfinite(distance.interval.maximum) ? scale * distance.value_km : NAN,
-                 scale * distance.interval.minimum, scale * distance.interval.maximum);
+          to.add(at, scale * distance.measured_km(), scale * distance.interval.minimum,
+                 scale * distance.interval.maximum);
         };
         add(series, summary.mean_speed_mps + aside_mps, 1);
         const double radius_m = turn_radius_m(summary.mean_speed_mps), trees = 1 / blind_km(per_tree_m2);

@@ -172,11 +172,12 @@ std::vector<CalibrationText> calibration_texts(const CalibratedRig& calibrated, 
     require_extension(out, of_opencv);
     return {{out, opencv_text(cameras, out.extension().string())}};
   }
-  if (form == CalibrationForm::ros && out.has_extension())
-    refuse_input(out.string(), "", "must be a folder: ROS has a file for each camera");
-  if (form == CalibrationForm::ros)
+  if (form == CalibrationForm::ros) {
+    if (out.has_extension())
+      refuse_input(out.string(), "", "must be a folder: ROS has a file for each camera");
     return {{out / "left.yaml", ros_text("left", cameras.left, cameras)},
             {out / "right.yaml", ros_text("right", cameras.right, cameras)}};
+  }
   require_extension(out, yaml);
   if (form == CalibrationForm::kalibr) return {{out, kalibr_text(cameras, out)}};
   std::vector<CalibrationText> texts{{out, rig_text(calibrated.rig)}};
