@@ -72,7 +72,7 @@ ToldExplanation explanation_from_json(const std::string& text, const std::string
 
 std::vector<SheetSection> explanation_chapter(const ToldExplanation& told) {
   const Explanation& why = told.explanation;
-  LinePlot plot{.title = "Chance to survive", .x_label = "before the end, s", .y_label = "survived, %"};
+  LinePlot plot{.title = "Chance to survive", .x_label = "time, s (0 is the end)", .y_label = "survived, %"};
   double beside_s = 0;  // bars at one place would hide each other
   const auto add = [&](const std::string& part, const std::string& name, Mark mark) {
     Series series{.name = name, .mark = mark};
@@ -81,7 +81,7 @@ std::vector<SheetSection> explanation_chapter(const ToldExplanation& told) {
       if (chance.part != part) continue;
       const Interval interval =
           wilson_interval(static_cast<int>(chance.flown.with), static_cast<int>(chance.flown.of));
-      series.x.push_back(chance.before_end_s + (mark == Mark::dots ? beside_s - 0.03 : 0));
+      series.x.push_back((mark == Mark::dots ? beside_s - 0.03 : 0) - chance.before_end_s);
       series.y.push_back(100 * (mark == Mark::line ? chance.fitted : chance.flown.value()));
       if (mark == Mark::line) continue;
       series.low.push_back(100 * interval.minimum);
@@ -97,7 +97,7 @@ std::vector<SheetSection> explanation_chapter(const ToldExplanation& told) {
       add(effect.part, "ideal " + effect.part, Mark::dots);
       shown += effect.part != all_ideal;
     }
-  if (why.last_chance_s) plot.references.push_back({*why.last_chance_s, "last chance", true});
+  if (why.last_chance_s) plot.references.push_back({-*why.last_chance_s, "last chance", true});
   std::vector<SheetSection> sections{{.title = "Why it was lost: " + told.conclusion.cause,
                                       .text = told.conclusion.sentence,
                                       .plots = {plot},

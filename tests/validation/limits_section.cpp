@@ -32,16 +32,16 @@ const double turn_mps2 = gravity_mps2 * std::tan(bank_rad);
 const double roll_s = bank_rad / FlightModelConfig().maximum_roll_rate_radps;
 const double half_span_m = 0.5 * Airframe().span_m;
 constexpr double mean_radius_m = 0.175;  // of forest.yaml
+constexpr double latency_s = 0.022;      // frame, plan and input
 
 double turn_radius_m(double speed_mps) { return speed_mps * speed_mps / turn_mps2; }
 
 /// Straight through a Poisson forest: what is struck stands within a strip as wide as span and trunk.
 double blind_km(double per_tree_m2) { return 1e-3 * per_tree_m2 / (2 * (half_span_m + mean_radius_m)); }
 
-/// Falanga, Kim & Scaramuzza 2019: the fastest speed at which an obstacle `half_width_m` wide to each side,
-/// seen at `sight_m`, can still be avoided.
-double fastest_mps(double sight_m, double latency_s, double half_width_m) {
-  return sight_m / (latency_s + 2 * std::sqrt(half_width_m / turn_mps2));
+/// Falanga, Kim & Scaramuzza 2019: the fastest speed at which a trunk seen at `sight_m` can still be avoided.
+double fastest_mps(double sight_m, double after_s) {
+  return sight_m / (after_s + 2 * std::sqrt((half_span_m + mean_radius_m) / turn_mps2));
 }
 
 /// How far anybody gets who knows every tree of a Poisson forest and turns in circles of `radius_m` at least,
@@ -133,20 +133,24 @@ Section limits_section() {
   const std::map<std::string, Cells> flown = flown_cells();
   std::vector<LinePlot> panels;
   LinePlot without_unit{.title = "Without dimension",
-                        .x_label = "trees in the square of the turning radius, R^2 / area per tree",
+                        .x_label = "trees in the square of the turning radius R",
                         .y_label = "trees in the way between crashes",
+                        .x_range = AxisRange{std::log10(0.4), std::log10(70)},
                         .y_log = true};
-  for (const Eyes& eyes : all_eyes) without_unit.series.push_back({.name = eyes.words, .mark = Mark::dots});
+  for (const double trees : {0.5, 1.0, 2.0, 5.0, 10.0, 20.0})
+    without_unit.x_names.emplace_back(std::log10(trees), fmt::format("{}", trees));
+  without_unit.series.resize(all_eyes.size(), {.mark = Mark::dots});
   for (const double per_tree_m2 : {49.0, 25.0, 16.0, 9.0}) {
     LinePlot panel{.title = fmt::format("{:.0f} m between trees", std::sqrt(per_tree_m2)),
                    .x_label = "speed flown (m/s)",
                    .y_label = "km between crashes, 95 %",
-                   .references = {{blind_km(per_tree_m2), "straight through, by theory", false}},
+                   .references = {{blind_km(per_tree_m2), "straight through, by theory", false},
+                                  {fastest_mps(4.8, latency_s + roll_s), "4.8 m: sensing bound", true}},
                    .x_range = AxisRange{8.5, 12.5},
                    .y_range = AxisRange{0.005, 30},
                    .y_log = true};
     for (std::size_t i = 0; i < all_eyes.size(); ++i) {
-      Series series{.name = all_eyes[i].words, .mark = Mark::line_and_dots, .colour = static_cast<int>(i)};
+      Series series{.name = panels.empty() ? all_eyes[i].words : "", .mark = Mark::line_and_dots};
       for (const auto& [cell, summary] : flown.at(all_eyes[i].name)) {
         if (cell.per_tree_m2 != per_tree_m2) continue;
         const CrashDistance distance = crash_distance(summary);
@@ -157,7 +161,7 @@ Section limits_section() {
         };
         add(series, summary.mean_speed_mps + aside_mps, 1);
         const double radius_m = turn_radius_m(summary.mean_speed_mps), trees = 1 / blind_km(per_tree_m2);
-        add(without_unit.series[i], radius_m * radius_m / per_tree_m2, trees);
+        add(without_unit.series[i], std::log10(radius_m * radius_m / per_tree_m2), trees);
       }
       panel.series.push_back(series);
     }
@@ -169,7 +173,7 @@ Section limits_section() {
                                      radius_m * radius_m / critical));
     if (speed_mps == 9 || speed_mps == 12)
       without_unit.references.push_back(
-          {radius_m * radius_m / critical, fmt::format("no way through, {:.0f} m/s", speed_mps), true});
+          {std::log10(radius_m * radius_m / critical), fmt::format("no way, {:.0f} m/s", speed_mps), true});
     for (const double per_tree_m2 : {49.0, 25.0, 16.0, 9.0}) {
       std::string cells = fmt::format("{:.0f} | {:.0f}", speed_mps, std::sqrt(per_tree_m2));
       for (const Eyes& eyes : all_eyes)
@@ -178,13 +182,11 @@ Section limits_section() {
     }
   }
   panels.push_back(without_unit);
-  const double half_width_m = half_span_m + mean_radius_m, latency_s = 0.022;  // frame, plan and input
   for (const auto& [rig, sight_m] :
        {std::pair("the paper's, 4.8 m", 4.8), {"the paper's, 9.1 m", 9.1}, {"long, 10 m", 10.0}})
-    section.row("sight",
-                fmt::format("{} | {:.1f} | {:.1f}", rig, fastest_mps(sight_m, latency_s, half_width_m),
-                            fastest_mps(sight_m, latency_s + roll_s, half_width_m)));
-  section.pictures["map"] = to_svg(panels, 2);
+    section.row("sight", fmt::format("{} | {:.1f} | {:.1f}", rig, fastest_mps(sight_m, latency_s),
+                                     fastest_mps(sight_m, latency_s + roll_s)));
+  section.pictures["map"] = to_svg(panels, 3);
   return section;
 }
 

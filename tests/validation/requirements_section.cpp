@@ -98,7 +98,7 @@ std::string value_at(const std::vector<double>& values, double place) {
   if (place > static_cast<double>(values.size() - 1)) return fmt::format("beyond {}", values.back());
   const auto before = static_cast<std::size_t>(place);
   const std::size_t after = std::min(before + 1, values.size() - 1);
-  return fmt::format("{:.2g}", std::lerp(values[before], values[after], place - static_cast<double>(before)));
+  return fmt::format("{:.3g}", std::lerp(values[before], values[after], place - static_cast<double>(before)));
 }
 
 /// The place of a value among entries that rise or fall, at an end where it lies beyond.
@@ -118,9 +118,12 @@ LinePlot panel_of(const Property& property, const std::map<Cell, Curve>& curves)
   const std::vector<double>& values = curves.begin()->second.values;
   for (std::size_t i = 0; i < values.size(); ++i)
     panel.x_names.emplace_back(static_cast<double>(i), fmt::format("{}", values[i]));
-  for (const auto& [value, whose] :
-       {std::pair(property.pushbroom, "pushbroom"), std::pair(property.stereo_bm, "StereoBM")})
-    if (std::isfinite(value)) panel.references.push_back({place_of(values, value), whose, true});
+  std::vector<Series> detectors;
+  for (const auto& [value, whose, colour] :
+       {std::tuple(property.pushbroom, "pushbroom", 4), std::tuple(property.stereo_bm, "StereoBM", 5)})
+    if (const double at = place_of(values, value); std::isfinite(value))
+      detectors.push_back(
+          {.name = whose, .x = {at, at}, .y = {0, 102}, .mark = Mark::dashes, .colour = colour});
   for (std::size_t i = 0; i < cells.size(); ++i) {
     Series series{
         .name = fmt::format("{:.0f} m/s, {:.0f} m", cells[i].speed_mps, std::sqrt(cells[i].per_tree_m2)),
@@ -134,6 +137,7 @@ LinePlot panel_of(const Property& property, const std::map<Cell, Curve>& curves)
     }
     panel.series.push_back(series);
   }
+  panel.series.insert(panel.series.end(), detectors.begin(), detectors.end());
   return panel;
 }
 
