@@ -83,6 +83,7 @@ TEST(Explanation, TwoPartsThatHelpOnlyTogetherAreJoint) {
   });
   EXPECT_EQ(why.cause, "joint");
   EXPECT_EQ(why.parts, (Parts{"state", "search"}));
+  EXPECT_TRUE(conclusion_of(why, {}).sentence.ends_with("though not without an ideal state or search."));
 }
 
 TEST(Explanation, SightIsTheCauseOnlyWhereNoOtherPartHelpsHalfAsMuch) {
