@@ -120,7 +120,7 @@ Table pair_table(const std::vector<PairScore>& scores) {
   for (const PairScore& row : rows) {
     table.add(row.pair, row.algorithm, row.disparities, row.rates.precision.of,
               percent_text(row.rates.precision), row.rates.recall.of, percent_text(row.rates.recall),
-              number_text(row.rates.f_score(), 3));
+              row.rates.recall.of > 0 ? number_text(row.rates.f_score(), 3) : "-");
     for (const Share& share : row.within_m) table.rows.back().push_back(percent_text(share));
   }
   return table;
