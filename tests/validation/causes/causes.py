@@ -47,10 +47,10 @@ FAULTS = {
     "two: forgetting, yaw step": (["joint", "forgotten", "wrong place"], {"faults": f"[{FORGET}]", **TURNED}),
 }
 # Few flights of dense (25 m^2 per tree, 10 m of sight) are lost with some faults, and most of them by chance: a search
-# cut short decides more where trees stand closer, lateness where the sight is short, and a pitot step only a filter
-# that goes on believing it.
+# cut short decides more where trees stand closer and are all seen, lateness where the sight is short, and a pitot step
+# only a filter that goes on believing it.
 SETTINGS = {"80 ms more latency": {"perception.depths_m": "[6]"},
-            "5 iterations, no fallback": {"forest.square_metres_per_tree": 16},
+            "5 iterations, no fallback": {"forest.square_metres_per_tree": 12, "perception.detector": "true_depth"},
             "a pitot step": {"estimation.filter.distrust.exclude": "false"}}
 SCENARIOS = ["paper", "dense", "woods_dense", "rough_sensors", "inventory_5cm", "inventory_3cm"]
 CAUSES = ["never in view", "seen too late", "not detected", "false obstacle", "forgotten", "wrong place", "sensor's fault",
