@@ -169,10 +169,11 @@ Conclusion conclusion_of(const Explanation& explanation, const std::vector<Evide
   if (explanation.cause == "chance")
     return {"chance",
             last_chance + ", and no part would have helped: with other noise it might have arrived."};
-  const std::string_view needed = explanation.parts.empty() ? "" : ", though not without an ideal ";
-  if (explanation.cause == "joint")
+  if (explanation.cause == "joint") {
+    const std::string_view needed = explanation.parts.empty() ? "" : ", though not without an ideal ";
     return {"joint", fmt::format("{}; no single part would have helped, but all of them together{}{}.",
                                  last_chance, needed, fmt::join(explanation.parts, " or "))};
+  }
   const Effect& effect = *std::ranges::find(explanation.effects, explanation.cause, &Effect::part);
   Conclusion conclusion;
   // Sight saves also whoever missed a thing while it stood where the detector looks: an ideal detection that

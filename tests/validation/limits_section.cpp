@@ -168,12 +168,13 @@ Section limits_section() {
     panels.push_back(panel);
   }
   for (const double speed_mps : {9.0, 10.0, 11.0, 12.0}) {
-    const double critical = critical_m2(speed_mps), radius_m = turn_radius_m(speed_mps);
-    section.row("phase", fmt::format("{:.0f} | {:.1f} | {:.1f} | {:.1f}", speed_mps, radius_m, critical,
-                                     radius_m * radius_m / critical));
+    const double critical = critical_m2(speed_mps), radius_m = turn_radius_m(speed_mps),
+                 trees = radius_m * radius_m / critical;
+    section.row("phase",
+                fmt::format("{:.0f} | {:.1f} | {:.1f} | {:.1f}", speed_mps, radius_m, critical, trees));
     if (speed_mps == 9 || speed_mps == 12)
       without_unit.references.push_back(
-          {std::log10(radius_m * radius_m / critical), fmt::format("no way, {:.0f} m/s", speed_mps), true});
+          {std::log10(trees), fmt::format("no way, {:.0f} m/s", speed_mps), true});
     for (const double per_tree_m2 : {49.0, 25.0, 16.0, 9.0}) {
       std::string cells = fmt::format("{:.0f} | {:.0f}", speed_mps, std::sqrt(per_tree_m2));
       for (const Eyes& eyes : all_eyes)

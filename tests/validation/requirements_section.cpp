@@ -118,12 +118,6 @@ LinePlot panel_of(const Property& property, const std::map<Cell, Curve>& curves)
   const std::vector<double>& values = curves.begin()->second.values;
   for (std::size_t i = 0; i < values.size(); ++i)
     panel.x_names.emplace_back(static_cast<double>(i), fmt::format("{}", values[i]));
-  std::vector<Series> detectors;
-  for (const auto& [value, whose, colour] :
-       {std::tuple(property.pushbroom, "pushbroom", 4), std::tuple(property.stereo_bm, "StereoBM", 5)})
-    if (const double at = place_of(values, value); std::isfinite(value))
-      detectors.push_back(
-          {.name = whose, .x = {at, at}, .y = {0, 102}, .mark = Mark::dashes, .colour = colour});
   for (std::size_t i = 0; i < cells.size(); ++i) {
     Series series{
         .name = fmt::format("{:.0f} m/s, {:.0f} m", cells[i].speed_mps, std::sqrt(cells[i].per_tree_m2)),
@@ -137,7 +131,13 @@ LinePlot panel_of(const Property& property, const std::map<Cell, Curve>& curves)
     }
     panel.series.push_back(series);
   }
-  panel.series.insert(panel.series.end(), detectors.begin(), detectors.end());
+  for (const auto& [value, whose, colour] :
+       {std::tuple(property.pushbroom, "pushbroom", 4), std::tuple(property.stereo_bm, "StereoBM", 5)}) {
+    if (std::isnan(value)) continue;
+    const double at = place_of(values, value);
+    panel.series.push_back(
+        {.name = whose, .x = {at, at}, .y = {0, 102}, .mark = Mark::dashes, .colour = colour});
+  }
   return panel;
 }
 
