@@ -70,7 +70,8 @@ void SyntheticDetector::add_false_points() {
   const int count = std::poisson_distribution<int>(config_.false_points)(generator_);
   for (int i = 0; i < count; ++i) {
     const auto& [near_m, far_m] = intervals_[interval(generator_)];
-    const double depth_m = std::uniform_real_distribution<double>(near_m, std::min(far_m, 100.0))(generator_);
+    const double end_m = std::max(near_m, std::min(far_m, 100.0));
+    const double depth_m = std::uniform_real_distribution<double>(near_m, end_m)(generator_);
     hits_.push_back(truth_.hit_at(row(generator_), column(generator_), depth_m));
   }
   std::ranges::stable_sort(hits_, {},

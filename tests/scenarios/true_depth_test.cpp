@@ -248,6 +248,29 @@ TEST(Synthetic, ErrorsAreOfDisparity) {
   EXPECT_NEAR(spread_m, 0.5 * 4.8 * 4.8 / (scene.rig.focal_px * scene.rig.baseline_m), 0.05 * spread_m);
 }
 
+/// Any keys that a scenario may have, at their bounds too: every hit is a point before the camera.
+TEST(Synthetic, WhateverItsKeysSayItsHitsLieBeforeTheCamera) {
+  SyntheticWall scene;
+  std::mt19937_64 generator(5);
+  const auto any_of = [&](std::vector<double> values) { return values[generator() % values.size()]; };
+  for (int i = 0; i < 300; ++i) {
+    SyntheticConfig config{{},
+                           any_of({0, 0.5, 1}),
+                           any_of({0, 0.5, 1}),
+                           any_of({0, 0.9, 1}),
+                           any_of({0, 3, 1000}),
+                           any_of({0, 0.3, 20})};
+    for (std::uint64_t n = generator() % 4; n > 0; --n)
+      config.depths_m.push_back(any_of({0.1, 2, 4.8, 60, 1000}));
+    SyntheticDetector detector(scene.rig, scene.wall, scene.scene.history, config,
+                               {any_of({0.1, 1.5, 90}), 15000}, generator());
+    for (const StereoHit& hit : detector.detect(scene.scene.frame)) {
+      ASSERT_TRUE(hit.position_camera.allFinite() && hit.position_camera.z() > 0) << hit.position_camera.z();
+      ASSERT_TRUE(std::isfinite(hit.disparity_px));
+    }
+  }
+}
+
 TEST(SegmentDistance, ClosedForms) {
   EXPECT_NEAR(segment_distance_m({{-1, 0, 0}, {1, 0, 0}}, {{0, -1, 2}, {0, 1, 2}}), 2,
               1e-12);  // skew, both inside
