@@ -71,6 +71,7 @@ class FieldReader : public FieldVisitor {
   void words(std::string_view name, std::vector<std::string>& values, std::string_view meaning) override {
     const TextNode* node = take(name);
     if (node == nullptr) return;
+    meaning = meaning.substr(0, meaning.find(": "));
     const bool is_list = node->kind == TextNode::Kind::list;
     const std::vector<TextNode> given = is_list ? node->children : std::vector{*node};
     values.clear();

@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
+#include "scenarios/config/config_tree.hpp"
 #include "scenarios/explain/explain_campaign.hpp"
 #include "scenarios/explain/explain_report.hpp"
 #include "scenarios/flight/flight_page.hpp"
@@ -93,6 +95,10 @@ int explain_run(const ExplainArguments& arguments) {
   const fs::path run = arguments.folder;
   const Scenario scenario = scenario_of_run(run);
   const std::string digest = digest_of_run(run);
+  auto result = parse_json(read_file(run / "result.json", maximum_json_bytes));
+  if (result["outcome"] == "goal")
+    throw ScenarioError(
+        fmt::format("{}: this flight reached its goal; only a lost flight is explained", run.string()));
   FolderMark mark(run, flight_results, run);
   mark.require_own("explain.json");
   const Unfinished work(run / ".explain");
@@ -115,7 +121,9 @@ int explain_run(const ExplainArguments& arguments) {
 
 int run_explain(const ExplainArguments& arguments) {
   if (!holds_campaign(arguments.folder)) return explain_run(arguments);
-  if (arguments.first_seed != 1) throw ScenarioError("--first-seed: is for the folder of a run");
+  if (arguments.first_seed != 1)
+    throw ScenarioError(
+        "--first-seed: is for the folder of a run; fly a campaign's flight again to explain it twice");
   explain_campaign(arguments.folder, arguments.renderer, jobs_or_cores(arguments.jobs), arguments.flights);
   return exit_goal;
 }

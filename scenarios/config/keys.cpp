@@ -72,6 +72,9 @@ class KeyLister : public FieldVisitor {
     add(name, chosen < words.size() ? words[chosen] : "", fmt::format("{}", fmt::join(words, " | ")),
         meaning);
   }
+  void words(std::string_view name, std::vector<std::string>& values, std::string_view meaning) override {
+    add(name, fmt::format("[{}]", fmt::join(values, ", ")), "[words]", meaning);
+  }
   void numbers(std::string_view name, FieldNumbers& numbers, std::string_view meaning) override {
     add(name, value_text(numbers),
         number_text(numbers, numbers.minimum) + " .. " + number_text(numbers, numbers.maximum), meaning);

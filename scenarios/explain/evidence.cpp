@@ -189,8 +189,8 @@ Conclusion conclusion_of(const Explanation& explanation, const std::vector<Evide
   const std::string beginning = is_shown ? std::string(lead(conclusion.cause))
                                          : fmt::format("An ideal {} would have saved it", explanation.cause);
   conclusion.sentence = fmt::format(
-      "{}: of {} flights that went on from {} s before its end, {} survived with an ideal {}, and {} "
-      "without. {}",
+      "{}: of {} pairs of flights that went on from {} s before its end, {} survived with an ideal {}, and "
+      "{} without. {}",
       beginning, effect.pairs.pairs(), fmt::join(explanation.decisive_s, " or "), effect.pairs.second(),
       explanation.cause, effect.pairs.first(), shown != evidence.end() ? shown->sentence : "");
   if (!is_shown)

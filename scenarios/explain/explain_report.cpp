@@ -113,18 +113,18 @@ std::vector<SheetSection> explanation_chapter(const ToldExplanation& told) {
 Table effects_table(const Explanation& explanation) {
   Table table{{"ideal part"}};
   for (const double moment_s : explanation.decisive_s)
-    table.head.push_back(fmt::format("survived from {:.2f} s", moment_s));
-  table.head.insert(table.head.end(), {"more survive, %", "95 %", "pairs"});
+    table.head.push_back(fmt::format("with and without, {:.2f} s", moment_s));
+  table.head.insert(table.head.end(), {"effect, % (95 %)", "pairs"});
   for (const Effect& effect : explanation.effects) {
     std::vector<std::string>& cells = table.rows.emplace_back();
     cells.push_back(effect.part);
     for (const double moment_s : explanation.decisive_s) {
       const PairedOutcomes at = pairs_at(explanation, effect.part, moment_s);
-      cells.push_back(fmt::format("{} of {}, control {}", at.second(), at.pairs(), at.first()));
+      cells.push_back(fmt::format("{} and {} of {}", at.second(), at.first(), at.pairs()));
     }
-    cells.push_back(fmt::format("{:+.0f}", 100 * effect.difference()));
-    cells.push_back(
-        fmt::format("{:+.0f} to {:+.0f}", 100 * effect.interval().minimum, 100 * effect.interval().maximum));
+    const Interval interval = effect.interval();
+    cells.push_back(fmt::format("{:+.0f} ({:+.0f} to {:+.0f})", 100 * effect.difference(),
+                                100 * interval.minimum, 100 * interval.maximum));
     cells.push_back(fmt::format("{}", effect.pairs.pairs()));
   }
   return table;

@@ -142,10 +142,11 @@ void visit_fields(FieldVisitor& visit, AutopilotSection& section) {
 
 void visit_fields(FieldVisitor& visit, IdealConfig& ideal) {
   visit("parts", ideal.parts,
-        "one or more parts of the stack, which are replaced by ideal ones from from_s on: detection finds "
-        "every obstacle at the depths in use and nothing else; sight finds all that stands within 40 m; map "
-        "forgets and filters nothing away; state is the truth; latency is none; search is 20 times as long; "
-        "tracking flies the plan as the planner predicts it. Understory explain uses it. | docs/explain.md");
+        "one or more of detection, sight, map, state, latency, search and tracking: parts of the stack that "
+        "are replaced by ideal ones from from_s on. Detection finds every obstacle at the depths in use and "
+        "nothing else; sight finds all that stands within 40 m; map forgets and filters nothing away; state "
+        "is the truth; latency is none; search is 20 times as long; tracking flies the plan as the planner "
+        "predicts it. The command explain uses it. | docs/explain.md");
   visit("from_s", ideal.from_s, 0.0, 600.0,
         "simulated time from which the parts are ideal and noise is redrawn");
   visit("redraw", ideal.redraw, std::uint64_t{0}, maximum_seed,
