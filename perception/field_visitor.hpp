@@ -58,7 +58,7 @@ class FieldVisitor {
   /// From 0 to `maximum`. A search does not vary it, because it only selects random numbers.
   virtual void seed(std::string_view /*name*/, std::uint64_t& /*value*/, std::uint64_t /*maximum*/,
                     std::string_view /*meaning*/) {}
-  /// One word or more.
+  /// Any number of words.
   virtual void words(std::string_view /*name*/, std::vector<std::string>& /*values*/,
                      std::string_view /*meaning*/) {}
   /// Keys as written in the file, if only the struct's owner knows their names (perception/io/text_tree).

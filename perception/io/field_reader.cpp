@@ -71,7 +71,7 @@ class FieldReader : public FieldVisitor {
   void words(std::string_view name, std::vector<std::string>& values, std::string_view meaning) override {
     const TextNode* node = take(name);
     if (node == nullptr) return;
-    meaning = meaning.substr(0, meaning.find(": "));
+    meaning = meaning.substr(0, meaning.find(": "));  // the words, without what each does
     const bool is_list = node->kind == TextNode::Kind::list;
     const std::vector<TextNode> given = is_list ? node->children : std::vector{*node};
     values.clear();
@@ -79,7 +79,6 @@ class FieldReader : public FieldVisitor {
       if (word.kind != TextNode::Kind::scalar || word.text.empty()) refuse(word, name, meaning);
       values.push_back(word.text);
     }
-    if (values.empty()) refuse(*node, name, meaning);
   }
 
   void tree(std::string_view name, TextNode& value, std::string_view) override {

@@ -142,7 +142,7 @@ void visit_fields(FieldVisitor& visit, AutopilotSection& section) {
 
 void visit_fields(FieldVisitor& visit, IdealConfig& ideal) {
   visit("parts", ideal.parts,
-        "one or more of detection, sight, map, state, latency, search and tracking: parts of the stack that "
+        "some of detection, sight, map, state, latency, search and tracking: parts of the stack that "
         "are replaced by ideal ones from from_s on. Detection finds every obstacle at the depths in use and "
         "nothing else; sight finds all that stands within 40 m; map forgets and filters nothing away; state "
         "is the truth; latency is none; search is 20 times as long; tracking flies the plan as the planner "
