@@ -2,11 +2,9 @@
 
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "scenarios/cli/arguments.hpp"
 #include "scenarios/cli/commands.hpp"
-#include "scenarios/config/config_tree.hpp"
 #include "scenarios/explain/explain_campaign.hpp"
 #include "scenarios/explain/explain_report.hpp"
 #include "scenarios/flight/flight_page.hpp"
@@ -94,9 +92,8 @@ Explained explained_flight(const Scenario& scenario, ExplainOptions options, Pro
 int explain_run(const ExplainArguments& arguments) {
   const fs::path run = arguments.folder;
   const Scenario scenario = scenario_of_run(run);
-  const std::string digest = digest_of_run(run);
-  auto result = parse_json(read_file(run / "result.json", maximum_json_bytes));
-  if (result["outcome"] == "goal")
+  const RunResult result = result_of_run(run);
+  if (result.reached_goal)
     throw ScenarioError(
         fmt::format("{}: this flight reached its goal; only a lost flight is explained", run.string()));
   FolderMark mark(run, flight_results, run);
@@ -113,7 +110,7 @@ int explain_run(const ExplainArguments& arguments) {
   fmt::print("{}\n{}\n{}\n{}", explained.conclusion.sentence, to_text(effects_table(why)),
              to_text(chances_table(why)),
              explained.conclusion.disagreement.empty() ? "" : explained.conclusion.disagreement + "\n");
-  const std::string warning = warning_of_digest(explained.flight.log.result, digest);
+  const std::string warning = warning_of_digest(explained.flight.log.result, result.digest);
   if (!warning.empty()) fmt::print("{}\n", warning);
   write_page(explained.flight, explained.json, run, warning, mark);
   return exit_goal;

@@ -139,7 +139,7 @@ int report_from_log(const ReportArguments& arguments) {
   AgainOutput output(arguments, flight_results, "report.html");
   const FlightLog log = log_of_run(run);
   FlightPageExtras extras{data_root()};
-  extras.warning = warning_of_digest(log.result, digest_of_run(run));
+  extras.warning = warning_of_digest(log.result, result_of_run(run).digest);
   extras.chapter = chapter_of(run);
   write_whole_file(output.file, flight_page(log, extras), output.listed_in());
   return told(output.file, extras.warning, arguments.quiet);
@@ -150,7 +150,7 @@ int run_report(const ReportArguments& arguments) {
   const fs::path run = arguments.folder;
   const Scenario scenario = scenario_of_run(run);
   FlyOptions options;
-  options.expected_digest = digest_of_run(run);
+  options.expected_digest = result_of_run(run).digest;
   options.report = true;
   options.video = true;
   options.chapter = chapter_of(run);
@@ -207,10 +207,10 @@ int run_mcap(const McapArguments& arguments) {
     AgainOutput output(arguments, flight_results, "flight.mcap");
     const FlightLog log = log_of_run(run);
     FlightMcap(log, output.file, arguments.exact_images, output.listed_in()).write_whole_log();
-    return told(output.file, warning_of_digest(log.result, digest_of_run(run)), arguments.quiet);
+    return told(output.file, warning_of_digest(log.result, result_of_run(run).digest), arguments.quiet);
   }
   FlyOptions options;
-  options.expected_digest = digest_of_run(run);
+  options.expected_digest = result_of_run(run).digest;
   AgainOutput output(arguments, flight_results, "flight.mcap");
   FlightLogger logger;
   FlightMcap mcap(logger.log(), output.file, arguments.exact_images, output.listed_in());
@@ -228,14 +228,14 @@ void add_again_options(Command& command, AgainArguments& arguments, const char* 
 
 }  // namespace
 
-std::string digest_of_run(const fs::path& run) {
+RunResult result_of_run(const fs::path& run) {
   const fs::path file = run / "result.json";
   std::error_code ignored;
-  if (!fs::exists(file, ignored)) return "";
+  if (!fs::exists(file, ignored)) return {};
   const auto json = parse_json(read_file(file, maximum_json_bytes));
   if (!json.is_object() || !json.contains("digest") || !json["digest"].is_string())
     throw ScenarioError(fmt::format("{}: not a flight's result with a digest", file.string()));
-  return json["digest"];
+  return {json["digest"], json.contains("outcome") && json["outcome"] == word_for(Outcome::goal)};
 }
 
 void add_report_command(CommandLine& line) {

@@ -38,9 +38,13 @@ void add_plugin_command(CommandLine& line);
 int report(const CampaignFolder& folder, const Campaign& campaign, const Collected& collected,
            const std::filesystem::path& junit = {});
 
-/// The digest in a run's result.json; empty where the run never came to its end. Throws ScenarioError where
-/// the file is none.
-std::string digest_of_run(const std::filesystem::path& run);
+/// What a run's result.json says.
+struct RunResult {
+  std::string digest;  ///< empty where the run never came to its end
+  bool reached_goal = false;
+};
+/// Throws ScenarioError where the file is none.
+RunResult result_of_run(const std::filesystem::path& run);
 
 /// Explains the lost flights of a campaign that are not explained yet, and writes what came of it into its
 /// tables. A signal leaves what is explained until then.
