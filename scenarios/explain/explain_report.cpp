@@ -114,7 +114,7 @@ Table effects_table(const Explanation& explanation) {
   Table table{{"ideal part"}};
   for (const double moment_s : explanation.decisive_s)
     table.head.push_back(fmt::format("with and without, {:.2f} s", moment_s));
-  table.head.insert(table.head.end(), {"effect, % (95 %)", "pairs"});
+  table.head.emplace_back("effect, % (95 %)");
   for (const Effect& effect : explanation.effects) {
     std::vector<std::string>& cells = table.rows.emplace_back();
     cells.push_back(effect.part);
@@ -125,7 +125,6 @@ Table effects_table(const Explanation& explanation) {
     const Interval interval = effect.interval();
     cells.push_back(fmt::format("{:+.0f} ({:+.0f} to {:+.0f})", 100 * effect.difference(),
                                 100 * interval.minimum, 100 * interval.maximum));
-    cells.push_back(fmt::format("{}", effect.pairs.pairs()));
   }
   return table;
 }

@@ -92,7 +92,7 @@ class Flights:
         """Adds these rows, which are dictionaries, to that table."""
         rows = [*self.kept(table), *rows]
         with open(self.out / f"{table}.csv", "w", newline="") as text:
-            writer = csv.DictWriter(text, rows[0].keys(), lineterminator="\n")
+            writer = csv.DictWriter(text, rows[-1].keys(), restval="", lineterminator="\n")
             writer.writeheader()
             writer.writerows(rows)
 
@@ -133,11 +133,11 @@ class Flights:
         with ThreadPoolExecutor(self.arguments.at_once) as pool:
             found = list(pool.map(lambda seed: self.explain(self.out / folder / f"{name}-{seed}", condition, seed, *options),
                                   seeds_left))
-        for seed, one in zip(seeds_left, found):
-            best = ", ".join(f"{e['part']} {e['difference']:+.2f}" for e in one["effects"][:4])
-            print(f"  {name} {seed}: {one['cause']} ({one['part']}): {best}", flush=True)
-        new = [{"of": of, "seed": seed, "folder": folder, "cause": one["cause"], "part": one["part"]}
+        new = [{"of": of, "seed": seed, "folder": folder, "cause": one["cause"], "part": one["part"],
+                "effects": ", ".join(f"{e['part']} {e['difference']:+.2f}" for e in one["effects"])}
                for seed, one in zip(seeds_left, found)]
+        for row in new:
+            print(f"  {name} {row['seed']}: {row['cause']} ({row['part']}): {row['effects']}", flush=True)
         if new:
             self.keep("explained", *new)
         return [kept[seed] for seed in seeds if seed in kept] + new
