@@ -83,7 +83,8 @@ Explained explained_flight(const Scenario& scenario, ExplainOptions options, Pro
               flown_after + most - std::min(flown, most));
   };
   Explained explained{explain_flight(scenario, options), {}, ""};
-  const std::vector<Evidence> evidence = evidence_in(explained.flight.log);
+  const std::vector<Evidence> evidence =
+      evidence_in(explained.flight.log, explained.flight.explanation.decisive_s.back());
   explained.conclusion = conclusion_of(explained.flight.explanation, evidence);
   explained.json = to_json(explained.flight, evidence, explained.conclusion);
   return explained;

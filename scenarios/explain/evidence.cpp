@@ -90,16 +90,18 @@ Evidence of_lateness(const FlightLog& log) {
           fmt::format("Frames were {:.0f} ms old when the autopilot had them.", 1e3 * mean_s)};
 }
 
-Evidence of_search(const FlightLog& log) {
+Evidence of_search(const FlightLog& log, double last_chance_s) {
+  const std::int64_t last_ns = end_ns(log) - nanoseconds(last_chance_s);
   std::size_t fallbacks = 0, plans = 0;
   for (const LogPlan& plan : log.plans) {
-    if (plan.t_ns < end_ns(log) - lately_ns) continue;
+    if (plan.t_ns < last_ns - lately_ns || plan.t_ns > last_ns) continue;
     ++plans;
     fallbacks += plan.origin == PlanOrigin::fallback;
   }
   return {"not found", "search", fallbacks > 0,
-          fmt::format("Of its last {} plans {} were emergency manoeuvres, since no free way was found.",
-                      plans, fallbacks)};
+          fmt::format("Of the {} plans of the {:.1f} s until {:.2f} s before its end {} were emergency "
+                      "manoeuvres, since no free way was found.",
+                      plans, 1e-9 * lately_ns, last_chance_s, fallbacks)};
 }
 
 /// How far the aircraft came to be from where its plans, a moment before, expected it.
@@ -144,7 +146,7 @@ std::string_view lead(std::string_view cause) {
 
 }  // namespace
 
-std::vector<Evidence> evidence_in(const FlightLog& log) {
+std::vector<Evidence> evidence_in(const FlightLog& log, double last_chance_s) {
   const FlightStory story = story_of(log);
   std::vector<Evidence> all;
   if (story.touched) all = of_obstacle(*story.touched, log);
@@ -154,7 +156,7 @@ std::vector<Evidence> evidence_in(const FlightLog& log) {
     all.push_back({"sensor's fault", "state", true, fmt::format("A sensor failed: {}.", failed)});
   all.push_back(of_place(log, story.touched));
   all.push_back(of_lateness(log));
-  all.push_back(of_search(log));
+  all.push_back(of_search(log, last_chance_s));
   all.push_back(of_tracking(log));
   return all;
 }

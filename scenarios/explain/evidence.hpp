@@ -18,7 +18,8 @@ struct Evidence {
 };
 
 /// Of every cause that a part has, whether it is there or not; a fault of a sensor only where there is one.
-std::vector<Evidence> evidence_in(const FlightLog& log);
+/// `last_chance_s` before the end (Explanation::decisive_s): a search that fails later decides nothing.
+std::vector<Evidence> evidence_in(const FlightLog& log, double last_chance_s);
 
 /// The explanation in words.
 struct Conclusion {

@@ -93,10 +93,14 @@ ExplainedFlight explain_flight(const Scenario& scenario, const ExplainOptions& o
     flown += asked.size();
   };
   const double launch_s = logger.log().launch_ns ? seconds(*logger.log().launch_ns) : 0;
-  ExplanationOptions inquiry{
-      moments_of(end_s - launch_s), options.flights, static_cast<std::uint64_t>(options.first_seed), {}};
-  for (const Evidence& one : evidence_in(logger.log()))
-    if (one.is_there) inquiry.shown.push_back(one.part);
+  const auto shown = [&](double last_chance_s) {
+    std::vector<std::string> parts;
+    for (const Evidence& one : evidence_in(logger.log(), last_chance_s))
+      if (one.is_there) parts.push_back(one.part);
+    return parts;
+  };
+  const ExplanationOptions inquiry{moments_of(end_s - launch_s), options.flights,
+                                   static_cast<std::uint64_t>(options.first_seed), shown};
   return {logger.log(), explain(inquiry, fly_redraws)};
 }
 

@@ -16,7 +16,8 @@ constexpr int kept_back = 14;       ///< of the flights, for the question which 
 /// A part that sees everything can make up for most faults of others: it is the cause only where no other
 /// part has this share of its effect. Detection at the depths in use comes before it, too. Among the others a
 /// part that has this share of the greatest effect is the cause if the log shows its fault, and not that of
-/// the greater ones: chance decides between effects so close.
+/// the greater ones: chance decides between effects so close. Where the planner found a free way each time, a
+/// longer search found only a better one, and comes after sight where sight does more.
 constexpr double comparable = 0.5;
 
 std::vector<std::string> all_parts() { return {ideal_part_names.begin(), ideal_part_names.end()}; }
@@ -166,14 +167,18 @@ class Inquiry {
     answer();
   }
 
+  bool is_shown(const std::string& part) const {
+    const std::vector<std::string> shown = options_.shown(result_.decisive_s.back());
+    return std::ranges::find(shown, part) != shown.end();
+  }
+
   /// The part with the greatest effect that is told from zero, or a comparable one that the log shows.
   const Effect* best_but_sight() const {
     const Effect* best = nullptr;
     for (const Effect& effect : result_.effects) {
       if (effect.part == all_ideal || effect.part == "sight" || !effect.is_told_from_zero()) continue;
       if (best == nullptr) best = &effect;
-      const bool is_shown = std::ranges::find(options_.shown, effect.part) != options_.shown.end();
-      if (is_shown && effect.difference() >= comparable * best->difference()) return &effect;
+      if (is_shown(effect.part) && effect.difference() >= comparable * best->difference()) return &effect;
     }
     return best;
   }
@@ -181,9 +186,9 @@ class Inquiry {
   void decide() {
     const Effect* best = best_but_sight();
     const Effect& sight = effect_of("sight");
-    if (sight.is_told_from_zero() &&
-        (best == nullptr || best->difference() < comparable * sight.difference()))
-      best = &sight;
+    const bool had_found = best != nullptr && best->part == "search" && !is_shown("search");
+    const double needed = (had_found ? 1 : comparable) * sight.difference();
+    if (sight.is_told_from_zero() && (best == nullptr || best->difference() < needed)) best = &sight;
     if (best != nullptr) {
       result_.cause = best->part;
       return;

@@ -56,7 +56,8 @@ struct Explanation {
   /// (before the parts were tried: the decisive moments lie around it), before the end; nothing
   /// where it is smaller at every moment that was tried.
   std::optional<double> last_chance_s;
-  std::vector<double> decisive_s;  ///< the moments whose pairs make the effects
+  /// The moments whose pairs make the effects; the greatest is the last chance or, without one, the earliest.
+  std::vector<double> decisive_s;
   std::vector<Effect> effects;     ///< the greatest first
   std::string cause;               ///< a part; joint, infeasible or chance
   std::vector<std::string> parts;  ///< of a joint cause: those that act together
@@ -66,10 +67,11 @@ struct Explanation {
 void summarise(Explanation& explanation);
 
 struct ExplanationOptions {
-  std::vector<double> moments_s;   ///< before the end, increasing
-  int flights = 170;               ///< at most so many
-  std::uint64_t first_seed = 1;    ///< of the redraws: others give an independent second opinion
-  std::vector<std::string> shown;  ///< parts whose fault the flight's log shows
+  std::vector<double> moments_s;  ///< before the end, increasing
+  int flights = 170;              ///< at most so many
+  std::uint64_t first_seed = 1;   ///< of the redraws: others give an independent second opinion
+  /// Parts whose fault the flight's log shows, given the last chance (Explanation::decisive_s).
+  std::function<std::vector<std::string>(double last_chance_s)> shown;
 };
 
 /// Moments to try for a flight that was in the air for `flown_s`.

@@ -20,14 +20,14 @@ using Law = std::function<double(const Parts& parts, double before_end_s)>;
 bool has(const Parts& parts, std::string_view part) { return std::ranges::find(parts, part) != parts.end(); }
 
 /// Draws by the law; the same noise has the same luck, whatever the parts.
-Explanation explained(const Law& law, std::uint64_t luck = 1, Parts shown = {}) {
+Explanation explained(const Law& law, std::uint64_t luck = 1, const Parts& shown = {}) {
   const FlyRedraws fly = [&](std::vector<Redraw>& asked) {
     for (Redraw& one : asked) {
       const std::uint64_t mixed = seed_for(luck * 1000 + one.seed, std::to_string(one.before_end_s));
       one.survived = static_cast<double>(mixed >> 11) * 0x1p-53 < law(one.parts, one.before_end_s);
     }
   };
-  return explain({moments_of(8), 170, 1, std::move(shown)}, fly);
+  return explain({moments_of(8), 170, 1, [&](double) { return shown; }}, fly);
 }
 
 /// The control survives from 1.5 s before the end in six of ten.
@@ -114,6 +114,16 @@ TEST(Explanation, OfComparableEffectsTheOneWhoseFaultTheLogShowsIsTheCause) {
   EXPECT_GE(by_the_effect, 19);
 }
 
+/// A planner that found a way each time did not want for a longer search.
+TEST(Explanation, ASearchThatDidNotFailComesAfterASightThatDoesMore) {
+  const auto law = [](const Parts& parts, double before_end_s) {
+    if (before_end_s < 0.75) return 0.0;
+    return has(parts, "sight") ? 0.95 : has(parts, "search") ? 0.8 : chaotic(before_end_s);
+  };
+  EXPECT_EQ(explained(law).cause, "sight");
+  EXPECT_EQ(explained(law, 1, {"search"}).cause, "search");
+}
+
 TEST(Explanation, EqualAnswersGiveEqualQuestions) {
   const Law law = [](const Parts& parts, double before_end_s) {
     return has(parts, "map") ? 0.7 : chaotic(before_end_s);
@@ -130,11 +140,26 @@ TEST(Evidence, OnlyAFaultOfASensorIsASensorsFault) {
   explanation.cause = "state";
   explanation.decisive_s = {1};
   explanation.effects.emplace_back().part = "state";
-  EXPECT_EQ(conclusion_of(explanation, evidence_in(log)).cause, "wrong place");
+  EXPECT_EQ(conclusion_of(explanation, evidence_in(log, 1)).cause, "wrong place");
   log.scenario.faults = {{FaultySensor::pitot, FaultKind::bias, 3}};
-  EXPECT_EQ(conclusion_of(explanation, evidence_in(log)).cause, "sensor's fault");
+  EXPECT_EQ(conclusion_of(explanation, evidence_in(log, 1)).cause, "sensor's fault");
   log.scenario.faults = {{FaultySensor::camera, FaultKind::cover, 3}};
-  EXPECT_EQ(conclusion_of(explanation, evidence_in(log)).cause, "wrong place");
+  EXPECT_EQ(conclusion_of(explanation, evidence_in(log, 1)).cause, "wrong place");
+}
+
+TEST(Evidence, AnEmergencyAfterTheLastChanceIsNoFailedSearch) {
+  FlightLog log;
+  log.moments.resize(2);
+  log.moments[1].t_ns = 5'000'000'000;
+  log.plans.resize(1);
+  log.plans[0].t_ns = 4'000'000'000;
+  log.plans[0].origin = PlanOrigin::fallback;
+  const auto is_shown = [&](double last_chance_s) {
+    const std::vector<Evidence> all = evidence_in(log, last_chance_s);
+    return std::ranges::find(all, "search", &Evidence::part)->is_there;
+  };
+  EXPECT_TRUE(is_shown(0.75));
+  EXPECT_FALSE(is_shown(1.5));
 }
 
 /// A detection that becomes ideal when the thing has passed the depth that is looked at does not find it.
