@@ -46,21 +46,21 @@ Evidence of_false_points(const FlightLog& log) {
                       all)};
 }
 
-/// Of what was touched.
+/// Of what was touched. Where the log shows no fault of a part, the part's first entry gives the words.
 std::vector<Evidence> of_obstacle(const ObstacleStory& touched, const FlightLog& log) {
   const std::string& name = log.obstacles[touched.obstacle].name;
   const bool was_in_view = touched.in_view_s.has_value(), was_detected = touched.detected_s.has_value();
   const double end_s = seconds(end_ns(log));
   std::vector<Evidence> all;
   const bool was_at_depth = was_in_view && touched.in_view_at_depth != false;
-  all.push_back({"never in view", "sight", !was_at_depth,
-                 fmt::format("{} was {}in view at a depth that the detector looks at.", name,
-                             was_at_depth ? "" : "never ")});
   const double ahead_s = was_detected ? end_s - *touched.detected_s : 0;
   all.push_back({"seen too late", "sight", was_detected && ahead_s < short_s,
                  was_detected ? fmt::format("{} was first detected {:.2f} s before the end, {:.1f} m away.",
                                             name, ahead_s, touched.detected_m)
                               : fmt::format("{} was never detected.", name)});
+  all.push_back({"never in view", "sight", !was_at_depth,
+                 fmt::format("{} was {}in view at a depth that the detector looks at.", name,
+                             was_at_depth ? "" : "never ")});
   all.push_back({"not detected", "detection", was_at_depth && touched.frames_with_hits < 3,
                  fmt::format("{} was detected in {} frames, with {} hits.", name, touched.frames_with_hits,
                              touched.hits)});
