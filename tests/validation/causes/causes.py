@@ -210,7 +210,9 @@ def bars(counts):
         for cause in shown:
             if some[cause]:
                 rows.append(f'<rect x="{x:.1f}" y="{y}" width="{some[cause] * scale:.1f}" height="22" stroke="white" '
-                            f'fill="{colours[CAUSES.index(cause)]}"><title>{cause}: {some[cause]}</title></rect>')
+                            f'fill="{colours[CAUSES.index(cause)]}"><title>{cause}: {some[cause]}</title></rect>'
+                            f'<text x="{x + some[cause] * scale / 2:.1f}" y="{y + 16}" text-anchor="middle" {text}>'
+                            f'{some[cause]}</text>')
                 x += some[cause] * scale
     for i, cause in enumerate(shown):
         y = 12 + 20 * i
