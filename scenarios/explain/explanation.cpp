@@ -167,10 +167,7 @@ class Inquiry {
     answer();
   }
 
-  bool is_shown(const std::string& part) const {
-    const std::vector<std::string> shown = options_.shown(result_.decisive_s.back());
-    return std::ranges::find(shown, part) != shown.end();
-  }
+  bool is_shown(const std::string& part) const { return std::ranges::find(shown_, part) != shown_.end(); }
 
   /// The part with the greatest effect that is told from zero, or a comparable one that the log shows.
   const Effect* best_but_sight() const {
@@ -184,6 +181,7 @@ class Inquiry {
   }
 
   void decide() {
+    shown_ = options_.shown(result_.decisive_s.back());
     const Effect* best = best_but_sight();
     const Effect& sight = effect_of("sight");
     const bool had_found = best != nullptr && best->part == "search" && !is_shown("search");
@@ -228,6 +226,7 @@ class Inquiry {
   const ExplanationOptions& options_;
   const FlyRedraws& fly_;
   std::vector<Redraw> asked_;
+  std::vector<std::string> shown_;  ///< parts whose fault the log shows
   Explanation result_;
 };
 
