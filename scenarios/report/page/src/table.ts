@@ -103,7 +103,7 @@ export function add_table(place: HTMLElement, label: string, columns: Column[]):
     columns.forEach(({ value, show }, i) => {
       const told = value(row);
       const text = told === null || Number.isNaN(told) ? "–" : typeof told === "number" ? told.toFixed(decimals[i]) : told;
-      const cell = line.appendChild(make("td", show ? "" : text, numeric[i] && !show ? "number" : text.length > 40 ? "long" : ""));
+      const cell = line.appendChild(make("td", show ? "" : text, numeric[i] && !show ? "number" : text.length > 30 ? "long" : ""));
       if (show) cell.append(show(row));
     });
     return line;
