@@ -181,8 +181,7 @@ int run_campaign(const CampaignArguments& arguments) {
     const int status = report(folder, campaign, collected, arguments.junit);
     if (campaign.recording.form) write_data_set_files(folder, collected.rows, *campaign.recording.form);
     if (arguments.explains)
-      explain_campaign(folder.path, arguments.renderer, jobs_or_cores(arguments.jobs),
-                       ExplainOptions().flights);
+      explain_campaign(folder.path, arguments.renderer, arguments.jobs, ExplainOptions().flights);
     return status;
   }
   if (on_slurm) {

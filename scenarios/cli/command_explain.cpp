@@ -41,8 +41,8 @@ Scenario scenario_of_run(const fs::path& run) {
 }
 
 /// The page without a film; one with a film stays, and `report` makes it anew.
-void write_page(const ExplainedFlight& explained, const std::string& json, const fs::path& run,
-                const std::string& warning, FolderMark& mark) {
+void write_page(const ExplainedFlight& explained, const fs::path& run, const std::string& warning,
+                FolderMark& mark) {
   std::error_code ignored;
   if (fs::exists(run / "flight.mp4", ignored) && fs::exists(run / "report.html", ignored)) {
     fmt::print("understory report {} puts this on the page, beside the film\n", run.string());
@@ -51,43 +51,28 @@ void write_page(const ExplainedFlight& explained, const std::string& json, const
   mark.require_own("report.html");
   FlightPageExtras extras{data_root()};
   extras.warning = warning;
-  extras.chapter = explanation_chapter(explanation_from_json(json, "explain.json"));
+  extras.chapter = explanation_chapter(explained.told);
   write_whole_file(run / "report.html", flight_page(explained.log, extras), &mark);
   fmt::print("page: {}\n", (run / "report.html").string());
 }
 
-ExplainOptions options_of(const fs::path& work, RendererKind renderer, int jobs, int flights,
-                          int first_seed = 1) {
-  return {.models_folder = data_root() / "models",
-          .work_folder = work,
-          .renderer = renderer,
-          .jobs = jobs,
-          .first_seed = first_seed,
-          .flights = flights};
-}
-
-/// What is found of one flight, as explain.json.
-struct Explained {
-  ExplainedFlight flight;
-  Conclusion conclusion;
-  std::string json;
-};
-
-/// `flown_before` and `flown_after` are the flights of the lost flights explained before and after it.
-Explained explained_flight(const Scenario& scenario, ExplainOptions options, ProgressLine& line,
-                           const std::string& title = "", std::size_t flown_before = 0,
-                           std::size_t flown_after = 0) {
-  const auto most = static_cast<std::size_t>(options.flights);
-  options.on_progress = [&](std::size_t flown) {
-    line.show(fmt::format("{}{} of at most {} flights", title, flown, most), flown_before + flown,
-              flown_after + most - std::min(flown, most));
-  };
-  Explained explained{explain_flight(scenario, options), {}, ""};
-  const std::vector<Evidence> evidence =
-      evidence_in(explained.flight.log, explained.flight.explanation.decisive_s.back());
-  explained.conclusion = conclusion_of(explained.flight.explanation, evidence);
-  explained.json = to_json(explained.flight, evidence, explained.conclusion);
-  return explained;
+/// The one with this index of `count` lost flights.
+ExplainedFlight explained_flight(const Scenario& scenario, const fs::path& work,
+                                 const ExplainArguments& asked, ProgressLine& line, std::size_t index = 0,
+                                 std::size_t count = 1) {
+  const auto most = static_cast<std::size_t>(asked.flights);
+  const std::string title = count > 1 ? fmt::format("lost flight {} of {}: ", index + 1, count) : "";
+  return explain_flight(scenario, {.models_folder = data_root() / "models",
+                                   .work_folder = work,
+                                   .renderer = asked.renderer,
+                                   .jobs = jobs_or_cores(asked.jobs),
+                                   .first_seed = asked.first_seed,
+                                   .flights = asked.flights,
+                                   .on_progress = [&](std::size_t flown) {
+                                     line.show(fmt::format("{}{} of at most {} flights", title, flown, most),
+                                               index * most + flown,
+                                               (count - index) * most - std::min(flown, most));
+                                   }});
 }
 
 int explain_run(const ExplainArguments& arguments) {
@@ -101,19 +86,14 @@ int explain_run(const ExplainArguments& arguments) {
   mark.require_own("explain.json");
   const Unfinished work(run / ".explain");
   ProgressLine line;
-  const Explained explained =
-      explained_flight(scenario,
-                       options_of(work.path(), arguments.renderer, jobs_or_cores(arguments.jobs),
-                                  arguments.flights, arguments.first_seed),
-                       line);
-  write_whole_file(run / "explain.json", explained.json, &mark);
-  const Explanation& why = explained.flight.explanation;
-  fmt::print("{}\n{}\n{}\n{}", explained.conclusion.sentence, to_text(effects_table(why)),
-             to_text(chances_table(why)),
-             explained.conclusion.disagreement.empty() ? "" : explained.conclusion.disagreement + "\n");
-  const std::string warning = warning_of_digest(explained.flight.log.result, result.digest);
+  const ExplainedFlight explained = explained_flight(scenario, work.path(), arguments, line);
+  write_whole_file(run / "explain.json", to_json(explained), &mark);
+  const auto& [why, conclusion, evidence] = explained.told;
+  fmt::print("{}\n{}\n{}\n{}", conclusion.sentence, to_text(effects_table(why)), to_text(chances_table(why)),
+             conclusion.disagreement.empty() ? "" : conclusion.disagreement + "\n");
+  const std::string warning = warning_of_digest(explained.log.result, result.digest);
   if (!warning.empty()) fmt::print("{}\n", warning);
-  write_page(explained.flight, explained.json, run, warning, mark);
+  write_page(explained, run, warning, mark);
   return exit_goal;
 }
 
@@ -122,7 +102,7 @@ int run_explain(const ExplainArguments& arguments) {
   if (arguments.first_seed != 1)
     throw ScenarioError(
         "--first-seed: is for the folder of a run; fly a campaign's flight again to explain it twice");
-  explain_campaign(arguments.folder, arguments.renderer, jobs_or_cores(arguments.jobs), arguments.flights);
+  explain_campaign(arguments.folder, arguments.renderer, arguments.jobs, arguments.flights);
   return exit_goal;
 }
 
@@ -134,7 +114,12 @@ void explain_campaign(const fs::path& path, RendererKind renderer, int jobs, int
   std::vector<FlightRow> lost = gather(folder, campaign).rows;
   if (std::ranges::none_of(lost, &FlightRow::flown))
     throw ScenarioError(fmt::format("{}: none of its flights is flown yet", path.string()));
-  std::erase_if(lost, [](const FlightRow& row) { return !row.flown() || row.reached_goal(); });
+  std::erase_if(lost, [](const FlightRow& row) {
+    return !row.flown() || row.reached_goal() || row.outcome == word_for(Outcome::time);
+  });
+  if (word_for(renderer) != campaign.renderer)
+    throw ScenarioError(fmt::format("{}: was drawn with --renderer {}; other images are other flights",
+                                    path.string(), campaign.renderer));
   prepare_output_folder(folder.path / "explained");
   std::vector<FlightRow> asked = lost;
   std::error_code ignored;
@@ -150,20 +135,19 @@ void explain_campaign(const fs::path& path, RendererKind renderer, int jobs, int
     const Scenario scenario =
         scenario_from_text(condition->scenario_text, condition->name, {fmt::format("seed={}", row.seed)});
     const Unfinished work(folder.path / ".explain");
-    const auto most = static_cast<std::size_t>(flights);
-    const Explained explained = [&] {
+    const ExplainedFlight explained = [&] {
       try {
-        return explained_flight(scenario, options_of(work.path(), renderer, jobs, flights), line,
-                                fmt::format("lost flight {} of {}: ", i + 1, asked.size()), i * most,
-                                (asked.size() - i - 1) * most);
+        return explained_flight(scenario, work.path(), {path.string(), renderer, jobs, flights}, line, i,
+                                asked.size());
       } catch (const Stopped& stopped) {
         throw Stopped(stopped.signal,
                       fmt::format("{} of {} lost flights are explained; the same command goes on",
                                   lost.size() - asked.size() + i, lost.size()));
       }
     }();
-    write_whole_file(folder.explanation_file(row.id), explained.json);
-    fmt::print("{}: {} {}\n", row.id, explained.conclusion.sentence, explained.conclusion.disagreement);
+    write_whole_file(folder.explanation_file(row.id), to_json(explained));
+    fmt::print("{}: {} {} {}\n", row.id, explained.told.conclusion.sentence,
+               explained.told.conclusion.disagreement, warning_of_digest(explained.log.result, row.digest));
     std::fflush(stdout);
     collect(folder, campaign);  // so that flights.csv has the cause already
   }
@@ -185,8 +169,8 @@ void add_explain_command(CommandLine& line) {
                 "fly at most so many flights, 130 or more: fewer do not try every part");
   command.whole(
       "--first-seed", arguments->first_seed, 1, 1'000'000,
-      "for one run: first seed of the noise that is drawn anew; another one gives a second opinion, which "
-      "takes the place of the first");
+      "for one run: first seed of the noise that is drawn anew; one that is 24 or more away gives a second "
+      "opinion, which takes the place of the first");
   add_jobs_option(command, arguments->jobs, "flights");
   add_renderer_option(command, arguments->renderer);
   command.runs([arguments] { return run_explain(*arguments); });

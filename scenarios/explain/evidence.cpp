@@ -12,7 +12,7 @@ namespace understory {
 namespace {
 
 constexpr std::int64_t lately_ns = 1'500'000'000;  ///< before the end: what can have mattered
-constexpr double short_s = 1, wrong_m = 0.3, late_s = 0.03;
+constexpr double short_s = 1, wrong_m = 0.3, beside_m = 0.1, late_s = 0.03;
 constexpr double planned_s = 0.3, unplanned_m = 0.1;
 constexpr std::size_t many_false = 10;
 
@@ -52,7 +52,8 @@ std::vector<Evidence> of_obstacle(const ObstacleStory& touched, const FlightLog&
   const bool was_in_view = touched.in_view_s.has_value(), was_detected = touched.detected_s.has_value();
   const double end_s = seconds(end_ns(log));
   std::vector<Evidence> all;
-  const bool was_at_depth = was_in_view && touched.in_view_at_depth != false;
+  // A detector that draws no images knows no view.
+  const bool was_at_depth = !touched.has_camera || (was_in_view && touched.in_view_at_depth != false);
   const double ahead_s = was_detected ? end_s - *touched.detected_s : 0;
   all.push_back({"seen too late", "sight", was_detected && ahead_s < short_s,
                  was_detected ? fmt::format("{} was first detected {:.2f} s before the end, {:.1f} m away.",
@@ -72,9 +73,12 @@ std::vector<Evidence> of_obstacle(const ObstacleStory& touched, const FlightLog&
 Evidence of_place(const FlightLog& log, const std::optional<ObstacleStory>& touched) {
   const double error_m = position_error_m(log.moments.back()).norm();
   const double off_m = touched && touched->points > 0 ? touched->points_off_world.head<2>().norm() : 0;
+  // off_m counts from the axis, and a camera sees the skin.
+  const double skin_m = touched ? log.obstacles[touched->obstacle].radius_m : 0;
   std::string sentence = fmt::format("The estimate was {:.2f} m off at the end", error_m);
   if (off_m > 0) sentence += fmt::format(", the points of what it touched {:.2f} m", off_m);
-  return {"wrong place", "state", off_m > wrong_m || error_m > 2 * wrong_m, sentence + "."};
+  return {"wrong place", "state", off_m > std::max(wrong_m, skin_m + beside_m) || error_m > 2 * wrong_m,
+          sentence + "."};
 }
 
 Evidence of_lateness(const FlightLog& log) {
@@ -166,11 +170,18 @@ Conclusion conclusion_of(const Explanation& explanation, const std::vector<Evide
       explanation.last_chance_s
           ? fmt::format("The flight still had a chance {:.2f} s before its end", *explanation.last_chance_s)
           : "At no moment that was tried had the flight a chance of one in five";
+  std::string of_everything;
+  for (const Chance& one : explanation.chances)  // the last entry is of the earliest moment
+    if (one.part == all_ideal)
+      of_everything = fmt::format(
+          "of {} flights that went on with everything ideal from {} s before its end, {} survived.",
+          one.flown.of, one.before_end_s, one.flown.with);
   if (explanation.cause == "infeasible")
-    return {"infeasible", "Not even an aircraft that knows everything got through."};
+    return {"infeasible", "An aircraft that knows everything is mostly lost, too: " + of_everything};
   if (explanation.cause == "chance")
     return {"chance",
-            last_chance + ", and no part would have helped: with other noise it might have arrived."};
+            last_chance + ", and no part has an effect that is told from zero: " +
+                (explanation.last_chance_s ? "with other noise it might have arrived." : of_everything)};
   if (explanation.cause == "joint") {
     const std::string_view needed = explanation.parts.empty() ? "" : ", though not without an ideal ";
     return {"joint", fmt::format("{}; no single part would have helped, but all of them together{}{}.",
@@ -197,7 +208,9 @@ Conclusion conclusion_of(const Explanation& explanation, const std::vector<Evide
       explanation.cause, effect.pairs.first(), shown != evidence.end() ? shown->sentence : "");
   if (!is_shown)
     conclusion.disagreement = fmt::format(
-        "The log itself does not show it: what it shows of {} is within bounds.", explanation.cause);
+        "The log itself does not show it: {} {}{}.",
+        shown != evidence.end() ? "what it shows of" : "it touched nothing, and", explanation.cause,
+        shown != evidence.end() ? " is within bounds" : " leaves no other trace");
   return conclusion;
 }
 

@@ -30,4 +30,11 @@ struct Conclusion {
 };
 Conclusion conclusion_of(const Explanation& explanation, const std::vector<Evidence>& evidence);
 
+/// With all that it rests on, as explain.json of a run has it.
+struct ToldExplanation {
+  Explanation explanation;
+  Conclusion conclusion;
+  std::vector<Evidence> evidence;
+};
+
 }  // namespace understory

@@ -13,9 +13,8 @@ using Json = nlohmann::ordered_json;
 
 }  // namespace
 
-std::string to_json(const ExplainedFlight& explained, const std::vector<Evidence>& evidence,
-                    const Conclusion& conclusion) {
-  const Explanation& why = explained.explanation;
+std::string to_json(const ExplainedFlight& explained) {
+  const auto& [why, conclusion, evidence] = explained.told;
   Json json{{"scenario", explained.log.scenario.name},
             {"seed", explained.log.scenario.seed},
             {"digest", explained.log.result.digest},

@@ -10,16 +10,8 @@
 
 namespace understory {
 
-/// An explanation with all that it rests on, as explain.json of a run.
-std::string to_json(const ExplainedFlight& explained, const std::vector<Evidence>& evidence,
-                    const Conclusion& conclusion);
-
-/// What explain.json says, for pages.
-struct ToldExplanation {
-  Explanation explanation;
-  Conclusion conclusion;
-  std::vector<Evidence> evidence;
-};
+/// explain.json of a run.
+std::string to_json(const ExplainedFlight& explained);
 /// Throws ScenarioError, naming `name`, where the text is none.
 ToldExplanation explanation_from_json(const std::string& text, const std::string& name);
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "scenarios/campaign/engines.hpp"
-#include "scenarios/explain/evidence.hpp"
 #include "scenarios/flight/flight.hpp"
 #include "scenarios/flight/flight_logger.hpp"
 #include "scenarios/flight/fly.hpp"
@@ -40,10 +39,8 @@ Scenario redrawn(const Scenario& scenario, double end_s, const Redraw& redraw, c
 }
 
 std::string name_of(const Redraw& redraw) {
-  const std::string part = redraw.parts.size() > 1 ? fmt::format("{}_parts", redraw.parts.size())
-                           : redraw.parts.empty()  ? std::string(the_control)
-                                                   : redraw.parts.front();
-  return fmt::format("{}-{:.2f}s-{}", part, redraw.before_end_s, redraw.seed);
+  const std::string parts = fmt::format("{}", fmt::join(redraw.parts, "_"));
+  return fmt::format("{}-{:.2f}s-{}", parts.empty() ? the_control : parts, redraw.before_end_s, redraw.seed);
 }
 
 }  // namespace
@@ -60,9 +57,11 @@ ExplainedFlight explain_flight(const Scenario& scenario, const ExplainOptions& o
   once.logger = &logger;
   once.observers = {&keeper};
   const FlightResult result = fly(scenario, once);
-  if (result.outcome == Outcome::goal)
-    throw ScenarioError(fmt::format("{}, seed {}: reached its goal; only a lost flight is explained",
-                                    scenario.name, scenario.seed));
+  if (result.outcome == Outcome::goal || result.outcome == Outcome::time)
+    throw ScenarioError(fmt::format("{}, seed {}: ended by {}; only a flight that crashed is explained",
+                                    scenario.name, scenario.seed, word_for(result.outcome)));
+  std::error_code ignored;
+  fs::remove_all(options.work_folder, ignored);  // a program that was killed left its flights
   const CampaignFolder folder{options.work_folder};
   for (const char* part : {"conditions", "flights", "logs"}) prepare_output_folder(folder.path / part);
   const fs::path hits = fs::absolute(folder.path / "hits");
@@ -93,15 +92,19 @@ ExplainedFlight explain_flight(const Scenario& scenario, const ExplainOptions& o
     flown += asked.size();
   };
   const double launch_s = logger.log().launch_ns ? seconds(*logger.log().launch_ns) : 0;
+  ToldExplanation told;
   const auto shown = [&](double last_chance_s) {
     std::vector<std::string> parts;
-    for (const Evidence& one : evidence_in(logger.log(), last_chance_s))
+    told.evidence = evidence_in(logger.log(), last_chance_s);
+    for (const Evidence& one : told.evidence)
       if (one.is_there) parts.push_back(one.part);
     return parts;
   };
   const ExplanationOptions inquiry{moments_of(end_s - launch_s), options.flights,
                                    static_cast<std::uint64_t>(options.first_seed), shown};
-  return {logger.log(), explain(inquiry, fly_redraws)};
+  told.explanation = explain(inquiry, fly_redraws);
+  told.conclusion = conclusion_of(told.explanation, told.evidence);
+  return {logger.log(), told};
 }
 
 }  // namespace understory

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "scenarios/explain/explanation.hpp"
+#include "scenarios/explain/evidence.hpp"
 #include "scenarios/flight/flight_log.hpp"
 #include "sim/render/renderer_kind.hpp"
 
@@ -23,11 +23,11 @@ struct ExplainOptions {
 /// A lost flight and why it was lost.
 struct ExplainedFlight {
   FlightLog log;
-  Explanation explanation;
+  ToldExplanation told;
 };
 
 /// Flies the scenario, keeps its hits, and asks with flights that go on from its moments. Throws
-/// ScenarioError where it reaches its goal or has ideal parts already, MachineError where a flight fails,
+/// ScenarioError where it does not crash or has ideal parts already, MachineError where a flight fails,
 /// Stopped at a signal.
 ExplainedFlight explain_flight(const Scenario& scenario, const ExplainOptions& options);
 

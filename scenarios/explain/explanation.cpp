@@ -152,7 +152,7 @@ class Inquiry {
     return *std::ranges::find(result_.effects, part, &Effect::part);
   }
 
-  /// The two parts that lead, sight apart, and sight, get more flights, by turns.
+  /// The two parts that lead, and sight, get more flights, by turns.
   void look_closely() {
     std::vector<std::string> leading;
     for (const Effect& effect : result_.effects)
@@ -167,27 +167,26 @@ class Inquiry {
     answer();
   }
 
-  bool is_shown(const std::string& part) const { return std::ranges::find(shown_, part) != shown_.end(); }
-
-  /// The part with the greatest effect that is told from zero, or a comparable one that the log shows.
-  const Effect* best_but_sight() const {
+  /// The part with the greatest effect that is told from zero, or a comparable one that the log shows; sight
+  /// where none of the others compares with it.
+  const Effect* best_part(const std::vector<std::string>& shown) const {
+    const Effect& sight = effect_of("sight");
+    const double of_sight = sight.is_told_from_zero() ? sight.difference() : 0;
     const Effect* best = nullptr;
     for (const Effect& effect : result_.effects) {
-      if (effect.part == all_ideal || effect.part == "sight" || !effect.is_told_from_zero()) continue;
+      const bool is_shown = std::ranges::find(shown, effect.part) != shown.end();
+      const bool had_found = effect.part == "search" && !is_shown;
+      if (effect.part == all_ideal || effect.part == "sight" || !effect.is_told_from_zero() ||
+          effect.difference() < comparable * of_sight || (had_found && effect.difference() <= of_sight))
+        continue;
       if (best == nullptr) best = &effect;
-      if (is_shown(effect.part) && effect.difference() >= comparable * best->difference()) return &effect;
+      if (is_shown && effect.difference() >= comparable * best->difference()) return &effect;
     }
-    return best;
+    return best != nullptr || of_sight <= 0 ? best : &sight;
   }
 
   void decide() {
-    shown_ = options_.shown(result_.decisive_s.back());
-    const Effect* best = best_but_sight();
-    const Effect& sight = effect_of("sight");
-    const bool had_found = best != nullptr && best->part == "search" && !is_shown("search");
-    const double needed = (had_found ? 1 : comparable) * sight.difference();
-    if (sight.is_told_from_zero() && (best == nullptr || best->difference() < needed)) best = &sight;
-    if (best != nullptr) {
+    if (const Effect* best = best_part(options_.shown(result_.decisive_s.back()))) {
       result_.cause = best->part;
       return;
     }
@@ -198,7 +197,7 @@ class Inquiry {
     ask(all_parts(), options_.moments_s.back(), joint_look);
     answer();
     const bool is_possible = survived(all_parts(), options_.moments_s.back()).value() >= 0.5;
-    result_.cause = is_possible ? "chance" : "infeasible";
+    result_.cause = is_possible || result_.last_chance_s ? "chance" : "infeasible";
   }
 
   /// How many of the flights with these parts at this moment survived.
@@ -226,7 +225,6 @@ class Inquiry {
   const ExplanationOptions& options_;
   const FlyRedraws& fly_;
   std::vector<Redraw> asked_;
-  std::vector<std::string> shown_;  ///< parts whose fault the log shows
   Explanation result_;
 };
 

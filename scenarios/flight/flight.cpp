@@ -187,8 +187,10 @@ void Flight::expose() {
 /// A detector that was handed over looks at all of them.
 bool Flight::is_looked_at() const {
   if (std::ranges::any_of(observers_, &FlightObserver::wants_frame)) return true;
-  // An automatic exposure depends on the frames before.
-  const bool is_known = !scenario_.ideal.hits.empty() && !ideal_ && scenario_.cameras.auto_exposure_s == 0;
+  // An automatic exposure depends on the frames before, and so does a camera that freezes.
+  const bool is_known =
+      !scenario_.ideal.hits.empty() && !ideal_ && scenario_.cameras.auto_exposure_s == 0 &&
+      std::ranges::find(scenario_.faults, FaultKind::freeze, &FaultConfig::kind) == scenario_.faults.end();
   const bool by_truth = is_ideal_now("detection") || is_ideal_now("sight");
   return !is_known && !by_truth && (has_own_detector_ || scenario_.perception.part().needs_images);
 }

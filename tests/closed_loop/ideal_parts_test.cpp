@@ -79,6 +79,8 @@ TEST_P(IdealPart, ChangesNothingBeforeItsMoment) {
   const std::size_t equal = equal_steps(flown, plain());
   EXPECT_GE(equal, switch_step);
   EXPECT_LT(equal, switch_step + physics_rate_hz / 4) << "and changes something after it";
+  const Flown control = ideal("", 1);
+  EXPECT_LT(equal_steps(flown, control), control.truths.size()) << "which not only the noise does";
 }
 
 INSTANTIATE_TEST_SUITE_P(All, IdealPart, testing::ValuesIn(ideal_part_names));
@@ -102,6 +104,12 @@ TEST(IdealParts, WithKnownHitsTheFlightIsTheSameWithoutPictures) {
     const Flown drawn = ideal(part, 3), known = ideal(part, 3, {"ideal.hits=" + file.string()});
     EXPECT_EQ(equal_steps(drawn, known), drawn.truths.size()) << part;
   }
+  // A frozen picture is one of before the moment: it is drawn.
+  const std::string freeze = fmt::format("faults=[{{sensor: camera, kind: freeze, at_s: {}}}]", from_s - 0.1);
+  const Flown frozen = Flown({freeze});
+  write_whole_file(file, to_bytes(frozen.hits));
+  const Flown drawn = ideal("", 3, {freeze}), known = ideal("", 3, {freeze, "ideal.hits=" + file.string()});
+  EXPECT_EQ(equal_steps(drawn, known), drawn.truths.size());
 }
 
 TEST(IdealParts, HitsComeBackWholeAndDamagedFilesAreRefused) {
