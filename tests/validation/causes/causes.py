@@ -54,7 +54,7 @@ SETTINGS = {"80 ms more latency": {"perception.depths_m": "[6]"},
             "a pitot step": {"estimation.filter.distrust.exclude": "false"}}
 SCENARIOS = ["paper", "dense", "woods_dense", "rough_sensors", "inventory_5cm", "inventory_3cm"]
 CAUSES = ["never in view", "seen too late", "not detected", "false obstacle", "forgotten", "wrong place", "sensor's fault",
-          "too late", "not found", "not flown", "joint", "infeasible", "chance"]
+          "too late", "not found", "not flown", "joint", "infeasible", "chance", "sight", "map"]
 
 
 def seeds_in(text):
@@ -201,7 +201,7 @@ def planted(flights):
 def bars(counts):
     """One stacked bar of causes for each scenario, as SVG."""
     colours = ["#4477aa", "#66ccee", "#228833", "#ccbb44", "#ee6677", "#aa3377", "#997700", "#bbbbbb", "#ee8866", "#44bb99",
-               "#77aadd", "#222222", "#dddddd"]
+               "#77aadd", "#222222", "#dddddd", "#99ddff", "#bbcc33"]
     shown = [cause for cause in CAUSES if any(one[cause] for one in counts.values())]
     rows, text = [], 'font-family="sans-serif" font-size="13"'
     for i, (scenario, some) in enumerate(counts.items()):
