@@ -206,11 +206,12 @@ Conclusion conclusion_of(const Explanation& explanation, const std::vector<Evide
       "{} without. {}",
       beginning, effect.pairs.pairs(), fmt::join(explanation.decisive_s, " or "), effect.pairs.second(),
       explanation.cause, effect.pairs.first(), shown != evidence.end() ? shown->sentence : "");
-  if (!is_shown)
-    conclusion.disagreement = fmt::format(
-        "The log itself does not show it: {} {}{}.",
-        shown != evidence.end() ? "what it shows of" : "it touched nothing, and", explanation.cause,
-        shown != evidence.end() ? " is within bounds" : " leaves no other trace");
+  if (!is_shown) {
+    conclusion.disagreement = "The log itself does not show it: ";
+    conclusion.disagreement +=
+        shown != evidence.end() ? "what it shows of " + explanation.cause + " is within bounds."
+                                : "it touched nothing, and " + explanation.cause + " leaves no other trace.";
+  }
   return conclusion;
 }
 
