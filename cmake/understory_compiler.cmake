@@ -19,9 +19,15 @@ target_compile_options(understory_options INTERFACE
   "$<BUILD_INTERFACE:-fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=>")
 # fmt as a shared library, which its headers must know, also in the headers that are read once for all files.
 target_compile_definitions(understory_options INTERFACE $<BUILD_INTERFACE:FMT_SHARED>)
-# Warnings are the project's own affair: who uses the installed package keeps theirs.
+# Warnings are the project's own affair: who uses the installed package keeps theirs. Where several files are compiled
+# as one (CMAKE_UNITY_BUILD), a local name may be that of a neighbour's constant, and a class may use its own file's
+# types; the preset dev, which compiles each file alone, warns of the rest.
+set(shadow_warnings -Wshadow)
+if(CMAKE_UNITY_BUILD)
+  set(shadow_warnings -Wshadow=local -Wno-subobject-linkage)
+endif()
 target_compile_options(understory_options INTERFACE
-  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wnon-virtual-dtor;-Werror;-ffp-contract=off>")
+  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;${shadow_warnings};-Wnon-virtual-dtor;-Werror;-ffp-contract=off>")
 # Everything can be part of a shared library: the Python module holds the whole testbed.
 target_compile_options(understory_options INTERFACE "$<BUILD_INTERFACE:-fPIC;-fno-semantic-interposition>")
 # GCC collects its garbage only beyond 0.8 GB: a sixth of the time that a file takes.

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::seconds checked_every{1};
+constexpr std::chrono::seconds queue_checked_every{1};
 
 struct Answer {
   int status = -1;
@@ -103,7 +103,7 @@ bool wait_for_slurm(const CampaignFolder& folder, const Campaign& campaign, cons
     const bool gone =
         queue.status == 0 ? queue.text.empty() : queue.text.find("Invalid job id") != std::string::npos;
     if (gone) return true;
-    std::this_thread::sleep_for(checked_every);
+    std::this_thread::sleep_for(queue_checked_every);
   }
   return false;
 }

@@ -26,7 +26,7 @@ struct ExplainArguments {
   int jobs = 0, flights = 170, first_seed = 1;
 };
 
-Scenario scenario_of_run(const fs::path& run) {
+Scenario scenario_of_flown_run(const fs::path& run) {
   std::error_code ignored;
   if (!fs::is_directory(run, ignored))
     throw ScenarioError(fmt::format("{}: {}; expected the folder of a run or of a campaign", run.string(),
@@ -77,7 +77,7 @@ ExplainedFlight explained_flight(const Scenario& scenario, const fs::path& work,
 
 int explain_run(const ExplainArguments& arguments) {
   const fs::path run = arguments.folder;
-  const Scenario scenario = scenario_of_run(run);
+  const Scenario scenario = scenario_of_flown_run(run);
   const RunResult result = result_of_run(run);
   if (result.reached_goal)
     throw ScenarioError(

@@ -41,7 +41,7 @@ class Subject {
 };
 
 /// A part of any kind, as the checks see it.
-struct Trial {
+struct PartTrial {
   std::string kind = "", name = "", plugin = "";
   std::function<std::unique_ptr<Subject>()> make = nullptr;
   std::string empty_input = "";  ///< "a black image"; empty: there is none
@@ -209,14 +209,14 @@ std::string outputs_of(Subject& subject, int stream) {
   return bytes;
 }
 
-std::string is_repeatable(const Trial& trial) {
+std::string is_repeatable(const PartTrial& trial) {
   return outputs_of(*trial.make(), 0) == outputs_of(*trial.make(), 0)
              ? ""
              : "two instances gave different outputs for the same inputs";
 }
 
 /// A second instance is fed other inputs by turns.
-std::string is_undisturbed(const Trial& trial) {
+std::string is_undisturbed(const PartTrial& trial) {
   const std::string alone = outputs_of(*trial.make(), 0);
   const auto first = trial.make(), second = trial.make();
   std::string beside;
@@ -227,7 +227,7 @@ std::string is_undisturbed(const Trial& trial) {
   return alone == beside ? "" : "its outputs changed because another instance was used beside it";
 }
 
-std::string takes_odd_input(const Trial& trial, Odd odd) {
+std::string takes_odd_input(const PartTrial& trial, Odd odd) {
   const auto subject = trial.make();
   subject->step(0, 0, odd == Odd::empty ? odd : Odd::no);
   subject->step(1, 0, Odd::no);
@@ -246,7 +246,7 @@ struct CallTimes {
 };
 
 /// By turns with the yardstick: what else the machine does slows both alike.
-CallTimes times_of(const Trial& trial, const Trial& yardstick) {
+CallTimes times_of(const PartTrial& trial, const PartTrial& yardstick) {
   std::vector<double> times_s, yardsticks_s;
   const auto subject = trial.make(), other = yardstick.make();
   const Clock::time_point begin = Clock::now();
@@ -271,7 +271,7 @@ double heap_bytes() {
 #endif
 }
 
-std::string keeps_memory(const Trial& trial, int calls, std::string& note) {
+std::string keeps_memory(const PartTrial& trial, int calls, std::string& note) {
   const auto subject = trial.make();
   double settled = 0;
   for (int call = 0; call < calls; ++call) {
@@ -285,7 +285,8 @@ std::string keeps_memory(const Trial& trial, int calls, std::string& note) {
              : "";
 }
 
-std::string flies_twice_alike(const Trial& trial, const std::filesystem::path& models, std::string& note) {
+std::string flies_twice_alike(const PartTrial& trial, const std::filesystem::path& models,
+                              std::string& note) {
   const Scenario scenario = scenario_from_text(trial.settings, "check");
   FlyOptions options;
   options.models_folder = models;
@@ -295,13 +296,13 @@ std::string flies_twice_alike(const Trial& trial, const std::filesystem::path& m
 }
 
 /// All parts that came from `plugin`.
-std::vector<Trial> trials_of(const std::string& plugin, const std::filesystem::path& models,
-                             const std::vector<StereoFrame>& frames) {
-  std::vector<Trial> trials;
+std::vector<PartTrial> trials_of(const std::string& plugin, const std::filesystem::path& models,
+                                 const std::vector<StereoFrame>& frames) {
+  std::vector<PartTrial> trials;
   const auto each = [&](const auto& list, const char* kind, auto&& trial_of) {
     for (const auto& part : list.all())
       if (part.plugin == plugin) {
-        Trial trial = trial_of(part);
+        PartTrial trial = trial_of(part);
         trial.kind = kind, trial.name = part.name, trial.plugin = part.plugin;
         trials.push_back(std::move(trial));
       }
@@ -309,31 +310,32 @@ std::vector<Trial> trials_of(const std::string& plugin, const std::filesystem::p
   constexpr const char* with = "forest: {{length_m: 15}}\n{}";
   each(parts().detectors, "detector", [&](const DetectorPart& part) {
     const std::string yaml = fmt::format(with, "perception: {detector: " + part.name + "}\n");
-    return Trial{.make = [&part, yaml, &models,
-                          &frames] { return std::make_unique<DetectorSubject>(part, yaml, models, frames); },
-                 .empty_input = part.needs_images ? "a black image" : "",
-                 .settings = yaml};
+    return PartTrial{
+        .make = [&part, yaml, &models,
+                 &frames] { return std::make_unique<DetectorSubject>(part, yaml, models, frames); },
+        .empty_input = part.needs_images ? "a black image" : "",
+        .settings = yaml};
   });
   each(parts().state_sources, "state source", [&](const StateSourcePart& part) {
     const std::string own = "estimation: {source: " + part.name + "}\n";
     const std::string yaml = fmt::format(with, own + "perception: {detector: true_depth}\n");
-    return Trial{
+    return PartTrial{
         .make = [&part, yaml, &models] { return std::make_unique<StateSourceSubject>(part, yaml, models); },
         .settings = yaml};
   });
   each(parts().planners, "planner", [&](const PlannerPart& part) {
     const std::string own = "autopilot: {method: " + part.name + "}\n";
     const std::string yaml = fmt::format(with, own + "perception: {detector: true_depth}\n");
-    return Trial{.make = [&part, yaml] { return std::make_unique<PlannerSubject>(part, yaml); },
-                 .empty_input = "an empty map",
-                 .settings = yaml};
+    return PartTrial{.make = [&part, yaml] { return std::make_unique<PlannerSubject>(part, yaml); },
+                     .empty_input = "an empty map",
+                     .settings = yaml};
   });
   each(parts().courses, "course", [&](const CoursePart& part) {
     const std::string own = "course: " + part.name + "\n";
     const std::string yaml = fmt::format(with, own + "perception: {detector: true_depth}\n");
-    return Trial{.make = [&part, yaml] { return std::make_unique<CourseSubject>(part, yaml); },
-                 .settings = yaml,
-                 .has_times = false};
+    return PartTrial{.make = [&part, yaml] { return std::make_unique<CourseSubject>(part, yaml); },
+                     .settings = yaml,
+                     .has_times = false};
   });
   return trials;
 }
@@ -350,10 +352,10 @@ const char* yardstick_of(const std::string& kind) {
 std::vector<PartCheck> check_parts(const PartCheckOptions& options) {
   const CalibratedRig rig = rig_of(scenario_from_text("{}", "check"), options.models_folder);
   const std::vector<StereoFrame> frames = stereo_scenes(rig, 12, 3);
-  const std::vector<Trial> ours = trials_of("", options.models_folder, frames);
-  const Trial& sgbm = *std::ranges::find(ours, "stereo_sgbm", &Trial::name);
+  const std::vector<PartTrial> ours = trials_of("", options.models_folder, frames);
+  const PartTrial& sgbm = *std::ranges::find(ours, "stereo_sgbm", &PartTrial::name);
   std::vector<PartCheck> checks;
-  for (const Trial& trial : trials_of(options.plugin, options.models_folder, frames)) {
+  for (const PartTrial& trial : trials_of(options.plugin, options.models_folder, frames)) {
     const auto check = [&](const std::string& what, auto&& test) {
       PartCheck one{fmt::format("{} '{}'", trial.kind, trial.name), what, "", ""};
       options.on_progress(one.part + ": " + what);
@@ -382,7 +384,7 @@ std::vector<PartCheck> check_parts(const PartCheckOptions& options) {
       const CallTimes times = times_of(trial, sgbm);
       ratio = times.median_s / times.yardstick_s;
       note = fmt::format("median {:.3f} ms, 99 % {:.3f} ms", 1e3 * times.median_s, 1e3 * times.p99_s);
-      const auto yardstick = std::ranges::find_if(ours, [&](const Trial& other) {
+      const auto yardstick = std::ranges::find_if(ours, [&](const PartTrial& other) {
         return other.kind == trial.kind && other.name == yardstick_of(trial.kind);
       });
       if (!trial.plugin.empty())

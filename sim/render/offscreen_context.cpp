@@ -15,7 +15,7 @@ namespace understory {
 namespace {
 
 // From the OpenGL specification; the headers are not needed for so few.
-constexpr unsigned gl_texture_2d = 0x0DE1;
+constexpr unsigned gl_2d_texture = 0x0DE1;
 constexpr unsigned gl_texture_min_filter = 0x2801;
 constexpr int gl_linear_mipmap_nearest = 0x2701;
 constexpr unsigned gl_rgb = 0x1907;
@@ -97,16 +97,16 @@ void OffscreenContext::upload_level(unsigned texture, int level, int width_px, i
   using SetPixelStore = void (*)(unsigned name, int value);
   using TexImage = void (*)(unsigned target, int level, int internal_format, int width, int height,
                             int border, unsigned format, unsigned type, const void* pixels);
-  as_function<BindTexture>(backend_->function("glBindTexture"))(gl_texture_2d, texture);
+  as_function<BindTexture>(backend_->function("glBindTexture"))(gl_2d_texture, texture);
   as_function<SetPixelStore>(backend_->function("glPixelStorei"))(gl_unpack_alignment, 1);
-  as_function<TexImage>(backend_->function("glTexImage2D"))(gl_texture_2d, level, gl_rgb, width_px, height_px,
+  as_function<TexImage>(backend_->function("glTexImage2D"))(gl_2d_texture, level, gl_rgb, width_px, height_px,
                                                             0, gl_rgb, gl_unsigned_byte, rgb);
 }
 
 void OffscreenContext::use_nearest_mipmap(unsigned texture) const {
   using SetParameter = void (*)(unsigned target, unsigned name, int value);
-  as_function<BindTexture>(backend_->function("glBindTexture"))(gl_texture_2d, texture);
-  as_function<SetParameter>(backend_->function("glTexParameteri"))(gl_texture_2d, gl_texture_min_filter,
+  as_function<BindTexture>(backend_->function("glBindTexture"))(gl_2d_texture, texture);
+  as_function<SetParameter>(backend_->function("glTexParameteri"))(gl_2d_texture, gl_texture_min_filter,
                                                                    gl_linear_mipmap_nearest);
 }
 

@@ -58,8 +58,8 @@ TEST(EstimatorTrial, ASecondDepthFindsTheWindThatNothingElseShows) {
   EXPECT_LT(2 * velocity_error_at_the_end(true), velocity_error_at_the_end(false));
 }
 
-const std::vector<std::string> short_forest{"forest.length_m=20", "forest.square_metres_per_tree=25",
-                                            "perception.detector=true_depth"};
+const std::vector<std::string> seen_forest{"forest.length_m=20", "forest.square_metres_per_tree=25",
+                                           "perception.detector=true_depth"};
 
 Scenario forest(const std::vector<std::string>& settings) {
   return load_scenario(UNDERSTORY_SOURCE_DIR "/scenarios/library/forest.yaml", settings);
@@ -67,7 +67,7 @@ Scenario forest(const std::vector<std::string>& settings) {
 
 /// The filter that is run again along the truth is the one that flew.
 TEST(MismatchPage, TheEstimateFollowedIsTheOneThatFlew) {
-  Scenario scenario = forest(short_forest);
+  Scenario scenario = forest(seen_forest);
   scenario.mismatch = adverse(10);
   const FlightTrace flight = traced_flight(scenario, "filter");
   double maximum_m = 0;
@@ -79,7 +79,7 @@ TEST(MismatchPage, TheEstimateFollowedIsTheOneThatFlew) {
 }
 
 TEST(MismatchPage, TallyCountsEveryFlightAndEveryFilter) {
-  Scenario scenario = forest(short_forest);
+  Scenario scenario = forest(seen_forest);
   const FlightTally tally = fly_seeds(scenario, {scenario.estimation.filter()}, {1000, 2});
   EXPECT_EQ(tally.flights(), 2);
   EXPECT_EQ(tally.goals(), 2);

@@ -16,6 +16,7 @@
 #include "scenarios/flight/flight_story.hpp"
 #include "scenarios/flight/obstacle_view.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
+#include "tests/closed_loop/flown.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -26,8 +27,6 @@ namespace {
 namespace fs = std::filesystem;
 using support::expect_part;
 using support::TemporaryFolder;
-
-const fs::path root = UNDERSTORY_SOURCE_DIR;
 
 Scenario library(const std::string& name, const std::vector<std::string>& settings) {
   return load_scenario(root / "scenarios/library" / (name + ".yaml"), settings);
@@ -51,10 +50,10 @@ struct Told {
 };
 
 /// The aircraft sees nothing and flies into what stands in the way; it sees, with the planner's reach cut.
-const std::vector<std::string> blind{"seed=1000", "perception.detector=none"};
+const std::vector<std::string> unseeing{"seed=1000", "perception.detector=none"};
 
 TEST(FlightStory, NamesTrunkPartAndPlaceOfACollision) {
-  const Told told(library("dense", blind));
+  const Told told(library("dense", unseeing));
   ASSERT_EQ(told.log().result.outcome, Outcome::collision);
   ASSERT_TRUE(told.story.touched);
   const Obstacle& touched = told.flight.obstacles()[told.story.touched->obstacle];
@@ -287,7 +286,7 @@ TEST(FlightPage, SaysHowFarTheDetectorLooks) {
 
 class ReportCommand : public testing::Test {
  protected:
-  support::Outcome here(const std::string& arguments) const {
+  support::ProgramRun here(const std::string& arguments) const {
     return support::understory(arguments, "cd " + folder.path().string() + " &&");
   }
   void refused(const std::string& arguments, const std::string& part) const {
@@ -307,7 +306,7 @@ class ReportCommand : public testing::Test {
 TEST_F(ReportCommand, MakesAPageFromARunAndLeavesTheRest) {
   fly_briefly();
   const std::string before = file("run/result.json");
-  const support::Outcome outcome = here("report run --no-video");
+  const support::ProgramRun outcome = here("report run --no-video");
   EXPECT_EQ(outcome.status, 0);
   expect_part(outcome.text, "made of the run's log");
   EXPECT_EQ(file("run/result.json"), before);
@@ -337,7 +336,7 @@ TEST_F(ReportCommand, GivesACommandThatFliesTheSameScenario) {
 TEST_F(ReportCommand, WarnsWhereTheFlightIsAnother) {
   fly_briefly();
   folder.write("run/result.json", R"({"digest": "0123456789abcdef"})");
-  const support::Outcome outcome = here("report run --no-video");
+  const support::ProgramRun outcome = here("report run --no-video");
   EXPECT_EQ(outcome.status, 1);
   expect_part(outcome.text, "another digest");
   expect_part(file("run/report.html"), "This page shows another flight");

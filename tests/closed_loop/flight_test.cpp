@@ -16,11 +16,10 @@
 namespace understory {
 namespace {
 
-const std::filesystem::path root = UNDERSTORY_SOURCE_DIR;
 const FlightMachine machine{root / "models"};
-const std::vector<std::string> short_forest{"forest.length_m=12", "forest.square_metres_per_tree=16"};
+const std::vector<std::string> twelve_metres{"forest.length_m=12", "forest.square_metres_per_tree=16"};
 
-Scenario forest(int seed, std::vector<std::string> settings = short_forest) {
+Scenario forest(int seed, std::vector<std::string> settings = twelve_metres) {
   settings.push_back("seed=" + std::to_string(seed));
   return load_scenario(root / "scenarios/library/forest.yaml", settings);
 }
@@ -46,7 +45,7 @@ TEST(Flight, TheSecondOfAProcessIsAsInAFreshOne) {
   Recorded(forest(1000)).flown();
   const FlightResult second = Recorded(forest(1001)).flown();
   EXPECT_GT(second.planner.searches, 0);  // OMPL was asked, in both
-  EXPECT_EQ(second.digest, flown("forest", 1001, short_forest).digest());
+  EXPECT_EQ(second.digest, flown("forest", 1001, twelve_metres).digest());
 }
 
 TEST(Flight, TwoOpenAtOnceAreAsAlone) {
@@ -55,8 +54,8 @@ TEST(Flight, TwoOpenAtOnceAreAsAlone) {
     one.flight.step();
     other.flight.step();
   }
-  EXPECT_EQ(one.flown().digest, flown("forest", 1000, short_forest).digest());
-  EXPECT_EQ(other.flown().digest, flown("forest", 1001, short_forest).digest());
+  EXPECT_EQ(one.flown().digest, flown("forest", 1000, twelve_metres).digest());
+  EXPECT_EQ(other.flown().digest, flown("forest", 1001, twelve_metres).digest());
 }
 
 TEST(Referee, SidesEndNoFlightOnALongCourse) {

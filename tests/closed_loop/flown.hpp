@@ -13,6 +13,8 @@
 
 namespace understory {
 
+inline const std::filesystem::path root = UNDERSTORY_SOURCE_DIR;
+
 /// What a flight of the program left behind.
 struct Flown {
   nlohmann::json result;

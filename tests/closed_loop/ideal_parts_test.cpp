@@ -10,29 +10,29 @@
 #include "scenarios/flight/flight.hpp"
 #include "scenarios/output/file_output.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
+#include "tests/closed_loop/flown.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace understory {
 namespace {
 
-const std::filesystem::path root = UNDERSTORY_SOURCE_DIR;
-const FlightMachine machine{root / "models"};
+const FlightMachine ideal_machine{root / "models"};
 constexpr double from_s = 1.2;
 const std::vector<std::string> dense_start{"forest.square_metres_per_tree=16", "forest.clear_m=5",
                                            "time_limit_s=2"};
 
 /// What a flight did, step by step, and what it detected.
-struct Flown : FlightObserver {
+struct WatchedFlight : FlightObserver {
   std::vector<Truth> truths;
   std::vector<State> states;
   KnownHits hits;
   std::vector<std::int64_t> latencies_ns;
   PlannerCounts counts;
 
-  explicit Flown(const std::vector<std::string>& more) {
+  explicit WatchedFlight(const std::vector<std::string>& more) {
     std::vector<std::string> settings = dense_start;
     settings.insert(settings.end(), more.begin(), more.end());
-    Flight flight(load_scenario(root / "scenarios/library/forest.yaml", settings), machine, {this});
+    Flight flight(load_scenario(root / "scenarios/library/forest.yaml", settings), ideal_machine, {this});
     while (!flight.outcome()) {
       truths.push_back(flight.truth());
       states.push_back(flight.state());
@@ -51,23 +51,23 @@ bool same(const Truth& a, const Truth& b) {
 }
 
 /// Steps until the two flights differ; their length where they do not.
-std::size_t equal_steps(const Flown& a, const Flown& b) {
+std::size_t equal_steps(const WatchedFlight& a, const WatchedFlight& b) {
   std::size_t step = 0;
   while (step < a.truths.size() && step < b.truths.size() && same(a.truths[step], b.truths[step])) ++step;
   return step;
 }
 
-const Flown& plain() {
-  static const Flown flown({});
+const WatchedFlight& plain() {
+  static const WatchedFlight flown({});
   return flown;
 }
 
-Flown ideal(const std::string& part, int redraw = 0, const std::vector<std::string>& more = {}) {
+WatchedFlight ideal(const std::string& part, int redraw = 0, const std::vector<std::string>& more = {}) {
   std::vector<std::string> settings{"ideal.from_s=" + std::to_string(from_s),
                                     "ideal.redraw=" + std::to_string(redraw)};
   if (!part.empty()) settings.push_back("ideal.parts=[" + part + "]");
   settings.insert(settings.end(), more.begin(), more.end());
-  return Flown(settings);
+  return WatchedFlight(settings);
 }
 
 const auto switch_step = static_cast<std::size_t>(from_s * physics_rate_hz);
@@ -75,11 +75,11 @@ const auto switch_step = static_cast<std::size_t>(from_s * physics_rate_hz);
 class IdealPart : public testing::TestWithParam<std::string_view> {};
 
 TEST_P(IdealPart, ChangesNothingBeforeItsMoment) {
-  const Flown flown = ideal(std::string(GetParam()), 1);
+  const WatchedFlight flown = ideal(std::string(GetParam()), 1);
   const std::size_t equal = equal_steps(flown, plain());
   EXPECT_GE(equal, switch_step);
   EXPECT_LT(equal, switch_step + physics_rate_hz / 4) << "and changes something after it";
-  const Flown control = ideal("", 1);
+  const WatchedFlight control = ideal("", 1);
   EXPECT_LT(equal_steps(flown, control), control.truths.size()) << "which not only the noise does";
 }
 
@@ -90,7 +90,7 @@ TEST(IdealParts, WithoutThemAndWithoutRedrawTheFlightIsTheSame) {
 }
 
 TEST(IdealParts, ARedrawIsAnotherFlightForEachSeedAndTheSameForOne) {
-  const Flown one = ideal("", 1), again = ideal("", 1), other = ideal("", 2);
+  const WatchedFlight one = ideal("", 1), again = ideal("", 1), other = ideal("", 2);
   EXPECT_EQ(equal_steps(one, again), one.truths.size());
   EXPECT_LT(equal_steps(one, other), one.truths.size());
   EXPECT_GE(equal_steps(one, other), switch_step);
@@ -101,14 +101,15 @@ TEST(IdealParts, WithKnownHitsTheFlightIsTheSameWithoutPictures) {
   const std::filesystem::path file = folder.path() / "hits";
   write_whole_file(file, to_bytes(plain().hits));
   for (const char* part : {"", "state", "detection"}) {
-    const Flown drawn = ideal(part, 3), known = ideal(part, 3, {"ideal.hits=" + file.string()});
+    const WatchedFlight drawn = ideal(part, 3), known = ideal(part, 3, {"ideal.hits=" + file.string()});
     EXPECT_EQ(equal_steps(drawn, known), drawn.truths.size()) << part;
   }
   // A frozen picture is one of before the moment: it is drawn.
   const std::string freeze = fmt::format("faults=[{{sensor: camera, kind: freeze, at_s: {}}}]", from_s - 0.1);
-  const Flown frozen = Flown({freeze});
+  const WatchedFlight frozen = WatchedFlight({freeze});
   write_whole_file(file, to_bytes(frozen.hits));
-  const Flown drawn = ideal("", 3, {freeze}), known = ideal("", 3, {freeze, "ideal.hits=" + file.string()});
+  const WatchedFlight drawn = ideal("", 3, {freeze}),
+                      known = ideal("", 3, {freeze, "ideal.hits=" + file.string()});
   EXPECT_EQ(equal_steps(drawn, known), drawn.truths.size());
 }
 
@@ -120,7 +121,7 @@ TEST(IdealParts, HitsComeBackWholeAndDamagedFilesAreRefused) {
 }
 
 TEST(IdealParts, IdealStateIsTheTruth) {
-  const Flown flown = ideal("state");
+  const WatchedFlight flown = ideal("state");
   for (std::size_t step = switch_step + 10; step < flown.truths.size(); step += 50) {
     const Eigen::Vector3d error_m =
         flown.states[step].T_world_body.translation() - flown.truths[step].T_world_body.translation();
@@ -129,10 +130,10 @@ TEST(IdealParts, IdealStateIsTheTruth) {
 }
 
 TEST(IdealParts, IdealDetectionHitsObstaclesAndNothingElse) {
-  const Flown flown = ideal("detection");
+  const WatchedFlight flown = ideal("detection");
   const Scenario scenario = load_scenario(root / "scenarios/library/forest.yaml", dense_start);
   const std::vector<Obstacle> obstacles = course_obstacles(scenario);
-  const StereoRig rig = Flight(scenario, machine).rig().rig;
+  const StereoRig rig = Flight(scenario, ideal_machine).rig().rig;
   std::size_t hits = 0;
   for (const auto& [t_ns, in_frame] : flown.hits) {
     if (t_ns < std::int64_t{1'300'000'000}) continue;
@@ -150,7 +151,7 @@ TEST(IdealParts, IdealDetectionHitsObstaclesAndNothingElse) {
 
 TEST(IdealParts, WithoutLatencyAFrameIsThereAtOnceAndThoseUnderWayAreNotLost) {
   const std::vector<std::string> slow{"cameras.latency_s=0.06"};
-  const Flown late(slow), flown = ideal("latency", 0, slow);
+  const WatchedFlight late(slow), flown = ideal("latency", 0, slow);
   EXPECT_EQ(late.latencies_ns.back(), 60'000'000);
   EXPECT_EQ(flown.latencies_ns.back(), 0);
   for (const auto& [t_ns, hits] : late.hits) EXPECT_TRUE(flown.hits.contains(t_ns)) << t_ns;
@@ -158,8 +159,8 @@ TEST(IdealParts, WithoutLatencyAFrameIsThereAtOnceAndThoseUnderWayAreNotLost) {
 }
 
 TEST(IdealParts, IdealSearchSearchesInPlaceOfAPlannerThatDoesNot) {
-  const Flown straight({"autopilot.method=straight"});
-  const Flown searching({"autopilot.method=straight", "ideal.parts=[search]", "ideal.from_s=1.2"});
+  const WatchedFlight straight({"autopilot.method=straight"});
+  const WatchedFlight searching({"autopilot.method=straight", "ideal.parts=[search]", "ideal.from_s=1.2"});
   EXPECT_EQ(straight.counts.searches, 0);
   EXPECT_GT(searching.counts.searches, 0);
   EXPECT_GE(straight.truths[equal_steps(straight, searching)].t_ns, 1'200'000'000);
@@ -186,7 +187,7 @@ TEST(IdealParts, TheModelsStateAndItsPoseAreInverse) {
 }
 
 TEST(IdealParts, IdealTrackingLeavesTheEstimateAsGoodAsItWas) {
-  const Flown flown = ideal("tracking");
+  const WatchedFlight flown = ideal("tracking");
   const Eigen::Vector3d error_m =
       flown.states.back().T_world_body.translation() - flown.truths.back().T_world_body.translation();
   EXPECT_LT(error_m.head<2>().norm(), 0.4);

@@ -17,7 +17,7 @@ class WholeProgram : public testing::Test {
  protected:
   /// Runs a command that must end with `status` and leave these files below the test's folder.
   void run(const std::string& arguments, const std::vector<std::string>& files, int status = 0) const {
-    const Outcome outcome = understory(arguments, "cd " + folder.path().string() + " &&");
+    const ProgramRun outcome = understory(arguments, "cd " + folder.path().string() + " &&");
     EXPECT_EQ(outcome.status, status) << arguments << "\n" << outcome.text;
     for (const std::string& file : files) {
       std::error_code none;

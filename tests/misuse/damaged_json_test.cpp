@@ -101,7 +101,7 @@ TEST(DamagedJson, OfEveryKindIsReadToOneLineAtMost) {
       const std::string text = damaged(whole, generator);
       for (const std::string& command : reader.commands) {
         std::ofstream(at + reader.file, std::ios::binary | std::ios::trunc) << text;
-        const Outcome outcome = understory(command, "", "2>&1 >/dev/null");
+        const ProgramRun outcome = understory(command, "", "2>&1 >/dev/null");
         EXPECT_TRUE(outcome.status >= 0 && outcome.status <= 3) << outcome.status << " " << command << "\n"
                                                                 << text;
         EXPECT_EQ(outcome.text.find("internal fault"), std::string::npos) << command << "\n"

@@ -13,8 +13,8 @@ namespace understory {
 namespace {
 
 /// A task, and a search for a manoeuvre in it, whose parts live as long as it does.
-struct Flight {
-  explicit Flight(std::vector<Trunk> standing = {})
+struct SearchedFlight {
+  explicit SearchedFlight(std::vector<Trunk> standing = {})
       : trunks(std::move(standing)), field(field_config, points_of(trunks), 0) {
     start.position_world.z() = mission.cruise_altitude_m;
   }
@@ -36,7 +36,7 @@ struct Flight {
 };
 
 TEST(FlyOut, ReachesTheHorizonInFreeSpace) {
-  const Flight flight;
+  const SearchedFlight flight;
   const Rollout rollout = fly_out(flight.task(), flight.start, {}, 0.05, true);
   EXPECT_TRUE(rollout.reached_horizon);
   ASSERT_GE(rollout.points.size(), 3u);
@@ -50,7 +50,7 @@ TEST(FlyOut, ReachesTheHorizonInFreeSpace) {
 }
 
 TEST(FlyOut, StopsBeforeAnObstacle) {
-  const Flight flight(wall(8));
+  const SearchedFlight flight(wall(8));
   const double minimum_m = 0.2;
   const Rollout rollout = fly_out(flight.task(), flight.start, {}, minimum_m, true);
   EXPECT_FALSE(rollout.reached_horizon);
@@ -64,7 +64,7 @@ TEST(FlyOut, StopsBeforeAnObstacle) {
 }
 
 TEST(FlyOut, FliesThroughWhereToldTo) {
-  const Flight flight(wall(8));
+  const SearchedFlight flight(wall(8));
   const Rollout rollout = fly_out(flight.task(), flight.start, {}, 0.2, true, false);
   EXPECT_FALSE(rollout.reached_horizon);
   EXPECT_GE(rollout.points.back().position_world.x(), flight.config.horizon_m);
@@ -73,7 +73,7 @@ TEST(FlyOut, FliesThroughWhereToldTo) {
 }
 
 TEST(FlyOut, StopsWhereTheBandEnds) {
-  Flight flight;
+  SearchedFlight flight;
   flight.start.position_world.z() = flight.mission.maximum_altitude_m - 0.15;
   flight.start.climb_angle_rad = 0.15;
   const Rollout rollout = fly_out(flight.task(), flight.start, {{{0, 2}, 2.0}}, 0.05, true);
@@ -84,7 +84,7 @@ TEST(FlyOut, StopsWhereTheBandEnds) {
 }
 
 TEST(FlyOut, HoldsEachCommandForItsTime) {
-  const Flight flight;
+  const SearchedFlight flight;
   const Manoeuvre manoeuvre{{{0.5, 0}, 0.2}, {{-0.4, 1}, 0.1}};
   const Rollout rollout = fly_out(flight.task(), flight.start, manoeuvre, 0.05, true);
   for (const PlanPoint& point : rollout.points) {
@@ -100,13 +100,13 @@ TEST(FlyOut, HoldsEachCommandForItsTime) {
 }
 
 TEST(FlyOut, NearerObstaclesCostMore) {
-  const Flight beside({{{8, 0.9}}}), clear;
+  const SearchedFlight beside({{{8, 0.9}}}), clear;
   EXPECT_GT(fly_out(beside.task(), beside.start, {}, -1, false).cost,
             fly_out(clear.task(), clear.start, {}, -1, false).cost);
 }
 
 TEST(CourseCommand, TurnsBackToTheCourse) {
-  Flight flight;
+  SearchedFlight flight;
   EXPECT_NEAR(course_command(flight.task(), flight.start).bank_rad, 0, 1e-9);
   flight.start.heading_rad = 0.3;  // pointing left of the course: bank right
   EXPECT_GT(course_command(flight.task(), flight.start).bank_rad, 0.1);
@@ -118,11 +118,11 @@ TEST(CourseCommand, TurnsBackToTheCourse) {
 }
 
 /// In a forest of its own.
-Flight random_flight(std::uint64_t seed) {
+SearchedFlight random_flight(std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   std::vector<Trunk> trunks = random_forest(generator, 8, 4, 13);
   trunks.push_back({{8, 0.2}});  // one right ahead
-  Flight flight(std::move(trunks));
+  SearchedFlight flight(std::move(trunks));
   flight.start.bank_rad = std::uniform_real_distribution<double>(-0.5, 0.5)(generator);
   flight.start.heading_rad = std::uniform_real_distribution<double>(-0.3, 0.3)(generator);
   return flight;
@@ -138,7 +138,7 @@ bool same(const std::optional<Manoeuvre>& one, const std::optional<Manoeuvre>& o
 
 TEST(ManoeuvreSearch, FindsOnlyWhatCostsLessThanTheMaximum) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const Flight flight = random_flight(seed);
+    const SearchedFlight flight = random_flight(seed);
     const std::optional<Manoeuvre> any = flight.search(seed);
     ASSERT_TRUE(any.has_value());
     const double cost = flight.cost_of(*any);
@@ -155,7 +155,7 @@ TEST(ManoeuvreSearch, FindsOnlyWhatCostsLessThanTheMaximum) {
 TEST(FlyOut, CutShortByItsCostItWouldHaveCostMore) {
   int flights = 0, cut_short = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    Flight flight = random_flight(seed);
+    SearchedFlight flight = random_flight(seed);
     flight.start.wind_world_mps = {seed % 2 ? 3.0 : -3.0, 1};
     flight.start.climb_angle_rad = seed % 3 ? 0 : -0.4;  // a dive
     for (const Manoeuvre& manoeuvre : avoidance_primitives(1.5)) {
@@ -174,18 +174,18 @@ TEST(FlyOut, CutShortByItsCostItWouldHaveCostMore) {
 }
 
 TEST(ManoeuvreSearch, RepeatsExactlyWhateverWasSearchedBefore) {
-  const Flight flight({{{9, 0.1}}, {{11, 2.5}}, {{12, -2}}}), other = random_flight(2);
+  const SearchedFlight flight({{{9, 0.1}}, {{11, 2.5}}, {{12, -2}}}), other = random_flight(2);
   const std::optional<Manoeuvre> first = flight.search(42);
   ASSERT_TRUE(first.has_value());
   EXPECT_TRUE(same(first, flight.search(42)));
   other.search(7);
   flight.search(43);
   EXPECT_TRUE(same(first, flight.search(42)));
-  EXPECT_TRUE(same(first, Flight(flight.trunks).search(42)));  // all objects new
+  EXPECT_TRUE(same(first, SearchedFlight(flight.trunks).search(42)));  // all objects new
 }
 
 TEST(ManoeuvreSearch, SeedsDiffer) {
-  const Flight flight({{{9, 0.1}}, {{11, 2.5}}, {{12, -2}}});
+  const SearchedFlight flight({{{9, 0.1}}, {{11, 2.5}}, {{12, -2}}});
   int different = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed)
     different += !same(flight.search(seed), flight.search(seed + 100));
@@ -195,7 +195,7 @@ TEST(ManoeuvreSearch, SeedsDiffer) {
 TEST(ManoeuvreSearch, WhatItFindsKeepsClearOfEveryKnownTrunk) {
   int found_count = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-    const Flight flight = random_flight(seed);
+    const SearchedFlight flight = random_flight(seed);
     const std::optional<Manoeuvre> found = flight.search(seed);
     if (!found) continue;
     ++found_count;
@@ -216,7 +216,7 @@ TEST(ManoeuvreSearch, WhatItFindsKeepsClearOfEveryKnownTrunk) {
 }
 
 TEST(ManoeuvreSearch, FindsNothingThroughAWall) {
-  const Flight flight(wall(8));
+  const SearchedFlight flight(wall(8));
   for (std::uint64_t seed = 1; seed <= 5; ++seed) EXPECT_FALSE(flight.search(seed).has_value());
 }
 
@@ -224,7 +224,7 @@ TEST(ManoeuvreSearch, FindsTheDoorInAWall) {
   std::vector<Trunk> trunks = wall(9);
   std::erase_if(trunks,
                 [](const Trunk& trunk) { return trunk.foot_world.y() > 0.2 && trunk.foot_world.y() < 3.5; });
-  const Flight flight(std::move(trunks));
+  const SearchedFlight flight(std::move(trunks));
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) found += flight.search(seed).has_value();
   EXPECT_GE(found, 4);

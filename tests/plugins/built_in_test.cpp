@@ -32,7 +32,7 @@ TEST_F(BuiltIn, ARowInTheTableIsEnough) {
     FlyOptions options;
     options.models_folder = UNDERSTORY_SOURCE_DIR "/models";
     const FlightResult ours = fly(scenario, options);
-    const Outcome plugins =
+    const ProgramRun plugins =
         understory("fly forest --seed 1003 --set forest.length_m=20 --quiet --row " + path("row") +
                    " --plugin " PLUGINS "/" + part.plugin + ".so --set " + part.choice);
     ASSERT_LE(plugins.status, 1) << plugins.text;

@@ -38,7 +38,7 @@ struct Plugins : FolderTest {
   Json row(const std::string& arguments) {
     const fs::path file = folder.path() / "row.json";
     fs::remove(file);
-    const Outcome outcome =
+    const ProgramRun outcome =
         understory("fly " + arguments + " --set forest.length_m=20 --quiet --row " + file.string());
     EXPECT_LE(outcome.status, 1) << arguments << "\n" << outcome.text;
     return Json::parse(std::ifstream(file)).at("row");
@@ -54,11 +54,11 @@ TEST_F(Plugins, ATwinOfOursHasOurDigest) {
 }
 
 TEST_F(Plugins, AreListedWithTheirKeys) {
-  const Outcome list = expect_success("plugin " + plugin("edge_detector") + " " + plugin("slalom_course"));
+  const ProgramRun list = expect_success("plugin " + plugin("edge_detector") + " " + plugin("slalom_course"));
   EXPECT_EQ(lines_with(list.text, {"detector", "edges", "perception.detector=edges"}), 1) << list.text;
   EXPECT_EQ(lines_with(list.text, {"perception.edges.depth_m", "10", "2 .. 40", "depth at which"}), 1);
   EXPECT_EQ(lines_with(list.text, {"slalom.offset_m", "0.6", "distance of each pole"}), 1) << list.text;
-  const Outcome ours = expect_success("plugin");
+  const ProgramRun ours = expect_success("plugin");
   for (const char* name : {"pushbroom", "dead_reckoning", "library", "fence"})
     EXPECT_GE(lines_with(ours.text, {name}), 1) << name;
   expect_no_part(ours.text, "edges");
@@ -72,7 +72,8 @@ TEST_F(Plugins, FlyFromAScenarioAndAgainFromItsRun) {
                    "plugins: [{file: mine.so}]\ncourse: slalom\nslalom: {spacing_m: 9}\n"
                    "perception: {detector: true_depth}\nforest: {length_m: 20}\n");
   const fs::path run = folder.path() / "run";
-  const Outcome flown = understory("fly " + scenario.string() + " --seed 1001 --quiet --out " + run.string());
+  const ProgramRun flown =
+      understory("fly " + scenario.string() + " --seed 1001 --quiet --out " + run.string());
   ASSERT_LE(flown.status, 1) << flown.text;
   std::ifstream written(run / "scenario.yaml");
   const std::string text{std::istreambuf_iterator<char>(written), {}};
@@ -101,7 +102,7 @@ TEST_F(Plugins, DetectInRecordings) {
   const std::string recording = path("recording"), out = path("out");
   const std::string edges = " --plugin " + plugin("edge_detector") + " --set perception.detector=edges";
   expect_success("record forest --seed 1003 --set forest.length_m=5 --quiet --out " + recording + edges);
-  const Outcome found = expect_success("detect " + recording + " --out " + out + edges);
+  const ProgramRun found = expect_success("detect " + recording + " --out " + out + edges);
   expect_part(found.text, "edges");
   EXPECT_EQ(lines_with(found.text, {"detections", "per frame"}), 1) << found.text;
   EXPECT_GT(fs::file_size(fs::path(out) / "points.csv"), 1000u);
@@ -116,8 +117,9 @@ TEST_F(Plugins, TakePartInCampaigns) {
       "  - {name: mine, set: {forest.length_m: 5, perception.detector: edges}}\n"
       "  - {name: broken, set: {forest.length_m: 5, perception.detector: throws}}\n");
   const fs::path out = folder.path() / "campaign";
-  const Outcome flown = understory("campaign " + campaign.string() + " --plugin " + plugin("edge_detector") +
-                                   " --plugin " + plugin("defects") + " --out " + out.string());
+  const ProgramRun flown =
+      understory("campaign " + campaign.string() + " --plugin " + plugin("edge_detector") + " --plugin " +
+                 plugin("defects") + " --out " + out.string());
   EXPECT_EQ(flown.status, 1) << "two flights failed as machines\n" << flown.text;
   std::ifstream rows(out / "flights.csv");
   const std::string text{std::istreambuf_iterator<char>(rows), {}};
@@ -178,20 +180,20 @@ TEST_F(Plugins, WrongFilesAreOneLine) {
     expect_refusal("fly clear --quiet --plugin " + file, message);
   }
   // The good ones are listed beside a bad one, of whose parts none stays.
-  const Outcome both = understory("plugin " + plugin("wrong_name_taken") + " " + plugin("edge_detector"));
+  const ProgramRun both = understory("plugin " + plugin("wrong_name_taken") + " " + plugin("edge_detector"));
   EXPECT_EQ(both.status, 2);
   EXPECT_EQ(lines_with(both.text, {"perception.detector=edges"}), 1) << both.text;
   expect_no_part(both.text, "perception.detector=mine");
 }
 
 TEST_F(Plugins, OfOursPassEveryCheck) {
-  const Outcome checked = understory("plugin --check");
+  const ProgramRun checked = understory("plugin --check");
   EXPECT_EQ(checked.status, 0) << checked.text;
   expect_part(checked.text, " 0 faults");
 }
 
 TEST_F(Plugins, OfTheExamplesPassEveryCheck) {
-  const Outcome checked =
+  const ProgramRun checked =
       understory("plugin --check " + plugin("edge_detector") + " " + plugin("swerve_planner") + " " +
                  plugin("compass_source") + " " + plugin("slalom_course"));
   EXPECT_EQ(checked.status, 0) << checked.text;
@@ -200,7 +202,7 @@ TEST_F(Plugins, OfTheExamplesPassEveryCheck) {
 
 TEST_F(Plugins, DefectsAreFoundByName) {
   // One of them leaks, which is not for the sanitizer to say.
-  const Outcome checked = understory("plugin --check " + plugin("defects"), "ASAN_OPTIONS=detect_leaks=0");
+  const ProgramRun checked = understory("plugin --check " + plugin("defects"), "ASAN_OPTIONS=detect_leaks=0");
   EXPECT_EQ(checked.status, 1);
   const std::pair<const char*, const char*> faults[] = {
       {"'unequal'", "equal inputs give equal outputs"},

@@ -118,7 +118,7 @@ TEST_F(CampaignRun, FlightsDieWithTheirCampaign) {
 TEST_F(CampaignRun, PrintedTasksGiveTheSameRows) {
   const std::string campaign = blind("seeds: 1..3\n");
   expect_success("campaign " + campaign + out("here"));
-  const Outcome tasks = expect_success("campaign " + campaign + out("there") + " --print-tasks");
+  const ProgramRun tasks = expect_success("campaign " + campaign + out("there") + " --print-tasks");
   EXPECT_EQ(std::count(tasks.text.begin(), tasks.text.end(), '\n'), 3);
   EXPECT_EQ(understory("collect " + (path / "there").string()).status, 1);  // nothing flown yet
   // Twice, and from another folder: a task is idempotent and says all it needs.

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using support::expect_part;
 
-fs::path in_library(const std::string& name) {
+fs::path library_scenario(const std::string& name) {
   const fs::path file = fs::path(UNDERSTORY_SOURCE_DIR) / "scenarios" / "library" / (name + ".yaml");
   if (!fs::exists(file)) throw ScenarioError(name + ": expected one of the library");
   return file;
@@ -26,7 +26,7 @@ fs::path in_library(const std::string& name) {
 struct CampaignFile : testing::Test {
   support::TemporaryFolder folder;
   Campaign campaign_of(const std::string& text) const {
-    return load_campaign(folder.write("speed.yaml", text), in_library);
+    return load_campaign(folder.write("speed.yaml", text), library_scenario);
   }
   std::string refusal_of(const std::string& text) const {
     return support::refusal_of([&] { campaign_of(text); });
@@ -89,15 +89,17 @@ TEST_F(CampaignFile, PutsFilesOfKeysUnderItsOwn) {
 
 TEST_F(CampaignFile, KeysOverAllConditionsLeaveTheirNames) {
   const fs::path file = folder.write("both.yaml", "scenarios: [forest, dense]\nseeds: 1\n");
-  const Campaign plain = load_campaign(file, in_library);
-  const Campaign changed = load_campaign(file, in_library, {parse_assignment("autopilot.method=library")});
+  const Campaign plain = load_campaign(file, library_scenario);
+  const Campaign changed =
+      load_campaign(file, library_scenario, {parse_assignment("autopilot.method=library")});
   ASSERT_EQ(changed.conditions.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(changed.conditions[i].name, plain.conditions[i].name);
     EXPECT_EQ(scenario_from_text(changed.conditions[i].scenario_text, "x").autopilot.method, "library");
   }
-  expect_part(support::refusal_of([&] { load_campaign(file, in_library, {parse_assignment("seed=3")}); }),
-              "seed: expected no seed here");
+  expect_part(
+      support::refusal_of([&] { load_campaign(file, library_scenario, {parse_assignment("seed=3")}); }),
+      "seed: expected no seed here");
 }
 
 TEST_F(CampaignFile, RefusesBadFilesInOneLineWithFileLineAndKey) {

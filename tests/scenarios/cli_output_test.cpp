@@ -62,7 +62,8 @@ const std::string long_flight =
 
 TEST_F(CliOutput, StandardOutputIsNoFileToBeReplaced) {
   const fs::path file = folder.path() / "said";
-  const Outcome flown = understory(short_flight + "--row /dev/stdout --junit /dev/stdout > " + file.string());
+  const ProgramRun flown =
+      understory(short_flight + "--row /dev/stdout --junit /dev/stdout > " + file.string());
   EXPECT_EQ(flown.status, 0) << flown.text;
   const std::string said = content_of(file);
   EXPECT_LT(said.find("\"outcome\": \"goal\""), said.find("<testsuites")) << said;
@@ -96,7 +97,7 @@ TEST_F(CliOutput, TwoFlightsDoNotMixInOneFolder) {
                             "--set forest.length_m=200 --set forest.intangible=true " + out +
                             " & p=$!; until test -e " + path(".understory-run.unfinished/scenario.yaml") +
                             "; do sleep 0.01; done; kill -STOP $p;";
-  const Outcome second =
+  const ProgramRun second =
       understory(short_flight + "--seed 7 " + out + " 2>&1; echo status $?; kill -CONT $p; wait", first);
   expect_part(second.text, "another understory writes there");
   expect_part(second.text, "status 2");
@@ -108,7 +109,7 @@ TEST_F(CliOutput, TwoFlightsDoNotMixInOneFolder) {
 void expect_stopped(const std::string& arguments, const std::string& event, const fs::path& folder,
                     const std::vector<std::string>& left = {}) {
   for (const auto& [signal, status] : {std::pair("INT", 130), std::pair("TERM", 143)}) {
-    const Outcome stopped = understory::support::stopped(arguments, folder, signal, event);
+    const ProgramRun stopped = understory::support::stopped(arguments, folder, signal, event);
     EXPECT_EQ(stopped.status, status) << arguments << "\n" << stopped.text;
     EXPECT_EQ(std::count(stopped.text.begin(), stopped.text.end(), '\n'), 1) << stopped.text;
     expect_part(stopped.text, "stopped");
@@ -157,8 +158,8 @@ TEST_F(CliOutput, ASignalStopsACampaignThatGoesOnLater) {
                                       "scenario: forest\nseeds: 1..3\noverrides: [{name: long, set: "
                                       "{forest.length_m: 400, forest.intangible: true}}]\n")
                                .string();
-  const Outcome stopped = understory::support::stopped("campaign " + file + " --out results", folder.path(),
-                                                       "TERM", "ls results/logs/*.txt");
+  const ProgramRun stopped = understory::support::stopped("campaign " + file + " --out results",
+                                                          folder.path(), "TERM", "ls results/logs/*.txt");
   EXPECT_EQ(stopped.status, 143);
   expect_part(stopped.text, "stopped with 0 of 3 flights over; --resume goes on\n");
   for (const std::string& name : names_in(folder.path())) expect_no_part(name, "unfinished");
@@ -174,8 +175,8 @@ TEST_F(CliOutput, ASignalStopsTheRecordersOfAnEvaluation) {
 }
 
 /// Runs `arguments` with `folder` a disk of that size, in a mount namespace of its own.
-Outcome on_small_disk(const std::string& arguments, const fs::path& folder, const std::string& size,
-                      const std::string& afterwards) {
+ProgramRun on_small_disk(const std::string& arguments, const fs::path& folder, const std::string& size,
+                         const std::string& afterwards) {
   return understory(arguments + "; echo status $?; " + afterwards + "'",
                     "unshare -m sh -c 'mount -t tmpfs -o size=" + size + " tmpfs " + folder.string() +
                         " && cd " + folder.string() + " && ");
@@ -187,13 +188,13 @@ bool mounts_disks() {
 
 TEST_F(CliOutput, AFullDiskIsOneLineAndAFilmThatDoesNotFitLosesNoResult) {
   if (!mounts_disks()) GTEST_SKIP() << "only root may mount a small disk";
-  const Outcome none = on_small_disk(short_flight + "--out run", folder.path(), "4k", "ls -A");
+  const ProgramRun none = on_small_disk(short_flight + "--out run", folder.path(), "4k", "ls -A");
   expect_part(none.text, "No space left on device\nstatus 3\n");
-  const Outcome no_film = on_small_disk("fly clear --set forest.length_m=5 --quiet --video --out run",
-                                        folder.path(), "16k", "ls -A");
+  const ProgramRun no_film = on_small_disk("fly clear --set forest.length_m=5 --quiet --video --out run",
+                                           folder.path(), "16k", "ls -A");
   expect_part(no_film.text, "No space left on device\nstatus 3\n");
-  const Outcome film = on_small_disk("fly clear --set forest.length_m=10 --quiet --video --out run",
-                                     folder.path(), "300k", "ls -A . run");
+  const ProgramRun film = on_small_disk("fly clear --set forest.length_m=10 --quiet --video --out run",
+                                        folder.path(), "300k", "ls -A . run");
   expect_part(film.text, "No space left on device\nstatus 3\n");
   expect_part(film.text,
               "run:\n.understory\nestimate.tum\nflight.log\nmap.ply\nobstacles.csv\nresult."
@@ -208,8 +209,8 @@ TEST_F(CliOutput, ARecordingThatDoesNotFitSaysWhatItNeedsAndWhatIsFree) {
   EXPECT_NE(on_small_disk(record, folder.path(), "20m", "true").text.find("status 0"), std::string::npos);
   const fs::path path = folder.path().string() + ".tum";  // the disk lies over the folder
   std::ofstream(path) << "0 0 0 3 0 0 0 1\n60 9 0 3 0 0 0 1\n";
-  const Outcome refused = on_small_disk("record clear --path " + path.string() + " --quiet --out r",
-                                        folder.path(), "20m", "true");
+  const ProgramRun refused = on_small_disk("record clear --path " + path.string() + " --quiet --out r",
+                                           folder.path(), "20m", "true");
   for (const char* part :
        {"the recording needs up to 0.7", "GB more (7200 frames", "GB are free there", "status 3"})
     expect_part(refused.text, part);
@@ -217,7 +218,7 @@ TEST_F(CliOutput, ARecordingThatDoesNotFitSaysWhatItNeedsAndWhatIsFree) {
 
 TEST_F(CliOutput, AFolderThatIsADiskOfItsOwnIsWrittenWithin) {
   if (!mounts_disks()) GTEST_SKIP() << "only root may mount a small disk";
-  const Outcome flown = on_small_disk(short_flight + "--out .", folder.path(), "1m", "ls -A");
+  const ProgramRun flown = on_small_disk(short_flight + "--out .", folder.path(), "1m", "ls -A");
   EXPECT_EQ(flown.text,
             "status "
             "0\n.understory\nestimate.tum\nflight.log\nmap.ply\nobstacles.csv\nresult.json\nscenario."

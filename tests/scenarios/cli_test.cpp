@@ -17,13 +17,13 @@ namespace {
 namespace fs = std::filesystem;
 using Cli = FolderTest;
 
-void expect_parts(const Outcome& outcome, const std::vector<std::string>& parts) {
+void expect_parts(const ProgramRun& outcome, const std::vector<std::string>& parts) {
   EXPECT_EQ(outcome.status, 0) << outcome.text;
   for (const std::string& part : parts) expect_part(outcome.text, part);
 }
 
 TEST_F(Cli, HelpShowsExitStatusesAndAnExampleForEveryCommand) {
-  const Outcome help = understory("--help");
+  const ProgramRun help = understory("--help");
   for (const char* command : {"fly", "record", "detect", "evaluate", "campaign", "shard", "collect", "gate",
                               "tune", "rig", "bench"}) {
     expect_parts(help, {std::string("\n  ") + command + " "});
@@ -33,7 +33,7 @@ TEST_F(Cli, HelpShowsExitStatusesAndAnExampleForEveryCommand) {
 }
 
 TEST_F(Cli, VersionSaysCommitAndRenderer) {
-  const Outcome version = understory("--version");
+  const ProgramRun version = understory("--version");
   expect_parts(version, {"understory ", "(", ")\nrenderer: "});
   const bool is_checkout =
       std::system("git -C '" UNDERSTORY_SOURCE_DIR "' rev-parse HEAD >/dev/null 2>&1") == 0;
@@ -41,7 +41,7 @@ TEST_F(Cli, VersionSaysCommitAndRenderer) {
 }
 
 TEST_F(Cli, TheManualNamesCommandsAndOptions) {
-  const Outcome manual = understory("manual");
+  const ProgramRun manual = understory("manual");
   expect_parts(manual, {".TH UNDERSTORY 1", ".SS gate", "\\-\\-margin", ".SH EXIT STATUS"});
   expect_no_part(manual.text, "completion");  // hidden
 }
@@ -93,7 +93,7 @@ constexpr bool opens_codecs_late = true;
 
 TEST_F(Cli, LibrariesOfPicturesAndFilmsAreNotLoadedAtTheStart) {
   if (!opens_codecs_late) GTEST_SKIP() << "linked, under a sanitizer";
-  const Outcome libraries = understory("", "LD_TRACE_LOADED_OBJECTS=1");  // what ldd asks the loader for
+  const ProgramRun libraries = understory("", "LD_TRACE_LOADED_OBJECTS=1");  // what ldd asks the loader for
   expect_part(libraries.text, "libopencv_core");
   for (const char* late : {"libopencv_imgcodecs", "libopencv_videoio", "libavcodec", "libgdal"})
     expect_no_part(libraries.text, late);
@@ -106,11 +106,11 @@ TEST_F(Cli, APictureWithoutItsModuleIsTheMachinesFault) {
   const std::string image = " " UNDERSTORY_SOURCE_DIR "/docs/images/report.jpg";
   const std::string elsewhere = "UNDERSTORY_ROOT=" UNDERSTORY_SOURCE_DIR " " + alone.string();
   // `before` runs the lonely copy; the program itself then only says its version.
-  const Outcome refused =
+  const ProgramRun refused =
       understory("--version", elsewhere + " detect" + image + image + " --rig long 2>&1; echo status $?;");
   expect_part(refused.text, "pictures and films need a module");
   expect_part(refused.text, "status 3");
-  const Outcome without = understory("--version", elsewhere + " rig long 2>&1; echo status $?;");
+  const ProgramRun without = understory("--version", elsewhere + " rig long 2>&1; echo status $?;");
   expect_part(without.text, "status 0");
   expect_refusal("detect" + image + image + " --rig long", "found 8-bit colour");  // it was read
 }
@@ -123,7 +123,7 @@ TEST_F(Cli, ThePrefixItIsInstalledInMayBeAnywhere) {
   fs::copy_file(UNDERSTORY_BINARY, program);
   const std::string rig =
       "cd / && env -u UNDERSTORY_ROOT " + program.string() + " rig long 2>&1; echo status $?;";
-  const Outcome without = understory("--version", rig);
+  const ProgramRun without = understory("--version", rig);
   expect_part(without.text, "models/ and scenarios/ are missing");
   expect_part(without.text, "status 3");
   for (const char* part : {"models", "scenarios"})
@@ -148,7 +148,7 @@ TEST_F(Cli, WrongArgumentsAreBadInput) {
 const std::string raw_rigs = UNDERSTORY_SOURCE_DIR "/models/rigs/raw/";
 
 TEST_F(Cli, RigSaysWhatACalibrationMeans) {
-  const Outcome paper = understory("rig " + raw_rigs + "paper.xml --unit cm --size 376x240 --depth 4.8");
+  const ProgramRun paper = understory("rig " + raw_rigs + "paper.xml --unit cm --size 376x240 --depth 4.8");
   EXPECT_EQ(paper.status, 0);
   for (const char* part :
        {"376 x 240 px", "8 distortion coefficients left, 8 right", "180.40 px", "0.3530 m",
@@ -162,7 +162,7 @@ TEST_F(Cli, RigSaysWhatACalibrationMeans) {
 
 TEST_F(Cli, RigDrawsWhatItSays) {
   const std::string picture = path("rig.svg");
-  const Outcome drawn = understory("rig long --out " + picture);
+  const ProgramRun drawn = understory("rig long --out " + picture);
   EXPECT_EQ(drawn.status, 0);
   expect_part(drawn.text, picture);
   understory::support::expect_part(understory::support::content_of(picture), "detects at 10.14 m (33 px)");
@@ -240,21 +240,22 @@ TEST_F(Cli, ARendererIsOneOfThree) {
 
 TEST_F(Cli, BenchTimesWholeFlights) {
   const std::string json = path("rows.json");
-  const Outcome bench = understory("bench --closed-loop --flights 1 --set time_limit_s=0.5 --json " + json);
+  const ProgramRun bench =
+      understory("bench --closed-loop --flights 1 --set time_limit_s=0.5 --json " + json);
   EXPECT_EQ(bench.status, 0) << bench.text;
   for (const char* part : {"forest, one at a time", "dense, two side by side", "paper", "woods_dense",
                            "ms a pair", "ten times the trees"})
     expect_part(bench.text, part);
   EXPECT_GT(fs::file_size(json), 1000u);
   expect_refusal("bench --closed-loop somewhere", "INPUT");
-  const Outcome refused = understory("bench --closed-loop --flights 1 --set no.such=1");
+  const ProgramRun refused = understory("bench --closed-loop --flights 1 --set no.such=1");
   EXPECT_EQ(refused.status, 2);
   expect_part(refused.text, "a flight refused its input");
 }
 
 TEST_F(Cli, BenchTimesThePlanner) {
   const std::string json = path("planner.json");
-  const Outcome bench = understory("bench --planner --pairs 2 --rounds 1 --json " + json);
+  const ProgramRun bench = understory("bench --planner --pairs 2 --rounds 1 --json " + json);
   EXPECT_EQ(bench.status, 0) << bench.text;
   for (const char* part :
        {"168 replans in dense", "168 replans in woods_dense", "168 replans in paper_depths"})

@@ -65,7 +65,7 @@ TEST_F(DetectReal, HitsLieWhereDenseMatchingPutsThem) {
   ASSERT_EQ(disparities.size(), 4u);
   const std::string out = (folder.path() / "out").string();
   const auto detect = [&](const std::string& more) {
-    const Outcome outcome = expect_success("detect " + euroc.string() + " --out " + out + more);
+    const ProgramRun outcome = expect_success("detect " + euroc.string() + " --out " + out + more);
     EXPECT_NE(outcome.text.find("4 of 752x480 px, rectified here"), std::string::npos) << outcome.text;
     return agreement(support::content_of(out + "/points.csv"), disparities);
   };

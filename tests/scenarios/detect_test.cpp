@@ -68,7 +68,7 @@ TEST_F(Detect, FoldersGiveTheHitsThatThePairsGiveInMemory) {
         std::pair(" --preset robust", robust_pushbroom())}) {
     const auto hits = expected(frames, rule);
     ASSERT_GT(count_of(hits), 100u) << arguments;
-    const Outcome outcome = expect_success(std::string("detect ") + folders() + to_out() + arguments);
+    const ProgramRun outcome = expect_success(std::string("detect ") + folders() + to_out() + arguments);
     EXPECT_EQ(found("points.csv"), hits_to_csv(hits));
     EXPECT_EQ(found("points.ply"), hits_to_ply(hits));
     expect_part(outcome.text, std::to_string(count_of(hits)) + ", ");
@@ -117,9 +117,9 @@ TEST_F(Detect, SeveralDepthsGiveTheHitsOfEach) {
   PushbroomConfig rule = tuned_pushbroom("paper");
   rule.depths_m = {rig.detection_depth_m, 4.0};
   rule.depths_score_limit = {0.25, 0.2};
-  const Outcome outcome = expect_success("detect " + folders() + to_out() +
-                                         " --set perception.depths_m=[4.8,4.0] "
-                                         "--set perception.pushbroom.depths_score_limit=[0.25,0.2]");
+  const ProgramRun outcome = expect_success("detect " + folders() + to_out() +
+                                            " --set perception.depths_m=[4.8,4.0] "
+                                            "--set perception.pushbroom.depths_score_limit=[0.25,0.2]");
   EXPECT_EQ(found("points.csv"), hits_to_csv(expected(frames, rule)));
   expect_part(outcome.text, "looked at         4.8");
   expect_part(outcome.text, "looked at         3.9");
@@ -158,7 +158,7 @@ TEST_F(Detect, PosesCarryHitsIntoTheWorld) {
   for (const double t_s : {100.0, 101.0})  // 2 m/s along x
     poses << t_s << " " << 2 * (t_s - 100) << " 5 3 " << q.x() << " " << q.y() << " " << q.z() << " " << q.w()
           << "\n";
-  const Outcome outcome =
+  const ProgramRun outcome =
       expect_success("detect " + folders() + to_out() + " --set autopilot.map.voxel_m=0 --poses " +
                      folder.write("poses.txt", poses.str()).string());
   const std::vector<Eigen::Vector3d> points = positions_in(found("map.ply"));
@@ -183,7 +183,7 @@ TEST_F(Detect, FramesOutsideThePosesAreReportedAndLeftOutOfTheMap) {
   support::write_pairs(folder.path(), frames, {"1.0", "2.0", "3.0"});
   const std::string poses =
       folder.write("poses.csv", "1500000000,0,0,0,1,0,0,0\n2500000000,0,0,0,1,0,0,0\n").string();
-  const Outcome outcome =
+  const ProgramRun outcome =
       expect_success("detect " + folders() + to_out() + " --set autopilot.map.voxel_m=0 --poses " + poses);
   expect_part(outcome.text, "frames outside the poses' time, left out: 2");
   EXPECT_EQ(positions_in(found("map.ply")).size(), expected(frames, tuned_pushbroom("paper"))[1].hits.size());

@@ -61,7 +61,7 @@ TEST_F(EvaluateCommand, RecordsASuiteAndJudgesIt) {
     }
 
   // Curves are drawn over the frames of the table, however few: at each algorithm's own setting they meet it.
-  const Outcome sparse =
+  const ProgramRun sparse =
       expect_success("evaluate " + (out / "recordings/short-1007").string() +
                      " --every 8 --detector strict=" + folder.write("strict.yaml", strict).string() +
                      " --out " + path("sparse"));

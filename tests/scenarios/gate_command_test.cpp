@@ -37,7 +37,7 @@ TEST_F(GateCommand, EndsWithItsVerdict) {
   const std::string gate = "gate --baseline " + campaign("before", 0, "");
   const auto judged = [&](const std::string& candidate, int status, const std::string& sentence,
                           const std::string& options = "") {
-    const support::Outcome outcome = support::understory(gate + " --candidate " + candidate + options);
+    const support::ProgramRun outcome = support::understory(gate + " --candidate " + candidate + options);
     EXPECT_EQ(outcome.status, status) << outcome.text;
     expect_part(outcome.text, "\n" + sentence);
   };
@@ -55,10 +55,10 @@ TEST_F(GateCommand, EndsWithItsVerdict) {
   expect_part(support::content_of(folder.path() / "gate.xml"), "tests=\"121\" failures=\"13\" errors=\"0\"");
   expect_part(support::content_of(folder.path() / "gate.json"), "\"command\": \"understory fly ");
   judged(path("three"), 4, "Fly more with these commands", " --extend");
-  const support::Outcome history = expect_success("gate --history " + path("before") + " --history " +
-                                                  path("worse") + " --page " + path("h.html"));
+  const support::ProgramRun history = expect_success("gate --history " + path("before") + " --history " +
+                                                     path("worse") + " --page " + path("h.html"));
   expect_part(history.text, "Success fell by 10.0 percentage points at worse (120 pairs)");
-  const support::Outcome plan =
+  const support::ProgramRun plan =
       expect_success("gate plan --baseline " + path("before") + " --candidate " + path("three"));
   expect_part(plan.text, "The outcomes of 3.3 % of the pairs differ: 3 of 120 pairs");
 }

@@ -44,7 +44,7 @@ TEST(Keys, EveryKeyHasAMeaningAndADefaultWithinItsRange) {
 }
 
 TEST(Keys, ThePageIsCurrentAndNoColumnIsWithoutAMeaning) {
-  const Outcome page = understory("keys --markdown");
+  const ProgramRun page = understory("keys --markdown");
   EXPECT_EQ(page.status, 0);
   EXPECT_EQ(page.text, content_of(UNDERSTORY_SOURCE_DIR "/docs/keys.md"))
       << "mend it: understory keys --markdown > docs/keys.md";

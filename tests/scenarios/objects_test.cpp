@@ -92,13 +92,13 @@ cv::Mat expected_objects(const std::vector<Object>& objects, const StereoRig& ri
   return expected;
 }
 
-struct Agreement {
+struct ObjectAgreement {
   int compared = 0, agreed = 0, on_obstacles = 0;
 };
 
 /// Where a pixel's neighbours are of one object: outlines are drawn with flat sides.
-Agreement compare(const cv::Mat& found, const cv::Mat& expected) {
-  Agreement agreement;
+ObjectAgreement compare(const cv::Mat& found, const cv::Mat& expected) {
+  ObjectAgreement agreement;
   for (int row = 2; row + 2 < found.rows; ++row)
     for (int column = 2; column + 2 < found.cols; ++column) {
       const std::uint16_t here = expected.at<std::uint16_t>(row, column);
@@ -113,7 +113,7 @@ Agreement compare(const cv::Mat& found, const cv::Mat& expected) {
 
 struct Recorded {
   std::vector<Object> objects;
-  Agreement agreement;
+  ObjectAgreement agreement;
 };
 
 /// A second of walking, compared frame by frame.
@@ -131,7 +131,7 @@ Recorded walked(const std::string& name, std::vector<std::string> settings, cons
     const cv::Mat found = cv::imread(entry.path().string(), cv::IMREAD_UNCHANGED);
     EXPECT_EQ(found.type(), CV_16UC1);
     const std::int64_t t_ns = std::stoll(entry.path().stem().string());
-    const Agreement one =
+    const ObjectAgreement one =
         compare(found, expected_objects(recorded.objects, rig, pose_at(poses, t_ns).value()));
     recorded.agreement.compared += one.compared;
     recorded.agreement.agreed += one.agreed;
@@ -196,7 +196,7 @@ TEST_F(Objects, AlongTheBankedPathAreThoseThatRaysMeet) {
   const StereoRig rig = read_calibrated_rig(folder.path(), {}).rig;
   const auto objects = read_objects(folder.path() / "mav0/objects0/objects.csv");
   constexpr double degree = std::numbers::pi / 180;
-  Agreement all;
+  ObjectAgreement all;
   for (int i = 0; i < 14; ++i) {
     const double roll_rad = 50 * degree * std::sin(std::numbers::pi * 0.5 * i);
     Eigen::Isometry3d pose(Eigen::Translation3d(6 * i - 5, 0, 4.5));
@@ -204,7 +204,7 @@ TEST_F(Objects, AlongTheBankedPathAreThoseThatRaysMeet) {
                      Eigen::AngleAxisd(-10.97 * degree, Eigen::Vector3d::UnitY()))
                         .toRotationMatrix();
     const cv::Mat found = image_of(folder.path(), "objects0", i * std::int64_t{500'000'000});
-    const Agreement one = compare(found, expected_objects(objects, rig, pose));
+    const ObjectAgreement one = compare(found, expected_objects(objects, rig, pose));
     all.compared += one.compared, all.agreed += one.agreed, all.on_obstacles += one.on_obstacles;
   }
   EXPECT_GT(all.on_obstacles, 50'000);

@@ -97,10 +97,6 @@ TEST(Actuators, WashCarriesTheThrustsMomentum) {
   EXPECT_NEAR(grazed.elevon_wash_mps(12, 1.204), 0.1 * actuators.elevon_wash_mps(12, 1.204), 1e-12);
 }
 
-World empty_world(const Airframe& airframe) {
-  return build_world(UNDERSTORY_SOURCE_DIR "/models", airframe, {}, WorldConfig{});
-}
-
 Eigen::Isometry3d high_up() {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation().z() = 500;
@@ -115,7 +111,7 @@ TEST(Actuators, MotorTorqueRollsTheAircraft) {
   airframe.rate_damping_nmspr.setZero();
   ActuatorsConfig config;
   config.torque_per_thrust_m = 0.014;
-  const World world = empty_world(airframe);
+  const World world = build_world(UNDERSTORY_SOURCE_DIR "/models", airframe, {}, WorldConfig{});
   Aircraft aircraft(*world.model, airframe, LaunchConfig{}, Wind(Vector3d::Zero()), config);
   aircraft.place(high_up(), Vector3d::Zero(), Vector3d::Zero(), {0, 0, 5});
   for (int i = 0; i < 600; ++i) aircraft.step({0, 0, 5});
@@ -130,7 +126,7 @@ TEST(Actuators, TheAircraftFliesWithThem) {
   config.elevon_time_s = 0.03;
   config.motor_time_s = 0.05;
   config.pitch_speed_mps = 21;
-  const World world = empty_world(airframe);
+  const World world = build_world(UNDERSTORY_SOURCE_DIR "/models", airframe, {}, WorldConfig{});
   Aircraft aircraft(*world.model, airframe, LaunchConfig{}, Wind(Vector3d::Zero()), config);
   aircraft.place(high_up(), {12.27, 0, 0}, Vector3d::Zero(), {});
   for (int i = 0; i < 24 + 36; ++i) aircraft.step({0.5, 0.5, 5});  // the delay, then 30 ms

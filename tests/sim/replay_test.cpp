@@ -4,14 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/validation/page.hpp"
 #include "tests/validation/replay_fit.hpp"
 
 /// The real left jog (tests/data/flight): the record, its replay, the fit. Its tolerances are checked where
 /// the page is (validate_test.cpp).
 namespace understory {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 struct Jog : testing::Test {
   Airframe airframe;

@@ -13,8 +13,8 @@
 namespace understory {
 namespace {
 
-constexpr std::uint64_t first_seed = 1000;  // development seeds: none of them is reported elsewhere
-constexpr std::uint64_t sensor_seed_base = 5000;
+constexpr std::uint64_t consistency_seed = 1000;  // development seeds: none of them is reported elsewhere
+constexpr std::uint64_t consistency_sensor_seed = 5000;
 
 double block_nees(const TrialMoment& moment, int block) {
   const Eigen::Vector3d error = moment.error().segment<3>(block);
@@ -53,11 +53,11 @@ Section measured(const std::string& name, int flights, Scenario (*scenario)(std:
                  TrialConfig (*trial)(const FlightTrace&, std::uint64_t), std::vector<Consistency>& all) {
   std::vector<std::vector<SquaredMoment>> trials;
   const int left_out = measure_flights(
-      flights, [&](int i) { return scenario(first_seed + static_cast<std::uint64_t>(i)); },
+      flights, [&](int i) { return scenario(consistency_seed + static_cast<std::uint64_t>(i)); },
       consistency_minimum_s,
       [&](int number, const FlightTrace& flight) {
-        trials.push_back(
-            squared_moments(flight, trial(flight, sensor_seed_base + static_cast<std::uint64_t>(number))));
+        trials.push_back(squared_moments(
+            flight, trial(flight, consistency_sensor_seed + static_cast<std::uint64_t>(number))));
       });
   all = consistency(trials);
   Section section{name};

@@ -14,8 +14,6 @@
 namespace understory {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
-
 /// Elevons held at three pairs of deflections, one after the other: roll, pull, and what then is best. Three
 /// of the left elevon, three of the right (rad), and how long the first two pairs last (s).
 using DodgeCommands = std::array<double, 8>;

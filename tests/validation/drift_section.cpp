@@ -11,8 +11,8 @@
 namespace understory {
 namespace {
 
-constexpr std::uint64_t first_seed = 1100;  // development seeds, none of those the filter was tuned on
-constexpr std::uint64_t sensor_seed_base = 7000;
+constexpr std::uint64_t drift_seed = 1100;  // development seeds, none of those the filter was tuned on
+constexpr std::uint64_t drift_sensor_seed = 7000;
 constexpr double sight_m = 10;
 
 /// One switch of the filter, or another filter or grade of sensors.
@@ -121,11 +121,11 @@ struct DriftSample {
 std::vector<DriftSample> sampled(const Air& air, int flights, const std::vector<std::size_t>& rows) {
   std::vector<DriftSample> samples(variants.size());
   measure_flights(
-      flights, [&](int i) { return forest_in(air, first_seed + static_cast<std::uint64_t>(i)); }, 3.0,
+      flights, [&](int i) { return forest_in(air, drift_seed + static_cast<std::uint64_t>(i)); }, 3.0,
       [&](int number, const FlightTrace& flight) {
         const Sightings seen = sightings(flight, {10.1, 5.0});
         for (const std::size_t row : rows) {
-          TrialConfig config = trial_of(flight, sensor_seed_base + static_cast<std::uint64_t>(number));
+          TrialConfig config = trial_of(flight, drift_sensor_seed + static_cast<std::uint64_t>(number));
           config.sightings = &seen;
           variants[row].change(config);
           samples[row].take(flight, run_trial(flight, config));

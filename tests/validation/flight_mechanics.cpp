@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace understory {
 namespace {
@@ -202,6 +203,25 @@ std::optional<SteadyFlight> steady_flight(const Airframe& airframe, const Steady
     flight = moved(flight, solved, correction);
   }
   return std::nullopt;
+}
+
+std::optional<SteadyFlight> full_thrust_turn(const Airframe& airframe, double speed_mps, double bank_rad,
+                                             double max_angle_of_attack_rad) {
+  const SteadyFlight given{
+      .airspeed_mps = speed_mps, .bank_rad = bank_rad, .thrust_n = airframe.max_thrust_n};
+  return steady_flight(airframe, given, Solved::acceleration, max_angle_of_attack_rad);
+}
+
+SteadyFlight steepest_turn(const Airframe& airframe, double speed_mps, double acceleration_mps2,
+                           double max_angle_of_attack_rad) {
+  const double steepest_rad = border(0, 85 * std::numbers::pi / 180, [&](double bank_rad) {
+    const auto turn = full_thrust_turn(airframe, speed_mps, bank_rad, max_angle_of_attack_rad);
+    return turn && turn->acceleration_mps2 >= acceleration_mps2;
+  });
+  if (const auto turn = full_thrust_turn(airframe, speed_mps, steepest_rad, max_angle_of_attack_rad))
+    return *turn;
+  const double none = std::nan("");
+  return {.airspeed_mps = speed_mps, .bank_rad = none, .turn_rate_radps = none, .load_factor = none};
 }
 
 Modes modes(const Airframe& airframe, const SteadyFlight& trim) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <complex>
 #include <optional>
 #include <string>
@@ -47,6 +48,28 @@ enum class Solved { thrust, acceleration, climb_angle };
 /// beyond their limits; empty where the angle of attack passes `max_angle_of_attack_rad` or nothing is found.
 std::optional<SteadyFlight> steady_flight(const Airframe& airframe, const SteadyFlight& given, Solved solved,
                                           double max_angle_of_attack_rad = 0.5236);
+
+/// Level turn at this bank with all the thrust: what speed does is solved for.
+std::optional<SteadyFlight> full_thrust_turn(const Airframe& airframe, double speed_mps, double bank_rad,
+                                             double max_angle_of_attack_rad);
+/// The steepest level turn with all the thrust that gains at least this much speed. Nothing comes out with
+/// nan everywhere.
+SteadyFlight steepest_turn(const Airframe& airframe, double speed_mps, double acceleration_mps2,
+                           double max_angle_of_attack_rad);
+/// The steepest of all: at the cap of the angle of attack, losing speed.
+inline SteadyFlight hardest_turn(const Airframe& airframe, double speed_mps, double max_angle_of_attack_rad) {
+  return steepest_turn(airframe, speed_mps, -HUGE_VAL, max_angle_of_attack_rad);
+}
+
+/// The last of 40 points halfway between `yes`, where `holds`, and `no`, where it does not.
+template <typename Holds>
+double border(double yes, double no, Holds&& holds) {
+  for (int halving = 0; halving < 40; ++halving) {
+    const double middle = 0.5 * (yes + no);
+    (holds(middle) ? yes : no) = middle;
+  }
+  return yes;
+}
 
 /// One way in which the aircraft, its controls held, comes back to trim or leaves it.
 struct Mode {

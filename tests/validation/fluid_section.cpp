@@ -10,7 +10,6 @@
 namespace understory {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double speed_mps = 12;
 constexpr double sideslip_attack_rad = 11 * degree;  // level flight's at that speed
 

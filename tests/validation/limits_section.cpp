@@ -33,19 +33,12 @@ const double half_span_m = 0.5 * Airframe().span_m;
 constexpr double mean_radius_m = 0.175;  // of forest.yaml
 constexpr double latency_s = 0.022;      // frame, plan and input
 
-/// Level, at the planner's largest angle of attack and full thrust, losing speed.
-SteadyFlight hardest_turn(double speed_mps) {
-  SteadyFlight given{.airspeed_mps = speed_mps, .thrust_n = Airframe().max_thrust_n}, hardest;
-  for (; given.bank_rad < 1.5; given.bank_rad += 0.02) {
-    const auto turn = steady_flight(Airframe(), given, Solved::acceleration,
-                                    FlightModelConfig().maximum_angle_of_attack_rad);
-    if (!turn) break;
-    hardest = *turn;
-  }
-  return hardest;
+/// At the planner's largest angle of attack.
+SteadyFlight hardest(double speed_mps) {
+  return hardest_turn(Airframe(), speed_mps, FlightModelConfig().maximum_angle_of_attack_rad);
 }
 
-double turn_radius_m(double speed_mps) { return hardest_turn(speed_mps).radius_m(); }
+double turn_radius_m(double speed_mps) { return hardest(speed_mps).radius_m(); }
 
 /// Straight through a Poisson forest: what is struck stands within a strip as wide as span and trunk.
 double blind_km(double per_tree_m2) { return 1e-3 * per_tree_m2 / (2 * (half_span_m + mean_radius_m)); }
@@ -56,7 +49,7 @@ double blind_km(double per_tree_m2) { return 1e-3 * per_tree_m2 / (2 * (half_spa
 double fastest_mps(double sight_m, bool rolls_first) {
   double fastest = 0;
   for (double speed_mps = 5; speed_mps < 20; speed_mps += 0.1) {
-    const SteadyFlight turn = hardest_turn(speed_mps);
+    const SteadyFlight turn = hardest(speed_mps);
     const double roll_s =
         turn.bank_rad * reference_speed_mps / speed_mps / FlightModelConfig().maximum_roll_rate_radps;
     const double aside_s = 2 * std::sqrt((half_span_m + mean_radius_m) * turn.radius_m()) / speed_mps;
@@ -155,6 +148,7 @@ Section limits_section() {
   Section section{"limits"};
   const std::map<std::string, Cells> flown = flown_cells();
   std::vector<LinePlot> panels;
+  const double sensing_bound_mps = fastest_mps(4.8, true);
   LinePlot without_unit{.title = "Without dimension",
                         .x_label = "trees in the square of the turning radius R",
                         .y_label = "trees in the way between crashes",
@@ -168,7 +162,7 @@ Section limits_section() {
                    .x_label = "speed flown (m/s)",
                    .y_label = "km between crashes, 95 %",
                    .references = {{blind_km(per_tree_m2), "straight through, by theory", false},
-                                  {fastest_mps(4.8, true), "4.8 m: sensing bound", true}},
+                                  {sensing_bound_mps, "4.8 m: sensing bound", true}},
                    .x_range = AxisRange{8.5, 12.5},
                    .y_range = AxisRange{0.005, 30},
                    .y_log = true};

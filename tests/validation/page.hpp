@@ -4,12 +4,15 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "scenarios/report/line_plot.hpp"
 
 namespace understory {
+
+constexpr double degree = std::numbers::pi / 180;
 
 /// One stated tolerance, and what was measured against it.
 struct Check {

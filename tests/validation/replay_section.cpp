@@ -9,7 +9,6 @@
 namespace understory {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double half_s = 0.75;  // of the record: what may be fitted to
 
 /// A value of the record and of both flights over time, or over another value.

@@ -11,7 +11,6 @@
 namespace understory {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double servo_lag_s = 0.030;  // what [14] counts with; the simulator's elevons have none by default
 
 struct Roll {

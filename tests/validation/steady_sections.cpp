@@ -13,23 +13,11 @@
 namespace understory {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
-
 // The identified model's own trim and limits [3].
 constexpr double recorded_speed_mps = 12.27, recorded_attack_deg = 10.97, recorded_elevon_rad = 0.1914,
                  recorded_thrust_n = 5.08;
 constexpr double recorded_slowest_mps = 8.0, recorded_fastest_mps = 12.8;
 constexpr double slowest_attack_rad = 25 * degree;  // where the records end level flight: a real wing stalls
-
-/// The last of 40 points halfway between `yes`, where `holds`, and `no`, where it does not.
-template <typename Holds>
-double border(double yes, double no, Holds&& holds) {
-  for (int halving = 0; halving < 40; ++halving) {
-    const double middle = 0.5 * (yes + no);
-    (holds(middle) ? yes : no) = middle;
-  }
-  return yes;
-}
 
 /// The flattest straight flight at this speed: level, or where the motor is too weak with all the thrust.
 std::optional<SteadyFlight> flattest_flight(const Airframe& airframe, double speed_mps) {
@@ -85,35 +73,8 @@ constexpr struct ComputedTurn {
   double speed_mps, bank_deg, radius_m, load_factor;
 } computed_turns[] = {{9, 40, 9.7, 1.5}, {10, 41, 12, 1.75}, {12.3, 26, 32, 2.4}};
 
-/// Level turn at this bank with all the thrust: what speed does is solved for.
-std::optional<SteadyFlight> full_thrust_turn(const Airframe& airframe, double speed_mps, double bank_rad) {
-  SteadyFlight given;
-  given.airspeed_mps = speed_mps;
-  given.bank_rad = bank_rad;
-  given.thrust_n = airframe.max_thrust_n;
-  return steady_flight(airframe, given, Solved::acceleration, attack_cap_rad);
-}
-
-/// The steepest level turn that gains at least this much speed. Nothing comes out with nan everywhere.
-SteadyFlight steepest_turn(const Airframe& airframe, double speed_mps, double acceleration_mps2) {
-  const double bank = border(0, 85 * degree, [&](double bank_rad) {
-    const std::optional<SteadyFlight> turn = full_thrust_turn(airframe, speed_mps, bank_rad);
-    return turn && turn->acceleration_mps2 >= acceleration_mps2;
-  });
-  if (const auto turn = full_thrust_turn(airframe, speed_mps, bank)) return *turn;
-  SteadyFlight none;
-  none.airspeed_mps = speed_mps;
-  none.bank_rad = none.turn_rate_radps = none.load_factor = std::nan("");
-  return none;
-}
-
 SteadyFlight sustained_turn(const Airframe& airframe, double speed_mps) {
-  return steepest_turn(airframe, speed_mps, 0);
-}
-
-/// At the cap of the angle of attack, losing speed.
-SteadyFlight hardest_turn(const Airframe& airframe, double speed_mps) {
-  return steepest_turn(airframe, speed_mps, -HUGE_VAL);
+  return steepest_turn(airframe, speed_mps, 0, attack_cap_rad);
 }
 
 double bank_deg(const SteadyFlight& flight) { return flight.bank_rad / degree; }
@@ -147,7 +108,8 @@ std::string turn_picture(const Airframe& airframe) {
   for (const ComputedTurn& computed : computed_turns) {
     std::vector<SteadyFlight> turns;
     for (double bank = 2; bank < 75; bank += 1) {
-      const std::optional<SteadyFlight> turn = full_thrust_turn(airframe, computed.speed_mps, bank * degree);
+      const std::optional<SteadyFlight> turn =
+          full_thrust_turn(airframe, computed.speed_mps, bank * degree, attack_cap_rad);
       if (!turn) break;
       turns.push_back(*turn);
     }
@@ -213,7 +175,8 @@ Section turn_section(const Airframe& airframe) {
   for (const ComputedTurn& computed : computed_turns) {
     const double speed = computed.speed_mps;
     const SteadyFlight held = sustained_turn(airframe, speed), free = sustained_turn(undamped, speed),
-                       hard = hardest_turn(airframe, speed), hard_free = hardest_turn(undamped, speed);
+                       hard = hardest_turn(airframe, speed, attack_cap_rad),
+                       hard_free = hardest_turn(undamped, speed, attack_cap_rad);
     include(bank_lost, bank_deg(free) - bank_deg(held));
     include(load_lost, 100 * (1 - hard.load_factor / hard_free.load_factor));
     section.row("table", fmt::format("{:g} | {:.1f} deg ({:.1f} m) | {:.1f} deg ({:.1f} m) | {:g} deg ({:g} "

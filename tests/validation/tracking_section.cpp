@@ -11,7 +11,6 @@
 namespace understory {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double minimum_lift_mps2 = 2;       // upwards: the bank never passes the vertical
 constexpr int physics_steps_per_control = 6;  // 200 Hz, the rate of the stack's IMU
 

@@ -77,7 +77,7 @@ TEST(Validate, RefusesWhatItDoesNotKnow) {
 }
 
 TEST(Validate, TheFlightModelsPageSaysWhatIsMeasuredAndItsTolerancesHold) {
-  const support::Outcome outcome = support::understory("flight_model --check");
+  const support::ProgramRun outcome = support::understory("flight_model --check");
   EXPECT_EQ(outcome.status, 0) << outcome.text;
   EXPECT_NE(outcome.text.find("ok      replayed jog, horizontal at 1.5 s:"), std::string::npos);
   EXPECT_EQ(outcome.text.find("broken"), std::string::npos) << outcome.text;

@@ -11,14 +11,14 @@ namespace {
 
 using namespace rig_limits;
 
-constexpr double maximum_value = 1e9;  // focal lengths times millimetres stay far below
+constexpr double maximum_entry = 1e9;  // focal lengths times millimetres stay far below
 
 template <int rows, int cols>
 cv::Matx<double, rows, cols> matrix(StrictMap& map, const std::string& key) {
   StrictMap fields = map.map(key);
   fields.whole("rows", rows, rows);
   fields.whole("cols", cols, cols);
-  const auto values = fields.numbers("data", rows * cols, -maximum_value, maximum_value);
+  const auto values = fields.numbers("data", rows * cols, -maximum_entry, maximum_entry);
   fields.refuse_others();
   return cv::Matx<double, rows, cols>(values.data());
 }
