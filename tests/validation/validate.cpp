@@ -45,6 +45,7 @@ struct Page {
 const std::vector<Page> pages{{"flight_model", aircraft_sections},
                               {"estimator", estimator_sections},
                               {"model_mismatch", mismatch_sections},
+                              {"limits", [] { return std::vector<Section>{limits_section()}; }},
                               {"ci", [] { return std::vector<Section>{gate_section()}; }}};
 
 std::string read_text(const fs::path& file) {
@@ -91,7 +92,8 @@ int run(const std::vector<std::string>& arguments) {
     else if (page != pages.end())
       chosen.push_back(*page);
     else
-      throw ScenarioError(argument + ": expected --check, flight_model, estimator, model_mismatch or ci");
+      throw ScenarioError(argument +
+                          ": expected --check, flight_model, estimator, model_mismatch, limits or ci");
   }
   int faults = 0;
   for (const Page& page : chosen.empty() ? pages : chosen) faults += validate(page, check);
