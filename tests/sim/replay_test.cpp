@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "tests/validation/page.hpp"
 #include "tests/validation/replay_fit.hpp"

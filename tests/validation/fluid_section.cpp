@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "tests/sim/ellipsoid_fluid.hpp"
 #include "tests/validation/sections.hpp"

@@ -120,20 +120,17 @@ struct Cell {
   double per_tree_m2 = 0, cruise_mps = 0;
   auto operator<=>(const Cell&) const = default;
 };
-using Cells = std::map<Cell, ConditionSummary>;
+using Cells = std::map<Cell, std::vector<FlightRow>>;
 
 std::map<std::string, Cells> flown_cells() {
   const std::string file = UNDERSTORY_SOURCE_DIR "/docs/results/limits/flights.csv";
-  std::map<std::string, std::map<Cell, std::vector<FlightRow>>> rows;
+  std::map<std::string, Cells> cells;
   for (const FlightRow& row : rows_from_csv(read_file(file, 1 << 24), file)) {
     const std::size_t begin = row.condition.find('-') + 1, end = row.condition.find('-', begin);
     if (!row.flown()) throw std::runtime_error(file + ": " + row.id + " is not flown");
-    rows[row.condition.substr(begin, end - begin)][{row.square_metres_per_tree, row.cruise_speed_mps}]
+    cells[row.condition.substr(begin, end - begin)][{row.square_metres_per_tree, row.cruise_speed_mps}]
         .push_back(row);
   }
-  std::map<std::string, Cells> cells;
-  for (const auto& [eyes, of_cells] : rows)
-    for (const auto& [cell, its] : of_cells) cells[eyes][cell] = summary_of(its);
   return cells;
 }
 
@@ -156,16 +153,11 @@ LinePlot sight_panel(const std::map<std::string, Cells>& flown) {
                   .mark = Mark::line_and_dots,
                   .colour = colour++};
     for (const auto& [eyes, sight_m] : sights) {
-      ConditionSummary all;
-      for (const auto& [cell, summary] : flown.at(eyes)) {
-        if (cell.per_tree_m2 != per_tree_m2) continue;
-        all.among_obstacles_km += summary.among_obstacles_km;
-        all.collision += summary.collision;
-        all.ground += summary.ground;
-        all.out_of_bounds += summary.out_of_bounds;
-        all.flown += summary.flown;
-      }
-      const CrashDistance distance = crash_distance(all);
+      std::vector<FlightRow> of_all_speeds;
+      for (const auto& [cell, rows] : flown.at(eyes))
+        if (cell.per_tree_m2 == per_tree_m2)
+          of_all_speeds.insert(of_all_speeds.end(), rows.begin(), rows.end());
+      const CrashDistance distance = crash_distance(summary_of(of_all_speeds));
       series.add(std::log10(sight_m), distance.measured_km(), distance.interval.minimum,
                  distance.interval.maximum);
     }
@@ -198,8 +190,9 @@ Section limits_section() {
                    .y_log = true};
     for (std::size_t i = 0; i < all_eyes.size(); ++i) {
       Series series{.name = panels.empty() ? all_eyes[i].words : "", .mark = Mark::line_and_dots};
-      for (const auto& [cell, summary] : flown.at(all_eyes[i].name)) {
+      for (const auto& [cell, rows] : flown.at(all_eyes[i].name)) {
         if (cell.per_tree_m2 != per_tree_m2) continue;
+        const ConditionSummary summary = summary_of(rows);
         const CrashDistance distance = crash_distance(summary);
         const double aside_mps = 0.04 * (static_cast<double>(i) - 2.5);  // bars would hide each other
         const auto add = [&](Series& to, double at, double scale) {
@@ -227,7 +220,7 @@ Section limits_section() {
     for (const double per_tree_m2 : {49.0, 25.0, 16.0, 9.0}) {
       std::string cells = fmt::format("{:.0f} | {:.0f}", speed_mps, std::sqrt(per_tree_m2));
       for (const Eyes& eyes : all_eyes)
-        cells += " | " + crash_distance_text(flown.at(eyes.name).at({per_tree_m2, speed_mps}));
+        cells += " | " + crash_distance_text(summary_of(flown.at(eyes.name).at({per_tree_m2, speed_mps})));
       section.row("map", cells);
     }
   }

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "tests/validation/replay_fit.hpp"
 #include "tests/validation/sections.hpp"

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "planning/flight_model.hpp"
 #include "scenarios/parts/oracles.hpp"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "sim/aircraft/aerodynamics.hpp"
 #include "tests/validation/flight_mechanics.hpp"

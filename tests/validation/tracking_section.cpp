@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "planning/path_follower.hpp"
 #include "scenarios/parts/oracles.hpp"
