@@ -25,6 +25,7 @@ inline constexpr double minimum_center_px = -8192, maximum_center_px = 16384;
 inline constexpr double minimum_depth_m = 0.1, maximum_depth_m = 1000;
 inline constexpr double maximum_coefficient = 1e4;  ///< of a lens: wild ones reach 13 (the paper's rig)
 inline constexpr double maximum_offset_m = 10;      ///< of a camera from the body's origin
+inline constexpr double maximum_entry = 1e9;  ///< of a matrix: focal lengths times millimetres stay far below
 }  // namespace rig_limits
 
 struct ImageSize {

@@ -16,7 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace rig_limits;
 
-constexpr double maximum_value = 1e9;           // of anything: focal lengths times millimetres stay far below
 constexpr double coefficient_tolerance = 1e-9;  // what counts as 0
 
 struct Matrix {
@@ -61,8 +60,8 @@ std::vector<double> from_base64(StrictMap& fields, const std::string& type, std:
   const std::vector<double> values(read.begin<double>(), read.end<double>());
   if (values.size() != count) fields.fail("data", "its base64 is broken");
   for (const double value : values)
-    if (!(std::abs(value) <= maximum_value))
-      fields.fail("data", fmt::format("must be numbers within +-{}, one is {}", maximum_value, value));
+    if (!(std::abs(value) <= maximum_entry))
+      fields.fail("data", fmt::format("must be numbers within +-{}, one is {}", maximum_entry, value));
   return values;
 }
 
@@ -79,7 +78,7 @@ Matrix matrix(StrictMap& map, const std::string& key) {
   if (type != "d" && type != "f") fields.fail("dt", "must be d or f, is '" + type + "'");
   const auto count = static_cast<std::size_t>(matrix.rows * matrix.cols);
   matrix.values = is_base64(fields) ? from_base64(fields, type, count)
-                                    : fields.numbers("data", count, -maximum_value, maximum_value);
+                                    : fields.numbers("data", count, -maximum_entry, maximum_entry);
   return matrix;
 }
 

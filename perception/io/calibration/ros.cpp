@@ -11,8 +11,6 @@ namespace {
 
 using namespace rig_limits;
 
-constexpr double maximum_entry = 1e9;  // focal lengths times millimetres stay far below
-
 template <int rows, int cols>
 cv::Matx<double, rows, cols> matrix(StrictMap& map, const std::string& key) {
   StrictMap fields = map.map(key);
