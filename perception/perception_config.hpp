@@ -141,7 +141,7 @@ void visit_fields(FieldVisitor& visit, FullStereoCrop& crop);
 struct LocalMapConfig {
   double max_age_s = 4.0;
   double passed_m = 2.0;
-  int max_points = 5000;
+  int max_points = 50'000;
   double voxel_m = 0.10;
   int min_neighbours = 2;
   double neighbour_radius_m = 1.0;

@@ -129,7 +129,6 @@ std::unique_ptr<ObstacleDetector> ideal_detector(const Scenario& scenario, const
 }
 
 AutopilotConfig with_ideal_parts(AutopilotConfig config, const Scenario& scenario) {
-  if (is_ideal(scenario, "map") || is_ideal(scenario, "sight")) config.map.max_points = 50'000;
   if (is_ideal(scenario, "map")) {
     config.map.max_age_s = 1000;
     config.map.min_neighbours = 0;
