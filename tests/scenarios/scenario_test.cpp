@@ -63,6 +63,8 @@ struct Difference {
 TEST(Scenario, TwoOfTheLibraryDifferOnlyInWhatTheirCommentsSay) {
   const std::vector<Difference> differences{
       {"dense", "forest.square_metres_per_tree", "one tree per 25 m^2"},
+      {"dense", "perception.depths_m", "five neighbouring disparities"},
+      {"dense", "autopilot.map.voxel_m", "as many points as one depth"},
       {"agile", "forest.square_metres_per_tree", "one tree per 25 m^2"},
       {"agile", "forest.radius_", "0.6 m thick"},
       {"agile", "forest.length_m", "40 m"},
@@ -75,7 +77,7 @@ TEST(Scenario, TwoOfTheLibraryDifferOnlyInWhatTheirCommentsSay) {
       {"paper_depths", "perception.pushbroom.", "the rig of Barry & Tedrake"},
       {"paper_depths", "perception.depths_m", "depths"},
       {"paper_depths", "band.cruise_altitude_m", "All else is as in"},
-      {"paper_depths", "autopilot.flight_model.cruise_speed_mps", "All else is as in"},
+      {"paper_depths", "autopilot.", "All else is as in paper.yaml, but for the map's"},
       {"woods", "world.scenery", "as woods"},
       {"woods", "cameras.", "seen through a lens"},
       {"woods", "perception.", "parameters for woods"},
@@ -83,6 +85,7 @@ TEST(Scenario, TwoOfTheLibraryDifferOnlyInWhatTheirCommentsSay) {
       {"woods_dense", "world.scenery", "woods of woods.yaml"},
       {"woods_dense", "cameras.", "woods of woods.yaml"},
       {"woods_dense", "perception.", "woods of woods.yaml"},
+      {"woods_dense", "autopilot.map.voxel_m", "voxels of dense.yaml"},
       {"woods_low", "world.", "begin at a height of 4 to 6 m"},
       {"woods_low", "cameras.", "woods of woods.yaml"},
       {"woods_low", "perception.", "woods of woods.yaml"},
