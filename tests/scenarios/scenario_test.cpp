@@ -64,7 +64,7 @@ TEST(Scenario, TwoOfTheLibraryDifferOnlyInWhatTheirCommentsSay) {
   const std::vector<Difference> differences{
       {"dense", "forest.square_metres_per_tree", "one tree per 25 m^2"},
       {"dense", "perception.depths_m", "five neighbouring disparities"},
-      {"dense", "autopilot.map.voxel_m", "as many points as one depth"},
+      {"dense", "autopilot.map.voxel_m", "fewer points than one depth"},
       {"agile", "forest.square_metres_per_tree", "one tree per 25 m^2"},
       {"agile", "forest.radius_", "0.6 m thick"},
       {"agile", "forest.length_m", "40 m"},
