@@ -21,9 +21,8 @@ namespace {
 struct Eyes {
   const char *name, *words;
 };
-constexpr std::array<Eyes, 7> all_eyes{{{"ours", "long rig, one depth of 10 m"},
-                                        {"five_depths", "long rig, 12 to 8.8 m"},
-                                        {"true_depth_and_state", "one depth, true depth and state"},
+constexpr std::array<Eyes, 6> all_eyes{{{"ours", "long rig, one depth of 10 m"},
+                                        {"true_depth_and_state", "the same with true depth and state"},
                                         {"paper_two_depths", "the paper's rig, 9.1 and 4.8 m"},
                                         {"paper_one_depth", "the paper's rig, 4.8 m"},
                                         {"everything_known", "everything known"},
@@ -195,7 +194,7 @@ Section limits_section() {
         if (cell.per_tree_m2 != per_tree_m2) continue;
         const ConditionSummary summary = summary_of(rows);
         const CrashDistance distance = crash_distance(summary);
-        const double aside_mps = 0.04 * (static_cast<double>(i) - 3);  // bars would hide each other
+        const double aside_mps = 0.04 * (static_cast<double>(i) - 2.5);  // bars would hide each other
         const auto add = [&](Series& to, double at, double scale) {
           to.add(at, scale * distance.measured_km(), scale * distance.interval.minimum,
                  scale * distance.interval.maximum);
