@@ -23,12 +23,12 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t maximum_film_bytes = std::size_t{1} << 30;
 
-/// "pushbroom at 10.1 m", "stereo_bm from 1.5 to 15 m".
+/// "pushbroom at 10.1 m", "pushbroom at 9.1, 4.8 m", "stereo_bm from 1.5 to 15 m".
 std::string words_of_detector(const FlightLog& log) {
   const PerceptionSection& perception = log.scenario.perception;
   const std::string& name = log.result.detector;
   if (const std::vector<double> depths_m = compared_depths_m(log); !depths_m.empty())
-    return fmt::format("{} at {:.1f} m", name, fmt::join(depths_m, " and "));
+    return fmt::format("{} at {:.1f} m", name, fmt::join(depths_m, ", "));
   if (!name.starts_with("stereo_")) return name;
   return fmt::format("{} from {:.1f} to {:.1f} m", name, perception.full_stereo.minimum_depth_m,
                      perception.full_stereo.maximum_depth_m);

@@ -22,9 +22,7 @@ constexpr int longer_search = 20;
 std::vector<DepthInterval> intervals_of(const Scenario& scenario, const StereoRig& rig) {
   const DetectorPart& part = scenario.perception.part();
   std::vector<DepthInterval> intervals;
-  if (part.depths_m)
-    for (const double depth_m : part.depths_m(scenario, rig))
-      intervals.push_back(rig.depths_around(std::round(rig.disparity_px(depth_m))));
+  if (part.depths_m) intervals = intervals_around(part.depths_m(scenario, rig), rig);
   if (intervals.empty())
     intervals.push_back(
         {scenario.perception.full_stereo.minimum_depth_m, scenario.perception.full_stereo.maximum_depth_m});
@@ -129,6 +127,8 @@ std::unique_ptr<ObstacleDetector> ideal_detector(const Scenario& scenario, const
 }
 
 AutopilotConfig with_ideal_parts(AutopilotConfig config, const Scenario& scenario) {
+  if (is_ideal(scenario, "map") || is_ideal(scenario, "sight"))
+    config.map.max_points = std::max(config.map.max_points, 50'000);
   if (is_ideal(scenario, "map")) {
     config.map.max_age_s = 1000;
     config.map.min_neighbours = 0;

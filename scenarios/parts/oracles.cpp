@@ -162,11 +162,17 @@ double ray_meets(const Eigen::Vector3d& origin_world, const Eigen::Vector3d& dir
   return multiple;
 }
 
+std::vector<DepthInterval> intervals_around(const std::vector<double>& depths_m, const StereoRig& rig) {
+  std::vector<DepthInterval> intervals;
+  for (const double depth_m : depths_m)
+    intervals.push_back(rig.depths_around(std::round(rig.disparity_px(depth_m))));
+  return intervals;
+}
+
 TrueDepth::TrueDepth(const StereoRig& rig, std::vector<Obstacle> obstacles, const TruthHistory& history,
                      std::vector<DepthInterval> intervals)
     : rig_(rig), obstacles_(std::move(obstacles)), history_(history), intervals_(std::move(intervals)) {
-  if (intervals_.empty())
-    intervals_.push_back(rig.depths_around(std::round(rig.disparity_px(rig.detection_depth_m))));
+  if (intervals_.empty()) intervals_ = intervals_around({rig.detection_depth_m}, rig);
 }
 
 const std::vector<StereoHit>& TrueDepth::detect(const StereoFrame& frame) {

@@ -53,6 +53,9 @@ class NoDetector : public ObstacleDetector {
   std::vector<StereoHit> none_;
 };
 
+/// For each depth one pixel of disparity either side of the whole disparity nearest to it.
+std::vector<DepthInterval> intervals_around(const std::vector<double>& depths_m, const StereoRig& rig);
+
 /// Perfect detection at one depth or several: a hit for every 5x5 block of the left image (rows 0..205, as
 /// the original detector) whose centre ray first meets an obstacle within one of the
 /// intervals. The depth is analytic (ray against the obstacle's shape); images are not used, and

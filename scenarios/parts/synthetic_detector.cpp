@@ -9,25 +9,12 @@
 #include "perception/field_visitor.hpp"
 
 namespace understory {
-namespace {
-
-std::vector<DepthInterval> intervals_of(const SyntheticConfig& config, const DepthInterval& reach,
-                                        const StereoRig& rig) {
-  std::vector<DepthInterval> intervals;
-  for (const double depth_m : config.depths_m)
-    intervals.push_back(rig.depths_around(std::round(rig.disparity_px(depth_m))));
-  if (intervals.empty()) intervals.push_back(reach);
-  return intervals;
-}
-
-}  // namespace
-
 SyntheticDetector::SyntheticDetector(const StereoRig& rig, const std::vector<Obstacle>& obstacles,
                                      const TruthHistory& history, const SyntheticConfig& config,
                                      const DepthInterval& reach, std::uint64_t seed)
     : rig_(rig),
       config_(config),
-      intervals_(intervals_of(config, reach, rig)),
+      intervals_(config.depths_m.empty() ? std::vector{reach} : intervals_around(config.depths_m, rig)),
       truth_(rig, obstacles, history, intervals_),
       generator_(seed) {
   std::map<int, std::size_t> trees;

@@ -22,8 +22,6 @@
 namespace understory {
 namespace {
 
-std::vector<double> rig_depth_m(const Scenario&, const StereoRig& rig) { return {rig.detection_depth_m}; }
-
 std::vector<double> pushbroom_depths_m(const Scenario& scenario, const StereoRig& rig) {
   const std::vector<double> depths_m = stated_depths_m(scenario.perception.pushbroom(), rig);
   return depths_m.empty() ? std::vector{rig.detection_depth_m} : depths_m;
@@ -110,13 +108,16 @@ void add_detectors(PartList<DetectorPart>& detectors) {
                  .cost_s = [](const PerceptionSection& section) { return section.compute.stereo_sgbm_s; }},
                 StereoSgbmConfig(), stereo_sgbm_fault);
   detectors.add({.name = "true_depth",
-                 .meaning = "exact depth from the simulator, at the rig's detection depth",
+                 .meaning = "exact depth from the simulator, at the depths of perception.depths_m",
                  .make =
                      [](const FlightContext& context) {
-                       return std::make_unique<TrueDepth>(context.rig.rig, context.obstacles, context.truth);
+                       const StereoRig& rig = context.rig.rig;
+                       return std::make_unique<TrueDepth>(
+                           rig, context.obstacles, context.truth,
+                           intervals_around(pushbroom_depths_m(context.scenario, rig), rig));
                      },
                  .needs_images = false,
-                 .depths_m = rig_depth_m});
+                 .depths_m = pushbroom_depths_m});
   detectors.add({.name = "synthetic",
                  .meaning = "hits made from the truth, with the depths, misses and errors that its keys say",
                  .make = synthetic_of,

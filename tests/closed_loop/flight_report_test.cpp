@@ -278,8 +278,10 @@ TEST(FlightPage, SaysHowFarTheDetectorLooks) {
     return flight_page(Told(library("forest", {"time_limit_s=0.1", setting})).log(), {root});
   };
   expect_part(page("seed=1000"), "pushbroom at 10.1 m");
-  expect_part(page("perception.depths_m=[10, 7]"), "pushbroom at 10.0 and 7.0 m");
+  expect_part(page("perception.depths_m=[10, 7]"), "pushbroom at 10.0, 7.0 m");
   expect_part(page("perception.detector=stereo_bm"), "stereo_bm from 1.5 to 15.0 m");
+  const Told exact(library("paper_depths", {"time_limit_s=0.1", "perception.detector=true_depth"}));
+  expect_part(flight_page(exact.log(), {root}), "true_depth at 12.0, 9.1, 6.4, 4.8 m");
 }
 
 // ---- the commands ----

@@ -80,6 +80,10 @@ TEST(TrueDepth, SeesOnePixelEitherWay) {
   const TrueDepth detector(paper_rig(), {}, scene.history);
   EXPECT_NEAR(detector.interval().near_m, 4.47, 0.02);
   EXPECT_NEAR(detector.interval().far_m, 5.20, 0.02);
+  const std::vector<Obstacle> trunk{{"tree", {9.3, 0, 0}, {9.3, 0, 9}, 0.25, 0, 0}};
+  EXPECT_TRUE(TrueDepth(paper_rig(), trunk, scene.history).detect(scene.frame).empty());
+  TrueDepth both(paper_rig(), trunk, scene.history, intervals_around({4.8, 9.1}, paper_rig()));
+  EXPECT_FALSE(both.detect(scene.frame).empty());
 }
 
 TEST(TrueDepth, HitsLieOnTheTrunkAndCoverIt) {
