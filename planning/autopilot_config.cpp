@@ -45,6 +45,9 @@ void visit_fields(FieldVisitor& visit, ObstacleFieldConfig& config) {
         "height gap between the points of a cell above which they become separate columns");
   visit("vertical_reach_m", config.vertical_reach_m, 0.0, 10.0,
         "length by which a column extends above its highest and below its lowest point");
+  visit("trunk_m", config.trunk_m, 0.0, 10.0,
+        "A column whose points reach over at least this height is taken for a trunk, which goes on from the "
+        "ground to above every flight, seen or not; 0: none is.");
   visit("stands_on_ground", config.stands_on_ground,
         "Extends columns down to the ground, as trees and posts do, so that the aircraft does not fly below "
         "the part of a trunk that it has seen. A false detection in the air then blocks all heights below "

@@ -36,6 +36,7 @@ struct ObstacleFieldConfig {
   double column_gap_m = 1.2;
   double vertical_reach_m = 0.4;
   bool stands_on_ground = false;
+  double trunk_m = 0;
   double sigma_zero_m = 0.05;
   double sigma_per_m = 0.010;
   double sigma_maximum_m = 0.3;

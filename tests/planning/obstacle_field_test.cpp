@@ -34,6 +34,7 @@ TEST(ObstacleField, ClearanceAgreesWithWalkingAlongTheWing) {
   int near = 0, touching = 0;
   for (int trial = 0; trial < 60; ++trial) {
     config.stands_on_ground = trial % 2 == 0;
+    config.trunk_m = trial % 3;
     std::vector<ObstaclePoint> points;  // scattered at every height, some in short stacks
     for (int i = 0; i < 40; ++i) {
       ObstaclePoint point;
@@ -141,6 +142,24 @@ TEST(ObstacleField, WhatIsSeenInTheAirStandsOnTheGroundWhereAsked) {
   state.position_world.z() = points.back().position_world.z() + 2;  // over it there is room
   config.stands_on_ground = true;
   EXPECT_GT(ObstacleField(config, points, 0).clearance_m(state, 3), 1);
+}
+
+TEST(ObstacleField, WhatIsSeenOverTheHeightOfATrunkGoesOnUpAndDown) {
+  ObstacleFieldConfig config;
+  config.trunk_m = 1;
+  std::vector<ObstaclePoint> points(2);
+  points[0].position_world = {5, 0, 2};
+  const auto clearance_m = [&](double top_m, double flight_m) {
+    points[1].position_world = {5, 0, top_m};
+    FlightState state;
+    state.position_world = {5, 0, flight_m};
+    return ObstacleField(config, points, 0).clearance_m(state, 3);
+  };
+  for (const double flight_m : {0.5, 6.0}) {
+    EXPECT_GT(clearance_m(2.9, flight_m), 0.5);
+    EXPECT_LT(clearance_m(3.1, flight_m), 0);
+    EXPECT_GT(clearance_m(3.3, flight_m), 0.5) << "a gap of column_gap_m parts what is seen";
+  }
 }
 
 TEST(ObstacleField, UncertaintyGrowsWithTheDistanceFlownUpToItsLimit) {
