@@ -1,9 +1,7 @@
 #include "scenarios/parts/synthetic_detector.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "perception/field_visitor.hpp"
