@@ -47,11 +47,7 @@ void visit_fields(FieldVisitor& visit, ObstacleFieldConfig& config) {
         "length by which a column extends above its highest and below its lowest point");
   visit("trunk_m", config.trunk_m, 0.0, 10.0,
         "A column whose points reach over at least this height is taken for a trunk, which goes on from the "
-        "ground to above every flight, seen or not; 0: none is.");
-  visit("stands_on_ground", config.stands_on_ground,
-        "Extends columns down to the ground, as trees and posts do, so that the aircraft does not fly below "
-        "the part of a trunk that it has seen. A false detection in the air then blocks all heights below "
-        "it, so it is worthwhile only in wind. | docs/decisions/017");
+        "ground to above every flight, seen or not; 0: none is. | docs/decisions/035");
   visit("sigma_zero_m", config.sigma_zero_m, 0.0, 2.0,
         "position uncertainty of a map point when it is detected; the planner enlarges obstacles by it");
   visit("sigma_per_m", config.sigma_per_m, 0.0, 0.5,

@@ -35,8 +35,7 @@ struct ObstacleFieldConfig {
   double cell_m = 0.15;
   double column_gap_m = 1.2;
   double vertical_reach_m = 0.4;
-  bool stands_on_ground = false;
-  double trunk_m = 0;
+  double trunk_m = 1;
   double sigma_zero_m = 0.05;
   double sigma_per_m = 0.010;
   double sigma_maximum_m = 0.3;

@@ -106,8 +106,10 @@ ObstacleField::ObstacleField(const ObstacleFieldConfig& config, const std::vecto
     double bottom_m = cells[first].z - config.vertical_reach_m,
            top_m = cells[end - 1].z + config.vertical_reach_m;
     const bool is_trunk = config.trunk_m > 0 && cells[end - 1].z - cells[first].z >= config.trunk_m;
-    if (config.stands_on_ground || is_trunk) bottom_m = std::min(bottom_m, 0.0);
-    if (is_trunk) top_m = std::max(top_m, higher_than_any_flight_m);
+    if (is_trunk) {
+      bottom_m = std::min(bottom_m, 0.0);
+      top_m = std::max(top_m, higher_than_any_flight_m);
+    }
     columns_.push_back(
         {sum / static_cast<double>(end - first), bottom_m, top_m, radius_m + 0.5 * config.cell_m});
     first = end;

@@ -33,7 +33,6 @@ TEST(ObstacleField, ClearanceAgreesWithWalkingAlongTheWing) {
   ObstacleFieldConfig config;
   int near = 0, touching = 0;
   for (int trial = 0; trial < 60; ++trial) {
-    config.stands_on_ground = trial % 2 == 0;
     config.trunk_m = trial % 3;
     std::vector<ObstaclePoint> points;  // scattered at every height, some in short stacks
     for (int i = 0; i < 40; ++i) {
@@ -126,22 +125,6 @@ TEST(ObstacleField, ABankedWingPassesWhereALevelOneDoesNot) {
   const double expected = 0.45 - config.wing_radius_m - config.sigma_zero_m - 0.5 * config.cell_m;
   EXPECT_NEAR(field.clearance_m(state, 3), expected, 1e-9);
   EXPECT_GT(field.clearance_m(state, 3), 0);
-}
-
-TEST(ObstacleField, WhatIsSeenInTheAirStandsOnTheGroundWhereAsked) {
-  ObstacleFieldConfig config;
-  config.stands_on_ground = true;
-  std::vector<ObstaclePoint> points = points_of({{{5, 0}}});
-  std::erase_if(points, [](const ObstaclePoint& point) { return point.position_world.z() < 6; });
-  ASSERT_FALSE(points.empty());
-  FlightState state;
-  state.position_world = {5, 0, 3};
-  EXPECT_LT(ObstacleField(config, points, 0).clearance_m(state, 3), 0);
-  config.stands_on_ground = false;
-  EXPECT_GT(ObstacleField(config, points, 0).clearance_m(state, 3), 1);
-  state.position_world.z() = points.back().position_world.z() + 2;  // over it there is room
-  config.stands_on_ground = true;
-  EXPECT_GT(ObstacleField(config, points, 0).clearance_m(state, 3), 1);
 }
 
 TEST(ObstacleField, WhatIsSeenOverTheHeightOfATrunkGoesOnUpAndDown) {

@@ -103,7 +103,6 @@ const std::vector<Difference> known_differences{
     {"windy", "wind.turbulence_wind20_mps", "turbulence"},
     {"windy", "perception.depths_m", "a second depth"},
     {"windy", "estimation.", "the filter estimates wind and gusts"},
-    {"windy", "autopilot.planner.field.stands_on_ground", "gusts turn the nose up and down"},
     {"pitot_blocked", "faults", "the pitot tube is blocked"},
     {"rough_sensors", "band.cruise_altitude_m", "the middle of its band"},
     {"rough_sensors", "sensors.", "every error is three times"},

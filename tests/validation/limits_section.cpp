@@ -21,8 +21,9 @@ namespace {
 struct Eyes {
   const char *name, *words;
 };
-constexpr std::array<Eyes, 6> all_eyes{{{"ours", "long rig, one depth of 10 m"},
-                                        {"true_depth_and_state", "the same with true depth and state"},
+constexpr std::array<Eyes, 7> all_eyes{{{"ours", "long rig, one depth of 10 m"},
+                                        {"five_depths", "long rig, 12 to 8.8 m"},
+                                        {"true_depth_and_state", "one depth, true depth and state"},
                                         {"paper_two_depths", "the paper's rig, 9.1 and 4.8 m"},
                                         {"paper_one_depth", "the paper's rig, 4.8 m"},
                                         {"everything_known", "everything known"},
@@ -143,8 +144,11 @@ LinePlot sight_panel(const std::map<std::string, Cells>& flown) {
                  .x_range = AxisRange{std::log10(4), std::log10(60)},
                  .y_range = AxisRange{0.005, 30},
                  .y_log = true};
-  constexpr std::array<std::pair<const char*, double>, 4> sights{
-      {{"paper_one_depth", 4.8}, {"paper_two_depths", 9.1}, {"ours", 10}, {"everything_known", 40}}};
+  constexpr std::array<std::pair<const char*, double>, 5> sights{{{"paper_one_depth", 4.8},
+                                                                  {"paper_two_depths", 9.1},
+                                                                  {"ours", 10},
+                                                                  {"five_depths", 12},
+                                                                  {"everything_known", 40}}};
   for (const auto& [eyes, sight_m] : sights)
     panel.x_names.emplace_back(std::log10(sight_m), fmt::format("{}", sight_m));
   int colour = 0;
@@ -194,7 +198,7 @@ Section limits_section() {
         if (cell.per_tree_m2 != per_tree_m2) continue;
         const ConditionSummary summary = summary_of(rows);
         const CrashDistance distance = crash_distance(summary);
-        const double aside_mps = 0.04 * (static_cast<double>(i) - 2.5);  // bars would hide each other
+        const double aside_mps = 0.04 * (static_cast<double>(i) - 3);  // bars would hide each other
         const auto add = [&](Series& to, double at, double scale) {
           to.add(at, scale * distance.measured_km(), scale * distance.interval.minimum,
                  scale * distance.interval.maximum);

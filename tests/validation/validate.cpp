@@ -45,7 +45,10 @@ struct Page {
 const std::vector<Page> pages{{"flight_model", aircraft_sections},
                               {"estimator", estimator_sections},
                               {"model_mismatch", mismatch_sections},
-                              {"limits", [] { return std::vector<Section>{limits_section()}; }},
+                              {"limits",
+                               [] {
+                                 return std::vector<Section>{limits_section(), requirements_section()};
+                               }},
                               {"ci", [] { return std::vector<Section>{gate_section()}; }}};
 
 std::string read_text(const fs::path& file) {
