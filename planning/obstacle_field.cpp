@@ -144,19 +144,18 @@ void ObstacleField::build_grid(double reach_m) {
     for_each_cell_near(column, [&](int cell) { ++cell_start_[cell + 1]; });
   for (std::size_t cell = 1; cell < cell_start_.size(); ++cell) cell_start_[cell] += cell_start_[cell - 1];
   near_.resize(static_cast<std::size_t>(cell_start_.back()));
-  for (std::vector<float>* numbers : {&near_x_m_, &near_y_m_, &near_bottom_m_, &near_top_m_, &near_around_m_})
-    numbers->resize(near_.size());
+  arrays_.resize(near_.size());
   std::vector<std::int32_t> next(cell_start_.begin(), cell_start_.end() - 1);
   for (std::size_t index = 0; index < columns_.size(); ++index)
     for_each_cell_near(columns_[index], [&](int cell) {
       const auto at = static_cast<std::size_t>(next[cell]++);
       const Eigen::Vector2d place = columns_[index].centre_world - grid_origin_;
       near_[at] = static_cast<std::int32_t>(index);
-      near_x_m_[at] = static_cast<float>(place.x());
-      near_y_m_[at] = static_cast<float>(place.y());
-      near_bottom_m_[at] = static_cast<float>(columns_[index].bottom_m);
-      near_top_m_[at] = static_cast<float>(columns_[index].top_m);
-      near_around_m_[at] = static_cast<float>(columns_[index].radius_m + config_.wing_radius_m);
+      arrays_.x_m[at] = static_cast<float>(place.x());
+      arrays_.y_m[at] = static_cast<float>(place.y());
+      arrays_.bottom_m[at] = static_cast<float>(columns_[index].bottom_m);
+      arrays_.top_m[at] = static_cast<float>(columns_[index].top_m);
+      arrays_.around_m[at] = static_cast<float>(columns_[index].radius_m + config_.wing_radius_m);
     });
 }
 
@@ -171,53 +170,29 @@ double ObstacleField::clearance_m(const FlightState& state, double maximum_m) co
   const Eigen::Vector3d half_wing = config_.half_span_m * left_wing_direction_world(state);
   const Eigen::Vector3d left_tip = state.position_world + half_wing,
                         right_tip = state.position_world - half_wing;
-  // The column that may be nearest goes first: most of the others cannot be nearer.
   const auto first = static_cast<std::size_t>(cell_start_[cell]),
              end = static_cast<std::size_t>(cell_start_[cell + 1]);
-  bound_distances(state.position_world, half_wing, first, end);
-  const auto nearest = std::min_element(squared_m2_.begin(), squared_m2_.end());
+  const Eigen::Vector3d middle =
+      state.position_world - Eigen::Vector3d(grid_origin_.x(), grid_origin_.y(), 0);
+  const float least_m =
+      bound_clearances(arrays_, first, end - first, middle.cast<float>(), half_wing.cast<float>(), bounds_m_);
   const auto distance_to = [&](std::size_t at) {
     const Column& column = columns_[static_cast<std::size_t>(near_[at])];
     const Eigen::Vector3d bottom(column.centre_world.x(), column.centre_world.y(), column.bottom_m);
     const Eigen::Vector3d top(column.centre_world.x(), column.centre_world.y(), column.top_m);
     return segment_distance_m(left_tip, right_tip, bottom, top) - (column.radius_m + config_.wing_radius_m);
   };
-  double minimum =
-      std::min(maximum_m, distance_to(first + static_cast<std::size_t>(nearest - squared_m2_.begin())));
-  for (std::size_t at = first; at < end; ++at) {
-    const float matters_m = static_cast<float>(minimum) + near_around_m_[at] + single_rounding_m;
-    if (matters_m > 0 && squared_m2_[at - first] < matters_m * matters_m)
-      minimum = std::min(minimum, distance_to(at));
-  }
+  const auto next = [&](std::size_t from, float most_m) {
+    return first + next_within(bounds_m_, from - first, end - first, most_m);
+  };
+  double minimum = maximum_m;
+  // The column that may be nearest goes first: most of the others cannot be nearer.
+  if (const std::size_t nearest = next(first, least_m); nearest < end)
+    minimum = std::min(minimum, distance_to(nearest));
+  const auto matters_m = [&] { return static_cast<float>(minimum) + single_rounding_m; };
+  for (std::size_t at = next(first, matters_m()); at < end; at = next(at + 1, matters_m()))
+    minimum = std::min(minimum, distance_to(at));
   return minimum;
-}
-
-/// Lower bounds of these columns' squared distances: no column is nearer than its axis to the wing's
-/// projection, seen from above, nor, seen from the side, than the gap between its heights and the wing's.
-void ObstacleField::bound_distances(const Eigen::Vector3d& middle, const Eigen::Vector3d& half_wing,
-                                    std::size_t first, std::size_t end) const {
-  squared_m2_.resize(end - first);
-  const auto x = static_cast<float>(middle.x() - grid_origin_.x()),
-             y = static_cast<float>(middle.y() - grid_origin_.y());
-  const auto across_x = static_cast<float>(half_wing.x()), across_y = static_cast<float>(half_wing.y());
-  const auto half_height = static_cast<float>(std::abs(half_wing.z()));
-  const float low = static_cast<float>(middle.z()) - half_height,
-              high = static_cast<float>(middle.z()) + half_height;
-  const float per_across_m2 = 1 / std::max(across_x * across_x + across_y * across_y, 1e-12f);
-  const float *const near_x = near_x_m_.data() + first, *const near_y = near_y_m_.data() + first,
-                     *const bottom = near_bottom_m_.data() + first, *const top = near_top_m_.data() + first;
-  float* const __restrict squared = squared_m2_.data();
-  const auto less = [](float a, float b) { return a < b ? a : b; };  // as processors have it, NaN and all
-  const auto more = [](float a, float b) { return a > b ? a : b; };
-  const std::size_t count = end - first;
-  for (std::size_t i = 0; i < count; ++i) {
-    const float beside_x = near_x[i] - x, beside_y = near_y[i] - y;
-    const float share = (beside_x * across_x + beside_y * across_y) * per_across_m2;
-    const float along = less(more(share, -1.0f), 1.0f);
-    const float off_x = beside_x - along * across_x, off_y = beside_y - along * across_y;
-    const float gap = more(more(bottom[i] - high, low - top[i]), 0.0f);
-    squared[i] = off_x * off_x + off_y * off_y + gap * gap;
-  }
 }
 
 }  // namespace understory

@@ -6,6 +6,7 @@
 
 #include "perception/obstacle_point.hpp"
 #include "planning/autopilot_config.hpp"
+#include "planning/column_bounds.hpp"
 #include "planning/flight_model.hpp"
 
 namespace understory {
@@ -35,19 +36,15 @@ class ObstacleField {
 
  private:
   void build_grid(double reach_m);
-  void bound_distances(const Eigen::Vector3d& middle, const Eigen::Vector3d& half_wing, std::size_t first,
-                       std::size_t end) const;
 
   ObstacleFieldConfig config_;
   std::vector<Column> columns_;
   Eigen::Vector2d grid_origin_ = Eigen::Vector2d::Zero();
   int grid_width_ = 0, grid_height_ = 0;
   std::vector<std::int32_t> cell_start_;  ///< per cell, into near_; one more than there are cells
-  /// Columns within reach of each cell, and, side by side for a compiler that vectorizes, where their axes
-  /// are (from the grid's origin) and how thick they and the wing are.
-  std::vector<std::int32_t> near_;
-  std::vector<float> near_x_m_, near_y_m_, near_bottom_m_, near_top_m_, near_around_m_;
-  mutable std::vector<float> squared_m2_;  ///< scratch memory of clearance_m()
+  std::vector<std::int32_t> near_;        ///< columns within reach of each cell
+  ColumnArrays arrays_;                   ///< the same, place by place
+  mutable std::vector<float> bounds_m_;   ///< scratch memory of clearance_m()
 };
 
 }  // namespace understory
