@@ -171,7 +171,14 @@ double distance_m(const Eigen::Vector3d& point_world, const Obstacle& obstacle) 
 }
 
 bool belongs_to(const Eigen::Vector3d& point_world, const Obstacle& obstacle) {
-  return distance_m(point_world, obstacle) < belongs_within_m;
+  return belonging_box(obstacle).contains(point_world) &&
+         distance_m(point_world, obstacle) < belongs_within_m;
+}
+
+Eigen::AlignedBox3d belonging_box(const Obstacle& obstacle) {
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(obstacle.radius_m + belongs_within_m);
+  return {obstacle.from_world.cwiseMin(obstacle.to_world) - reach,
+          obstacle.from_world.cwiseMax(obstacle.to_world) + reach};
 }
 
 std::optional<std::size_t> nearest_obstacle(const Eigen::Isometry3d& T_world_body, const Airframe& airframe,

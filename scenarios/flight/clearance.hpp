@@ -55,6 +55,8 @@ class ClearanceField {
 /// stereo at 10 m and of the estimate's drift.
 constexpr double belongs_within_m = 0.5;
 bool belongs_to(const Eigen::Vector3d& point_world, const Obstacle& obstacle);
+/// All points that belong to an obstacle lie in this box, and others.
+Eigen::AlignedBox3d belonging_box(const Obstacle& obstacle);
 
 /// The obstacle that this clearance is smallest to; nothing without obstacles.
 std::optional<std::size_t> nearest_obstacle(const Eigen::Isometry3d& T_world_body, const Airframe& airframe,

@@ -127,12 +127,19 @@ void add_hits(const FlightLog& log, const Detail& detail, PageArrays& arrays, Js
   const auto every = static_cast<std::int64_t>(one_of(static_cast<std::size_t>(all - first), detail.hits));
   if (every > 1) decimation.push_back(fmt::format("hits: one of {}", every));
   std::vector<float> hits, hits_t, frame_t, frame_hits, other_hits;
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (const Obstacle& one : log.obstacles) boxes.push_back(belonging_box(one));
   for (const LogFrame& frame : log.frames) {
+    Eigen::AlignedBox3d around;
+    for (std::int64_t hit = 0; hit < frame.hits; ++hit) around.extend(hit_world(log, frame, hit));
+    std::vector<std::size_t> near;  // of a kilometre's obstacles few are near a frame's hits
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      if (boxes[i].intersects(around)) near.push_back(i);
     int on_obstacles = 0;
     for (std::int64_t hit = 0; hit < frame.hits; ++hit) {
       const Eigen::Vector3d place_world = hit_world(log, frame, hit);
-      on_obstacles += std::ranges::any_of(log.obstacles,
-                                          [&](const Obstacle& one) { return belongs_to(place_world, one); });
+      on_obstacles +=
+          std::ranges::any_of(near, [&](std::size_t i) { return belongs_to(place_world, log.obstacles[i]); });
       const std::int64_t number = frame.first_hit + hit;
       if (number < first || number % every != 0) continue;
       append(hits, place_world);
