@@ -39,15 +39,17 @@ void visit_fields(FieldVisitor& visit, PathFollowerConfig& config) {
 }
 
 void visit_fields(FieldVisitor& visit, ObstacleFieldConfig& config) {
-  visit("cell_m", config.cell_m, 0.02, 1.0,
-        "side of the horizontal grid cells; the map points in one cell become one vertical column");
+  visit(
+      "cell_m", config.cell_m, 0.02, 1.0,
+      "side of the horizontal grid cells; the map points in one cell become one vertical column, or several");
   visit("column_gap_m", config.column_gap_m, 0.1, 20.0,
         "height gap between the points of a cell above which they become separate columns");
   visit("vertical_reach_m", config.vertical_reach_m, 0.0, 10.0,
-        "length by which a column extends above its highest and below its lowest point");
+        "length by which a column that is no trunk extends above its highest and below its lowest point");
   visit("trunk_m", config.trunk_m, 0.0, 10.0,
-        "A column whose points reach over at least this height is taken for a trunk, which goes on from the "
-        "ground to above every flight, seen or not; 0: none is. | docs/decisions/035");
+        "A column whose points reach over at least this height is taken for a trunk from the ground to a "
+        "height "
+        "of 50 m, seen or not; 0: none is. | docs/decisions/035");
   visit("sigma_zero_m", config.sigma_zero_m, 0.0, 2.0,
         "position uncertainty of a map point when it is detected; the planner enlarges obstacles by it");
   visit("sigma_per_m", config.sigma_per_m, 0.0, 0.5,
@@ -64,7 +66,8 @@ void visit_fields(FieldVisitor& visit, ObstacleFieldConfig& config) {
 void visit_fields(FieldVisitor& visit, TrajectoryConfig& config) {
   visit("step_s", config.step_s, 0.005, 0.03, "time step of a predicted trajectory");
   visit("horizon_m", config.horizon_m, 2.0, 60.0,
-        "distance along the course that a plan covers; more than the detection depth");
+        "distance along the course that a plan covers; more than the farthest depth that the detector looks "
+        "at");
   visit("minimum_clearance_m", config.minimum_clearance_m, -1.0, 2.0,
         "smallest clearance to obstacles and altitude limits that a new plan may have; negative: a small "
         "overlap is allowed");

@@ -11,7 +11,7 @@ namespace understory {
 /// room.
 struct ColumnArrays {
   std::vector<float> x_m, y_m, bottom_m, top_m;
-  std::vector<float> around_m;  ///< how thick column and wing are
+  std::vector<float> around_m;  ///< radius of the column, and of the wing
 
   void resize(std::size_t count);
 };

@@ -10,7 +10,7 @@ namespace {
 constexpr double grid_cell_m = 1.0;
 constexpr double rounding_m = 1e-9;         // more than any rounding, less than anything that matters
 constexpr float single_rounding_m = 1e-3f;  // the same in single precision, over a hundred metres
-constexpr double higher_than_any_flight_m = 50;
+constexpr double trunk_top_m = 50;          // higher than the flights of any forest
 
 // Minimum distance between the segments a0-a1 and b0-b1: Ericson 2005, Real-Time Collision Detection, section
 // 5.1.9.
@@ -108,7 +108,7 @@ ObstacleField::ObstacleField(const ObstacleFieldConfig& config, const std::vecto
     const bool is_trunk = config.trunk_m > 0 && cells[end - 1].z - cells[first].z >= config.trunk_m;
     if (is_trunk) {
       bottom_m = std::min(bottom_m, 0.0);
-      top_m = std::max(top_m, higher_than_any_flight_m);
+      top_m = std::max(top_m, trunk_top_m);
     }
     columns_.push_back(
         {sum / static_cast<double>(end - first), bottom_m, top_m, radius_m + 0.5 * config.cell_m});

@@ -55,7 +55,7 @@ class ClearanceField {
 /// stereo at 10 m and of the estimate's drift.
 constexpr double belongs_within_m = 0.5;
 bool belongs_to(const Eigen::Vector3d& point_world, const Obstacle& obstacle);
-/// All points that belong to an obstacle lie in this box, and others.
+/// Holds every point that belongs to the obstacle, and some that do not.
 Eigen::AlignedBox3d belonging_box(const Obstacle& obstacle);
 
 /// The obstacle that this clearance is smallest to; nothing without obstacles.

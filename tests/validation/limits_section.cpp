@@ -10,6 +10,7 @@
 #include "planning/autopilot_config.hpp"
 #include "scenarios/campaign/campaign_summary.hpp"
 #include "scenarios/output/file_output.hpp"
+#include "scenarios/scenario/scenario.hpp"
 #include "tests/validation/flight_mechanics.hpp"
 #include "tests/validation/sections.hpp"
 
@@ -32,7 +33,8 @@ constexpr std::array<Eyes, 7> all_eyes{{{"ours", "long rig, one depth of 10 m"},
 constexpr double reference_speed_mps = 12.27;  // of FlightModelConfig::maximum_roll_rate_radps
 const double half_span_m = 0.5 * Airframe().span_m;
 constexpr double mean_radius_m = 0.175;  // of forest.yaml
-constexpr double latency_s = 0.022;      // frame, plan and input
+const double latency_s =                 // frame, plan and input
+    Scenario().cameras.latency_s + AutopilotConfig().plan_latency_s + Airframe().input_delay_s;
 
 /// At the planner's largest angle of attack.
 SteadyFlight hardest(double speed_mps) {

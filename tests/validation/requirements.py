@@ -5,7 +5,7 @@ requirements.py --seeds 5101..5220 --out FOLDER [--only "latency;one depth"]
     flies each value of each property at two speeds and two densities with the first 20 seeds, then the two values
     between which the success falls below 95 % with all the others, until the success falls between two of these.
     (Flying until an interval excludes 95 % would choose the count by the outcome, and make shares too small.)
-    Writes requirements.csv: a row for each property, value, speed and density.
+    Writes requirements.csv: a row for each property, value, speed and density. With --only, of these properties.
 """
 
 import argparse
@@ -21,7 +21,7 @@ PROPERTIES = {
     "reach": ("perception.full_stereo.maximum_depth_m", [15, 12, 10, 8, 7, 6, 5, 4]),
     # Whole disparities of the long rig: the detector rounds to them.
     "one depth": ("perception.synthetic.depths_m", [14.78, 12.03, 10.14, 8.21, 6.9, 5.94, 5.02, 3.95]),
-    "rate": ("cameras.rate_hz", [120, 40, 20, 10, 6, 4, 3, 2]),
+    "rate": ("cameras.rate_hz", [120, 20, 6, 5, 4, 3, 2, 1]),
     "latency": ("cameras.latency_s", [0.008, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4]),
     "missed for good": ("perception.synthetic.missed_obstacles", [0, 0.005, 0.01, 0.02, 0.04, 0.08, 0.16]),
     "missed in a frame": ("perception.synthetic.missed_frames", [0, 0.5, 0.8, 0.9, 0.95, 0.98, 0.99]),
@@ -29,6 +29,16 @@ PROPERTIES = {
     "false points": ("perception.synthetic.false_points", [0, 0.1, 0.3, 1, 3, 10, 30]),
     "disparity error": ("perception.synthetic.disparity_error_px", [0, 0.25, 0.5, 1, 1.5, 2, 3, 4]),
 }
+
+
+def falling_fit(counts):
+    """Shares that only fall, fitted to counts of arrived and flown (isotonic regression)."""
+    blocks = []  # arrived, flown, values
+    for arrived, flown in counts:
+        blocks.append([arrived, flown, 1])
+        while len(blocks) > 1 and blocks[-2][0] * blocks[-1][1] < blocks[-1][0] * blocks[-2][1]:
+            blocks[-2:] = [[one + other for one, other in zip(*blocks[-2:])]]
+    return [arrived / flown for arrived, flown, values in blocks for _ in range(values)]
 
 
 class Requirements:
@@ -60,10 +70,10 @@ class Requirements:
                 count[1] += 1
 
     def turning(self, of, speed_mps, per_tree_m2, most):
-        """The first value whose success is below what is asked and the one before it, unless they have all seeds."""
+        """The two values between which the fitted success falls below what is asked, unless they have all seeds."""
         values = PROPERTIES[of][1]
         counts = [self.counts[of, value, speed_mps, per_tree_m2] for value in values]
-        below = next((i for i, (arrived, flown) in enumerate(counts) if arrived < ASKED * flown), len(values))
+        below = next((i for i, share in enumerate(falling_fit(counts)) if share < ASKED), len(values))
         for value, (_, flown) in list(zip(values, counts))[max(0, below - 1): below + 1]:
             if flown < most:
                 yield of, value, speed_mps, per_tree_m2
