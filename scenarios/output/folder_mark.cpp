@@ -80,12 +80,12 @@ FolderMark::FolderMark(const fs::path& folder, const ResultKind& kind, const fs:
     : name_(name), kind_(kind) {
   const auto hold = hold_outputs();
   try {
+    std::error_code error;
     do {
       make_folders(folder, name);
-      std::error_code error;
       folder_ = fs::canonical(folder, error);
-      if (error) refuse_output(name, error.value());
-    } while (!opens(manner));  // another program removed it meanwhile
+      if (error && error != std::errc::no_such_file_or_directory) refuse_output(name, error.value());
+    } while (error || !opens(manner));  // another program removed it meanwhile
     read(kind);
   } catch (const std::exception&) {
     unlisted_.reset();

@@ -144,7 +144,8 @@ void make_folders(const fs::path& folder, const fs::path& name) {
   const auto lock = hold_outputs();
   fs::create_directories(folder, error);
   if (error) refuse_output(name, error.value());
-  if (!fs::is_directory(folder, ignored)) refuse_output(name, ENOTDIR);
+  const fs::file_status status = fs::status(folder, ignored);  // another program may have removed it
+  if (fs::exists(status) && !fs::is_directory(status)) refuse_output(name, ENOTDIR);
   made_folders.insert(made_folders.begin(), missing.begin(), missing.end());
 }
 

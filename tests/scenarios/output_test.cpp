@@ -248,6 +248,17 @@ TEST_F(OutputFolderTest, AMarkThatListsNothingLeavesNothingBehind) {
   EXPECT_TRUE(fs::is_empty(fresh));
 }
 
+TEST_F(OutputFolderTest, IsMadeWhileAnotherProgramClearsTheFolderAbove) {
+  const fs::path above = folder.path();
+  const pid_t child = fork();
+  if (child == 0)
+    for (alarm(60);;) clear_unfinished(above);
+  for (int i = 0; i < 300; ++i)
+    EXPECT_NO_THROW(UnfinishedFolder(above / "one", flight_results, above, false));
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+}
+
 TEST_F(OutputFolderTest, WhatAKilledProgramLeftIsClearedAway) {
   const fs::path run = folder.path() / "a-1";
   if (const pid_t child = fork(); child == 0) {
