@@ -48,8 +48,7 @@ void visit_fields(FieldVisitor& visit, ObstacleFieldConfig& config) {
         "length by which a column that is no trunk extends above its highest and below its lowest point");
   visit("trunk_m", config.trunk_m, 0.0, 10.0,
         "A column whose points reach over at least this height is taken for a trunk from the ground to a "
-        "height "
-        "of 50 m, seen or not; 0: none is. | docs/decisions/035");
+        "height of 50 m, seen or not; 0: none is. | docs/decisions/035");
   visit("sigma_zero_m", config.sigma_zero_m, 0.0, 2.0,
         "position uncertainty of a map point when it is detected; the planner enlarges obstacles by it");
   visit("sigma_per_m", config.sigma_per_m, 0.0, 0.5,

@@ -70,6 +70,13 @@ Eigen::AlignedBox3d box_around(const std::array<Segment, 2>& parts) {
   return around;
 }
 
+/// All within this distance of the obstacle's surface.
+Eigen::AlignedBox3d box_around(const Obstacle& obstacle, double within_m) {
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(obstacle.radius_m + within_m);
+  return {obstacle.from_world.cwiseMin(obstacle.to_world) - reach,
+          obstacle.from_world.cwiseMax(obstacle.to_world) + reach};
+}
+
 constexpr double rounding_m = 1e-9;
 
 /// Lowers `minimum` to the distance from any of the obstacles. The distance of bounding boxes excludes most
@@ -146,10 +153,7 @@ ClearanceField::ClearanceField(std::vector<Obstacle> obstacles) {
         groups_.empty() || obstacle.tree != tree || (tree < 0 && groups_.back().obstacles.size() >= together);
     if (new_group) groups_.emplace_back();
     tree = obstacle.tree;
-    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(obstacle.radius_m);
-    const Eigen::Vector3d low = obstacle.from_world.cwiseMin(obstacle.to_world),
-                          high = obstacle.from_world.cwiseMax(obstacle.to_world);
-    groups_.back().box_world.extend(low - reach).extend(high + reach);
+    groups_.back().box_world.extend(box_around(obstacle, 0));
     groups_.back().obstacles.push_back(std::move(obstacle));
   }
 }
@@ -175,11 +179,7 @@ bool belongs_to(const Eigen::Vector3d& point_world, const Obstacle& obstacle) {
          distance_m(point_world, obstacle) < belongs_within_m;
 }
 
-Eigen::AlignedBox3d belonging_box(const Obstacle& obstacle) {
-  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(obstacle.radius_m + belongs_within_m);
-  return {obstacle.from_world.cwiseMin(obstacle.to_world) - reach,
-          obstacle.from_world.cwiseMax(obstacle.to_world) + reach};
-}
+Eigen::AlignedBox3d belonging_box(const Obstacle& obstacle) { return box_around(obstacle, belongs_within_m); }
 
 std::optional<std::size_t> nearest_obstacle(const Eigen::Isometry3d& T_world_body, const Airframe& airframe,
                                             const std::vector<Obstacle>& obstacles) {

@@ -131,13 +131,17 @@ void add_hits(const FlightLog& log, const Detail& detail, PageArrays& arrays, Js
   for (const Obstacle& one : log.obstacles) boxes.push_back(belonging_box(one));
   for (const LogFrame& frame : log.frames) {
     Eigen::AlignedBox3d around;
-    for (std::int64_t hit = 0; hit < frame.hits; ++hit) around.extend(hit_world(log, frame, hit));
+    std::vector<Eigen::Vector3d> places_world;
+    for (std::int64_t hit = 0; hit < frame.hits; ++hit) {
+      places_world.push_back(hit_world(log, frame, hit));
+      around.extend(places_world.back());
+    }
     std::vector<std::size_t> near;  // of a kilometre's obstacles few are near a frame's hits
     for (std::size_t i = 0; i < boxes.size(); ++i)
       if (boxes[i].intersects(around)) near.push_back(i);
     int on_obstacles = 0;
     for (std::int64_t hit = 0; hit < frame.hits; ++hit) {
-      const Eigen::Vector3d place_world = hit_world(log, frame, hit);
+      const Eigen::Vector3d& place_world = places_world[static_cast<std::size_t>(hit)];
       on_obstacles +=
           std::ranges::any_of(near, [&](std::size_t i) { return belongs_to(place_world, log.obstacles[i]); });
       const std::int64_t number = frame.first_hit + hit;

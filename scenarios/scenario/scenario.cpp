@@ -102,8 +102,7 @@ void visit_fields(FieldVisitor& visit, PerceptionSection& section) {
         "original aircraft's.");
   visit("depths_m", section.pushbroom().depths_m, 0.1, 1000.0,
         "Depths at which the detectors pushbroom and true_depth look for obstacles; empty: only the "
-        "detection depth in the "
-        "rig's file. The presets `tuned` and `woods` set two for the rig `paper`.");
+        "detection depth in the rig's file. The presets `tuned` and `woods` set two for the rig `paper`.");
   visit_parts(visit, section.detectors, false);
   visit("full_stereo", section.full_stereo);
   visit("compute", section.compute);
