@@ -2,8 +2,8 @@
 """Flies what vision must be able to do (docs/limits.md): one property of the synthetic detector made worse at a time.
 
 requirements.py --seeds 5101..5220 --out FOLDER [--only "latency;one depth"]
-    flies each value of each property at two speeds and two densities with the first 20 seeds, then the two values
-    between which the success falls below 95 % with all the others, until the success falls between two of these.
+    flies each value of each property at two speeds and two densities with the first 20 seeds, then with all the others
+    the best value and the two between which the success falls below 95 %, until the success falls between two of these.
     (Flying until an interval excludes 95 % would choose the count by the outcome, and make shares too small.)
     Writes requirements.csv: a row for each property, value, speed and density. With --only, of these properties.
 """
@@ -41,14 +41,21 @@ def falling_fit(counts):
     return [arrived / flown for arrived, flown, values in blocks for _ in range(values)]
 
 
+def flown_as(cell):
+    """The best value of every property but one depth is the same detector, which sees everything: it is flown once."""
+    of, value, *where = cell
+    return cell if of == "one depth" or value != PROPERTIES[of][1][0] else ("reach", PROPERTIES["reach"][1][0], *where)
+
+
 class Requirements:
     def __init__(self, arguments):
         self.arguments, self.out = arguments, Path(arguments.out)
         self.out.mkdir(parents=True, exist_ok=True)
-        self.counts = defaultdict(lambda: [0, 0])  # arrived, flown by property, value, speed and density
+        self.counts = defaultdict(lambda: [0, 0])  # arrived and flown, by cell: property, value, speed and density
 
     def fly(self, name, seeds, cells):
-        """Flies these cells (property, value, speed, density) with these seeds."""
+        """Flies these cells with these seeds."""
+        cells = list(dict.fromkeys(map(flown_as, cells)))
         lines = ["scenario: forest", f"seeds: {seeds[0]}..{seeds[-1]}", "overrides:"]
         for number, (of, value, speed_mps, per_tree_m2) in enumerate(cells):
             value = f"[{value}]" if of == "one depth" else value
@@ -70,19 +77,20 @@ class Requirements:
                 count[1] += 1
 
     def turning(self, of, speed_mps, per_tree_m2, most):
-        """The two values between which the fitted success falls below what is asked, unless they have all seeds."""
-        values = PROPERTIES[of][1]
-        counts = [self.counts[of, value, speed_mps, per_tree_m2] for value in values]
-        below = next((i for i, share in enumerate(falling_fit(counts)) if share < ASKED), len(values))
-        for value, (_, flown) in list(zip(values, counts))[max(0, below - 1): below + 1]:
-            if flown < most:
-                yield of, value, speed_mps, per_tree_m2
+        """The best value and the two between which the fitted success falls below what is asked, unless they have all
+        seeds."""
+        cells = [(of, value, speed_mps, per_tree_m2) for value in PROPERTIES[of][1]]
+        counts = [self.counts[flown_as(cell)] for cell in cells]
+        below = next((i for i, share in enumerate(falling_fit(counts)) if share < ASKED), len(cells))
+        for i in {0, max(0, below - 1), min(below, len(cells) - 1)}:
+            if counts[i][1] < most:
+                yield cells[i]
 
-    def write(self):
+    def write(self, cells):
         with open(self.out / "requirements.csv", "w", newline="") as text:
             writer = csv.writer(text, lineterminator="\n")
             writer.writerow(["property", "value", "speed_mps", "square_metres_per_tree", "arrived", "flown"])
-            writer.writerows([*cell, *count] for cell, count in self.counts.items())
+            writer.writerows([*cell, *self.counts[flown_as(cell)]] for cell in cells)
 
 
 def main():
@@ -96,11 +104,11 @@ def main():
     all_of = Requirements(arguments)
     names = arguments.only or list(PROPERTIES)
     curves = [(of, speed_mps, per_tree_m2) for of in names for speed_mps in SPEEDS_MPS for per_tree_m2 in PER_TREE_M2]
-    cells = [(of, value, speed_mps, per_tree_m2) for of, speed_mps, per_tree_m2 in curves for value in PROPERTIES[of][1]]
-    seeds, turn = range(first, first + 20), 0
+    every = [(of, value, *where) for of, *where in curves for value in PROPERTIES[of][1]]
+    cells, seeds, turn = every, range(first, first + 20), 0
     while cells:
         all_of.fly(f"turn-{turn}", seeds, cells)
-        all_of.write()
+        all_of.write(every)
         cells = [cell for curve in curves for cell in all_of.turning(*curve, last + 1 - first)]
         seeds, turn = range(first + 20, last + 1), turn + 1
 

@@ -115,7 +115,7 @@ LinePlot panel_of(const Property& property, const std::map<Cell, Curve>& curves)
   LinePlot panel{.title = property.label,
                  .y_label = "arrived (%)",
                  .references = {{100 * asked, "95 %", false}},
-                 .y_range = AxisRange{0, 102}};
+                 .y_range = AxisRange{-15, 102}};  // the names of the values stand below 0
   const std::vector<double>& values = curves.begin()->second.values;
   for (std::size_t i = 0; i < values.size(); ++i)
     panel.x_names.emplace_back(static_cast<double>(i), fmt::format("{}", values[i]));
@@ -154,8 +154,10 @@ Section requirements_section() {
     for (const Cell& cell : cells) {
       const Curve& curve = its.at(cell);
       const Interval interval = interval_of(curve.arrived);
-      row += fmt::format(" | {} ({} to {})", value_at(curve.values, crossing(curve.arrived)),
-                         value_at(curve.values, interval.minimum), value_at(curve.values, interval.maximum));
+      const std::string value = value_at(curve.values, crossing(curve.arrived)),
+                        first = value_at(curve.values, interval.minimum),
+                        last = value_at(curve.values, interval.maximum);
+      row += " | " + value + (first == last ? "" : fmt::format(" ({} to {})", first, last));
     }
     for (const double value : {property.pushbroom, property.stereo_bm})
       row += std::isfinite(value) ? fmt::format(" | {:.3g}", value) : " | ";
