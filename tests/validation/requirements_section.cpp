@@ -30,7 +30,7 @@ constexpr std::array<Property, 9> properties{
      {"rate", "looks so often (Hz)", 120, 14},
      {"latency", "answers after (s)", 0.016, 0.08},
      {"missed for good", "share of trees never seen", 0.013, 0.004},
-     {"missed in a frame", "share of frames without a tree", NAN, NAN},
+     {"missed in a frame", "share of frames that miss a tree", NAN, NAN},
      {"blocks missed", "share of blocks missed", 0.675, 0.27},
      {"false points", "false points a frame at 120 Hz", 0.22, 4 * 14 / 120.0},
      {"disparity error", "error of disparity (px)", NAN, 0.5}}};
