@@ -14,7 +14,7 @@ namespace understory {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using Floats = hn::CappedTag<float, 16>;
+using Floats = hn::CappedTag<float, widest_vector>;
 
 float BoundClearances(const ColumnArrays& columns, std::size_t first, std::size_t count,
                       const Eigen::Vector3f& middle, const Eigen::Vector3f& half_wing, float* bounds_m) {
@@ -59,24 +59,19 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace understory {
-namespace {
-
-constexpr std::size_t over_read = 16;  // a whole vector of Floats, whatever the processor
-
-}  // namespace
 
 HWY_EXPORT(BoundClearances);
 HWY_EXPORT(NextWithin);
 
 void ColumnArrays::resize(std::size_t count) {
   for (std::vector<float>* numbers : {&x_m, &y_m, &bottom_m, &top_m, &around_m})
-    numbers->resize(count + over_read);
+    numbers->resize(count + widest_vector);
 }
 
 float bound_clearances(const ColumnArrays& columns, std::size_t first, std::size_t count,
                        const Eigen::Vector3f& middle, const Eigen::Vector3f& half_wing,
                        std::vector<float>& bounds_m) {
-  if (bounds_m.size() < count + over_read) bounds_m.resize(count + over_read);
+  if (bounds_m.size() < count + widest_vector) bounds_m.resize(count + widest_vector);
   return HWY_DYNAMIC_DISPATCH(BoundClearances)(columns, first, count, middle, half_wing, bounds_m.data());
 }
 

@@ -6,6 +6,9 @@
 
 namespace understory {
 
+/// Floats of the widest vector that any processor takes: so far beyond the end is read.
+inline constexpr std::size_t widest_vector = 16;
+
 /// Columns of the obstacle field as arrays, so that a processor bounds many distances at once. Places are
 /// counted from the field's origin, m. The vectors may be read beyond what was asked for; `resize` leaves
 /// room.
