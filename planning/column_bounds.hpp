@@ -6,7 +6,7 @@
 
 namespace understory {
 
-/// Floats of the widest vector that any processor takes: so far beyond the end is read.
+/// How many floats the widest vector of any processor holds. Arrays are read up to so many beyond their end.
 inline constexpr std::size_t widest_vector = 16;
 
 /// Columns of the obstacle field as arrays, so that a processor bounds many distances at once. Places are
