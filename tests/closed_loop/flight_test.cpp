@@ -72,6 +72,26 @@ TEST(Referee, SidesEndNoFlightOnALongCourse) {
   EXPECT_EQ(judged("forest.length_m=1000", {1016, 0, 4}), Outcome::goal);
 }
 
+/// 540 trees, so those nearby alone stand in the model that is flown. They begin 15 m ahead.
+TEST(Flight, OfALongCourseCountsFromTheFirstTree) {
+  const auto of = [](const char* detector) {
+    return forest(1000, {"forest.length_m=120", "forest.square_metres_per_tree=16",
+                         std::string("perception.detector=") + detector});
+  };
+  const FlightResult arrived = Recorded(of("synthetic")).flown();
+  EXPECT_EQ(arrived.outcome, Outcome::goal);
+  EXPECT_NEAR(arrived.among_obstacles_m, 120, 1);
+  Recorded blind(of("none"));
+  const FlightResult lost = blind.flown();
+  ASSERT_EQ(lost.outcome, Outcome::collision);
+  EXPECT_NEAR(lost.among_obstacles_m, lost.progress_m - 15, 1);
+  const FlightLog& log = blind.logger.log();
+  const auto touched = std::ranges::find(log.obstacles, lost.touched, &Obstacle::name);
+  ASSERT_NE(touched, log.obstacles.end()) << lost.touched;
+  const Eigen::Vector3d place = log.moments.back().T_world_body.translation();
+  EXPECT_LT((touched->from_world - place).head<2>().norm(), 1);
+}
+
 TEST(Flight, AnotherRendererBesideItIsRefusedInOneLine) {
   const Recorded drawing(forest(1000));
   try {

@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
+#include <sstream>
 
 #include "perception/pushbroom/pushbroom_stereo.hpp"
 #include "perception/rectification/rectify.hpp"
+#include "scenarios/output/file_output.hpp"
 
 namespace understory {
 namespace {
@@ -69,6 +72,16 @@ TEST(PlannerBench, CountsProblemsAndComparesTheirSlowest) {
   EXPECT_EQ(rows[1].yardstick, rows[0].name);
   EXPECT_NEAR(rows[1].p99_ratio, rows[1].p99_ms / rows[0].median_ms, 1e-12);
   EXPECT_GT(rows[1].p99_ms, rows[1].median_ms);  // of one with a trunk ahead and one without
+}
+
+TEST(PlannerBench, TheLibraryHas504Problems) {
+  int problems = 0;
+  for (const auto& file :
+       std::filesystem::directory_iterator(UNDERSTORY_SOURCE_DIR "/scenarios/library/problems")) {
+    std::istringstream text(unpacked(read_file(file.path(), 1 << 24), 1 << 28).value());
+    for (std::string line; std::getline(text, line);) problems += line.starts_with("plan,");
+  }
+  EXPECT_EQ(problems, 504);  // as the help of bench says
 }
 
 TEST(PlannerBench, NamesTheLineThatIsNoProblem) {

@@ -10,6 +10,7 @@ requirements.py --seeds 5101..5220 --out FOLDER [--only "latency;one depth"]
 
 import argparse
 import csv
+import shutil
 import subprocess
 from collections import defaultdict
 from pathlib import Path
@@ -93,14 +94,30 @@ class Requirements:
             writer.writerows([*cell, *self.counts[flown_as(cell)]] for cell in cells)
 
 
+def seed_range(text):
+    first, dots, last = text.partition("..")
+    if not (dots and first.isdigit() and last.isdigit() and int(last) - int(first) >= 20):
+        raise argparse.ArgumentTypeError(f"{text}: expected FIRST..LAST, more than 20 seeds, for example 5101..5220")
+    return int(first), int(last)
+
+
+def properties(text):
+    names = text.split(";")
+    if unknown := [name for name in names if name not in PROPERTIES]:
+        raise argparse.ArgumentTypeError(f"no property {unknown[0]!r}; there are: {'; '.join(PROPERTIES)}")
+    return names
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default="build/release/understory")
-    parser.add_argument("--seeds", required=True)
+    parser.add_argument("--seeds", required=True, type=seed_range)
     parser.add_argument("--out", required=True)
-    parser.add_argument("--only", type=lambda text: text.split(";"), help="properties, with ; between them")
+    parser.add_argument("--only", type=properties, help="properties, with ; between them")
     arguments = parser.parse_args()
-    first, last = map(int, arguments.seeds.split(".."))
+    if not shutil.which(arguments.program):
+        parser.error(f"argument --program: there is no program {arguments.program}; build it first")
+    first, last = arguments.seeds
     all_of = Requirements(arguments)
     names = arguments.only or list(PROPERTIES)
     curves = [(of, speed_mps, per_tree_m2) for of in names for speed_mps in SPEEDS_MPS for per_tree_m2 in PER_TREE_M2]
