@@ -144,7 +144,7 @@ LinePlot sight_panel(const std::map<std::string, Cells>& flown) {
                  .y_label = "km between crashes, 95 %",
                  .references = {{std::log10(needed_sight_m(12, 2, true)), "bound", true}},
                  .x_range = AxisRange{std::log10(4), std::log10(60)},
-                 .y_range = AxisRange{0.005, 30},
+                 .y_range = AxisRange{0.002, 30},
                  .y_log = true};
   constexpr std::array<std::pair<const char*, double>, 5> sights{{{"paper_one_depth", 4.8},
                                                                   {"paper_two_depths", 9.1},
@@ -192,7 +192,7 @@ Section limits_section() {
                    .y_label = "km between crashes, 95 %",
                    .references = {{blind_km(per_tree_m2), "straight through, by theory", false}},
                    .x_range = AxisRange{8.5, 12.5},
-                   .y_range = AxisRange{0.005, 30},
+                   .y_range = AxisRange{0.002, 30},
                    .y_log = true};
     for (std::size_t i = 0; i < all_eyes.size(); ++i) {
       Series series{.name = panels.empty() ? all_eyes[i].words : "", .mark = Mark::line_and_dots};
