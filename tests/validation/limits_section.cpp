@@ -30,6 +30,7 @@ constexpr std::array<Eyes, 7> all_eyes{{{"ours", "long rig, one depth of 10 m"},
                                         {"everything_known", "everything known"},
                                         {"blind", "blind"}}};
 
+constexpr AxisRange kilometres{0.002, 30};     // of all panels that have them
 constexpr double reference_speed_mps = 12.27;  // of FlightModelConfig::maximum_roll_rate_radps
 const double half_span_m = 0.5 * Airframe().span_m;
 constexpr double mean_radius_m = 0.175;  // of forest.yaml
@@ -144,7 +145,7 @@ LinePlot sight_panel(const std::map<std::string, Cells>& flown) {
                  .y_label = "km between crashes, 95 %",
                  .references = {{std::log10(needed_sight_m(12, 2, true)), "bound", true}},
                  .x_range = AxisRange{std::log10(4), std::log10(60)},
-                 .y_range = AxisRange{0.002, 30},
+                 .y_range = kilometres,
                  .y_log = true};
   constexpr std::array<std::pair<const char*, double>, 5> sights{{{"paper_one_depth", 4.8},
                                                                   {"paper_two_depths", 9.1},
@@ -192,7 +193,7 @@ Section limits_section() {
                    .y_label = "km between crashes, 95 %",
                    .references = {{blind_km(per_tree_m2), "straight through, by theory", false}},
                    .x_range = AxisRange{8.5, 12.5},
-                   .y_range = AxisRange{0.002, 30},
+                   .y_range = kilometres,
                    .y_log = true};
     for (std::size_t i = 0; i < all_eyes.size(); ++i) {
       Series series{.name = panels.empty() ? all_eyes[i].words : "", .mark = Mark::line_and_dots};
