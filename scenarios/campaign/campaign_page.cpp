@@ -227,7 +227,12 @@ std::string campaign_page(const CampaignFolder& folder, const Campaign& campaign
   std::vector<ShownCondition> conditions;
   for (const Condition& condition : campaign.conditions)
     conditions.push_back(shown(folder, condition, data_root));
-  const std::vector<std::string> keys = grid_keys(conditions);
+  std::vector<std::string> keys = grid_keys(conditions);
+  // The reader's own keys come before the keys that follow from them.
+  std::ranges::stable_partition(keys, [&](const std::string& key) {
+    const auto& grid = campaign.conditions.front().grid;
+    return std::ranges::find(grid, key, &std::pair<std::string, std::string>::first) != grid.end();
+  });
   const auto goals = std::ranges::count_if(rows, &FlightRow::reached_goal);
   const auto flown = std::ranges::count_if(rows, &FlightRow::flown);
   PageContent page;

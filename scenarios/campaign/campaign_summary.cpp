@@ -85,7 +85,7 @@ ConditionSummary summary_of(const std::vector<FlightRow>& rows) {
 }
 
 CrashDistance crash_distance(const ConditionSummary& summary) {
-  const int crashes = summary.collision + summary.ground + summary.out_of_bounds;
+  const int crashes = summary.crashes();
   const Interval count = poisson_interval(crashes);
   const Interval interval{summary.among_obstacles_km / count.maximum,
                           summary.among_obstacles_km / count.minimum};

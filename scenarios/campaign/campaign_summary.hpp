@@ -19,6 +19,7 @@ struct ConditionSummary {
   int goals = 0;
   int collision = 0, ground = 0, out_of_bounds = 0, time = 0;  ///< the other outcomes
   int failed_to_run = 0;
+  int crashes() const { return collision + ground + out_of_bounds; }
   double among_obstacles_km = 0;  ///< of all flown
   Interval success;               ///< 95 %, Wilson's
   double mean_speed_mps = 0;      ///< mean over flights; NaN without any, as the next

@@ -21,10 +21,15 @@ std::string success_text(int goals, int flights) {
   return fmt::format("{} ({} to {})", goals, percent(interval.minimum), percent(interval.maximum));
 }
 
-std::string between_crashes(const ConditionComparison& condition, FlightRow FlightPair::*side) {
+/// Of the flights of one side that have a pair.
+ConditionSummary summary_of_side(const ConditionComparison& condition, FlightRow FlightPair::*side) {
   std::vector<FlightRow> rows;
   for (const FlightPair& pair : condition.pairs) rows.push_back(pair.*side);
-  return rows.empty() ? "-" : crash_distance_text(summary_of(rows));
+  return rows.empty() ? ConditionSummary() : summary_of(rows);
+}
+
+std::string between_crashes(const ConditionComparison& condition, FlightRow FlightPair::*side) {
+  return crash_distance_text(summary_of_side(condition, side));
 }
 
 void add_success(const ConditionComparison& condition, Table& table) {
@@ -106,12 +111,19 @@ std::vector<std::string> notes_of(const Comparison& comparison) {
 }
 
 std::string shown_text(const GateVerdict& verdict, int pairs) {
-  if (verdict.smallest_shown > 1) return "No net loss of so few pairs would be called worse";
+  if (verdict.smallest_shown > 1) return "With so few pairs, no loss would be called worse";
   return fmt::format("A net loss of {:.0f} of these pairs ({} points) would be called worse",
                      verdict.smallest_shown * pairs, percent(verdict.smallest_shown));
 }
 
 Json json_of(const Interval& interval) { return {interval.minimum, interval.maximum}; }
+
+/// The interval is null after no kilometre; its upper end is null after no crash.
+Json kilometres_of(const ConditionSummary& side) {
+  Json json{{"flown", side.among_obstacles_km}, {"crashes", side.crashes()}, {"between_crashes", Json()}};
+  if (side.among_obstacles_km > 0) json["between_crashes"] = json_of(crash_distance(side).interval);
+  return json;
+}
 
 Json json_of(const ConditionComparison& condition) {
   const PairedOutcomes& goals = condition.goals;
@@ -125,6 +137,8 @@ Json json_of(const ConditionComparison& condition) {
             {"difference", goals.difference()},
             {"interval", json_of(condition.difference)},
             {"p", condition.p},
+            {"baseline_km", kilometres_of(summary_of_side(condition, &FlightPair::baseline))},
+            {"candidate_km", kilometres_of(summary_of_side(condition, &FlightPair::candidate))},
             {"figures", Json::array()}};
   for (const MetricComparison& metric : condition.metrics)
     if (metric.pairs > 0)

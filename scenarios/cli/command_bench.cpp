@@ -89,6 +89,7 @@ int run_bench(const BenchArguments& arguments) {
   require_writable(arguments.json);
   if (arguments.closed_loop) return run_closed_loop_bench(arguments);
   if (arguments.planner) return run_planner_bench(arguments);
+  if (!arguments.settings.empty()) throw ScenarioError("--set: requires --closed-loop or --planner");
   if (arguments.rig.empty() && !arguments.inputs.empty() && !euroc_folder(arguments.inputs.front()))
     throw ScenarioError(fmt::format("{}: requires --rig: only EuRoC folders bring their calibration",
                                     arguments.inputs.front()));
@@ -150,8 +151,9 @@ void add_bench_command(CommandLine& line) {
       .excludes(inputs)
       .excludes(rig)
       .excludes(closed_loop);
-  command.whole("--flights", arguments->flights, 1, 1000,
-                "with --closed-loop: number of flights in each forest");
+  command
+      .whole("--flights", arguments->flights, 1, 1000, "with --closed-loop: number of flights in each forest")
+      .needs(closed_loop);
   command.texts(
       "--set", "KEY=VALUE", arguments->settings,
       "with --closed-loop or --planner: override a key of the scenarios, for example forest.length_m=30 or "

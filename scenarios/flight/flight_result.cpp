@@ -144,6 +144,8 @@ std::vector<std::pair<std::string, std::string>> result_lines(const FlightResult
   if (!result.touched.empty()) line("touched", result.touched);
   line("flown", fmt::format("{:.1f} m in {:.2f} s, {:.1f} m/s on average", result.distance_m,
                             result.simulated_s, result.mean_speed_mps));
+  if (result.among_obstacles_m > 0)
+    line("among obstacles", fmt::format("{:.1f} m of the course", result.among_obstacles_m));
   line("minimum clearance", clearance_text(result.minimum_clearance_m));
   line("estimator error",
        fmt::format("{:.2f} m on average, {:.2f} m at most, {:.1f} deg at most", result.position_error_mean_m,

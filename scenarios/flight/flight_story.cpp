@@ -321,6 +321,7 @@ std::string_view bound_left(const FlightLog& log) {
   const Eigen::Vector3d place = log.moments.back().T_world_body.translation();
   const double half_width_m = log.scenario.forest.half_width_m;
   if (place.z() > log.scenario.band.maximum_altitude_m) return "upper";
+  if (log.scenario.is_long()) return "lower";  // its sides end no flight
   if (std::abs(place.y()) > half_width_m) return place.y() > 0 ? "left" : "right";
   return place.x() < -half_width_m ? "back" : "lower";
 }

@@ -56,9 +56,13 @@ std::unique_ptr<ObstacleDetector> full_stereo_of(const FlightContext& context) {
 
 std::unique_ptr<ObstacleDetector> synthetic_of(const FlightContext& context) {
   const FullStereoCrop& crop = context.scenario.perception.full_stereo;
-  return std::make_unique<SyntheticDetector>(
-      context.rig.rig, context.obstacles, context.truth, own_config<SyntheticConfig>(context),
-      DepthInterval{crop.minimum_depth_m, crop.maximum_depth_m}, context.seed);
+  const auto& config = own_config<SyntheticConfig>(context);
+  PushbroomConfig looks;
+  looks.depths_m = config.depths_m;
+  check_depths(looks, context.rig.rig, "perception.synthetic.depths_m", "perception.synthetic");
+  return std::make_unique<SyntheticDetector>(context.rig.rig, context.obstacles, context.truth, config,
+                                             DepthInterval{crop.minimum_depth_m, crop.maximum_depth_m},
+                                             context.seed);
 }
 
 std::string stereo_bm_fault(const StereoBmConfig& config, const Scenario&) {

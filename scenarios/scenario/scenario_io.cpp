@@ -30,8 +30,7 @@ bool is_plain_word(const std::string& name) {
   const auto is_plain = [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
   };
-  return !name.empty() && name.size() <= 100 && name.front() != '.' &&
-         std::all_of(name.begin(), name.end(), is_plain);
+  return !name.empty() && name.size() <= 100 && name.front() != '.' && std::ranges::all_of(name, is_plain);
 }
 
 /// Conditions on a scenario's own list of obstacles.
@@ -91,7 +90,8 @@ void check_detectors(const Scenario& scenario, Expect&& expect) {
   check_parts(parts().detectors, scenario.perception.detectors, "perception.", scenario, expect);
   const FullStereoCrop& crop = scenario.perception.full_stereo;
   expect(crop.minimum_depth_m < crop.maximum_depth_m,
-         "perception.full_stereo.minimum_depth_m: must be less than maximum_depth_m");
+         fmt::format("perception.full_stereo.minimum_depth_m: {} must be less than maximum_depth_m, {}",
+                     crop.minimum_depth_m, crop.maximum_depth_m));
 }
 
 template <typename Expect>
@@ -137,7 +137,7 @@ void check(const Scenario& scenario, const Sources& sources, const std::string& 
                                                   {"sensors.magnetometer_", sensors.magnetometer_rate_hz},
                                                   {"sensors.gps_", sensors.gps_rate_hz}};
   for (const auto& [key, rate_hz] : rates_hz)
-    expect(physics_rate_hz % rate_hz == 0, fmt::format("{}rate_hz: must divide 1200", key));
+    expect(physics_rate_hz % rate_hz == 0, fmt::format("{}rate_hz: must divide 1200, as 12 and 15 do", key));
   const PerceptionSection& perception = scenario.perception;
   check_detectors(scenario, expect);
   check_parts(parts().state_sources, scenario.estimation.sources, "estimation.", scenario, expect);

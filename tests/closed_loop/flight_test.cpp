@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "scenarios/flight/flight_logger.hpp"
+#include "scenarios/flight/flight_story.hpp"
 #include "scenarios/flight/referee.hpp"
 #include "scenarios/scenario/scenario_io.hpp"
 #include "sim/render/offscreen_backend.hpp"
@@ -70,6 +71,20 @@ TEST(Referee, SidesEndNoFlightOnALongCourse) {
   }
   EXPECT_EQ(judged("forest.length_m=1000", {30, 0, 7}), Outcome::out_of_bounds);
   EXPECT_EQ(judged("forest.length_m=1000", {1016, 0, 4}), Outcome::goal);
+}
+
+TEST(Flight, ALongCourseIsLeftThroughTheAltitudesAlone) {
+  FlightLog log;
+  log.moments.resize(1);
+  const auto left = [&](const char* length, const Eigen::Vector3d& place) {
+    log.scenario = forest(1, {length});
+    log.moments.back().T_world_body.translation() = place;
+    return bound_left(log);
+  };
+  EXPECT_EQ(left("forest.length_m=60", {30, -40, 0.9}), "right");
+  EXPECT_EQ(left("forest.length_m=60", {-40, 0, 4}), "back");
+  EXPECT_EQ(left("forest.length_m=1000", {30, -40, 0.9}), "lower");
+  EXPECT_EQ(left("forest.length_m=1000", {30, -40, 6.1}), "upper");
 }
 
 /// 540 trees, so those nearby alone stand in the model that is flown. They begin 15 m ahead.

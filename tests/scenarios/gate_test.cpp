@@ -288,6 +288,8 @@ TEST(Gate, TheReportNamesSeedsAndNumbers) {
   EXPECT_EQ(json["verdict"], "not enough flights");
   EXPECT_EQ(json["conditions"][0]["got_worse"][0]["command"], "understory fly forest --seed 4");
   EXPECT_EQ(json["all"]["worse"], 6);
+  EXPECT_EQ(json["all"]["baseline_km"]["crashes"], 3);
+  EXPECT_EQ(json["conditions"][0]["candidate_km"]["crashes"], 7);
   EXPECT_NEAR(json["all"]["difference"].get<double>(), -0.04, 1e-12);
 }
 

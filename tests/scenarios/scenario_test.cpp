@@ -240,7 +240,7 @@ TEST(Scenario, FullStereosNumbersAreRefusedInOneLineWhereOpenCvWouldThrow) {
   EXPECT_EQ(refusal("perception:\n  stereo_sgbm: {smoothness_1: 40}\n"),
             "a.yaml:2: perception.stereo_sgbm.smoothness_1: must be less than smoothness_2");
   EXPECT_EQ(refusal("perception: {full_stereo: {minimum_depth_m: 20}}"),
-            "a.yaml:1: perception.full_stereo.minimum_depth_m: must be less than maximum_depth_m");
+            "a.yaml:1: perception.full_stereo.minimum_depth_m: 20 must be less than maximum_depth_m, 15");
   EXPECT_EQ(refusal("perception: {detector: stereo}"),
             "a.yaml:1: perception.detector: expected pushbroom | stereo_bm | stereo_sgbm | true_depth | "
             "synthetic | none, "
