@@ -57,7 +57,7 @@ std::unique_ptr<ObstacleDetector> full_stereo_of(const FlightContext& context) {
 std::unique_ptr<ObstacleDetector> synthetic_of(const FlightContext& context) {
   const FullStereoCrop& crop = context.scenario.perception.full_stereo;
   const auto& config = own_config<SyntheticConfig>(context);
-  PushbroomConfig looks;
+  PushbroomConfig looks;  // its depths alone are checked
   looks.depths_m = config.depths_m;
   check_depths(looks, context.rig.rig, "perception.synthetic.depths_m", "perception.synthetic");
   return std::make_unique<SyntheticDetector>(context.rig.rig, context.obstacles, context.truth, config,
