@@ -299,25 +299,28 @@ TEST(Scenario, FaultsAreReadWrittenAndChecked) {
             "a.yaml:4: faults[0].kind: must be, for this sensor, freeze | dropout | bias | saturate");
 }
 
-TEST(Scenario, ALongCourseHasTimeRoomAndGps) {
+TEST(Scenario, ALongCourseHasTimeRoomGpsAndAnAltitudeOfItsOwn) {
   const Scenario usual = scenario_from_text("forest: {length_m: 85}\n", "a.yaml"),
                  longer = scenario_from_text("forest: {length_m: 985}\n", "a.yaml"),
                  said = scenario_from_text(
                      "time_limit_s: 7\nforest: {length_m: 985, half_width_m: 20}\nsensors: {gps: "
-                     "{enabled: false}}\n",
+                     "{enabled: false}}\nband: {cruise_altitude_m: 5}\n",
                      "a.yaml");
   EXPECT_FALSE(usual.is_long());
   EXPECT_EQ(usual.time_limit_s, 30);
   EXPECT_EQ(usual.mission().half_width_m, 25);
+  EXPECT_EQ(usual.mission().cruise_altitude_m, 4.5);
   EXPECT_FALSE(usual.sensors.gps.enabled);
   EXPECT_TRUE(longer.is_long());
   EXPECT_EQ(longer.time_limit_s, 167);  // 2 * 1000 m at 12 m/s
   EXPECT_EQ(longer.forest.half_width_m, 36);
   EXPECT_NEAR(longer.mission().half_width_m, 25.2, 1e-9);
+  EXPECT_EQ(longer.mission().cruise_altitude_m, 4);
   EXPECT_TRUE(longer.sensors.gps.enabled);
   EXPECT_FALSE(longer.estimation.filter().gps.enabled);
   EXPECT_EQ(said.time_limit_s, 7);
   EXPECT_EQ(said.forest.half_width_m, 20);
+  EXPECT_EQ(said.mission().cruise_altitude_m, 5);
   EXPECT_FALSE(said.sensors.gps.enabled);
 }
 
