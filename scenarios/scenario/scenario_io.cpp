@@ -292,7 +292,7 @@ Scenario compose(const Sources& sources, const std::string& name) {
     scenario.time_limit_s =
         std::min(600.0, std::ceil(2 * first.goal_x_m() / first.autopilot.flight_model.cruise_speed_mps));
     scenario.forest.half_width_m = 36;
-    scenario.band.cruise_altitude_m = 4;  // the barometer drifts for longer, up as well as down
+    scenario.band.cruise_altitude_m = 4;  // a barometer that drifts for longer needs more room above
     scenario.sensors.gps.enabled = true;
     filter.gps.enabled = false;  // the estimate stays that of a short course: GPS only says where the way is
   }
