@@ -20,7 +20,7 @@ Section tracking_section(const FreeFlight& air, const Airframe& airframe, const 
 Section fluid_section(const Airframe& airframe);
 
 /// The sections of docs/estimator.md: is the filter's uncertainty true, and how far does the map drift. Some
-/// 300 flights without a picture.
+/// 900 flights without a picture.
 
 /// Calm air, sensors whose noise is exactly what the filter is told: whether its uncertainty is true.
 Section calm_consistency_section(int flights);

@@ -31,9 +31,10 @@ std::vector<Section> aircraft_sections() {
 }
 
 std::vector<Section> estimator_sections() {
-  std::vector<Section> sections{calm_consistency_section(100), turbulent_consistency_section(100)};
-  for (Section& section : graded_consistency_sections(100)) sections.push_back(std::move(section));
-  sections.push_back(drift_section(100));
+  constexpr int flights = 100;
+  std::vector<Section> sections{calm_consistency_section(flights), turbulent_consistency_section(flights)};
+  for (Section& section : graded_consistency_sections(flights)) sections.push_back(std::move(section));
+  sections.push_back(drift_section(flights));
   return sections;
 }
 
